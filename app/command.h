@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace relume {
+
+// One function per verb, in app/commands/<verb>.cpp. Each adds its subcommand with its options to `app`; its callback
+// does the work and throws Error (exit status 1) or UsageError (2).
+void addBakeCommand(CLI::App& app);
+void addInfoCommand(CLI::App& app);
+void addUnwrapCommand(CLI::App& app);
+void addSceneCommand(CLI::App& app);
+void addDevicesCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
+void addBenchCommand(CLI::App& app);
+
+} // namespace relume

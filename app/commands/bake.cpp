@@ -1,0 +1,7 @@
+#include "app/command.h"
+
+namespace relume {
+
+void addBakeCommand(CLI::App&) {}
+
+} // namespace relume

@@ -1,0 +1,7 @@
+#include "app/command.h"
+
+namespace relume {
+
+void addDevicesCommand(CLI::App&) {}
+
+} // namespace relume

@@ -1,0 +1,7 @@
+#include "app/command.h"
+
+namespace relume {
+
+void addInfoCommand(CLI::App&) {}
+
+} // namespace relume

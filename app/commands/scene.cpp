@@ -1,0 +1,7 @@
+#include "app/command.h"
+
+namespace relume {
+
+void addSceneCommand(CLI::App&) {}
+
+} // namespace relume

@@ -1,0 +1,7 @@
+#include "app/command.h"
+
+namespace relume {
+
+void addUnwrapCommand(CLI::App&) {}
+
+} // namespace relume

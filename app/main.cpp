@@ -1,0 +1,44 @@
+#include "app/command.h"
+#include "assets/error.h"
+#include "assets/log.h"
+
+#include <cstdio>
+#include <exception>
+
+int main(int argc, char** argv) {
+    CLI::App app{"Relume bakes the radiosity lightmap of a glTF scene."};
+    app.name("relume");
+    app.set_version_flag("--version", "relume " RELUME_VERSION);
+    app.require_subcommand(1);
+    bool quiet = false;
+    app.add_flag("-q,--quiet", quiet, "Print warnings and errors only");
+    app.parse_complete_callback([&] { relume::setupLog(quiet); });
+    relume::setupLog(false);
+
+    relume::addBakeCommand(app);
+    relume::addInfoCommand(app);
+    relume::addUnwrapCommand(app);
+    relume::addSceneCommand(app);
+    relume::addDevicesCommand(app);
+    relume::addCompareCommand(app);
+    relume::addBenchCommand(app);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    } catch (const relume::UsageError& error) {
+        spdlog::error("{}", error.what());
+        return 2;
+    } catch (const relume::Error& error) {
+        spdlog::error("{}", error.what());
+        return 1;
+    } catch (const std::bad_alloc&) {
+        spdlog::error("out of memory: use a smaller --size or close other programs");
+        return 1;
+    } catch (const std::exception& error) {
+        spdlog::error("unexpected: {}", error.what());
+        return 1;
+    }
+    return 0;
+}

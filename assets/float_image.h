@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace relume {
+
+/// Planes of 32-bit floats, row 0 on top = v 0.
+struct FloatImage {
+    uint32_t width = 0, height = 0;
+    std::vector<std::string> channels;     // e.g. "R", "G", "B", "coverage"
+    std::vector<std::vector<float>> planes; // one per channel, [width * height]
+    std::map<std::string, std::string> attributes; // strings written into the EXR header
+
+    /// The plane of a channel, nullptr where there is none.
+    const std::vector<float>* find(const std::string& channel) const;
+    std::vector<float>& add(const std::string& channel); // a new plane of zeros
+};
+
+enum class ExrType { Float, Half };
+
+/// Reads an OpenEXR (all channels as float) or PNG (R, G, B decoded from sRGB to linear). Throws Error.
+FloatImage readImage(const std::string& path);
+
+/// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. Goes to a temporary name in the
+/// same folder first and is renamed, so an existing file is replaced whole or not at all. Throws Error.
+void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
+
+/// Throws Error where writing `path` is sure to fail (folder missing or unwritable, unknown ending, too little space for
+/// `bytes`): call before long work.
+void checkWritable(const std::string& path, uint64_t bytes = 0);
+
+} // namespace relume

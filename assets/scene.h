@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace relume {
+
+/// Pixels of a texture as the file has them: 8 bits, 4 channels, row 0 first. Colour is sRGB encoded or linear
+/// according to its use (base colour and emission: sRGB; metallic-roughness: linear).
+struct Image {
+    std::string name;
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgba; // [width * height * 4]
+};
+
+enum class Wrap : uint32_t { Repeat, MirroredRepeat, ClampToEdge };
+
+struct Texture {
+    int image = -1; // index into Scene::images
+    Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
+    bool nearest = false; // magnification filter
+};
+
+/// A material's use of a texture: uv = (transform * (TEXCOORD_n, 1)).xy, KHR_texture_transform included.
+struct TextureRef {
+    int texture = -1; // index into Scene::textures, -1 for none
+    int texCoord = 0; // 0 or 1
+    glm::mat3 transform{1.0f};
+};
+
+enum class AlphaMode : uint32_t { Opaque, Mask, Blend };
+
+struct Material {
+    std::string name;
+    glm::vec4 baseColor{1.0f}; // linear
+    TextureRef baseColorTexture;
+    glm::vec3 emission{0.0f}; // [cd/m^2], emissive factor times KHR_materials_emissive_strength
+    TextureRef emissionTexture;
+    float metallic = 1.0f, roughness = 1.0f;
+    TextureRef metallicRoughnessTexture; // G roughness, B metallic
+    AlphaMode alphaMode = AlphaMode::Opaque;
+    float alphaCutoff = 0.5f;
+    bool doubleSided = false;
+};
+
+/// Triangles of one material. Arrays other than positions may be empty where the file has none; normals never are
+/// after import (flat where missing, which splits vertices).
+struct Primitive {
+    std::vector<glm::vec3> positions; // [m], object space
+    std::vector<glm::vec3> normals;   // unit
+    std::vector<glm::vec2> texCoord0, texCoord1;
+    std::vector<glm::vec4> colors; // COLOR_0, linear
+    std::vector<uint32_t> indices; // 3 per triangle, always filled
+    int material = -1;             // index into Scene::materials, -1 for glTF's default material
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+struct Instance {
+    std::string name; // of the node
+    int mesh = -1;
+    glm::mat4 transform{1.0f}; // object to world
+};
+
+struct Camera {
+    std::string name;
+    glm::mat4 transform{1.0f}; // looks along its -Z, +Y up
+    bool perspective = true;
+    float yfov = 0.8f; // [rad]
+    float ymag = 1.0f; // half height [m], orthographic only
+    float aspect = 0.0f; // width / height, 0: that of the window
+    float znear = 0.01f, zfar = 0.0f; // [m], zfar 0: infinite
+};
+
+enum class LightType : uint32_t { Point, Spot, Directional };
+
+/// KHR_lights_punctual. Shines along the transform's -Z.
+struct Light {
+    std::string name;
+    LightType type = LightType::Point;
+    glm::mat4 transform{1.0f};
+    glm::vec3 color{1.0f};   // linear
+    float intensity = 1.0f;  // [cd], directional: [lux]
+    float range = 0.0f;      // [m], 0: infinite
+    float innerConeAngle = 0.0f, outerConeAngle = 0.785398f; // [rad]
+};
+
+/// A scene as the file tells it, with the node hierarchy resolved to world transforms. No GPU, no lightmap decisions.
+struct Scene {
+    std::string path; // as given by the user; "" for a generated scene
+    std::vector<Image> images;
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Camera> cameras;
+    std::vector<Light> lights;
+    std::vector<std::string> warnings; // what of the file is not supported or was mended, one line each
+};
+
+} // namespace relume

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/vk/device.h"
+
+namespace relume::vk {
+
+enum class Memory {
+    Device, // device-local; mapped all the same where the device shares memory with the CPU
+    Host,   // host-visible, coherent, cached: staging, readback, results that the CPU writes
+};
+
+/// Owns a VkBuffer and its memory; move-only. Always usable as storage, transfer source and target, and by address.
+class Buffer {
+public:
+    struct Desc {
+        VkDeviceSize size = 0; // [bytes], > 0
+        Memory memory = Memory::Device;
+        VkBufferUsageFlags extraUsage = 0; // acceleration structure input, storage, shader binding table
+        const char* name = "";             // for validation messages and captures
+    };
+    Buffer() = default;
+    Buffer(const Device& device, const Desc& desc); // throws Error (out of memory: names the buffer and its size)
+    ~Buffer();
+    Buffer(Buffer&& other) noexcept;
+    Buffer& operator=(Buffer&& other) noexcept;
+
+    VkBuffer handle() const { return buffer_; }
+    VkDeviceSize size() const { return size_; }
+    VkDeviceAddress address() const { return address_; }
+    void* mapped() const { return mapped_; } // nullptr where the CPU cannot see it
+    explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+
+private:
+    void release();
+    const Device* device_ = nullptr;
+    VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    VkDeviceSize size_ = 0;
+    VkDeviceAddress address_ = 0;
+    void* mapped_ = nullptr;
+};
+
+/// Host to device and back, at once: waits for the device. Offsets and sizes in bytes.
+void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size, VkDeviceSize offset = 0);
+void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset = 0);
+
+/// A device buffer holding a copy of `values` (at least 16 bytes long, so that an empty list has an address too).
+template <typename T>
+Buffer makeBuffer(const Device& device, std::span<const T> values, const char* name, VkBufferUsageFlags extraUsage = 0) {
+    Buffer buffer(device, {.size = values.size_bytes() < 16 ? 16 : values.size_bytes(), .extraUsage = extraUsage, .name = name});
+    if (!values.empty()) upload(device, buffer, values.data(), values.size_bytes());
+    return buffer;
+}
+template <typename T>
+Buffer makeBuffer(const Device& device, const std::vector<T>& values, const char* name, VkBufferUsageFlags extraUsage = 0) {
+    return makeBuffer(device, std::span<const T>(values), name, extraUsage);
+}
+
+template <typename T> std::vector<T> readBuffer(const Device& device, const Buffer& buffer, size_t count, size_t first = 0) {
+    std::vector<T> values(count);
+    if (count > 0) download(device, buffer, values.data(), count * sizeof(T), first * sizeof(T));
+    return values;
+}
+
+} // namespace relume::vk

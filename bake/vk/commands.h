@@ -1,0 +1,59 @@
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "bake/vk/device.h"
+
+namespace relume::vk {
+
+/// One thread's command buffers and a timeline semaphore: record, submit, wait for a value. Not thread-safe.
+class Commands {
+public:
+    explicit Commands(const Device& device);
+    ~Commands(); // waits for what was submitted
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    VkCommandBuffer begin();      // a command buffer in the recording state; one at a time
+    uint64_t submit();            // ends and submits it; the value its completion signals
+    void wait(uint64_t value);    // blocks; throws Error on device loss
+    bool reached(uint64_t value); // without blocking
+    void run() { wait(submit()); }
+
+private:
+    const Device& device_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkSemaphore timeline_ = VK_NULL_HANDLE;
+    VkCommandBuffer current_ = VK_NULL_HANDLE;
+    uint64_t submitted_ = 0;
+    struct InFlight {
+        VkCommandBuffer buffer;
+        uint64_t value;
+    };
+    std::deque<InFlight> inFlight_;
+    std::vector<VkCommandBuffer> free_;
+};
+
+/// All earlier shader and transfer writes (and host writes before the submit) become visible to later shaders and transfers.
+void barrier(VkCommandBuffer cmd);
+/// Earlier device writes become visible to the CPU after the submission is waited for.
+void hostBarrier(VkCommandBuffer cmd);
+
+/// Microseconds between two points of a command buffer, by GPU timestamps.
+class Timestamps {
+public:
+    Timestamps(const Device& device, uint32_t capacity); // capacity: number of points
+    ~Timestamps();
+    Timestamps(const Timestamps&) = delete;
+    Timestamps& operator=(const Timestamps&) = delete;
+    void reset(VkCommandBuffer cmd);
+    void mark(VkCommandBuffer cmd, uint32_t point);
+    double milliseconds(uint32_t from, uint32_t to) const; // after the submission was waited for
+
+private:
+    const Device& device_;
+    VkQueryPool pool_ = VK_NULL_HANDLE;
+};
+
+} // namespace relume::vk

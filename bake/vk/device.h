@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <volk.h>
+
+#include "assets/error.h"
+
+namespace relume::vk {
+
+/// Throws Error naming the call and the VkResult; stays on in release builds.
+void check(VkResult result, const char* call);
+#define VK_CHECK(call) ::relume::vk::check((call), #call)
+
+struct QueueFamily {
+    uint32_t count = 0;
+    bool graphics = false, compute = false, transfer = false;
+};
+
+/// What `relume devices` prints and the choice of a tracer rests on.
+struct DeviceInfo {
+    uint32_t index = 0; // in vkEnumeratePhysicalDevices' order
+    std::string name, driver;
+    uint32_t apiVersion = 0;
+    VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+    std::array<uint8_t, VK_UUID_SIZE> uuid{};
+    uint64_t deviceMemory = 0; // [bytes], largest device-local heap
+    uint64_t freeMemory = 0;   // [bytes], by VK_EXT_memory_budget, else deviceMemory
+    std::vector<QueueFamily> queues;
+    std::vector<std::string> missing; // what Relume needs and this device lacks; empty: usable
+    bool rayTracingPipeline = false;
+    bool rayQuery = false;
+    bool externalMemory = false; // VK_KHR_external_memory_fd
+    bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+    /// Drivers emulate the pipeline on GPUs without RT cores but offer ray queries only where there are some.
+    bool rayTracingCores() const { return !software() && rayTracingPipeline && rayQuery; }
+    bool integrated() const { return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU; }
+};
+
+/// All Vulkan devices of this machine. Empty without a loader or driver.
+std::vector<DeviceInfo> listDevices();
+
+/// Instance, device and one queue with graphics and compute. Outlives everything made from it.
+class Device {
+public:
+    struct Desc {
+        std::string select;      // "": best by capability (discrete > integrated > software); else index or part of the name
+        bool validation = false; // Khronos validation with synchronization validation; messages are counted and logged
+    };
+    explicit Device(const Desc& desc); // throws Error: no loader, no driver, no such device, what it lacks
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    VkInstance instance() const { return instance_; }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkDevice handle() const { return device_; }
+    VkQueue queue() const { return queue_; }
+    uint32_t queueFamily() const { return queueFamily_; }
+    const DeviceInfo& info() const { return info_; }
+    const VkPhysicalDeviceLimits& limits() const { return limits_; }
+    /// Zero where the device has no ray tracing pipeline.
+    const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& rayTracing() const { return rayTracing_; }
+    uint32_t accelScratchAlignment() const { return accelScratchAlignment_; }
+    /// Free device-local memory now [bytes].
+    uint64_t freeMemory() const;
+    /// Index of a memory type with these properties among `typeBits`; ~0u if there is none.
+    uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags properties) const;
+    void setName(VkObjectType type, uint64_t handle, const char* name) const; // no-op without debug utils
+    /// Validation warnings and errors seen so far.
+    uint32_t validationMessages() const { return validationMessages_; }
+    VkPipelineCache pipelineCache() const { return pipelineCache_; }
+
+private:
+    friend VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                              VkDebugUtilsMessageTypeFlagsEXT,
+                                                              const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+    void release();
+
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    uint32_t queueFamily_ = 0;
+    DeviceInfo info_;
+    VkPhysicalDeviceLimits limits_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayTracing_{};
+    uint32_t accelScratchAlignment_ = 0;
+    bool memoryBudget_ = false;
+    VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+    std::atomic<uint32_t> validationMessages_{0};
+};
+
+} // namespace relume::vk

@@ -1,0 +1,85 @@
+// Low-discrepancy directions. Legal as GLSL and as C++ (namespace relume::shader).
+
+// Integer hash with low bias [Wellons 2018, "lowbias32"].
+FUNCTION uint hash32(uint x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    return x;
+}
+
+FUNCTION uint reverseBits(uint x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+// Nested uniform (Owen) scrambling by hashing in bit-reversed order [Laine and Karras 2011; Burley 2020].
+FUNCTION uint owenScramble(uint x, uint seed) {
+    x = reverseBits(x);
+    x += seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return reverseBits(x);
+}
+
+// Second dimension of the Sobol sequence [Sobol 1967; Kollig and Keller 2002]; the first one is reverseBits(index).
+FUNCTION uint sobol2(uint index) {
+    uint result = 0u;
+    for (uint v = 0x80000000u; index != 0u; index >>= 1) {
+        if ((index & 1u) != 0u) result ^= v;
+        v ^= v >> 1;
+    }
+    return result;
+}
+
+// Point `index` of the sequence scrambled by `seed`, in [0, 1)^2.
+FUNCTION vec2 sobolPoint(uint index, uint seed) {
+    uint i = owenScramble(reverseBits(index), seed); // shuffles the order as well, as Burley does
+    i = reverseBits(i);
+    uint x = owenScramble(reverseBits(i), hash32(seed ^ 0x2c1b3c6du));
+    uint y = owenScramble(sobol2(i), hash32(seed ^ 0x297a2d39u));
+    return vec2(float(x >> 8), float(y >> 8)) * (1.0f / 16777216.0f);
+}
+
+// Cosine-distributed direction around +z by the concentric map [Shirley and Chiu 1997]; density cos / pi.
+FUNCTION vec3 cosineDirection(vec2 u) {
+    vec2 p = vec2(2.0f * u.x - 1.0f, 2.0f * u.y - 1.0f);
+    if (p.x == 0.0f && p.y == 0.0f) return vec3(0.0f, 0.0f, 1.0f);
+    float r, phi;
+    if (abs(p.x) > abs(p.y)) {
+        r = p.x;
+        phi = 0.785398163f * (p.y / p.x);
+    } else {
+        r = p.y;
+        phi = 1.570796327f - 0.785398163f * (p.x / p.y);
+    }
+    return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0f, 1.0f - r * r)));
+}
+
+// A direction around unit n, from one around +z; the tangents follow n alone [Duff et al. 2017].
+FUNCTION vec3 aroundNormal(vec3 n, vec3 d) {
+    float s = n.z >= 0.0f ? 1.0f : -1.0f;
+    float a = -1.0f / (s + n.z);
+    float b = n.x * n.y * a;
+    vec3 t = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
+    vec3 u = vec3(b, s + n.y * n.y * a, -n.y);
+    return d.x * t + d.y * u + d.z * n;
+}
+
+FUNCTION uint seedKey(Patch p) { return p.flags >> 8; }
+
+// Direction of sample `index` for patch p: density cos / pi around the shading normal. `key` seeds the scrambling: seedKey of
+// the patch itself, or of its chunk's first patch (Rotation::Tile). Below the geometric horizon it is mirrored up, so no
+// ray starts inside.
+FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
+    vec3 d = aroundNormal(p.shading, cosineDirection(sobolPoint(index, hash32(key))));
+    float c = dot(d, p.normal);
+    return c < 0.0f ? d - 2.0f * c * p.normal : d;
+}
