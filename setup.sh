@@ -1,0 +1,132 @@
+#!/usr/bin/env bash
+# Installs by apt what Relume needs to be built, run and tested. Changes nothing where everything is there already.
+#
+#   ./setup.sh        what a build and the tests need
+#   ./setup.sh --ci   the format checker too
+#
+# Debian 12: Mesa comes from bookworm-backports (the stock Mesa 22.3 has no ray tracing); the suite is added to apt's
+# sources where it is missing. RELUME_KEEP_MESA=1 leaves an installed older Mesa alone. Debian 13 and Ubuntu 24.04: the
+# stock packages. Anything else: prints what is needed and stops with status 1.
+# Nothing is ever removed, and a vendor's own driver stays: Mesa's software Vulkan device is installed beside it.
+set -euo pipefail
+
+packages=(
+    cmake ninja-build ccache g++              # the build
+    libvulkan-dev libvulkan-volk-dev          # Vulkan headers, loader, volk
+    glslang-dev glslang-tools                 # GLSL to SPIR-V, at build time and at run time
+    libembree-dev libtbb-dev                  # CPU ray tracing; its CMake files name TBB
+    libglm-dev libtinygltf-dev libopenexr-dev libstb-dev
+    libcli11-dev libspdlog-dev nlohmann-json3-dev
+    libgtest-dev libbenchmark-dev vulkan-validationlayers
+)
+mesa=mesa-vulkan-drivers
+oldestMesa=24.1 # the first whose software device has VK_KHR_ray_tracing_pipeline
+
+case "${1:-}" in
+    "") ;;
+    --ci) packages+=(clang-format) ;;
+    *) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 2 ;;
+esac
+
+system=unknown
+if [ -r /etc/os-release ]; then
+    system=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
+fi
+case "$system" in
+    "debian 12" | "debian 13" | "ubuntu 24.04") ;;
+    *)
+        {
+            echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
+            echo "Install these (Debian's names) by hand, then build as the README says:"
+            echo "  ${packages[*]} and a Vulkan 1.2 driver ($mesa, version $oldestMesa or newer)"
+        } >&2
+        exit 1
+        ;;
+esac
+
+installedVersion() { # of one package, empty where it is not installed
+    { dpkg-query -W -f='${db:Status-Status} ${Version}\n' "$1" 2>/dev/null || true; } | sed -n 's/^installed //p'
+}
+
+isInstalled() { [ -n "$(installedVersion "$1")" ]; }
+
+missing=()
+for package in "${packages[@]}"; do
+    isInstalled "$package" || missing+=("$package")
+done
+needsMesa=false
+mesaVersion=$(installedVersion $mesa)
+if [ -z "$mesaVersion" ]; then
+    needsMesa=true
+elif [ -z "${RELUME_KEEP_MESA:-}" ] && dpkg --compare-versions "$mesaVersion" lt "$oldestMesa"; then
+    needsMesa=true
+fi
+
+if [ ${#missing[@]} -eq 0 ] && [ $needsMesa = false ]; then
+    echo "setup: everything is installed"
+    exit 0
+fi
+
+root=()
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "setup: installing packages needs root: run $0 as root or install sudo" >&2
+        exit 1
+    fi
+    root=(sudo)
+fi
+
+aptGet() {
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 "$@"
+}
+
+install() {
+    aptGet install -q -y --no-install-recommends --no-remove "$@"
+}
+
+# Lines "suite component uri" of every package source that apt is configured with, in either file format.
+sources() {
+    apt-get indextargets --format '$(CREATED_BY) $(RELEASE) $(COMPONENT) $(REPO_URI)' | sed -n 's/^Packages //p'
+}
+
+backports=/etc/apt/sources.list.d/relume-backports.sources
+addBackports() {
+    if sources | grep -Eq '^(bookworm|stable|oldstable)-backports main '; then
+        return
+    fi
+    local mirror # the machine's own one, so that proxies and local mirrors go on working
+    mirror=$(sources | sed -En 's,^(bookworm|stable|oldstable) main (https?://),\2,p' | head -n 1)
+    mirror=${mirror:-http://deb.debian.org/debian}
+    echo "setup: adding bookworm-backports from $mirror in $backports"
+    {
+        printf 'Types: deb\nURIs: %s\nSuites: bookworm-backports\nComponents: main\n' "${mirror%/}"
+        local keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+        if [ -r $keyring ]; then
+            printf 'Signed-By: %s\n' $keyring
+        fi
+    } | "${root[@]}" tee $backports >/dev/null
+}
+
+wanted=("${missing[@]}")
+if [ $needsMesa = true ]; then
+    wanted+=($mesa)
+fi
+echo "setup: installing ${wanted[*]}"
+if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
+    addBackports
+fi
+aptGet update -q
+
+if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
+    if ! apt-cache madison $mesa | grep -q bpo12; then
+        echo "setup: the mirror has no bookworm-backports: put one that has it into $backports" >&2
+        exit 1
+    fi
+    install -t bookworm-backports $mesa
+elif [ $needsMesa = true ]; then
+    install $mesa
+fi
+if [ ${#missing[@]} -gt 0 ]; then
+    install "${missing[@]}"
+fi
+echo "setup: done"

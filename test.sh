@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Sets up, builds and tests Relume; ends with ctest's summary and its status.
+#
+#   ./test.sh                          everything, release build
+#   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan
+#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan) or gpu (any Vulkan device, Mesa's software one too)
+#   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
+#
+# RELUME_WERROR=ON makes warnings errors.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+preset=${1:-release}
+label=${2:-all}
+shift $(($# < 2 ? $# : 2))
+case "$preset $label" in
+    -* | *" -"*)
+        sed -n '2,9s/^# \{0,1\}//p' "$0"
+        exit 2
+        ;;
+esac
+target=all
+only=()
+if [ "$label" != all ]; then
+    target=relume_${label}_tests
+    only=(-L "^$label\$")
+fi
+
+./setup.sh
+cmake --preset "$preset" -DRELUME_TESTS=ON -DRELUME_WERROR="${RELUME_WERROR:-OFF}" >/dev/null
+cmake --build --preset "$preset" --target "$target"
+ctest --preset "$preset" -j "$(nproc)" "${only[@]}" "$@"

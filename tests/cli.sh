@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# The manners of the command line: help everywhere, exit status 0, 1 (the world) or 2 (wrong usage), results on stdout,
+# and one line on stderr that names the file.
+#
+#   tests/cli.sh RELUME
+set -uo pipefail
+relume=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/here"
+cd "$work/here" # it must run from any folder
+errors=0
+
+fail() {
+    echo "FAILED: $1"
+    sed 's/^/  stdout: /' "$work/out"
+    sed 's/^/  stderr: /' "$work/err"
+    errors=$((errors + 1))
+}
+
+runRelume() { # status in $status, outputs in files out and err
+    command="relume $*"
+    "$relume" "$@" >"$work/out" 2>"$work/err" </dev/null
+    status=$?
+}
+
+expectStatus() { # $1: status, the rest: the command line
+    local expected=$1
+    shift
+    runRelume "$@"
+    [ $status -eq "$expected" ] || fail "$command: status $status, not $expected"
+}
+
+expectHelp() {
+    expectStatus 0 "$@" --help
+    grep -q '^Usage: ' "$work/out" || fail "$command: no usage on stdout"
+    [ ! -s "$work/err" ] || fail "$command: something on stderr"
+}
+
+# Wrong usage: status 2, nothing on stdout, a word on stderr.
+expectUsageError() {
+    expectStatus 2 "$@"
+    [ ! -s "$work/out" ] || fail "$command: something on stdout"
+    [ -s "$work/err" ] || fail "$command: nothing on stderr"
+}
+
+# $1: what the only line on stderr must name; the rest: the command line.
+expectWorldError() {
+    local name=$1
+    shift
+    expectStatus 1 "$@"
+    [ ! -s "$work/out" ] || fail "$command: something on stdout"
+    [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$command: stderr is not one line"
+    grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
+}
+
+verbs=(bake info unwrap scene devices compare bench)
+
+expectHelp
+cp "$work/out" "$work/help"
+for verb in "${verbs[@]}"; do
+    grep -Eq "^ +$verb( |\$)" "$work/help" || fail "relume --help does not list $verb"
+    expectHelp "$verb"
+done
+
+expectStatus 0 --version
+grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version: not 'relume X.Y.Z'"
+
+expectUsageError
+expectUsageError nosuchverb
+expectUsageError --nosuchoption
+for verb in bake info unwrap compare; do
+    expectUsageError "$verb" # the scene or the files are missing
+    expectUsageError "$verb" --nosuchoption
+done
+expectUsageError bake room.glb # no -o
+expectUsageError bake room.glb -o room.exr --size many
+expectUsageError bake room.glb -o room.exr --tracer nosuchtracer
+expectUsageError bake room.glb -o room.exr --method nosuchmethod
+expectUsageError bake room.glb -o room.exr --preset nosuchpreset
+expectUsageError bake room.glb -o room.exr --quantity nosuchquantity
+
+expectWorldError missing.glb bake missing.glb -o room.exr
+expectWorldError missing.glb info missing.glb
+expectWorldError missing.glb unwrap missing.glb -o out.glb
+expectWorldError missing.glb bench trace missing.glb
+expectWorldError missing.exr compare missing.exr other.exr
+
+printf 'not a scene' >broken.glb
+expectWorldError broken.glb info broken.glb
+expectWorldError broken.glb bake broken.glb -o room.exr
+expectWorldError nosuchfolder bake broken.glb -o nosuchfolder/room.exr
+
+# A run that fails leaves nothing behind.
+left=$(ls | grep -vx broken.glb)
+[ -z "$left" ] || fail "failed runs left behind: $left"
+
+[ $errors -eq 0 ] && echo "command line: all as expected" || echo "command line: $errors failures"
+[ $errors -eq 0 ]
