@@ -7,12 +7,13 @@
 
 namespace relume {
 
-/// SPIR-V of a shader by name, as listed in shaders/programs.txt ("occlusion_bvh"). Comes from the executable, or, after
-/// setShaderFolder, compiled from that folder's sources. Throws Error (with file and line of the first error).
+/// SPIR-V of a shader by name, as listed in shaders/programs.txt ("occlusion_bvh"). Comes from the
+/// executable, or, after setShaderFolder, compiled from that folder's sources. Throws Error (with file and
+/// line of the first error).
 std::vector<uint32_t> shaderCode(const std::string& name);
 
-/// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the embedded code.
-/// Throws Error when the folder does not hold them.
+/// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the
+/// embedded code. Throws Error when the folder does not hold them.
 void setShaderFolder(const std::string& folder);
 
 } // namespace relume

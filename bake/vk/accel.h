@@ -8,8 +8,9 @@
 
 namespace relume::vk {
 
-/// A bottom and a top level acceleration structure over world-space triangles: geometry 0 holds the opaque ones,
-/// geometry 1 the alpha-masked ones (left out where there are none). Built for fast trace, compacted; waits for the device.
+/// A bottom and a top level acceleration structure over world-space triangles: geometry 0 holds the opaque
+/// ones, geometry 1 the alpha-masked ones (left out where there are none). Built for fast trace, compacted;
+/// waits for the device.
 class Accel {
 public:
     Accel() = default;
@@ -24,6 +25,9 @@ public:
     uint64_t bytes() const { return bytes_; }
 
 private:
+    void buildBottom(std::span<const glm::vec3> positions, uint32_t opaqueCount);
+    void compactBottom(VkDeviceSize size);
+    void buildTop();
     void release();
     const Device* device_ = nullptr;
     Buffer bottomBuffer_, topBuffer_;

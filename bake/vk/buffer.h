@@ -12,7 +12,8 @@ enum class Memory {
     Host,   // host-visible, coherent, cached: staging, readback, results that the CPU writes
 };
 
-/// Owns a VkBuffer and its memory; move-only. Always usable as storage, transfer source and target, and by address.
+/// Owns a VkBuffer and its memory; move-only. Always usable as storage, transfer source and target, and by
+/// address.
 class Buffer {
 public:
     struct Desc {
@@ -22,7 +23,8 @@ public:
         const char* name = "";             // for validation messages and captures
     };
     Buffer() = default;
-    Buffer(const Device& device, const Desc& desc); // throws Error (out of memory: names the buffer and its size)
+    Buffer(const Device& device,
+           const Desc& desc); // throws Error (out of memory: names the buffer and its size)
     ~Buffer();
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
@@ -34,6 +36,7 @@ public:
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:
+    void create(const Desc& desc);
     void release();
     const Device* device_ = nullptr;
     VkBuffer buffer_ = VK_NULL_HANDLE;
@@ -44,22 +47,30 @@ private:
 };
 
 /// Host to device and back, at once: waits for the device. Offsets and sizes in bytes.
-void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size, VkDeviceSize offset = 0);
-void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset = 0);
+void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size,
+            VkDeviceSize offset = 0);
+void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
+              VkDeviceSize offset = 0);
 
-/// A device buffer holding a copy of `values` (at least 16 bytes long, so that an empty list has an address too).
-template <typename T>
-Buffer makeBuffer(const Device& device, std::span<const T> values, const char* name, VkBufferUsageFlags extraUsage = 0) {
-    Buffer buffer(device, {.size = values.size_bytes() < 16 ? 16 : values.size_bytes(), .extraUsage = extraUsage, .name = name});
+/// A device buffer holding a copy of `values` (at least 16 bytes long, so that an empty list has an address
+/// too).
+template<typename T>
+Buffer makeBuffer(const Device& device, std::span<const T> values, const char* name,
+                  VkBufferUsageFlags extraUsage = 0) {
+    Buffer buffer(device, {.size = values.size_bytes() < 16 ? 16 : values.size_bytes(),
+                           .extraUsage = extraUsage,
+                           .name = name});
     if (!values.empty()) upload(device, buffer, values.data(), values.size_bytes());
     return buffer;
 }
-template <typename T>
-Buffer makeBuffer(const Device& device, const std::vector<T>& values, const char* name, VkBufferUsageFlags extraUsage = 0) {
+template<typename T>
+Buffer makeBuffer(const Device& device, const std::vector<T>& values, const char* name,
+                  VkBufferUsageFlags extraUsage = 0) {
     return makeBuffer(device, std::span<const T>(values), name, extraUsage);
 }
 
-template <typename T> std::vector<T> readBuffer(const Device& device, const Buffer& buffer, size_t count, size_t first = 0) {
+template<typename T>
+std::vector<T> readBuffer(const Device& device, const Buffer& buffer, size_t count, size_t first = 0) {
     std::vector<T> values(count);
     if (count > 0) download(device, buffer, values.data(), count * sizeof(T), first * sizeof(T));
     return values;

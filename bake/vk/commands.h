@@ -22,6 +22,8 @@ public:
     void run() { wait(submit()); }
 
 private:
+    void recycle();
+    void release();
     const Device& device_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
@@ -35,12 +37,13 @@ private:
     std::vector<VkCommandBuffer> free_;
 };
 
-/// All earlier shader and transfer writes (and host writes before the submit) become visible to later shaders and transfers.
+/// All earlier shader and transfer writes (and host writes before the submit) become visible to later shaders
+/// and transfers.
 void barrier(VkCommandBuffer cmd);
 /// Earlier device writes become visible to the CPU after the submission is waited for.
 void hostBarrier(VkCommandBuffer cmd);
 
-/// Microseconds between two points of a command buffer, by GPU timestamps.
+/// Time between points of a command buffer, by GPU timestamps.
 class Timestamps {
 public:
     Timestamps(const Device& device, uint32_t capacity); // capacity: number of points
@@ -49,11 +52,14 @@ public:
     Timestamps& operator=(const Timestamps&) = delete;
     void reset(VkCommandBuffer cmd);
     void mark(VkCommandBuffer cmd, uint32_t point);
-    double milliseconds(uint32_t from, uint32_t to) const; // after the submission was waited for
+    /// After the submission was waited for. 0 where the queue has no timestamps.
+    double milliseconds(uint32_t from, uint32_t to) const;
 
 private:
     const Device& device_;
     VkQueryPool pool_ = VK_NULL_HANDLE;
+    uint32_t capacity_ = 0;
+    uint64_t mask_ = 0; // of the queue's valid timestamp bits
 };
 
 } // namespace relume::vk

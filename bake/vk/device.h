@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 
 namespace relume::vk {
 
+/// "VK_ERROR_DEVICE_LOST" and so on.
+const char* resultName(VkResult result);
 /// Throws Error naming the call and the VkResult; stays on in release builds.
 void check(VkResult result, const char* call);
 #define VK_CHECK(call) ::relume::vk::check((call), #call)
@@ -26,7 +29,7 @@ struct QueueFamily {
 struct DeviceInfo {
     uint32_t index = 0; // in vkEnumeratePhysicalDevices' order
     std::string name, driver;
-    uint32_t apiVersion = 0;
+    uint32_t apiVersion = 0, driverVersion = 0;
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::array<uint8_t, VK_UUID_SIZE> uuid{};
     uint64_t deviceMemory = 0; // [bytes], largest device-local heap
@@ -42,6 +45,9 @@ struct DeviceInfo {
     bool integrated() const { return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU; }
 };
 
+/// "discrete", "integrated", "virtual", "software", "other".
+const char* deviceTypeName(VkPhysicalDeviceType type);
+
 /// All Vulkan devices of this machine. Empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
@@ -49,10 +55,14 @@ std::vector<DeviceInfo> listDevices();
 class Device {
 public:
     struct Desc {
-        std::string select;      // "": best by capability (discrete > integrated > software); else index or part of the name
-        bool validation = false; // Khronos validation with synchronization validation; messages are counted and logged
+        std::string select; // "": best by capability (discrete > integrated > software); else index or part
+                            // of the name
+        bool validation =
+            false; // Khronos validation with synchronization validation; messages are counted and logged
     };
-    explicit Device(const Desc& desc); // throws Error: no loader, no driver, no such device, what it lacks
+    /// Throws Error: no loader, no driver, no such device, what it lacks. Devices alive at one time must
+    /// agree on `validation`: the function pointers are per process.
+    explicit Device(const Desc& desc);
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -64,13 +74,22 @@ public:
     uint32_t queueFamily() const { return queueFamily_; }
     const DeviceInfo& info() const { return info_; }
     const VkPhysicalDeviceLimits& limits() const { return limits_; }
+    /// vkQueueSubmit, for any thread.
+    void submit(const VkSubmitInfo& info) const;
     /// Zero where the device has no ray tracing pipeline.
     const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& rayTracing() const { return rayTracing_; }
+    bool anisotropy() const { return anisotropy_; } // samplers may filter anisotropically
     uint32_t accelScratchAlignment() const { return accelScratchAlignment_; }
     /// Free device-local memory now [bytes].
     uint64_t freeMemory() const;
     /// Index of a memory type with these properties among `typeBits`; ~0u if there is none.
     uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags properties) const;
+    /// Memory type for Memory::Device: on a discrete GPU not the one the CPU sees too (a small window into
+    /// it), on others one that the CPU can map where there is one. ~0u if there is none.
+    uint32_t deviceMemoryType(uint32_t typeBits) const;
+    VkMemoryPropertyFlags memoryProperties(uint32_t type) const {
+        return memory_.memoryTypes[type].propertyFlags;
+    }
     void setName(VkObjectType type, uint64_t handle, const char* name) const; // no-op without debug utils
     /// Validation warnings and errors seen so far.
     uint32_t validationMessages() const { return validationMessages_; }
@@ -79,7 +98,10 @@ public:
 private:
     friend VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                               VkDebugUtilsMessageTypeFlagsEXT,
-                                                              const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+                                                              const VkDebugUtilsMessengerCallbackDataEXT*,
+                                                              void*);
+    void choose(const std::string& select);
+    void createDevice();
     void release();
 
     VkInstance instance_ = VK_NULL_HANDLE;
@@ -94,6 +116,9 @@ private:
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayTracing_{};
     uint32_t accelScratchAlignment_ = 0;
     bool memoryBudget_ = false;
+    bool debugUtils_ = false;
+    bool anisotropy_ = false;
+    mutable std::mutex queueMutex_;
     VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
     std::atomic<uint32_t> validationMessages_{0};
 };

@@ -4,7 +4,8 @@
 
 namespace relume::vk {
 
-/// Owns a 2D VkImage, its memory and a view of all its mips; move-only.
+/// Owns a 2D VkImage, its memory and a view of all its mips; move-only. Always usable as transfer source and
+/// target.
 class Image2D {
 public:
     struct Desc {
@@ -28,6 +29,7 @@ public:
     VkFormat format() const { return format_; }
 
 private:
+    void create(const Desc& desc);
     void release();
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
@@ -37,7 +39,8 @@ private:
     VkFormat format_ = VK_FORMAT_UNDEFINED;
 };
 
-/// Uploads tightly packed pixels to mip 0, blits the other mips and leaves the image in SHADER_READ_ONLY_OPTIMAL. Waits.
+/// Uploads tightly packed pixels to mip 0, blits the other mips and leaves the image in
+/// SHADER_READ_ONLY_OPTIMAL. Waits.
 void uploadPixels(const Device& device, const Image2D& image, const void* pixels, VkDeviceSize size);
 
 } // namespace relume::vk

@@ -18,19 +18,25 @@ using Constants = std::vector<uint32_t>;
 class ComputeProgram {
 public:
     ComputeProgram() = default;
-    ComputeProgram(const Device& device, const std::string& shader, const Constants& constants = {}); // throws Error
+    ComputeProgram(const Device& device, const std::string& shader,
+                   const Constants& constants = {}); // throws Error
+    /// From SPIR-V; `name` is for messages.
+    ComputeProgram(const Device& device, std::span<const uint32_t> code, const std::string& name,
+                   const Constants& constants = {});
     ~ComputeProgram();
     ComputeProgram(ComputeProgram&& other) noexcept;
     ComputeProgram& operator=(ComputeProgram&& other) noexcept;
 
     /// Binds, pushes, dispatches. Barriers are the caller's.
-    template <typename Push> void dispatch(VkCommandBuffer cmd, const Push& push, uint32_t x, uint32_t y = 1, uint32_t z = 1) const {
+    template<typename Push>
+    void dispatch(VkCommandBuffer cmd, const Push& push, uint32_t x, uint32_t y = 1, uint32_t z = 1) const {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
         dispatchBytes(cmd, &push, sizeof(Push), x, y, z);
     }
 
 private:
-    void dispatchBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t x, uint32_t y, uint32_t z) const;
+    void dispatchBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t x, uint32_t y,
+                       uint32_t z) const;
     void release();
     const Device* device_ = nullptr;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -50,13 +56,17 @@ public:
     RayProgram(RayProgram&& other) noexcept;
     RayProgram& operator=(RayProgram&& other) noexcept;
 
-    template <typename Push> void trace(VkCommandBuffer cmd, const Push& push, uint32_t width, uint32_t height) const {
+    template<typename Push>
+    void trace(VkCommandBuffer cmd, const Push& push, uint32_t width, uint32_t height) const {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
         traceBytes(cmd, &push, sizeof(Push), width, height);
     }
 
 private:
-    void traceBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t width, uint32_t height) const;
+    void traceBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t width,
+                    uint32_t height) const;
+    void create(const Desc& desc);
+    void createTable();
     void release();
     const Device* device_ = nullptr;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -65,12 +75,13 @@ private:
     VkStridedDeviceAddressRegionKHR raygenRegion_{}, missRegion_{}, hitRegion_{};
 };
 
-/// A vertex and a fragment shader drawing triangles into colour images of one size: no depth, no culling, no blending,
-/// no vertex input (vertices are pulled by address). Textures: an array of combined image samplers at set 0, binding 0.
+/// A vertex and a fragment shader drawing triangles into colour images of one size: no depth, no culling, no
+/// blending, no vertex input (vertices are pulled by address). Textures: an array of combined image samplers
+/// at set 0, binding 0.
 class RasterProgram {
 public:
     struct Desc {
-        std::string vertex, fragment; // shader names
+        std::string vertex, fragment;  // shader names
         std::vector<VkFormat> formats; // of the colour attachments, at most 8
         uint32_t textureCount = 0;
         Constants constants; // of both shaders
@@ -79,22 +90,28 @@ public:
         VkImageView view = VK_NULL_HANDLE;
         VkSampler sampler = VK_NULL_HANDLE;
     };
-    RasterProgram(const Device& device, const Desc& desc, std::span<const BoundTexture> textures); // throws Error
+    RasterProgram(const Device& device, const Desc& desc,
+                  std::span<const BoundTexture> textures); // throws Error
     ~RasterProgram();
     RasterProgram(const RasterProgram&) = delete;
     RasterProgram& operator=(const RasterProgram&) = delete;
 
-    /// Clears all targets to zero, draws `vertexCount` vertices and leaves the targets in TRANSFER_SRC_OPTIMAL.
-    /// Targets may be in any layout, their content is lost. Framebuffers live until the next draw or the destructor.
-    template <typename Push>
-    void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets, uint32_t vertexCount) {
+    /// Clears all targets to zero, draws `vertexCount` vertices and leaves the targets in
+    /// TRANSFER_SRC_OPTIMAL. Targets may be in any layout, their content is lost. Framebuffers live until the
+    /// next draw or the destructor.
+    template<typename Push>
+    void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
+              uint32_t vertexCount) {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
         drawBytes(cmd, &push, sizeof(Push), targets, vertexCount);
     }
 
 private:
-    void drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size, std::span<const Image2D* const> targets,
-                   uint32_t vertexCount);
+    void drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size,
+                   std::span<const Image2D* const> targets, uint32_t vertexCount);
+    void createDescriptors(uint32_t count, std::span<const BoundTexture> textures);
+    void createRenderPass(std::span<const VkFormat> formats);
+    void createPipeline(const Desc& desc);
     void release();
     const Device& device_;
     VkRenderPass renderPass_ = VK_NULL_HANDLE;
@@ -110,13 +127,15 @@ private:
 class Sampler {
 public:
     Sampler() = default;
-    Sampler(const Device& device, VkFilter filter, VkSamplerAddressMode u, VkSamplerAddressMode v, float maxAnisotropy);
+    Sampler(const Device& device, VkFilter filter, VkSamplerAddressMode u, VkSamplerAddressMode v,
+            float maxAnisotropy);
     ~Sampler();
     Sampler(Sampler&& other) noexcept;
     Sampler& operator=(Sampler&& other) noexcept;
     VkSampler handle() const { return sampler_; }
 
 private:
+    void release();
     const Device* device_ = nullptr;
     VkSampler sampler_ = VK_NULL_HANDLE;
 };

@@ -1,0 +1,161 @@
+#include "bake/vk/buffer.h"
+
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace relume::vk {
+
+namespace {
+
+// Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
+// had always.
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
+
+std::string inMiB(uint64_t bytes) {
+    return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
+}
+
+uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
+    if (memory == Memory::Device) return device.deviceMemoryType(typeBits);
+    constexpr VkMemoryPropertyFlags coherent =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    const uint32_t cached = device.memoryType(typeBits, coherent | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+    return cached != ~0u ? cached : device.memoryType(typeBits, coherent);
+}
+
+void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, const Buffer& to,
+          VkDeviceSize toOffset, VkDeviceSize size) {
+    const VkBufferCopy region{fromOffset, toOffset, size};
+    vkCmdCopyBuffer(cmd, from.handle(), to.handle(), 1, &region);
+}
+
+} // namespace
+
+Buffer::Buffer(const Device& device, const Desc& desc) : device_(&device) {
+    ASSERT(desc.size > 0);
+    try {
+        create(desc);
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+void Buffer::create(const Desc& desc) {
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    info.size = desc.size;
+    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                 desc.extraUsage;
+    VK_CHECK(vkCreateBuffer(device_->handle(), &info, nullptr, &buffer_));
+    VkMemoryRequirements needs;
+    vkGetBufferMemoryRequirements(device_->handle(), buffer_, &needs);
+
+    VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags};
+    allocation.allocationSize = needs.size;
+    allocation.memoryTypeIndex = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
+    const std::string what = std::string("buffer '") + desc.name + "' of " + inMiB(desc.size);
+    if (allocation.memoryTypeIndex == ~0u)
+        throw Error(device_->info().name + ": no memory type for " + what + ": try another --device");
+    const VkResult result = vkAllocateMemory(device_->handle(), &allocation, nullptr, &memory_);
+    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+        throw Error(device_->info().name + ": out of memory for " + what + ", " +
+                    inMiB(device_->freeMemory()) + " are free: use a smaller --size or close other programs");
+    check(result, "vkAllocateMemory");
+    VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_, 0));
+
+    const VkMemoryPropertyFlags properties = device_->memoryProperties(allocation.memoryTypeIndex);
+    constexpr VkMemoryPropertyFlags coherent =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    if ((properties & coherent) == coherent)
+        VK_CHECK(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+    size_ = desc.size;
+    VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
+    addressInfo.buffer = buffer_;
+    address_ = vkGetBufferDeviceAddress(device_->handle(), &addressInfo);
+    device_->setName(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer_), desc.name);
+}
+
+Buffer::~Buffer() {
+    release();
+}
+
+Buffer::Buffer(Buffer&& other) noexcept
+    : device_(std::exchange(other.device_, nullptr)), buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
+      memory_(std::exchange(other.memory_, VK_NULL_HANDLE)), size_(std::exchange(other.size_, 0)),
+      address_(std::exchange(other.address_, 0)), mapped_(std::exchange(other.mapped_, nullptr)) {}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    device_ = std::exchange(other.device_, nullptr);
+    buffer_ = std::exchange(other.buffer_, VK_NULL_HANDLE);
+    memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+    size_ = std::exchange(other.size_, 0);
+    address_ = std::exchange(other.address_, 0);
+    mapped_ = std::exchange(other.mapped_, nullptr);
+    return *this;
+}
+
+void Buffer::release() {
+    if (device_ == nullptr) return;
+    vkDestroyBuffer(device_->handle(), buffer_, nullptr);
+    vkFreeMemory(device_->handle(), memory_, nullptr); // unmaps
+    buffer_ = VK_NULL_HANDLE;
+    memory_ = VK_NULL_HANDLE;
+}
+
+void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size,
+            VkDeviceSize offset) {
+    ASSERT(offset + size <= buffer.size());
+    if (size == 0) return;
+    Commands commands(device);
+    if (buffer.mapped() != nullptr) {
+        barrier(commands.begin()); // earlier work may still use the buffer
+        commands.run();
+        std::memcpy(static_cast<char*>(buffer.mapped()) + offset, data, size);
+        return;
+    }
+    const Buffer staging(device,
+                         {.size = std::min(size, kStagingBytes), .memory = Memory::Host, .name = "upload"});
+    for (VkDeviceSize done = 0; done < size; done += kStagingBytes) {
+        const VkDeviceSize piece = std::min(kStagingBytes, size - done);
+        std::memcpy(staging.mapped(), static_cast<const char*>(data) + done, piece);
+        VkCommandBuffer cmd = commands.begin();
+        barrier(cmd);
+        copy(cmd, staging, 0, buffer, offset + done, piece);
+        barrier(cmd);
+        commands.run();
+    }
+}
+
+void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
+              VkDeviceSize offset) {
+    ASSERT(offset + size <= buffer.size());
+    if (size == 0) return;
+    Commands commands(device);
+    if (buffer.mapped() != nullptr) {
+        hostBarrier(commands.begin());
+        commands.run();
+        std::memcpy(data, static_cast<const char*>(buffer.mapped()) + offset, size);
+        return;
+    }
+    const Buffer staging(device,
+                         {.size = std::min(size, kStagingBytes), .memory = Memory::Host, .name = "download"});
+    for (VkDeviceSize done = 0; done < size; done += kStagingBytes) {
+        const VkDeviceSize piece = std::min(kStagingBytes, size - done);
+        VkCommandBuffer cmd = commands.begin();
+        barrier(cmd);
+        copy(cmd, buffer, offset + done, staging, 0, piece);
+        hostBarrier(cmd);
+        commands.run();
+        std::memcpy(static_cast<char*>(data) + done, staging.mapped(), piece);
+    }
+}
+
+} // namespace relume::vk
