@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+#include "assets/scene.h"
+#include "assets/warnings.h"
+
+namespace relume::gltf {
+
+/// What the builders share: the parsed file, already checked, and the scene made from it.
+struct Build {
+    std::string path;
+    tinygltf::Model model;
+    Scene scene;
+    Warnings warnings;
+};
+
+/// Reads all elements of an accessor as floats, `components` per element, normalized integers to [0,1] or
+/// [-1,1], sparse parts applied. The accessor must have exactly that many components.
+std::vector<float> readFloats(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                              uint32_t components);
+
+/// Reads a scalar accessor of unsigned integers.
+std::vector<uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Accessor& accessor);
+
+/// Fills Scene::images, textures and materials; images that nothing Relume knows uses are left out. Throws
+/// Error for a missing or undecodable image.
+void buildMaterials(Build& build);
+
+/// Fills Scene::meshes, one per mesh of the file (empty where nothing of it is usable). Throws Error.
+void buildMeshes(Build& build);
+
+/// Fills Scene::instances, cameras and lights from the default scene's nodes, or all root nodes where there
+/// is no scene. Walks without recursion. Throws Error.
+void buildNodes(Build& build);
+
+/// A numeric member of an extension's JSON, `fallback` where it is missing.
+double numberOr(const tinygltf::Value& value, const char* key, double fallback);
+
+/// The image loader to hand to tinygltf: keeps the file's bytes, decodes nothing.
+bool keepImageBytes(tinygltf::Image* image, int index, std::string* error, std::string* warning, int width,
+                    int height, const unsigned char* bytes, int size, void* user);
+
+} // namespace relume::gltf

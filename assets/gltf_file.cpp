@@ -1,0 +1,135 @@
+#include "assets/gltf_file.h"
+
+#include "assets/error.h"
+#include "assets/warnings.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+namespace relume::gltf {
+
+namespace {
+
+constexpr uint32_t kMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinChunk = 0x004e4942;
+constexpr size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+constexpr int kMaxDepth =
+    64; // glTF's own structures need 9 levels; both parsers recurse over extras and extensions
+
+uint32_t readU32(const std::vector<uint8_t>& bytes, size_t offset) {
+    uint32_t value;
+    std::memcpy(&value, bytes.data() + offset, sizeof(value));
+    return value;
+}
+
+std::vector<uint8_t> readBytes(const std::string& path) {
+    std::error_code code;
+    if (std::filesystem::is_directory(path, code))
+        throw Error(fmt::format("{}: is a folder: name a .gltf or .glb file", path));
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    if (!stream)
+        throw Error(fmt::format("{}: cannot be opened ({}): check the path", path, std::strerror(errno)));
+    const std::streamoff size = stream.tellg();
+    if (size < 0) throw Error(fmt::format("{}: is not a regular file: name a .gltf or .glb file", path));
+    if (static_cast<uint64_t>(size) > std::numeric_limits<uint32_t>::max())
+        throw Error(fmt::format("{}: is larger than 4 GiB, which glTF cannot hold: split the scene", path));
+    std::vector<uint8_t> bytes(static_cast<size_t>(size));
+    stream.seekg(0);
+    stream.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (!stream) throw Error(fmt::format("{}: cannot be read ({})", path, std::strerror(errno)));
+    return bytes;
+}
+
+[[noreturn]] void throwDamaged(const std::string& path, const std::string& what) {
+    throw Error(fmt::format("{}: {}: the file is damaged, export or download it again", path, what));
+}
+
+/// Checks the chunks of a GLB and returns the JSON text's range in its bytes.
+std::pair<size_t, size_t> checkContainer(File& file) {
+    const std::vector<uint8_t>& bytes = file.bytes;
+    if (bytes.size() < kHeaderBytes + kChunkHeaderBytes)
+        throwDamaged(file.path, "ends inside the GLB header");
+    const uint32_t version = readU32(bytes, 4), length = readU32(bytes, 8);
+    if (version != 2)
+        throw Error(fmt::format("{}: is GLB version {}, only 2 is supported: export it as glTF 2.0",
+                                file.path, version));
+    if (length > bytes.size())
+        throwDamaged(file.path, fmt::format("is truncated: the header says {} bytes, the file has {}", length,
+                                            bytes.size()));
+    const size_t jsonBytes = readU32(bytes, kHeaderBytes);
+    if (readU32(bytes, kHeaderBytes + 4) != kJsonChunk)
+        throwDamaged(file.path, "the first GLB chunk is not JSON");
+    const size_t jsonBegin = kHeaderBytes + kChunkHeaderBytes, jsonEnd = jsonBegin + jsonBytes;
+    if (jsonEnd > length) throwDamaged(file.path, "is truncated inside the JSON chunk");
+    if (jsonEnd == length) return {jsonBegin, jsonEnd};
+    if (jsonEnd + kChunkHeaderBytes > length) throwDamaged(file.path, "is truncated behind the JSON chunk");
+    const size_t chunkBytes = readU32(bytes, jsonEnd);
+    if (readU32(bytes, jsonEnd + 4) == kBinChunk) file.chunkBytes = chunkBytes;
+    if (jsonEnd + kChunkHeaderBytes + chunkBytes > length)
+        throwDamaged(file.path, "is truncated inside the binary chunk");
+    return {jsonBegin, jsonEnd};
+}
+
+int nestingDepth(const char* begin, const char* end) {
+    int depth = 0, deepest = 0;
+    bool inString = false;
+    for (const char* c = begin; c != end; ++c) {
+        if (inString) {
+            if (*c == '\\' && c + 1 != end) {
+                ++c;
+            } else if (*c == '"') {
+                inString = false;
+            }
+        } else if (*c == '"') {
+            inString = true;
+        } else if (*c == '{' || *c == '[') {
+            deepest = std::max(deepest, ++depth);
+        } else if (*c == '}' || *c == ']') {
+            --depth;
+        }
+    }
+    return deepest;
+}
+
+} // namespace
+
+File readFile(const std::string& path) {
+    File file;
+    file.path = path;
+    file.bytes = readBytes(path);
+    if (file.bytes.empty()) throw Error(fmt::format("{}: is empty: export it again", path));
+    file.binary = file.bytes.size() >= 4 && readU32(file.bytes, 0) == kMagic;
+    size_t begin = 0, end = file.bytes.size();
+    if (file.binary) {
+        std::tie(begin, end) = checkContainer(file);
+    } else {
+        // Only white space or a byte order mark may stand before a JSON object.
+        constexpr uint8_t kByteOrderMark[] = {0xef, 0xbb, 0xbf};
+        if (end >= 3 && std::equal(kByteOrderMark, kByteOrderMark + 3, file.bytes.begin())) begin = 3;
+        size_t first = begin;
+        while (first < end && std::isspace(file.bytes[first]))
+            ++first;
+        if (first == end || file.bytes[first] != '{')
+            throw Error(fmt::format(
+                "{}: is neither a GLB (wrong magic) nor a glTF JSON file: give a glTF 2.0 file", path));
+    }
+    const char* text = reinterpret_cast<const char*>(file.bytes.data());
+    if (nestingDepth(text + begin, text + end) > kMaxDepth)
+        throw Error(fmt::format("{}: its JSON is nested more than {} deep: export it without such extras",
+                                path, kMaxDepth));
+    try {
+        file.json = nlohmann::json::parse(text + begin, text + end);
+    } catch (const nlohmann::json::exception& error) {
+        throwDamaged(path, "is no valid JSON (" + quoted(error.what()) + ")");
+    }
+    if (!file.json.is_object()) throwDamaged(path, "its JSON is not an object");
+    return file;
+}
+
+} // namespace relume::gltf

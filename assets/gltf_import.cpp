@@ -1,0 +1,78 @@
+#include "assets/gltf.h"
+
+#include "assets/error.h"
+#include "assets/gltf_build.h"
+#include "assets/gltf_check.h"
+#include "assets/gltf_file.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+
+namespace relume {
+
+namespace gltf {
+
+namespace {
+
+/// The parser's messages are several lines long and quote whole data URIs.
+std::string firstLine(const std::string& text) {
+    return quoted(text.substr(0, text.find('\n')));
+}
+
+void parse(const File& file, tinygltf::Model& model) {
+    tinygltf::TinyGLTF parser;
+    parser.SetImageLoader(keepImageBytes, nullptr);
+    const std::string folder = std::filesystem::path(file.path).parent_path().string();
+    const unsigned int size = static_cast<unsigned int>(file.bytes.size());
+    std::string error, warning;
+    bool good = false;
+    try {
+        good =
+            file.binary
+                ? parser.LoadBinaryFromMemory(&model, &error, &warning, file.bytes.data(), size, folder)
+                : parser.LoadASCIIFromString(&model, &error, &warning,
+                                             reinterpret_cast<const char*>(file.bytes.data()), size, folder);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (!good)
+        throw Error(
+            fmt::format("{}: cannot be read ({}): check that its files are beside it or export it again",
+                        file.path, firstLine(error)));
+}
+
+void warnUnsupported(const File& file, Build& build) {
+    for (const std::string& name : unknownExtensions(file))
+        build.warnings.add("extension " + quoted(name), "is not supported and ignored");
+    if (!build.model.animations.empty())
+        build.warnings.add("animations", "are not supported, the scene stands as stored");
+}
+
+} // namespace
+
+} // namespace gltf
+
+Scene loadGltf(const std::string& path) {
+    gltf::Build build;
+    build.path = path;
+    {
+        const gltf::File file = gltf::readFile(path);
+        gltf::check(file);
+        gltf::parse(file, build.model);
+        gltf::warnUnsupported(file, build);
+    }
+    build.scene.path = path;
+    gltf::buildMaterials(build);
+    gltf::buildMeshes(build);
+    gltf::buildNodes(build);
+    if (build.scene.instances.empty())
+        throw Error(
+            fmt::format("{}: has no mesh with triangles in its scene: export it with its geometry", path));
+    build.scene.warnings = build.warnings.lines(path);
+    return std::move(build.scene);
+}
+
+} // namespace relume

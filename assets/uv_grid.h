@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace relume {
+
+/// Counts how many triangles cover the centres of a grid's cells: measures coverage and overlap of UVs.
+/// Triangles that share an edge never count twice along it.
+class UvGrid {
+public:
+    /// size x size cells over [low, high].
+    UvGrid(uint32_t size, glm::dvec2 low, glm::dvec2 high);
+
+    /// Either winding; parts outside the grid are ignored.
+    void add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
+
+    uint64_t covered() const;    // cells with at least one triangle
+    uint64_t overlapped() const; // cells with at least two
+    uint64_t cells() const { return counts_.size(); }
+    uint8_t count(uint32_t x, uint32_t y) const { return counts_[size_t(y) * size_ + x]; } // stops at 255
+
+    /// Cells to a side that resolve the overlap of so many triangles to well below 1 %.
+    static uint32_t sizeFor(size_t triangles);
+
+private:
+    struct Point {
+        int64_t x, y; // 1/256 cell
+    };
+    Point snap(glm::dvec2 p) const;
+
+    uint32_t size_;
+    glm::dvec2 low_, scale_;
+    std::vector<uint8_t> counts_;
+};
+
+} // namespace relume
