@@ -10,9 +10,10 @@ using glm::uint;
 #define FUNCTION inline
 #include "shaders/shared.h"
 #include "shaders/lib/pairs.glsl"
+#include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
 
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
-static_assert(sizeof(HitTriangle) == 36 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
+static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
 } // namespace relume::shader

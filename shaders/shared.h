@@ -1,5 +1,6 @@
-// Structs and constants that C++ and GLSL share, scalar layout (GL_EXT_scalar_block_layout), no padding by hand.
-// C++ includes this inside namespace relume::shader with glm's types in scope (see bake/shader_types.h).
+// Structs and constants that C++ and GLSL share, scalar layout (GL_EXT_scalar_block_layout), no padding by
+// hand. C++ includes this inside namespace relume::shader with glm's types in scope (see
+// bake/shader_types.h).
 #ifndef RELUME_SHARED_H
 #define RELUME_SHARED_H
 
@@ -8,34 +9,40 @@
 #else
 #define CONST const
 #endif
+#define ADDRESS uint64_t // of a buffer on the device
 
-// A chunk: 64 consecutive patches of the 8x8-texel tile order. A block: all pairs of two chunks, one bit each.
+// A chunk: 64 consecutive patches of the 8x8-texel tile order. A block: all pairs of two chunks, one bit
+// each.
 CONST uint kChunk = 64u;
-// A super-block is kSuper x kSuper blocks: the unit of summation. 16 x 16 blocks are 1M pairs, 128 KiB of bits.
+// A super-block is kSuper x kSuper blocks: the unit of summation. 16 x 16 blocks are 1M pairs, 128 KiB of
+// bits.
 CONST uint kSuper = 16u;
-CONST uint kSuperBlocks = 256u;     // kSuper * kSuper
-CONST uint kBlockWords = 128u;      // 32-bit words of a block: 64 rows of 2
-CONST uint kSuperPatches = 1024u;   // kSuper * kChunk
+CONST uint kSuperBlocks = 256u;   // kSuper * kSuper
+CONST uint kBlockWords = 128u;    // 32-bit words of a block: 64 rows of 2
+CONST uint kSuperPatches = 1024u; // kSuper * kChunk
+CONST uint kRayCounters = 4096u;  // rays are counted in slots by unit, to spread the atomics
 
 // Patch::flags, bits 0..7
-CONST uint kPatchSends = 1u;        // not set: inside something, sends nothing, receives nothing
-CONST uint kPatchBackSide = 2u;     // the back of a double-sided emitter: sends its emission, is never shown
+CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
+CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
 
 // What `closest` stores for a ray: a patch index below kLinkFirstSpecial, or
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
 CONST uint kLinkSky = 0xffffffffu;  // hit nothing
 CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
-CONST uint kLinkDark = 0xfffffffdu; // hit geometry that is no receiver (no lightmap UV), or the back of a double-sided one
-CONST uint kNoPatch = 0xffffffffu;  // texel -> patch map: empty
+CONST uint kLinkDark =
+    0xfffffffdu; // hit geometry that is no receiver (no lightmap UV), or the back of a double-sided one
+CONST uint kNoPatch = 0xffffffffu; // texel -> patch map: empty
 
 // What the tracers and the gather read of a patch. Positions are texel centres on the surface.
 struct Patch {
-    vec3 position;  // [m]
-    float offset;   // [m] > 0, along the geometric normal: where its rays end; also the horizon's tolerance
-    vec3 normal;    // geometric, unit
-    float area;     // [m^2]
-    vec3 shading;   // shading normal, unit
-    uint flags;     // bits 0..7: kPatch...; bits 8..31: its texel, row * size + column, the key of its random numbers
+    vec3 position; // [m]
+    float offset;  // [m] > 0, along the geometric normal: where its rays end; also the horizon's tolerance
+    vec3 normal;   // geometric, unit
+    float area;    // [m^2]
+    vec3 shading;  // shading normal, unit
+    uint flags;    // bits 0..7: kPatch...; bits 8..31: its texel, row * size + column, the key of its random
+                   // numbers
 };
 
 // The texel's parallelogram, for the exact form factor of close pairs.
@@ -46,35 +53,36 @@ struct PatchEdges {
 
 // Bounds of a chunk's patches, to tell whether two chunks have close pairs.
 struct ChunkBounds {
-    vec3 lo;     // [m]
-    vec3 hi;     // [m]
-    float size;  // [m], the largest patch edge
+    vec3 lo;    // [m]
+    vec3 hi;    // [m]
+    float size; // [m], the largest patch edge
 };
 
 // One triangle of the tracers' scene, in WorldMesh order.
 struct HitTriangle {
-    vec2 uv0, uv1, uv2;   // lightmap UVs
-    uint chart;           // kNoChart (0xffffffff): no receiver
-    uint representative;  // a patch of the chart near the triangle; kNoPatch without chart
-    uint material;
+    vec2 uv0, uv1, uv2;  // lightmap UVs
+    uint chart;          // kNoChart (0xffffffff): no receiver
+    uint representative; // a patch of the chart near the triangle; kNoPatch without chart
+    vec3 normal;         // geometric, unit
+    uint doubleSided;    // 1 if its material is
 };
 
 // Alpha test of masked triangles, all tracers alike.
 struct AlphaTriangle {
-    vec2 uv0, uv1, uv2;      // of the base colour texture
-    float a0, a1, a2;        // COLOR_0 alpha at the corners
-    uint material;           // index into AlphaMaterial
+    vec2 uv0, uv1, uv2; // of the base colour texture
+    float a0, a1, a2;   // COLOR_0 alpha at the corners
+    uint material;      // index into AlphaMaterial
 };
 struct AlphaMaterial {
-    float factor;   // baseColor.a
+    float factor; // baseColor.a
     float cutoff;
-    uint texels;    // offset into the alpha bytes, 0xffffffff: no texture
+    uint texels; // offset into the alpha bytes, 0xffffffff: no texture
     uint width, height;
     uint wrapS, wrapT; // enum Wrap
 };
 
-// Our own binary BVH. Both children's boxes in one node of 64 bytes. child >= 0: inner node; < 0: leaf, ~child holds
-// first triangle << 3 | count (1..7).
+// Our own binary BVH. Both children's boxes in one node of 64 bytes. child >= 0: inner node; < 0: leaf,
+// ~child holds first triangle << 3 | count (1..7).
 struct BvhNode {
     vec3 lo0;
     int child0;
@@ -85,7 +93,8 @@ struct BvhNode {
     vec3 hi1;
     uint unused1;
 };
-// Corners of a triangle for the watertight test, 48 bytes; the id is the index in WorldMesh order, bit 31: alpha-masked.
+// Corners of a triangle for the watertight test, 48 bytes; the id is the index in WorldMesh order, bit 31:
+// alpha-masked.
 struct BvhTriangle {
     vec3 p0;
     uint id;
@@ -93,6 +102,124 @@ struct BvhTriangle {
     uint unused0;
     vec3 p2;
     uint unused1;
+};
+
+// Push constants of the kernels. Buffers come by address.
+
+// What rays are traced against; the first member of every tracing kernel's push constants.
+struct TraceGeometry {
+    ADDRESS accel;          // top level acceleration structure, or BvhNode[]
+    ADDRESS triangles;      // BvhTriangle[] (bvh only)
+    ADDRESS alphaTriangles; // AlphaTriangle[]
+    ADDRESS alphaMaterials; // AlphaMaterial[]
+    ADDRESS alphaTexels;    // bytes
+    uint opaqueCount;       // triangles before the first masked one
+    uint triangleCount;
+};
+struct OcclusionPush {
+    TraceGeometry geometry;
+    ADDRESS patches;    // Patch[]
+    ADDRESS supers;     // uvec2[]: row, column
+    ADDRESS chunkSends; // uint[]
+    ADDRESS bits;       // uint[]
+    uint firstUnit;
+    uint unitCount;
+    uint bitsUnits;
+    uint chunkCount;
+    uint rtrad;   // 1: RTRad's ray intervals
+    uint groupsX; // workgroups in x; y counts on
+    ADDRESS rays; // uint[kRayCounters], rays traced are added
+};
+struct ClosestPush {
+    TraceGeometry geometry;
+    ADDRESS patches;      // Patch[]
+    ADDRESS links;        // uint[]
+    ADDRESS hitTriangles; // HitTriangle[]
+    ADDRESS texelToPatch; // uint[]
+    ADDRESS patchChart;   // uint[]
+    uint firstChunk;
+    uint chunkCount;
+    uint firstSample;
+    uint sampleCount;
+    uint size;    // lightmap edge [texels]
+    uint perTile; // 1: all patches of a chunk share their directions
+};
+struct TransposePush {
+    ADDRESS supers;
+    ADDRESS bits;
+    ADDRESS transposed; // uint[], as bits, rows and columns exchanged
+    uint firstSuper;
+    uint bitsUnits;
+    uint chunkCount;
+};
+struct GatherPush {
+    ADDRESS supers;
+    ADDRESS chunkSends;
+    ADDRESS bits;
+    ADDRESS transposed;
+    ADDRESS patches;
+    ADDRESS edges;    // PatchEdges[]
+    ADDRESS bounds;   // ChunkBounds[]
+    ADDRESS radiance; // vec4[] of the senders
+    ADDRESS albedo;   // vec4[] of the receivers (RTRad's clamp only)
+    ADDRESS partial;  // vec4[superCount][2][kSuperPatches]
+    uint firstSuper;
+    uint bitsUnits;
+    uint chunkCount;
+    float reflectivity;
+    float distanceFactor;
+};
+struct ReducePush {
+    ADDRESS supers;
+    ADDRESS partial;
+    ADDRESS ligOut; // vec4[]
+    uint firstSuper;
+    uint superCount;
+    uint patchCount;
+};
+struct RadiancePush {
+    ADDRESS patches;
+    ADDRESS albedo;   // vec4[]
+    ADDRESS emission; // vec4[]
+    ADDRESS ligIn;    // vec4[]
+    ADDRESS radiance; // vec4[]
+    ADDRESS chunkSends;
+    uint chunkCount;
+    float reflectivity;
+    uint rtrad;
+    uint all; // 1: chunks without light count as senders too
+};
+struct FinishPush {
+    ADDRESS patches;
+    ADDRESS emission;
+    ADDRESS ligIn;
+    ADDRESS ligOut;
+    uint patchCount;
+    uint rtrad;
+};
+struct CitPush {
+    ADDRESS positions;  // vec3[], 3 per triangle
+    ADDRESS normals;    // vec3[]
+    ADDRESS lightmapUv; // vec2[]
+    ADDRESS baseUv;     // vec2[]
+    ADDRESS emissionUv; // vec2[]
+    ADDRESS metallicUv; // vec2[]
+    ADDRESS colors;     // vec4[]
+    ADDRESS material;   // uint[], per triangle
+    ADDRESS materials;  // CitMaterial[]
+    uint size;          // lightmap edge [texels]
+    uint grownCount;    // this many triangles are first drawn grown to all texels they touch
+    uint rtrad;
+};
+struct CitMaterial {
+    vec4 baseColor;
+    vec3 emission; // [cd/m^2]
+    float metallic;
+    float roughness;
+    float alphaCutoff; // 0: not masked
+    int baseTexture;   // into the texture array, -1: none
+    int emissionTexture;
+    int metallicTexture;
 };
 
 #endif

@@ -1,7 +1,127 @@
+#include "app/bake_options.h"
+#include "app/bake_statistics.h"
 #include "app/command.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "assets/gltf.h"
+#include "assets/log.h"
+#include "shaders/shader_library.h"
+
+#include <chrono>
+#include <memory>
 
 namespace relume {
+namespace {
 
-void addBakeCommand(CLI::App&) {}
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Pass, percent, rays per second and the time left: of this pass when only the error can end the bake.
+std::string progressText(Solver& solver, const SolverSettings& settings) {
+    const SolverProgress& p = solver.progress();
+    const double done = p.passes + p.passFraction, perPass = done > 0 ? p.seconds / done : 0.0;
+    const bool counted = settings.passes > 0;
+    const double left = perPass * (counted ? settings.passes - done : 1.0 - p.passFraction);
+    std::string text = counted ? fmt::format("pass {}/{}", p.passes + 1, settings.passes)
+                               : fmt::format("pass {}", p.passes + 1);
+    text += fmt::format("  {:3.0f} %", 100.0 * p.passFraction);
+    if (p.seconds > 0)
+        text += fmt::format("  {:.1f} Mrays/s", static_cast<double>(solver.raysSoFar()) / p.seconds * 1e-6);
+    if (p.passes >= 2) text += fmt::format("  error {:.2g}", p.error);
+    return text + fmt::format("  {} left{}", formatDuration(left), counted ? "" : " in this pass");
+}
+
+// Steps the solver to its end. Throws Error when the user interrupts.
+void solve(Solver& solver, const SolverSettings& settings) {
+    const InterruptGuard guard;
+    ProgressLine line;
+    while (!solver.done()) {
+        solver.step();
+        if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");
+        if (line.due()) line.show(progressText(solver, settings));
+    }
+}
+
+void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& request,
+                   const SolverProgress& progress) {
+    const size_t slash = o.scene.find_last_of('/');
+    image.attributes["relume:version"] = RELUME_VERSION;
+    image.attributes["relume:scene"] = slash == std::string::npos ? o.scene : o.scene.substr(slash + 1);
+    image.attributes["relume:method"] = o.method;
+    image.attributes["relume:quantity"] =
+        request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
+    image.attributes["relume:settings"] = fmt::format(
+        "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
+        "preset={}",
+        o.size, request.bake.solver.passes, request.bake.solver.error,
+        request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor, o.dilate,
+        request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0, o.preset.empty() ? "none" : o.preset);
+    image.attributes["relume:passes"] = std::to_string(progress.passes);
+    image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
+}
+
+void warnIfDark(const Scene& scene) {
+    for (const Material& m : scene.materials) {
+        if (m.emission != glm::vec3(0.0f)) return;
+    }
+    spdlog::warn("{}: no material emits, the lightmap will be black: give a material an emissive factor{}",
+                 scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
+}
+
+void bake(const BakeOptions& o) {
+    const auto start = Clock::now();
+    const BakeRequest request = resolveBakeOptions(o);
+    constexpr uint64_t kBytesPerTexel = 16; // uncompressed
+    checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
+    if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
+    if (!o.shaders.empty()) setShaderFolder(o.shaders);
+
+    PreparedScene prepared = prepareScene(request.prepare);
+    warnIfDark(prepared.scene);
+    const auto deviceStart = Clock::now();
+    const vk::Device device({.select = o.device, .validation = o.validate});
+    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
+    const double deviceSeconds = secondsSince(deviceStart);
+    if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);
+
+    Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
+    spdlog::info("{} patches", baker.patches().count);
+    solve(baker.solver(), request.bake.solver);
+    const auto writeStart = Clock::now();
+    FloatImage image = baker.lightmap(request.lightmap);
+    const SolverProgress& progress = baker.solver().progress();
+    addAttributes(image, o, request, progress);
+    writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
+
+    spdlog::info("{} passes, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
+                 progress.passes, static_cast<double>(progress.rays) * 1e-6, progress.seconds,
+                 static_cast<double>(progress.rays) * 1e-6 / progress.seconds, progress.error);
+    spdlog::info("wrote {} ({} in all)", o.output, formatDuration(secondsSince(start)));
+    if (device.validationMessages() > 0) {
+        throw Error(fmt::format("{} messages of the validation layers, see above: please report them",
+                                device.validationMessages()));
+    }
+    if (o.json.empty()) return;
+    std::vector<PhaseTime> phases = {
+        {"load", prepared.loadSeconds}, {"atlas", prepared.atlasSeconds}, {"device", deviceSeconds}};
+    phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
+    phases.push_back({"solve", progress.seconds});
+    phases.push_back({"write", secondsSince(writeStart)});
+    writeStatistics(
+        o.json,
+        {.options = o, .prepared = prepared, .baker = baker, .device = device.info(), .phases = phases});
+}
+
+} // namespace
+
+void addBakeCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("bake", "Bake a scene's radiosity lightmap");
+    auto options = std::make_shared<BakeOptions>();
+    addBakeOptions(*command, *options);
+    command->callback([options] { bake(*options); });
+}
 
 } // namespace relume

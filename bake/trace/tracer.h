@@ -14,23 +14,27 @@ struct SuperBlock {
     uint32_t row = 0, column = 0;
 };
 
-/// Part of the pairs of a list of super-blocks. Unit u is block (r, c) = ((u % 256) / 16, u % 16) of super-block
-/// supers[u / 256]; units whose chunks do not exist or whose row chunk lies behind the column chunk are skipped, as are
-/// units in which neither chunk sends (chunkSends 0). Unit u's bits go to bits[(u % bitsUnits) * kBlockWords]:
-/// bit j % 32 of word i * 2 + j / 32 is set when patch i of the row chunk and patch j of the column chunk face and see
-/// each other. In a diagonal block (both chunks the same) only i < j is set.
+/// Part of the pairs of a list of super-blocks. Unit u is block (r, c) = ((u % 256) / 16, u % 16) of
+/// super-block supers[u / 256]; units whose chunks do not exist or whose row chunk lies behind the column
+/// chunk are skipped, as are units in which neither chunk sends (chunkSends 0). Unit u's bits go to bits[(u %
+/// bitsUnits) * kBlockWords]: bit j % 32 of word i * 2 + j / 32 is set when patch i of the row chunk and
+/// patch j of the column chunk face and see each other. In a diagonal block (both chunks the same) only i < j
+/// is set.
 struct OcclusionWork {
-    const vk::Buffer* supers = nullptr;      // SuperBlock[], host-visible
-    const vk::Buffer* chunkSends = nullptr;  // uint32_t per chunk, host-visible
+    const vk::Buffer* supers =
+        nullptr; // SuperBlock[], mapped where the tracer runs on the CPU; so are the others
+    const vk::Buffer* chunkSends = nullptr; // uint32_t per chunk
     uint32_t firstUnit = 0, unitCount = 0;
-    const vk::Buffer* bits = nullptr;        // at least bitsUnits * kBlockWords words
+    const vk::Buffer* bits = nullptr; // at least bitsUnits * kBlockWords words
     uint32_t bitsUnits = 0;
+    const vk::Buffer* rays =
+        nullptr; // uint32_t[kRayCounters]: the unit's traced rays are added to slot u % kRayCounters
 };
 
 enum class Rotation : uint32_t { Patch, Tile };
 
-/// Closest hits of cosine-distributed directions (shaders/lib/sampling.glsl) of some chunks: link of patch i of chunk c for
-/// sample k goes to links[((c - firstChunk) * sampleCount + (k - firstSample)) * 64 + i].
+/// Closest hits of cosine-distributed directions (shaders/lib/sampling.glsl) of some chunks: link of patch i
+/// of chunk c for sample k goes to links[((c - firstChunk) * sampleCount + (k - firstSample)) * 64 + i].
 struct ClosestWork {
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0; // sampleCount: a multiple of 8
@@ -38,9 +42,10 @@ struct ClosestWork {
     const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64]
 };
 
-/// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call per batch.
-/// GPU tracers record into cmd; the CPU tracer runs at once and writes into host-visible buffers. Either way the result
-/// is there for what is recorded into cmd afterwards, behind a barrier that the caller writes.
+/// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call
+/// per batch. GPU tracers record into cmd; the CPU tracer runs at once and writes into host-visible buffers.
+/// Either way the result is there for what is recorded into cmd afterwards, behind a barrier that the caller
+/// writes.
 class Tracer {
 public:
     virtual ~Tracer() = default;
@@ -54,14 +59,15 @@ enum class TracerKind { Auto, Rtp, Query, Bvh, Embree };
 
 /// Throws UsageError for an unknown name.
 TracerKind parseTracerKind(const std::string& name);
-/// The tracer Auto stands for on this device, with the reason in `why`: rtp or query where the GPU has RT cores, bvh on
-/// other GPUs, embree on a software device.
+/// The tracer Auto stands for on this device, with the reason in `why`: rtp or query where the GPU has RT
+/// cores, bvh on other GPUs, embree on a software device.
 TracerKind chooseTracer(const vk::DeviceInfo& info, std::string& why);
 /// What `kind` needs and the device lacks; "" when it can run there.
 std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info);
 const char* tracerName(TracerKind kind);
 
-/// Builds the acceleration structure. `patches` holds scene.patches on the device. Throws Error when the device cannot.
+/// Builds the acceleration structure. `patches` holds scene.patches on the device. Throws Error when the
+/// device cannot.
 std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
                                    const vk::Buffer& patches);
 std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene);

@@ -1,0 +1,95 @@
+#include "app/bake_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace relume {
+namespace {
+
+constexpr double kDefaultError = 0.01;
+constexpr double kRtradReflectivity = 0.9;
+
+} // namespace
+
+void addBakeOptions(CLI::App& command, BakeOptions& o) {
+    command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
+    command.add_option("--size", o.size, "Lightmap edge in texels")
+        ->capture_default_str()
+        ->check(CLI::Range(8u, Baker::kMaxSize));
+    command.add_option("--method", o.method, "How light is gathered: pure")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"pure"}));
+    command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
+        ->check(CLI::Range(1u, Solver::kMaxPasses));
+    command
+        .add_option("--error", o.error,
+                    "Stop when the remaining error is below this (default 0.01 without --passes)")
+        ->check(CLI::Range(1e-6, 1.0));
+    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh or embree")->capture_default_str();
+    command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
+    command
+        .add_option("--quantity", o.quantity,
+                    "lighting: irradiance / pi; radiance: emission + albedo * lighting")
+        ->check(CLI::IsMember({"lighting", "radiance"}));
+    command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
+        ->check(CLI::IsMember({"rtrad"}));
+    command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
+        ->check(CLI::Range(0.0, 10.0));
+    command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
+        ->check(CLI::Range(0.0, 2.0));
+    command.add_option("--dilate", o.dilate, "Rings of texels filled around charts")
+        ->capture_default_str()
+        ->check(CLI::Range(0u, 64u));
+    command.add_flag("--no-sew", o.noSew, "Leave the texels around charts empty");
+    command.add_flag("--conservative", o.conservative, "Every texel that a triangle touches becomes a patch");
+    command.add_flag("--half", o.half, "Write 16-bit floats");
+    command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
+    command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 45.0));
+    command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
+    command.add_option("--scene-out", o.sceneOut,
+                       "Write the scene with the lightmap UVs that were used, .glb");
+    command
+        .add_option("--shaders", o.shaders,
+                    "Compile the shaders from this folder instead of the built-in ones")
+        ->check(CLI::ExistingDirectory);
+    command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
+}
+
+BakeRequest resolveBakeOptions(const BakeOptions& o) {
+    const bool rtrad = o.preset == "rtrad";
+    if (rtrad && o.quantity == "lighting") {
+        throw UsageError("--quantity lighting: the rtrad preset computes RTRad's radiosity only; leave it "
+                         "out or use radiance");
+    }
+    if (!rtrad && o.distanceFactor >= 0) {
+        throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
+    }
+    if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
+    BakeRequest request;
+    request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
+    request.bake.size = o.size;
+    request.bake.conservative = o.conservative;
+    request.bake.tracer = parseTracerKind(o.tracer);
+    SolverSettings& solver = request.bake.solver;
+    solver.transport.rtrad = rtrad;
+    solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity
+                                                       : rtrad             ? kRtradReflectivity
+                                                                           : 1.0);
+    solver.transport.distanceFactor = o.distanceFactor >= 0 ? static_cast<float>(o.distanceFactor) : 1.0f;
+    solver.passes = o.passes;
+    solver.error = o.error > 0 ? o.error : o.passes > 0 ? 0.0 : kDefaultError;
+    solver.batchMs = o.batchMs;
+    const bool radiance = rtrad || o.quantity == "radiance";
+    request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,
+                        .reflectivity = solver.transport.reflectivity,
+                        .sew = !o.noSew && o.dilate > 0,
+                        .dilate = o.dilate,
+                        .rtrad = rtrad};
+    return request;
+}
+
+} // namespace relume

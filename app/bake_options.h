@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "app/prepare.h"
+#include "bake/baker.h"
+
+namespace CLI {
+class App;
+}
+
+namespace relume {
+
+/// What the user typed after `relume bake`.
+struct BakeOptions {
+    std::string scene, output, json, sceneOut, shaders, device;
+    std::string method = "pure", tracer = "auto", preset, quantity;
+    uint32_t size = 512;
+    uint32_t passes = 0;                           // 0: not given
+    double error = 0;                              // 0: not given
+    double reflectivity = -1, distanceFactor = -1; // negative: not given
+    double density = 0;
+    double batchMs = 20;
+    uint32_t dilate = 4;
+    bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
+};
+
+void addBakeOptions(CLI::App& command, BakeOptions& options);
+
+/// What the options ask for. Throws UsageError when they contradict each other.
+struct BakeRequest {
+    PrepareDesc prepare;
+    BakeSettings bake;
+    LightmapDesc lightmap;
+};
+BakeRequest resolveBakeOptions(const BakeOptions& options);
+
+} // namespace relume

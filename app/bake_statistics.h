@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/bake_options.h"
+
+namespace relume {
+
+/// What a finished bake was and cost.
+struct BakeStatistics {
+    const BakeOptions& options;
+    const PreparedScene& prepared;
+    Baker& baker;
+    const vk::DeviceInfo& device;
+    const std::vector<PhaseTime>& phases;
+};
+
+/// Writes them as JSON to `path`, or to standard output for "-". Temporary name, then rename. Throws Error.
+void writeStatistics(const std::string& path, const BakeStatistics& statistics);
+
+/// Throws Error where writing `path` is sure to fail.
+void checkStatisticsPath(const std::string& path);
+
+/// Writes text to `path` under a temporary name, then renames. Throws Error.
+void writeTextFile(const std::string& path, const std::string& text);
+
+} // namespace relume

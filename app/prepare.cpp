@@ -1,0 +1,34 @@
+#include "app/prepare.h"
+
+#include "assets/gltf.h"
+#include "assets/log.h"
+
+#include <chrono>
+
+namespace relume {
+
+PreparedScene prepareScene(const PrepareDesc& desc) {
+    using Clock = std::chrono::steady_clock;
+    const auto seconds = [](Clock::time_point from) {
+        return std::chrono::duration<double>(Clock::now() - from).count();
+    };
+    PreparedScene result;
+    const auto start = Clock::now();
+    result.scene = loadGltf(desc.path);
+    result.loadSeconds = seconds(start);
+    for (const std::string& warning : result.scene.warnings)
+        spdlog::warn("{}", warning);
+
+    const auto atlasStart = Clock::now();
+    result.atlas = buildAtlas(result.scene, desc.size);
+    for (const std::string& warning : result.atlas.warnings)
+        spdlog::warn("{}", warning);
+    const size_t before = result.scene.warnings.size();
+    result.mesh = flatten(result.scene, result.atlas);
+    for (size_t i = before; i < result.scene.warnings.size(); ++i)
+        spdlog::warn("{}", result.scene.warnings[i]);
+    result.atlasSeconds = seconds(atlasStart);
+    return result;
+}
+
+} // namespace relume

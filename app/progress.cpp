@@ -1,0 +1,45 @@
+#include "app/progress.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace relume {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kTerminalPeriod{100}, kSparsePeriod{5000};
+
+} // namespace
+
+ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0), next_(Clock::now()) {
+    if (!terminal_) next_ += kSparsePeriod;
+}
+
+ProgressLine::~ProgressLine() {
+    if (terminal_) std::fputs("\r\033[K", stderr);
+}
+
+bool ProgressLine::due() const {
+    return Clock::now() >= next_;
+}
+
+void ProgressLine::show(const std::string& text) {
+    next_ = Clock::now() + (terminal_ ? kTerminalPeriod : kSparsePeriod);
+    if (terminal_)
+        std::fprintf(stderr, "\r%s\033[K", text.c_str());
+    else
+        std::fprintf(stderr, "%s\n", text.c_str());
+    std::fflush(stderr);
+}
+
+std::string formatDuration(double seconds) {
+    if (!(seconds >= 0)) return "?";
+    const auto s = static_cast<long>(seconds + 0.5);
+    if (s < 60) return fmt::format("{} s", s);
+    if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+    return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+}
+
+} // namespace relume

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/lightmap.h"
+#include "bake/solver.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+struct BakeSettings {
+    uint32_t size = 512; // lightmap edge [texels]
+    bool conservative = false;
+    TracerKind tracer = TracerKind::Auto;
+    SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
+};
+
+/// Seconds of one named phase.
+struct PhaseTime {
+    std::string name;
+    double seconds = 0;
+};
+
+/// One bake of one scene: CIT, patches, tracer, solver. The constructor prepares everything; then step the
+/// solver.
+class Baker {
+public:
+    /// The largest lightmap edge.
+    static constexpr uint32_t kMaxSize = 8192;
+
+    /// Throws Error when the size does not fit the device's memory (before anything is allocated), no texel
+    /// is covered or the tracer cannot run.
+    Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
+
+    Solver& solver() { return *solver_; }
+    Tracer& tracer() { return *tracer_; }
+    const PatchSet& patches() const { return patches_; }
+    LightBuffers& light() { return *light_; }
+    const std::vector<PhaseTime>& phases() const { return phases_; }
+    uint32_t invalidPatches() const { return invalid_; }
+    /// The lightmap of the last finished pass.
+    FloatImage lightmap(LightmapDesc desc) const;
+
+    /// Device bytes a bake of this size takes when every texel is covered.
+    static uint64_t deviceBytes(uint32_t size, uint64_t triangles, bool software);
+
+private:
+    void findInvalid(const vk::Device& device, TracerKind kind);
+
+    BakeSettings settings_;
+    PatchSet patches_;
+    std::unique_ptr<LightBuffers> light_;
+    std::unique_ptr<Tracer> tracer_;
+    std::unique_ptr<Solver> solver_;
+    std::vector<PhaseTime> phases_;
+    uint32_t invalid_ = 0;
+};
+
+} // namespace relume

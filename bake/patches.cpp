@@ -1,0 +1,354 @@
+#include "bake/patches.h"
+
+#include "assets/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kNoPatch;
+
+constexpr uint32_t kTile = 8;       // texels
+constexpr float kMaxAlbedo = 0.98f; // above, the iteration hardly ends (conventions.md)
+constexpr float kOffset = 1e-4f;    // of a texel's size, along the normal
+constexpr float kFloatError =
+    8.0f * 0.5f * std::numeric_limits<float>::epsilon(); // of a coordinate after interpolation
+// The area of a chart's texels is corrected to that of its triangles, but never by more than this: beyond,
+// texels were lost to another chart drawn over them.
+constexpr float kMaxAreaCorrection = 2.0f;
+
+// The affine map from the lightmap to the world that a triangle defines.
+struct TriangleFrame {
+    glm::vec3 normal{0.0f};       // geometric, unit
+    glm::vec3 du{0.0f}, dv{0.0f}; // [m] per texel; zero where the UVs are degenerate
+    float area = 0.0f;            // [m^2]
+};
+
+TriangleFrame triangleFrame(const WorldMesh& mesh, uint32_t triangle, uint32_t size) {
+    const glm::vec3* p = &mesh.positions[size_t{triangle} * 3];
+    const glm::vec2* t = &mesh.lightmapUv[size_t{triangle} * 3];
+    const glm::dvec3 e1(glm::dvec3(p[1]) - glm::dvec3(p[0])), e2(glm::dvec3(p[2]) - glm::dvec3(p[0]));
+    const glm::dvec2 f1(glm::dvec2(t[1]) - glm::dvec2(t[0])), f2(glm::dvec2(t[2]) - glm::dvec2(t[0]));
+    const glm::dvec3 n = glm::cross(e1, e2);
+    TriangleFrame frame;
+    frame.area = static_cast<float>(0.5 * glm::length(n));
+    frame.normal = glm::vec3(glm::normalize(n));
+    const double det = (f1.x * f2.y - f1.y * f2.x) * size;
+    if (std::abs(det) > 0.0) {
+        frame.du = glm::vec3((e1 * f2.y - e2 * f1.y) / det);
+        frame.dv = glm::vec3((e2 * f1.x - e1 * f2.x) / det);
+    }
+    return frame;
+}
+
+// Everything about one patch, before it is put into its place.
+struct NewPatch {
+    shader::Patch patch{};
+    shader::PatchEdges edges{};
+    glm::vec4 albedo{0.0f}, emission{0.0f};
+    uint32_t chart = kNoChart;
+};
+
+struct ThinChart {
+    uint32_t triangle = 0; // its largest one
+    float area = 0.0f;     // [m^2], of the whole chart
+};
+
+class Builder {
+public:
+    Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad)
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(rtrad) {
+        materials_.emplace_back(); // glTF's default material
+        set_.scene.mesh = std::move(mesh);
+        set_.scene.size = group.size;
+        set_.scene.rtrad = rtrad;
+        const WorldMesh& m = set_.scene.mesh;
+        frames_.reserve(m.triangleCount());
+        for (uint32_t t = 0; t < m.triangleCount(); ++t)
+            frames_.push_back(triangleFrame(m, t, group.size));
+        surveyCharts();
+    }
+
+    PatchSet build() {
+        const uint32_t size = group_.size, tiles = (size + kTile - 1) / kTile;
+        set_.scene.texelToPatch.assign(size_t{size} * size, kNoPatch);
+        for (uint32_t tile = 0; tile < tiles * tiles; ++tile)
+            addTile(tile % tiles, tile / tiles);
+        set_.count = static_cast<uint32_t>(set_.scene.patches.size());
+        if (set_.count == 0) {
+            throw Error(
+                "the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or pass --unwrap");
+        }
+        while (set_.scene.patches.size() % kChunk != 0)
+            add({});
+        addBounds();
+        addHitTriangles();
+        addAlpha(); // after the hit triangles
+        return std::move(set_);
+    }
+
+private:
+    // How much each chart's texels must be scaled to have its area, and which charts no texel centre hits.
+    void surveyCharts() {
+        const WorldMesh& m = set_.scene.mesh;
+        std::vector<double> area(m.chartCount, 0.0), texels(m.chartCount, 0.0);
+        std::vector<uint32_t> largest(m.chartCount, kNoPatch);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t) {
+            const uint32_t chart = m.chart[t];
+            if (chart == kNoChart) continue;
+            area[chart] += frames_[t].area;
+            if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
+                largest[chart] = t;
+        }
+        for (uint32_t id : group_.triangle) {
+            if (id == 0 || m.chart[id - 1] == kNoChart) continue;
+            texels[m.chart[id - 1]] += glm::length(glm::cross(frames_[id - 1].du, frames_[id - 1].dv));
+        }
+        areaScale_.assign(m.chartCount, 1.0f);
+        const uint32_t tiles = (group_.size + kTile - 1) / kTile;
+        thin_.resize(size_t{tiles} * tiles);
+        for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
+            if (texels[chart] > 0.0) {
+                const auto scale = static_cast<float>(area[chart] / texels[chart]);
+                if (!rtrad_)
+                    areaScale_[chart] = std::clamp(scale, 1.0f / kMaxAreaCorrection, kMaxAreaCorrection);
+            } else if (!rtrad_ && largest[chart] != kNoPatch) {
+                const glm::uvec2 texel = texelOf(centroidUv(largest[chart]));
+                thin_[texel.y / kTile * tiles + texel.x / kTile].push_back(
+                    {largest[chart], static_cast<float>(area[chart])});
+            }
+        }
+        chartPatches_.resize(m.chartCount);
+    }
+
+    glm::vec2 centroidUv(uint32_t triangle) const {
+        const glm::vec2* t = &set_.scene.mesh.lightmapUv[size_t{triangle} * 3];
+        return (t[0] + t[1] + t[2]) / 3.0f;
+    }
+    glm::uvec2 texelOf(glm::vec2 uv) const {
+        const glm::vec2 p = glm::clamp(glm::floor(uv * static_cast<float>(group_.size)), glm::vec2(0.0f),
+                                       glm::vec2(static_cast<float>(group_.size - 1)));
+        return glm::uvec2(p);
+    }
+
+    void add(const NewPatch& p) {
+        set_.scene.patches.push_back(p.patch);
+        set_.scene.patchChart.push_back(p.chart);
+        set_.edges.push_back(p.edges);
+        set_.albedo.push_back(p.albedo);
+        set_.emission.push_back(p.emission);
+    }
+
+    void addTile(uint32_t tileX, uint32_t tileY) {
+        const uint32_t size = group_.size, tiles = (size + kTile - 1) / kTile;
+        std::vector<NewPatch> backs;
+        for (uint32_t y = tileY * kTile; y < std::min(size, (tileY + 1) * kTile); ++y) {
+            for (uint32_t x = tileX * kTile; x < std::min(size, (tileX + 1) * kTile); ++x) {
+                const uint32_t texel = y * size + x, id = group_.triangle[texel];
+                if (id == 0 || set_.scene.mesh.chart[id - 1] == kNoChart) continue;
+                const NewPatch p = texelPatch(texel, id - 1);
+                const auto index = static_cast<uint32_t>(set_.scene.patches.size());
+                set_.scene.texelToPatch[texel] = index;
+                chartPatches_[p.chart].push_back(index);
+                add(p);
+                addBack(p, id - 1, backs);
+            }
+        }
+        for (const ThinChart& thin : thin_[tileY * tiles + tileX]) {
+            const NewPatch p = thinPatch(thin);
+            chartPatches_[p.chart].push_back(static_cast<uint32_t>(set_.scene.patches.size()));
+            add(p);
+            addBack(p, thin.triangle, backs);
+        }
+        for (const NewPatch& back : backs)
+            add(back);
+    }
+
+    NewPatch texelPatch(uint32_t texel, uint32_t triangle) {
+        const TriangleFrame& frame = frames_[triangle];
+        NewPatch p;
+        p.chart = set_.scene.mesh.chart[triangle];
+        const float scale = areaScale_[p.chart];
+        p.edges = {frame.du * std::sqrt(scale), frame.dv * std::sqrt(scale)};
+        fill(p, glm::vec3(group_.pos[texel]), glm::vec3(group_.nrm[texel]), frame.normal,
+             glm::length(glm::cross(frame.du, frame.dv)) * scale, texel);
+        p.albedo = clampAlbedo(group_.mat[texel]);
+        p.emission = group_.emission[texel];
+        return p;
+    }
+
+    // A chart that covers no texel centre: one patch at the centroid of its largest triangle with the whole
+    // chart's area. Its colour is the material's factor: no texel was shaded.
+    NewPatch thinPatch(const ThinChart& thin) {
+        const WorldMesh& m = set_.scene.mesh;
+        const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
+        const glm::vec3* n = &m.normals[size_t{thin.triangle} * 3];
+        const glm::vec3 normal = frames_[thin.triangle].normal;
+        const glm::vec3 side = glm::normalize(p[1] - p[0]) * std::sqrt(thin.area);
+        const glm::uvec2 texel = texelOf(centroidUv(thin.triangle));
+        NewPatch result;
+        result.chart = m.chart[thin.triangle];
+        result.edges = {side, glm::cross(normal, side)};
+        fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
+             texel.y * group_.size + texel.x);
+        const Material& material = materials_[m.material[thin.triangle]];
+        const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
+        const float diffuse =
+            1.0f - material.metallic + 0.5f * material.metallic * material.roughness * material.roughness;
+        result.albedo = clampAlbedo(material.baseColor * color * diffuse);
+        result.emission = glm::vec4(material.emission, 0.0f);
+        return result;
+    }
+
+    void fill(NewPatch& p, glm::vec3 position, glm::vec3 shading, glm::vec3 normal, float area,
+              uint32_t texel) const {
+        // Shading normals may be missing or point behind the surface; then the geometric one serves.
+        const float length = glm::length(shading);
+        shading = length > 0.0f ? shading / length : normal;
+        if (!rtrad_ && glm::dot(shading, normal) <= 0.0f) shading = normal;
+        const float reach = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+        p.patch.position = position;
+        p.patch.normal = rtrad_ ? shading : normal;
+        p.patch.shading = shading;
+        p.patch.area = area;
+        p.patch.offset = rtrad_ ? 0.0f : kOffset * std::sqrt(area) + kFloatError * reach;
+        p.patch.flags = shader::kPatchSends | texel << 8;
+    }
+
+    void addBack(const NewPatch& front, uint32_t triangle, std::vector<NewPatch>& backs) const {
+        const Material& material = materials_[set_.scene.mesh.material[triangle]];
+        const bool emits = front.emission.r > 0.0f || front.emission.g > 0.0f || front.emission.b > 0.0f;
+        if (rtrad_ || !material.doubleSided || !emits) return;
+        NewPatch back = front;
+        back.patch.normal = back.patch.shading = -front.patch.normal;
+        back.patch.flags |= shader::kPatchBackSide;
+        back.albedo = glm::vec4(0.0f);
+        back.chart = kNoChart;
+        backs.push_back(back);
+    }
+
+    glm::vec4 clampAlbedo(glm::vec4 albedo) {
+        if (rtrad_ || std::max({albedo.r, albedo.g, albedo.b}) <= kMaxAlbedo) return albedo;
+        ++set_.clampedAlbedo;
+        return glm::min(albedo, glm::vec4(kMaxAlbedo));
+    }
+
+    void addBounds() {
+        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk) {
+            shader::ChunkBounds b{glm::vec3(std::numeric_limits<float>::max()),
+                                  glm::vec3(std::numeric_limits<float>::lowest()), 0.0f};
+            for (uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, set_.count); ++i) {
+                const shader::Patch& p = set_.scene.patches[i];
+                b.lo = glm::min(b.lo, p.position);
+                b.hi = glm::max(b.hi, p.position);
+                b.size = std::max(b.size, std::sqrt(p.area));
+            }
+            set_.bounds.push_back(b);
+        }
+    }
+
+    void addHitTriangles() {
+        const WorldMesh& m = set_.scene.mesh;
+        for (uint32_t t = 0; t < m.triangleCount(); ++t) {
+            const glm::vec2* uv = &m.lightmapUv[size_t{t} * 3];
+            set_.scene.hitTriangles.push_back({uv[0], uv[1], uv[2], m.chart[t], representative(t),
+                                               frames_[t].normal, materials_[m.material[t]].doubleSided});
+        }
+    }
+
+    // The patch of the triangle's chart nearest to its centre, among those within a few texels, else any of
+    // the chart.
+    uint32_t representative(uint32_t triangle) const {
+        constexpr int kReach = 4; // texels
+        const uint32_t chart = set_.scene.mesh.chart[triangle];
+        if (chart == kNoChart || chartPatches_[chart].empty()) return kNoPatch;
+        const glm::vec2 uv = centroidUv(triangle);
+        const glm::vec2 centre = uv * static_cast<float>(group_.size);
+        const auto texel = glm::ivec2(texelOf(uv));
+        uint32_t best = kNoPatch;
+        float bestDistance = std::numeric_limits<float>::max();
+        for (int y = std::max(0, texel.y - kReach);
+             y <= std::min(static_cast<int>(group_.size) - 1, texel.y + kReach); ++y) {
+            for (int x = std::max(0, texel.x - kReach);
+                 x <= std::min(static_cast<int>(group_.size) - 1, texel.x + kReach); ++x) {
+                const uint32_t p =
+                    set_.scene.texelToPatch[static_cast<size_t>(y) * group_.size + static_cast<size_t>(x)];
+                if (p == kNoPatch || set_.scene.patchChart[p] != chart) continue;
+                const glm::vec2 d = glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f - centre;
+                if (glm::dot(d, d) < bestDistance) {
+                    bestDistance = glm::dot(d, d);
+                    best = p;
+                }
+            }
+        }
+        return best != kNoPatch ? best : chartPatches_[chart][chartPatches_[chart].size() / 2];
+    }
+
+    void addAlpha() {
+        const WorldMesh& m = set_.scene.mesh;
+        constexpr uint32_t kUnused = 0xffffffffu;
+        std::vector<uint32_t> index(materials_.size(), kUnused);
+        for (uint32_t t = m.opaqueCount; t < m.triangleCount(); ++t) {
+            const uint32_t material = m.material[t];
+            if (index[material] == kUnused) {
+                index[material] = static_cast<uint32_t>(set_.scene.alphaMaterials.size());
+                set_.scene.alphaMaterials.push_back(alphaMaterial(materials_[material]));
+            }
+            const glm::vec2* uv = &m.baseUv[size_t{t} * 3];
+            const glm::vec4* c = &m.colors[size_t{t} * 3];
+            set_.scene.alphaTriangles.push_back(
+                {uv[0], uv[1], uv[2], c[0].a, c[1].a, c[2].a, index[material]});
+        }
+    }
+    shader::AlphaMaterial alphaMaterial(const Material& material) {
+        shader::AlphaMaterial result{material.baseColor.a, material.alphaCutoff, 0xffffffffu, 0, 0, 0, 0};
+        if (material.baseColorTexture.texture < 0) return result;
+        const Texture& texture = scene_.textures[static_cast<size_t>(material.baseColorTexture.texture)];
+        const Image& image = scene_.images[static_cast<size_t>(texture.image)];
+        result.texels = static_cast<uint32_t>(set_.scene.alphaTexels.size());
+        result.width = image.width;
+        result.height = image.height;
+        result.wrapS = static_cast<uint32_t>(texture.wrapS);
+        result.wrapT = static_cast<uint32_t>(texture.wrapT);
+        for (size_t i = 3; i < image.rgba.size(); i += 4)
+            set_.scene.alphaTexels.push_back(image.rgba[i]);
+        return result;
+    }
+
+    const Scene& scene_;
+    std::vector<Material> materials_;
+    const TextureGroup& group_;
+    const bool rtrad_;
+    PatchSet set_;
+    std::vector<TriangleFrame> frames_;               // per triangle
+    std::vector<float> areaScale_;                    // per chart
+    std::vector<std::vector<ThinChart>> thin_;        // per tile
+    std::vector<std::vector<uint32_t>> chartPatches_; // per chart
+};
+
+} // namespace
+
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad) {
+    Builder builder(scene, std::move(mesh), group, rtrad);
+    return builder.build();
+}
+
+uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
+    uint32_t marked = 0;
+    for (uint32_t i = 0; i < patches.count; ++i) {
+        uint32_t backs = 0;
+        const size_t base = size_t{i / kChunk} * sampleCount * kChunk + i % kChunk;
+        for (uint32_t k = 0; k < sampleCount; ++k)
+            backs += links[base + size_t{k} * kChunk] == shader::kLinkBack;
+        if (2 * backs <= sampleCount) continue;
+        patches.scene.patches[i].flags &= ~shader::kPatchSends;
+        ++marked;
+    }
+    return marked;
+}
+
+} // namespace relume

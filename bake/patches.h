@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "assets/world_mesh.h"
+#include "bake/shader_types.h"
+#include "bake/texture_group.h"
+#include "bake/trace/trace_scene.h"
+
+namespace relume {
+
+/// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
+/// one entry per patch, padding included. Besides one patch per covered texel there is one for each chart
+/// that covers no texel centre, and one for the back of every texel of a double-sided emitter (flag
+/// kPatchBackSide); neither is in scene.texelToPatch.
+struct PatchSet {
+    TraceScene scene;
+    std::vector<shader::PatchEdges> edges;
+    std::vector<shader::ChunkBounds> bounds; // per chunk
+    std::vector<glm::vec4> albedo;           // a unused
+    std::vector<glm::vec4> emission;         // [cd/m^2], a unused
+    uint32_t count = 0;                      // patches without padding
+    uint32_t clampedAlbedo = 0;              // patches whose albedo was above 0.98
+
+    uint32_t chunkCount() const { return scene.chunkCount(); }
+};
+
+/// Takes over the mesh. rtrad: shading normals for everything, no offsets, no back sides, no area correction,
+/// albedo as it is. Throws Error when no texel is covered.
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad);
+
+/// Marks patches as lying inside something (kPatchSends cleared): those more than half of whose links are
+/// kLinkBack. links: [chunk][sample][64]. Returns how many.
+uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount);
+
+} // namespace relume

@@ -1,0 +1,187 @@
+#include "bake/texture_group.h"
+
+#include "bake/shader_types.h"
+#include "bake/vk/commands.h"
+#include "bake/vk/program.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <memory>
+
+namespace relume {
+namespace {
+
+// Images on the device, one per (image, colour space), and the texture array that the materials point into.
+class TextureArray {
+public:
+    TextureArray(const vk::Device& device, const Scene& scene) : device_(device), scene_(scene) {}
+
+    // Index into bound(), -1 for none.
+    int add(const TextureRef& ref, bool srgb) {
+        if (ref.texture < 0) return -1;
+        const auto [it, isNew] = indices_.try_emplace({ref.texture, srgb}, static_cast<int>(bound_.size()));
+        if (!isNew) return it->second;
+        const Texture& texture = scene_.textures[static_cast<size_t>(ref.texture)];
+        const VkFilter filter = texture.nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+        samplers_.emplace_back(device_, filter, mode(texture.wrapS), mode(texture.wrapT), kAnisotropy);
+        bound_.push_back({image(texture.image, srgb), samplers_.back().handle()});
+        return it->second;
+    }
+    // Never empty, so that the array can be bound.
+    const std::vector<vk::RasterProgram::BoundTexture>& bound() {
+        if (bound_.empty()) {
+            const uint32_t white = 0xffffffffu;
+            images_.push_back(upload(1, 1, VK_FORMAT_R8G8B8A8_UNORM, &white));
+            samplers_.emplace_back(device_, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT,
+                                   VK_SAMPLER_ADDRESS_MODE_REPEAT, 1.0f);
+            bound_.push_back({images_.back().view(), samplers_.back().handle()});
+        }
+        return bound_;
+    }
+
+private:
+    // A texel of the lightmap often covers a long thin strip of a texture.
+    static constexpr float kAnisotropy = 16.0f;
+
+    static VkSamplerAddressMode mode(Wrap wrap) {
+        if (wrap == Wrap::ClampToEdge) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+        return wrap == Wrap::Repeat ? VK_SAMPLER_ADDRESS_MODE_REPEAT
+                                    : VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    }
+    vk::Image2D upload(uint32_t width, uint32_t height, VkFormat format, const void* pixels) {
+        const auto mips = static_cast<uint32_t>(std::bit_width(std::max(width, height)));
+        vk::Image2D result(device_, {.width = width,
+                                     .height = height,
+                                     .mips = mips,
+                                     .format = format,
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                              VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                     .name = "texture"});
+        vk::uploadPixels(device_, result, pixels, VkDeviceSize{width} * height * 4);
+        return result;
+    }
+    VkImageView image(int index, bool srgb) {
+        const auto [it, isNew] = imageIndices_.try_emplace({index, srgb}, images_.size());
+        if (isNew) {
+            const Image& source = scene_.images[static_cast<size_t>(index)];
+            const VkFormat format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+            images_.push_back(upload(source.width, source.height, format, source.rgba.data()));
+        }
+        return images_[it->second].view();
+    }
+
+    const vk::Device& device_;
+    const Scene& scene_;
+    std::map<std::pair<int, bool>, int> indices_;
+    std::map<std::pair<int, bool>, size_t> imageIndices_;
+    std::vector<vk::Image2D> images_;
+    std::vector<vk::Sampler> samplers_;
+    std::vector<vk::RasterProgram::BoundTexture> bound_;
+};
+
+std::vector<shader::CitMaterial> citMaterials(const Scene& scene, TextureArray& textures) {
+    std::vector<Material> materials = scene.materials;
+    materials.emplace_back(); // glTF's default material
+    std::vector<shader::CitMaterial> result;
+    for (const Material& m : materials) {
+        result.push_back({.baseColor = m.baseColor,
+                          .emission = m.emission,
+                          .metallic = m.metallic,
+                          .roughness = m.roughness,
+                          .alphaCutoff = m.alphaMode == AlphaMode::Mask ? m.alphaCutoff : 0.0f,
+                          .baseTexture = textures.add(m.baseColorTexture, true),
+                          .emissionTexture = textures.add(m.emissionTexture, true),
+                          .metallicTexture = textures.add(m.metallicRoughnessTexture, false)});
+    }
+    return result;
+}
+
+// Copies an image in TRANSFER_SRC_OPTIMAL to the host, one row of values per texel row.
+template<typename T>
+std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image) {
+    std::vector<T> values(size_t{image.width()} * image.height());
+    const vk::Buffer staging(
+        device,
+        {.size = values.size() * sizeof(T), .memory = vk::Memory::Host, .name = "texture group readback"});
+    VkCommandBuffer cmd = commands.begin();
+    const VkBufferImageCopy region{.bufferOffset = 0,
+                                   .bufferRowLength = 0,
+                                   .bufferImageHeight = 0,
+                                   .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                   .imageOffset = {},
+                                   .imageExtent = {image.width(), image.height(), 1}};
+    vkCmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle(), 1,
+                           &region);
+    vk::hostBarrier(cmd);
+    commands.run();
+    std::memcpy(values.data(), staging.mapped(), values.size() * sizeof(T));
+    return values;
+}
+
+} // namespace
+
+TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
+                                   const CitDesc& desc) {
+    TextureArray textures(device, scene);
+    const vk::Buffer materials = vk::makeBuffer(device, citMaterials(scene, textures), "materials");
+    const std::vector<VkFormat> formats = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                           VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                           VK_FORMAT_R32_UINT};
+    const auto& bound = textures.bound();
+    vk::RasterProgram program(device,
+                              {.vertex = "cit_vert",
+                               .fragment = "cit_frag",
+                               .formats = formats,
+                               .textureCount = static_cast<uint32_t>(bound.size()),
+                               .constants = {}},
+                              bound);
+    std::vector<vk::Image2D> images;
+    std::vector<const vk::Image2D*> targets;
+    images.reserve(formats.size());
+    for (VkFormat format : formats) {
+        images.emplace_back(device, vk::Image2D::Desc{.width = desc.size,
+                                                      .height = desc.size,
+                                                      .format = format,
+                                                      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                                      .name = "texture group"});
+        targets.push_back(&images.back());
+    }
+
+    const vk::Buffer positions = vk::makeBuffer(device, mesh.positions, "positions");
+    const vk::Buffer normals = vk::makeBuffer(device, mesh.normals, "normals");
+    const vk::Buffer lightmapUv = vk::makeBuffer(device, mesh.lightmapUv, "lightmap uv");
+    const vk::Buffer baseUv = vk::makeBuffer(device, mesh.baseUv, "base colour uv");
+    const vk::Buffer emissionUv = vk::makeBuffer(device, mesh.emissionUv, "emission uv");
+    const vk::Buffer metallicUv = vk::makeBuffer(device, mesh.metallicUv, "metallic uv");
+    const vk::Buffer colors = vk::makeBuffer(device, mesh.colors, "colours");
+    const vk::Buffer material = vk::makeBuffer(device, mesh.material, "material of triangle");
+    const shader::CitPush push{.positions = positions.address(),
+                               .normals = normals.address(),
+                               .lightmapUv = lightmapUv.address(),
+                               .baseUv = baseUv.address(),
+                               .emissionUv = emissionUv.address(),
+                               .metallicUv = metallicUv.address(),
+                               .colors = colors.address(),
+                               .material = material.address(),
+                               .materials = materials.address(),
+                               .size = desc.size,
+                               .grownCount = desc.conservative ? mesh.triangleCount() : 0u,
+                               .rtrad = desc.rtrad ? 1u : 0u};
+    vk::Commands commands(device);
+    program.draw(commands.begin(), push, targets, 3 * (mesh.triangleCount() + push.grownCount));
+    commands.run();
+
+    TextureGroup group;
+    group.size = desc.size;
+    group.pos = readImage<glm::vec4>(device, commands, images[0]);
+    group.nrm = readImage<glm::vec4>(device, commands, images[1]);
+    group.mat = readImage<glm::vec4>(device, commands, images[2]);
+    group.emission = readImage<glm::vec4>(device, commands, images[3]);
+    group.triangle = readImage<uint32_t>(device, commands, images[4]);
+    return group;
+}
+
+} // namespace relume

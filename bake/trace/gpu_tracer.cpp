@@ -1,0 +1,190 @@
+#include "bake/trace/gpu_tracer.h"
+
+#include "bake/trace/bvh_builder.h"
+#include "bake/vk/accel.h"
+#include "bake/vk/program.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+constexpr uint32_t kSamplesPerInvocation = 8; // lib/closest.glsl
+
+// The tables of a TraceScene on the device, and the push constants that point to them.
+class SceneBuffers {
+public:
+    SceneBuffers(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
+        : hitTriangles_(vk::makeBuffer(device, scene.hitTriangles, "hit triangles")),
+          texelToPatch_(vk::makeBuffer(device, scene.texelToPatch, "texel to patch")),
+          patchChart_(vk::makeBuffer(device, scene.patchChart, "chart of patch")),
+          alphaTriangles_(vk::makeBuffer(device, scene.alphaTriangles, "alpha triangles")),
+          alphaMaterials_(vk::makeBuffer(device, scene.alphaMaterials, "alpha materials")),
+          alphaTexels_(vk::makeBuffer(device, wholeWords(scene.alphaTexels), "alpha texels")),
+          patches_(patches.address()), size_(scene.size), chunkCount_(scene.chunkCount()),
+          rtrad_(scene.rtrad ? 1u : 0u) {
+        geometry_ = {.accel = 0,
+                     .triangles = 0,
+                     .alphaTriangles = alphaTriangles_.address(),
+                     .alphaMaterials = alphaMaterials_.address(),
+                     .alphaTexels = alphaTexels_.address(),
+                     .opaqueCount = scene.mesh.opaqueCount,
+                     .triangleCount = scene.mesh.triangleCount()};
+    }
+    void setAccel(VkDeviceAddress accel, VkDeviceAddress triangles) {
+        geometry_.accel = accel;
+        geometry_.triangles = triangles;
+    }
+
+    shader::OcclusionPush push(const OcclusionWork& work, uint32_t groupsX) const {
+        return {.geometry = geometry_,
+                .patches = patches_,
+                .supers = work.supers->address(),
+                .chunkSends = work.chunkSends->address(),
+                .bits = work.bits->address(),
+                .firstUnit = work.firstUnit,
+                .unitCount = work.unitCount,
+                .bitsUnits = work.bitsUnits,
+                .chunkCount = chunkCount_,
+                .rtrad = rtrad_,
+                .groupsX = groupsX,
+                .rays = work.rays->address()};
+    }
+    shader::ClosestPush push(const ClosestWork& work) const {
+        ASSERT(work.sampleCount % kSamplesPerInvocation == 0);
+        return {.geometry = geometry_,
+                .patches = patches_,
+                .links = work.links->address(),
+                .hitTriangles = hitTriangles_.address(),
+                .texelToPatch = texelToPatch_.address(),
+                .patchChart = patchChart_.address(),
+                .firstChunk = work.firstChunk,
+                .chunkCount = work.chunkCount,
+                .firstSample = work.firstSample,
+                .sampleCount = work.sampleCount,
+                .size = size_,
+                .perTile = work.rotation == Rotation::Tile ? 1u : 0u};
+    }
+
+private:
+    static std::vector<uint8_t> wholeWords(std::vector<uint8_t> bytes) {
+        bytes.resize((bytes.size() + 3) / 4 * 4);
+        return bytes;
+    }
+
+    vk::Buffer hitTriangles_, texelToPatch_, patchChart_, alphaTriangles_, alphaMaterials_, alphaTexels_;
+    VkDeviceAddress patches_ = 0;
+    uint32_t size_ = 0, chunkCount_ = 0, rtrad_ = 0;
+    shader::TraceGeometry geometry_{};
+};
+
+// Both compute tracers; they differ in the acceleration structure and in the shaders' variant.
+class ComputeTracer : public Tracer {
+public:
+    ComputeTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
+                  const std::string& name)
+        : buffers_(device, scene, patches), name_(name), occlusion_(device, "occlusion_" + name),
+          closest_(device, "closest_" + name) {}
+
+    const char* name() const override { return name_.c_str(); }
+    bool onCpu() const override { return false; }
+
+    void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) override {
+        const uint32_t groups = work.unitCount * 2;
+        const uint32_t groupsX = std::min(groups, kGroupsX);
+        occlusion_.dispatch(cmd, buffers_.push(work, groupsX), groupsX, (groups + groupsX - 1) / groupsX);
+    }
+    void closest(VkCommandBuffer cmd, const ClosestWork& work) override {
+        closest_.dispatch(cmd, buffers_.push(work), work.chunkCount,
+                          work.sampleCount / kSamplesPerInvocation);
+    }
+
+protected:
+    static constexpr uint32_t kGroupsX = 32768; // below every device's maxComputeWorkGroupCount
+    SceneBuffers buffers_;
+
+private:
+    std::string name_;
+    vk::ComputeProgram occlusion_, closest_;
+};
+
+class BvhTracer final : public ComputeTracer {
+public:
+    BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
+        : ComputeTracer(device, scene, patches, "bvh") {
+        const Bvh bvh = buildBvh(scene.mesh);
+        nodes_ = vk::makeBuffer(device, bvh.nodes, "bvh nodes");
+        triangles_ = vk::makeBuffer(device, bvh.triangles, "bvh triangles");
+        buffers_.setAccel(nodes_.address(), triangles_.address());
+    }
+
+private:
+    vk::Buffer nodes_, triangles_;
+};
+
+class QueryTracer final : public ComputeTracer {
+public:
+    QueryTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
+        : ComputeTracer(device, scene, patches, "query"),
+          accel_(device, scene.mesh.positions, scene.mesh.opaqueCount) {
+        buffers_.setAccel(accel_.address(), 0);
+    }
+
+private:
+    vk::Accel accel_;
+};
+
+class PipelineTracer final : public Tracer {
+public:
+    PipelineTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
+        : buffers_(device, scene, patches), accel_(device, scene.mesh.positions, scene.mesh.opaqueCount) {
+        buffers_.setAccel(accel_.address(), 0);
+        // Without masked geometry no any-hit shader stands in the way of the traversal.
+        const bool masked = scene.mesh.opaqueCount < scene.mesh.triangleCount();
+        const std::string anyHit = masked ? "hit_rahit" : "";
+        occlusion_ = vk::RayProgram(device, {.raygen = "occlusion_rgen",
+                                             .miss = "hit_rmiss",
+                                             .closestHit = "hit_rchit",
+                                             .anyHit = anyHit,
+                                             .constants = {}});
+        closest_ = vk::RayProgram(device, {.raygen = "closest_rgen",
+                                           .miss = "hit_rmiss",
+                                           .closestHit = "hit_rchit",
+                                           .anyHit = anyHit,
+                                           .constants = {}});
+    }
+
+    const char* name() const override { return "rtp"; }
+    bool onCpu() const override { return false; }
+
+    void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) override {
+        occlusion_.trace(cmd, buffers_.push(work, 0), kChunk, work.unitCount * 2);
+    }
+    void closest(VkCommandBuffer cmd, const ClosestWork& work) override {
+        closest_.trace(cmd, buffers_.push(work), kChunk,
+                       work.chunkCount * (work.sampleCount / kSamplesPerInvocation));
+    }
+
+private:
+    SceneBuffers buffers_;
+    vk::Accel accel_;
+    vk::RayProgram occlusion_, closest_;
+};
+
+} // namespace
+
+std::unique_ptr<Tracer> makePipelineTracer(const vk::Device& device, const TraceScene& scene,
+                                           const vk::Buffer& patches) {
+    return std::make_unique<PipelineTracer>(device, scene, patches);
+}
+std::unique_ptr<Tracer> makeQueryTracer(const vk::Device& device, const TraceScene& scene,
+                                        const vk::Buffer& patches) {
+    return std::make_unique<QueryTracer>(device, scene, patches);
+}
+std::unique_ptr<Tracer> makeBvhTracer(const vk::Device& device, const TraceScene& scene,
+                                      const vk::Buffer& patches) {
+    return std::make_unique<BvhTracer>(device, scene, patches);
+}
+
+} // namespace relume

@@ -1,0 +1,80 @@
+#include "bake/trace/tracer.h"
+
+#include "bake/trace/gpu_tracer.h"
+
+#include <array>
+
+namespace relume {
+namespace {
+
+struct Name {
+    TracerKind kind;
+    const char* name;
+};
+constexpr std::array<Name, 5> kNames = {{{TracerKind::Auto, "auto"},
+                                         {TracerKind::Rtp, "rtp"},
+                                         {TracerKind::Query, "query"},
+                                         {TracerKind::Bvh, "bvh"},
+                                         {TracerKind::Embree, "embree"}}};
+
+} // namespace
+
+TracerKind parseTracerKind(const std::string& name) {
+    for (const Name& n : kNames) {
+        if (name == n.name) return n.kind;
+    }
+    throw UsageError("--tracer " + name + ": unknown; choose auto, rtp, query, bvh or embree");
+}
+
+const char* tracerName(TracerKind kind) {
+    for (const Name& n : kNames) {
+        if (kind == n.kind) return n.name;
+    }
+    return "";
+}
+
+TracerKind chooseTracer(const vk::DeviceInfo& info, std::string& why) {
+    if (info.software()) {
+        why = "software device";
+        return TracerKind::Embree;
+    }
+    if (info.rayTracingCores()) {
+        why = "ray tracing cores";
+        return TracerKind::Rtp;
+    }
+    why =
+        info.rayTracingPipeline ? "the driver emulates its ray tracing pipeline" : "no ray tracing pipeline";
+    return TracerKind::Bvh;
+}
+
+std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info) {
+    if (kind == TracerKind::Rtp && !info.rayTracingPipeline) return "VK_KHR_ray_tracing_pipeline is missing";
+    if (kind == TracerKind::Query && !info.rayQuery) return "VK_KHR_ray_query is missing";
+    // Bits and links are written by the CPU straight into the device's memory.
+    if (kind == TracerKind::Embree && !info.software())
+        return "its results would have to cross the bus: embree goes with a software device";
+    return "";
+}
+
+std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
+                                   const vk::Buffer& patches) {
+    std::string why;
+    if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
+    const std::string problem = tracerProblem(kind, device.info());
+    if (!problem.empty()) {
+        throw Error(std::string("tracer ") + tracerName(kind) + " cannot run on '" + device.info().name +
+                    "': " + problem + " (relume devices lists what can)");
+    }
+    switch (kind) {
+    case TracerKind::Rtp:
+        return makePipelineTracer(device, scene, patches);
+    case TracerKind::Query:
+        return makeQueryTracer(device, scene, patches);
+    case TracerKind::Bvh:
+        return makeBvhTracer(device, scene, patches);
+    default:
+        return makeEmbreeTracer(scene);
+    }
+}
+
+} // namespace relume

@@ -1,0 +1,14 @@
+// Closest hits: one workgroup per chunk (x) and eight samples (y), one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+#include "lib/pairs.glsl"
+#include "lib/sampling.glsl"
+layout(push_constant, scalar) uniform Push { ClosestPush push; };
+#define geometry push.geometry
+#include "lib/trace.glsl"
+#include "lib/closest.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() { traceLinks(gl_WorkGroupID.x, gl_WorkGroupID.y, gl_LocalInvocationID.x); }

@@ -1,0 +1,9 @@
+// What every shader starts with.
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#ifndef FUNCTION
+#define FUNCTION
+#endif
+#include "shared.h"
+#include "lib/buffers.glsl"

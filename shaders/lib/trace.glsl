@@ -1,0 +1,97 @@
+// One ray, by the tracer that this variant was compiled for. `geometry` is the TraceGeometry of the push constants.
+#ifdef TRACER_QUERY
+#extension GL_EXT_ray_query : require
+#endif
+#ifdef TRACER_PIPELINE
+#extension GL_EXT_ray_tracing : require
+#endif
+#include "lib/masked.glsl"
+
+struct Hit {
+    uint triangle; // kNoPatch: none
+    float b1, b2;
+};
+
+#ifdef TRACER_BVH
+#define PRECISE precise
+#include "lib/intersect.glsl"
+BvhNode bvhNode(uint index) {
+    Rows rows = Rows(geometry.accel);
+    uvec4 a = rows.items[index * 4u], b = rows.items[index * 4u + 1u];
+    uvec4 c = rows.items[index * 4u + 2u], d = rows.items[index * 4u + 3u];
+    BvhNode node;
+    node.lo0 = uintBitsToFloat(a.xyz);
+    node.child0 = int(a.w);
+    node.hi0 = uintBitsToFloat(b.xyz);
+    node.child1 = int(b.w);
+    node.lo1 = uintBitsToFloat(c.xyz);
+    node.hi1 = uintBitsToFloat(d.xyz);
+    return node;
+}
+BvhTriangle bvhTriangle(uint index) {
+    Rows rows = Rows(geometry.triangles);
+    uvec4 a = rows.items[index * 3u], b = rows.items[index * 3u + 1u], c = rows.items[index * 3u + 2u];
+    BvhTriangle t;
+    t.p0 = uintBitsToFloat(a.xyz);
+    t.id = a.w;
+    t.p1 = uintBitsToFloat(b.xyz);
+    t.p2 = uintBitsToFloat(c.xyz);
+    return t;
+}
+#include "lib/bvh_traverse.glsl"
+
+bool occluded(Segment s) { return bvhAnyHit(s.origin, s.direction, s.tMin, s.tMax); }
+
+Hit closestHit(vec3 origin, vec3 direction) {
+    BvhHit found = bvhClosestHit(origin, direction, 0.0, 1e30);
+    return Hit(found.triangle, found.b1, found.b2);
+}
+#endif
+
+#ifdef TRACER_QUERY
+bool solidCandidate(rayQueryEXT query) {
+    uint triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)) + geometry.opaqueCount;
+    vec2 b = rayQueryGetIntersectionBarycentricsEXT(query, false);
+    return solidHit(triangle, b.x, b.y);
+}
+
+bool occluded(Segment s) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, accelerationStructureEXT(geometry.accel), gl_RayFlagsTerminateOnFirstHitEXT, 0xff, s.origin,
+                          s.tMin, s.direction, s.tMax);
+    while (rayQueryProceedEXT(query)) {
+        if (solidCandidate(query)) rayQueryConfirmIntersectionEXT(query);
+    }
+    return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
+}
+
+Hit closestHit(vec3 origin, vec3 direction) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, accelerationStructureEXT(geometry.accel), 0u, 0xff, origin, 0.0, direction, 1e30);
+    while (rayQueryProceedEXT(query)) {
+        if (solidCandidate(query)) rayQueryConfirmIntersectionEXT(query);
+    }
+    if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return Hit(kNoPatch, 0.0, 0.0);
+    uint triangle = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
+    if (rayQueryGetIntersectionGeometryIndexEXT(query, true) == 1) triangle += geometry.opaqueCount;
+    vec2 b = rayQueryGetIntersectionBarycentricsEXT(query, true);
+    return Hit(triangle, b.x, b.y);
+}
+#endif
+
+#ifdef TRACER_PIPELINE
+layout(location = 0) rayPayloadEXT Hit hit;
+
+// The miss shader sets the payload to "none"; closest-hit shaders are skipped here, so anything else is a hit.
+bool occluded(Segment s) {
+    hit.triangle = 0u;
+    traceRayEXT(accelerationStructureEXT(geometry.accel), gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT,
+                0xff, 0, 0, 0, s.origin, s.tMin, s.direction, s.tMax, 0);
+    return hit.triangle != kNoPatch;
+}
+
+Hit closestHit(vec3 origin, vec3 direction) {
+    traceRayEXT(accelerationStructureEXT(geometry.accel), 0u, 0xff, 0, 0, 0, origin, 0.0, direction, 1e30, 0);
+    return hit;
+}
+#endif

@@ -1,0 +1,22 @@
+// Adds the partial sums of some super-blocks to the patches they belong to, in the order of the list. One invocation per
+// patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { ReducePush push; };
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= push.patchCount) return;
+    uint super = index / kSuperPatches, local = index % kSuperPatches;
+    Vec4s partial = Vec4s(push.partial), ligOut = Vec4s(push.ligOut);
+    vec4 sum = ligOut.items[index];
+    for (uint s = 0u; s < push.superCount; ++s) {
+        uvec2 pair = UVec2s(push.supers).items[push.firstSuper + s];
+        if (pair.x == super) sum += partial.items[s * 2u * kSuperPatches + local];
+        else if (pair.y == super) sum += partial.items[(s * 2u + 1u) * kSuperPatches + local];
+    }
+    ligOut.items[index] = sum;
+}
