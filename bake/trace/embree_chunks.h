@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bake/shader_types.h"
+
+namespace relume {
+
+/// A chunk's patches by component, for loops over eight at a time.
+struct alignas(64) PatchChunk {
+    using Lane = std::array<float, shader::kChunk>;
+    Lane px, py, pz;  // position [m]
+    Lane nx, ny, nz;  // geometric normal
+    Lane offset;      // [m]
+    Lane ex, ey, ez;  // where rays end: position + offset * normal, the bare position with rtrad [m]
+    uint64_t sends;   // bit j: patch j has kPatchSends
+    glm::vec3 lo, hi; // bounds of the positions of those [m]
+    glm::vec3 plane;  // the normal they all share, (0,0,0) where they do not
+    float height;     // smallest dot(position, plane) [m]
+    float margin;     // smallest offset [m]
+};
+
+std::vector<PatchChunk> buildChunks(const std::vector<shader::Patch>& patches, bool rtrad);
+
+/// False only if no patch of a faces one of b (shader::pairFaces); cheap, may be true all the same.
+bool chunksMayFace(const PatchChunk& a, const PatchChunk& b);
+
+/// Bit j of the result: patch `row` of a and patch j of b face each other, exactly as shader::pairFaces has
+/// it.
+uint64_t facingRow(const PatchChunk& a, uint32_t row, const PatchChunk& b);
+
+/// The same for all 64 rows. Picks AVX at run time where the processor has it; the arithmetic is the same.
+void facingRows(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, shader::kChunk>& rows);
+
+} // namespace relume

@@ -1,0 +1,292 @@
+#include "bake/trace/embree_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "assets/error.h"
+#include "bake/trace/embree_api.h"
+#include "bake/trace/embree_chunks.h"
+#include "bake/trace/embree_pool.h"
+
+namespace relume {
+
+using shader::kChunk;
+using shader::Patch;
+
+namespace shader {
+namespace {
+
+// The shared alpha test and hit lookup, given this scene's tables.
+struct AlphaTables {
+    const uint8_t* texels;
+    float alphaTexel(uint offset) { return float(texels[offset]) / 255.0f; }
+#include "shaders/lib/alpha.glsl"
+};
+
+struct HitTables {
+    const uint32_t* map;
+    const uint32_t* charts;
+    uint texelPatch(uint texel) { return map[texel]; }
+    uint chartOfPatch(uint patch) { return charts[patch]; }
+#include "shaders/lib/hit.glsl"
+};
+
+} // namespace
+} // namespace shader
+
+namespace {
+
+constexpr uint32_t kPacket =
+    8; // rays, what AVX holds: 16 are taken apart by Embree without AVX-512 and cost more
+
+struct DeviceRelease {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+
+// Drops hits in the holes of masked triangles, for both kinds of query.
+void keepSolid(const RTCFilterFunctionNArguments* args) {
+    const TraceScene& scene = *static_cast<const TraceScene*>(args->geometryUserPtr);
+    shader::AlphaTables tables{scene.alphaTexels.data()};
+    for (uint32_t lane = 0; lane < args->N; ++lane) {
+        if (args->valid[lane] == 0) continue;
+        const shader::AlphaTriangle& triangle =
+            scene.alphaTriangles[RTCHitN_primID(args->hit, args->N, lane)];
+        const float b1 = RTCHitN_u(args->hit, args->N, lane), b2 = RTCHitN_v(args->hit, args->N, lane);
+        if (!tables.alphaSolid(triangle, scene.alphaMaterials[triangle.material], b1, b2))
+            args->valid[lane] = 0;
+    }
+}
+
+} // namespace
+
+struct EmbreeScene::Impl {
+    Impl(const TraceScene& traceScene, uint32_t threads);
+    void attach(uint32_t first, uint32_t last, bool masked);
+    uint32_t block(uint32_t row, uint32_t column, uint32_t* bits) const;
+    void links(uint32_t chunk, const ClosestArrays& work, uint32_t sample, uint32_t* out) const;
+    uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
+
+    const TraceScene& scene;
+    WorkerPool pool;
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease> device;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease> embree;
+    std::vector<PatchChunk> chunks;
+};
+
+EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads)
+    : scene(traceScene), pool(threads), chunks(buildChunks(traceScene.patches, traceScene.rtrad)) {
+    const std::string config = "threads=" + std::to_string(pool.size());
+    device.reset(rtcNewDevice(config.c_str()));
+    if (!device)
+        throw Error("embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                    "): pass --tracer bvh");
+    embree.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(embree.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(embree.get(), RTC_BUILD_QUALITY_HIGH);
+    attach(0, scene.mesh.opaqueCount, false);
+    attach(scene.mesh.opaqueCount, scene.mesh.triangleCount(), true);
+    rtcCommitScene(embree.get());
+    const RTCError error = rtcGetDeviceError(device.get());
+    if (error != RTC_ERROR_NONE)
+        throw Error("embree: no acceleration structure for " + std::to_string(scene.mesh.triangleCount()) +
+                    " triangles (error " + std::to_string(error) +
+                    "): free some memory or pass --tracer bvh");
+}
+
+// Geometry 0 holds the opaque triangles, geometry 1 the masked ones.
+void EmbreeScene::Impl::attach(uint32_t first, uint32_t last, bool masked) {
+    if (first == last) return;
+    const uint32_t count = last - first;
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree's own buffers: it reads 16 bytes at a 12-byte stride, past the end of ours.
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(glm::vec3), size_t(count) * 3);
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            3 * sizeof(uint32_t), count);
+    if (!vertices || !indices) {
+        rtcReleaseGeometry(geometry);
+        throw Error("embree: no memory for " + std::to_string(count) +
+                    " triangles: free some or pass --tracer bvh");
+    }
+    std::memcpy(vertices, &scene.mesh.positions[size_t(first) * 3], size_t(count) * 3 * sizeof(glm::vec3));
+    for (uint32_t i = 0; i < count * 3; ++i)
+        static_cast<uint32_t*>(indices)[i] = i;
+    if (masked) {
+        rtcSetGeometryUserData(geometry, const_cast<TraceScene*>(&scene));
+        rtcSetGeometryIntersectFilterFunction(geometry, keepSolid);
+        rtcSetGeometryOccludedFilterFunction(geometry, keepSolid);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(embree.get(), geometry, masked ? 1 : 0);
+    rtcReleaseGeometry(geometry);
+}
+
+namespace {
+
+// Rays of one block on their way through Embree: filled lane by lane, traced when full.
+class OcclusionPacket {
+public:
+    OcclusionPacket(RTCScene scene, std::array<uint64_t, kChunk>& visible)
+        : scene_(scene), visible_(visible) {
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+            valid_[lane] = -1;
+            rays_.time[lane] = 0;
+            rays_.mask[lane] = ~0u;
+            rays_.id[lane] = lane;
+            rays_.flags[lane] = 0;
+        }
+    }
+
+    void add(uint32_t i, uint32_t j, const shader::Segment& segment) {
+        const uint32_t lane = count_++;
+        rays_.org_x[lane] = segment.origin.x, rays_.org_y[lane] = segment.origin.y,
+        rays_.org_z[lane] = segment.origin.z;
+        rays_.dir_x[lane] = segment.direction.x, rays_.dir_y[lane] = segment.direction.y;
+        rays_.dir_z[lane] = segment.direction.z;
+        rays_.tnear[lane] = segment.tMin, rays_.tfar[lane] = segment.tMax;
+        pair_[lane] = uint16_t(i << 6 | j);
+        if (count_ == kPacket) trace();
+    }
+
+    void trace() {
+        if (count_ == 0) return;
+        for (uint32_t lane = count_; lane < kPacket; ++lane)
+            valid_[lane] = 0;
+        embreeOccluded(valid_.data(), scene_, query_, rays_);
+        for (uint32_t lane = 0; lane < count_; ++lane) {
+            if (rays_.tfar[lane] < 0) visible_[pair_[lane] >> 6] &= ~(uint64_t(1) << (pair_[lane] & 63));
+        }
+        count_ = 0;
+    }
+
+private:
+    alignas(64) RTCRay8 rays_;
+    alignas(64) std::array<int, kPacket> valid_;
+    std::array<uint16_t, kPacket> pair_;
+    RTCScene scene_;
+    EmbreeOccludedQuery query_;
+    std::array<uint64_t, kChunk>& visible_;
+    uint32_t count_ = 0;
+};
+
+} // namespace
+
+// Returns the number of rays.
+uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, uint32_t* bits) const {
+    const PatchChunk &a = chunks[row], &b = chunks[column];
+    std::array<uint64_t, kChunk> visible{};
+    uint32_t rays = 0;
+    if (chunksMayFace(a, b)) {
+        facingRows(a, b, visible);
+        if (row == column)
+            for (uint32_t i = 0; i < kChunk; ++i)
+                visible[i] &= ~(uint64_t(2) << i) + 1;
+        OcclusionPacket packet(embree.get(), visible);
+        for (uint32_t i = 0; i < kChunk; ++i) {
+            const glm::vec3 origin(a.ex[i], a.ey[i], a.ez[i]);
+            rays += uint32_t(std::popcount(visible[i]));
+            for (uint64_t faces = visible[i]; faces != 0; faces &= faces - 1) {
+                const uint32_t j = uint32_t(std::countr_zero(faces));
+                shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
+                if (scene.rtrad) {
+                    const float distance = glm::length(segment.direction);
+                    segment = {origin, segment.direction / distance, 0.001f, distance - 0.002f};
+                    if (segment.tMax <= segment.tMin) continue;
+                }
+                packet.add(i, j, segment);
+            }
+        }
+        packet.trace();
+    }
+    std::memcpy(bits, visible.data(), sizeof(visible));
+    return rays;
+}
+
+void EmbreeScene::occlusion(const OcclusionArrays& work) {
+    const Impl& impl = *impl_;
+    const uint32_t chunkCount = impl.scene.chunkCount();
+    impl_->pool.run(work.unitCount, [&](uint32_t k) {
+        const uint32_t unit = work.firstUnit + k;
+        const SuperBlock super = work.supers[unit / shader::kSuperBlocks];
+        const uint32_t row = super.row * shader::kSuper + unit % shader::kSuperBlocks / shader::kSuper;
+        const uint32_t column = super.column * shader::kSuper + unit % shader::kSuper;
+        if (row >= chunkCount || column >= chunkCount || row > column) return;
+        if (work.chunkSends[row] == 0 && work.chunkSends[column] == 0) return;
+        const uint32_t rays =
+            impl.block(row, column, work.bits + size_t(unit % work.bitsUnits) * shader::kBlockWords);
+        if (work.rays && rays > 0) std::atomic_ref(work.rays[unit % shader::kRayCounters]) += rays;
+    });
+}
+
+// From a lane's hit to what the gather reads.
+uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
+    const RTCHit8& hit = rays.hit;
+    if (hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return shader::kLinkSky;
+    const uint32_t triangle = hit.primID[lane] + (hit.geomID[lane] == 0 ? 0 : scene.mesh.opaqueCount);
+    const shader::HitTriangle& target = scene.hitTriangles[triangle];
+    const glm::vec3 direction(rays.ray.dir_x[lane], rays.ray.dir_y[lane], rays.ray.dir_z[lane]);
+    if (glm::dot(direction, target.normal) > 0)
+        return target.doubleSided ? shader::kLinkDark : shader::kLinkBack;
+    if (target.representative == shader::kNoPatch) return shader::kLinkDark;
+    shader::HitTables tables{scene.texelToPatch.data(), scene.patchChart.data()};
+    return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
+}
+
+void EmbreeScene::Impl::links(uint32_t chunk, const ClosestArrays& work, uint32_t sample,
+                              uint32_t* out) const {
+    const Patch* patches = &scene.patches[size_t(chunk) * kChunk];
+    EmbreeIntersectQuery query;
+    alignas(64) RTCRayHit8 rays;
+    alignas(64) std::array<int, kPacket> valid;
+    for (uint32_t first = 0; first < kChunk; first += kPacket) {
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+            const Patch& patch = patches[first + lane];
+            valid[lane] = patch.flags & shader::kPatchSends ? -1 : 0;
+            const uint32_t key = shader::seedKey(work.rotation == Rotation::Tile ? patches[0] : patch);
+            const glm::vec3 direction = shader::patchDirection(patch, key, sample);
+            const glm::vec3 origin = patch.position + patch.offset * patch.normal;
+            rays.ray.org_x[lane] = origin.x, rays.ray.org_y[lane] = origin.y, rays.ray.org_z[lane] = origin.z;
+            rays.ray.dir_x[lane] = direction.x, rays.ray.dir_y[lane] = direction.y,
+            rays.ray.dir_z[lane] = direction.z;
+            rays.ray.tnear[lane] = 0, rays.ray.tfar[lane] = std::numeric_limits<float>::infinity();
+            rays.ray.time[lane] = 0;
+            rays.ray.mask[lane] = ~0u;
+            rays.ray.id[lane] = lane;
+            rays.ray.flags[lane] = 0;
+            rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        embreeIntersect(valid.data(), embree.get(), query, rays);
+        for (uint32_t lane = 0; lane < kPacket; ++lane)
+            out[first + lane] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
+    }
+}
+
+void EmbreeScene::closest(const ClosestArrays& work) {
+    const Impl& impl = *impl_;
+    // Eight samples of a chunk are one piece of work: enough to forget the hand-out, few enough to share
+    // evenly.
+    constexpr uint32_t kPiece = 8;
+    const uint32_t pieces = (work.sampleCount + kPiece - 1) / kPiece;
+    impl_->pool.run(work.chunkCount * pieces, [&](uint32_t k) {
+        const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
+        for (uint32_t s = first; s < std::min(first + kPiece, work.sampleCount); ++s)
+            impl.links(work.firstChunk + chunk, work, work.firstSample + s,
+                       work.links + (size_t(chunk) * work.sampleCount + s) * kChunk);
+    });
+}
+
+EmbreeScene::EmbreeScene(const TraceScene& scene, uint32_t threads)
+    : impl_(std::make_unique<Impl>(scene, threads)) {}
+EmbreeScene::~EmbreeScene() = default;
+
+} // namespace relume

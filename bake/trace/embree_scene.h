@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "bake/trace/trace_scene.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+/// OcclusionWork and ClosestWork (tracer.h) on plain memory.
+struct OcclusionArrays {
+    const SuperBlock* supers = nullptr;
+    const uint32_t* chunkSends = nullptr;
+    uint32_t firstUnit = 0, unitCount = 0;
+    uint32_t* bits = nullptr;
+    uint32_t bitsUnits = 0;
+    uint32_t* rays = nullptr; // may be left out
+};
+struct ClosestArrays {
+    uint32_t firstChunk = 0, chunkCount = 0;
+    uint32_t firstSample = 0, sampleCount = 0;
+    Rotation rotation = Rotation::Patch;
+    uint32_t* links = nullptr;
+};
+
+/// The scene in Embree, traced in packets by all cores; needs no Vulkan. Borrows the TraceScene. Results do
+/// not depend on the number of threads.
+class EmbreeScene {
+public:
+    /// threads 0: one per core, or RELUME_THREADS. Throws Error when Embree cannot build.
+    explicit EmbreeScene(const TraceScene& scene, uint32_t threads = 0);
+    ~EmbreeScene();
+
+    /// As tracer.h has it. The bits of a skipped unit are left as they were, since nobody reads them; those
+    /// of a unit that merely has no facing pair are cleared.
+    void occlusion(const OcclusionArrays& work);
+    /// As tracer.h has it. A patch without kPatchSends gets kLinkDark for all samples.
+    void closest(const ClosestArrays& work);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relume

@@ -1,0 +1,55 @@
+#include "assets/error.h"
+#include "bake/trace/embree_scene.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+namespace {
+
+template<typename T>
+T* mappedAs(const vk::Buffer* buffer, uint64_t count) {
+    ASSERT(buffer && buffer->mapped() && buffer->size() >= count * sizeof(T));
+    return static_cast<T*>(buffer->mapped());
+}
+
+class EmbreeTracer : public Tracer {
+public:
+    explicit EmbreeTracer(const TraceScene& scene) : chunkCount_(scene.chunkCount()), scene_(scene) {}
+    const char* name() const override { return "embree"; }
+    bool onCpu() const override { return true; }
+
+    void occlusion(VkCommandBuffer, const OcclusionWork& work) override {
+        const uint64_t units = uint64_t(work.firstUnit) + work.unitCount;
+        const uint64_t supers = (units + shader::kSuperBlocks - 1) / shader::kSuperBlocks;
+        scene_.occlusion(
+            {.supers = mappedAs<SuperBlock>(work.supers, supers),
+             .chunkSends = mappedAs<uint32_t>(work.chunkSends, chunkCount_),
+             .firstUnit = work.firstUnit,
+             .unitCount = work.unitCount,
+             .bits = mappedAs<uint32_t>(work.bits, uint64_t(work.bitsUnits) * shader::kBlockWords),
+             .bitsUnits = work.bitsUnits,
+             .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
+    }
+
+    void closest(VkCommandBuffer, const ClosestWork& work) override {
+        const uint64_t links = uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
+        scene_.closest({.firstChunk = work.firstChunk,
+                        .chunkCount = work.chunkCount,
+                        .firstSample = work.firstSample,
+                        .sampleCount = work.sampleCount,
+                        .rotation = work.rotation,
+                        .links = mappedAs<uint32_t>(work.links, links)});
+    }
+
+private:
+    uint32_t chunkCount_;
+    EmbreeScene scene_;
+};
+
+} // namespace
+
+std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene) {
+    return std::make_unique<EmbreeTracer>(scene);
+}
+
+} // namespace relume
