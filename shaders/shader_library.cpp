@@ -29,6 +29,11 @@ Folder& folder() {
     return instance;
 }
 
+std::string currentFolder() {
+    const std::lock_guard lock(folder().mutex);
+    return folder().path;
+}
+
 std::vector<Program> readPrograms(const std::string& path) {
     const std::string list = (std::filesystem::path(path) / "programs.txt").string();
     std::ifstream file(list);
@@ -63,16 +68,24 @@ std::vector<uint32_t> compileFrom(const std::string& path, const std::string& na
 } // namespace
 
 std::vector<uint32_t> shaderCode(const std::string& name) {
-    std::string path;
-    {
-        const std::lock_guard lock(folder().mutex);
-        path = folder().path;
-    }
+    const std::string path = currentFolder();
     if (!path.empty()) return compileFrom(path, name);
     for (const EmbeddedShader& shader : embeddedShaders())
         if (name == shader.name) return {shader.code.begin(), shader.code.end()};
     throw Error("shader '" + name +
                 "' is not part of this executable: list it in shaders/programs.txt and build again");
+}
+
+std::vector<std::string> shaderNames() {
+    std::vector<std::string> names;
+    const std::string path = currentFolder();
+    if (path.empty())
+        for (const EmbeddedShader& shader : embeddedShaders())
+            names.emplace_back(shader.name);
+    else
+        for (const Program& program : readPrograms(path))
+            names.push_back(program.name);
+    return names;
 }
 
 void setShaderFolder(const std::string& path) {

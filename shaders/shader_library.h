@@ -12,6 +12,9 @@ namespace relume {
 /// line of the first error).
 std::vector<uint32_t> shaderCode(const std::string& name);
 
+/// The names that shaderCode knows.
+std::vector<std::string> shaderNames();
+
 /// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the
 /// embedded code. Throws Error when the folder does not hold them.
 void setShaderFolder(const std::string& folder);

@@ -1,6 +1,7 @@
 #include "bake/vk/buffer.h"
 
 #include "bake/vk/commands.h"
+#include "bake/vk/memory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -13,10 +14,6 @@ namespace {
 // Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
 // had always.
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
-
-std::string inMiB(uint64_t bytes) {
-    return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
-}
 
 uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
     if (memory == Memory::Device) return device.deviceMemoryType(typeBits);
@@ -50,26 +47,17 @@ void Buffer::create(const Desc& desc) {
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
                  desc.extraUsage;
-    VK_CHECK(vkCreateBuffer(device_->handle(), &info, nullptr, &buffer_));
+    const std::string what = std::string("buffer '") + desc.name + "' of " + inMiB(desc.size);
+    checkMemory(*device_, vkCreateBuffer(device_->handle(), &info, nullptr, &buffer_), "vkCreateBuffer",
+                what);
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device_->handle(), buffer_, &needs);
 
-    VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
-    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags};
-    allocation.allocationSize = needs.size;
-    allocation.memoryTypeIndex = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
-    const std::string what = std::string("buffer '") + desc.name + "' of " + inMiB(desc.size);
-    if (allocation.memoryTypeIndex == ~0u)
-        throw Error(device_->info().name + ": no memory type for " + what + ": try another --device");
-    const VkResult result = vkAllocateMemory(device_->handle(), &allocation, nullptr, &memory_);
-    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        throw Error(device_->info().name + ": out of memory for " + what + ", " +
-                    inMiB(device_->freeMemory()) + " are free: use a smaller --size or close other programs");
-    check(result, "vkAllocateMemory");
+    const uint32_t type = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
+    memory_ = allocateMemory(*device_, needs.size, type, true, what);
     VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_, 0));
 
-    const VkMemoryPropertyFlags properties = device_->memoryProperties(allocation.memoryTypeIndex);
+    const VkMemoryPropertyFlags properties = device_->memoryProperties(type);
     constexpr VkMemoryPropertyFlags coherent =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     if ((properties & coherent) == coherent)

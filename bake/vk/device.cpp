@@ -10,11 +10,18 @@
 
 namespace relume::vk {
 
+namespace {
+
+std::atomic<uint32_t> messagesOfAll{0};
+
+} // namespace
+
 VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                    VkDebugUtilsMessageTypeFlagsEXT,
                                                    const VkDebugUtilsMessengerCallbackDataEXT* data,
                                                    void* device) {
     static_cast<Device*>(device)->validationMessages_++;
+    messagesOfAll++;
     const bool error = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
     spdlog::log(error ? spdlog::level::err : spdlog::level::warn, "vulkan: {}", data->pMessage);
     return VK_FALSE;
@@ -170,6 +177,10 @@ void Device::createDevice() {
     info.ppEnabledExtensionNames = extensions.data();
     VK_CHECK(vkCreateDevice(physical_, &info, nullptr, &device_));
     vkGetDeviceQueue(device_, queueFamily_, queue.queueCount - 1, &queue_);
+}
+
+uint32_t Device::validationMessagesOfAll() {
+    return messagesOfAll;
 }
 
 void Device::submit(const VkSubmitInfo& info) const {

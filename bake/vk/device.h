@@ -87,12 +87,17 @@ public:
     /// Memory type for Memory::Device: on a discrete GPU not the one the CPU sees too (a small window into
     /// it), on others one that the CPU can map where there is one. ~0u if there is none.
     uint32_t deviceMemoryType(uint32_t typeBits) const;
+    VkDeviceSize heapSize(uint32_t memoryType) const {
+        return memory_.memoryHeaps[memory_.memoryTypes[memoryType].heapIndex].size;
+    }
     VkMemoryPropertyFlags memoryProperties(uint32_t type) const {
         return memory_.memoryTypes[type].propertyFlags;
     }
     void setName(VkObjectType type, uint64_t handle, const char* name) const; // no-op without debug utils
     /// Validation warnings and errors seen so far.
     uint32_t validationMessages() const { return validationMessages_; }
+    /// Of all devices of this process, those destroyed as well.
+    static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
 
 private:

@@ -1,6 +1,7 @@
 #include "bake/vk/image.h"
 
 #include "bake/vk/commands.h"
+#include "bake/vk/memory.h"
 
 #include <algorithm>
 #include <cstring>
@@ -85,20 +86,12 @@ void Image2D::create(const Desc& desc) {
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.tiling = VK_IMAGE_TILING_OPTIMAL;
     info.usage = desc.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    VK_CHECK(vkCreateImage(device_->handle(), &info, nullptr, &image_));
+    checkMemory(*device_, vkCreateImage(device_->handle(), &info, nullptr, &image_), "vkCreateImage", what);
 
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device_->handle(), image_, &needs);
-    VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-    allocation.allocationSize = needs.size;
-    allocation.memoryTypeIndex = device_->deviceMemoryType(needs.memoryTypeBits);
-    if (allocation.memoryTypeIndex == ~0u)
-        throw Error(device_->info().name + ": no memory type for " + what + ": try another --device");
-    const VkResult result = vkAllocateMemory(device_->handle(), &allocation, nullptr, &memory_);
-    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        throw Error(device_->info().name + ": out of memory for " + what +
-                    ": use a smaller --size or close other programs");
-    check(result, "vkAllocateMemory");
+    memory_ =
+        allocateMemory(*device_, needs.size, device_->deviceMemoryType(needs.memoryTypeBits), false, what);
     VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_, 0));
     device_->setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), desc.name);
 

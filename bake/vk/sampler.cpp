@@ -16,7 +16,9 @@ Sampler::Sampler(const Device& device, VkFilter filter, VkSamplerAddressMode u, 
     info.addressModeV = v;
     info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     info.maxLod = VK_LOD_CLAMP_NONE;
-    info.anisotropyEnable = device.anisotropy() && maxAnisotropy > 1.0f;
+    // Mesa's software rasterizer returns NaN where the derivatives are zero: a face with one UV for all
+    // corners.
+    info.anisotropyEnable = device.anisotropy() && maxAnisotropy > 1.0f && !device.info().software();
     info.maxAnisotropy = std::clamp(maxAnisotropy, 1.0f, device.limits().maxSamplerAnisotropy);
     VK_CHECK(vkCreateSampler(device.handle(), &info, nullptr, &sampler_));
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "bake/vk/device.h"
+
+namespace relume::vk {
+
+/// Allocates memory of `type` (~0u: there is none). Throws Error naming `what` ("buffer 'bits' of 3 MiB") and
+/// the free memory.
+VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, bool byAddress,
+                              const std::string& what);
+/// check(), but out of memory names `what`.
+void checkMemory(const Device& device, VkResult result, const char* call, const std::string& what);
+
+/// "3 MiB", rounded up.
+std::string inMiB(uint64_t bytes);
+
+} // namespace relume::vk
