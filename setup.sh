@@ -20,7 +20,7 @@ packages=(
     libgtest-dev libbenchmark-dev vulkan-validationlayers
 )
 mesa=mesa-vulkan-drivers
-oldestMesa=24.1 # the first whose software device has VK_KHR_ray_tracing_pipeline
+testedMesa=25 # on Debian 12 an older one is brought up to date; elsewhere the stock one is taken
 
 case "${1:-}" in
     "") ;;
@@ -38,7 +38,7 @@ case "$system" in
         {
             echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
             echo "Install these (Debian's names) by hand, then build as the README says:"
-            echo "  ${packages[*]} and a Vulkan 1.2 driver ($mesa, version $oldestMesa or newer)"
+            echo "  ${packages[*]} and a Vulkan 1.2 driver (tested: Mesa $testedMesa)"
         } >&2
         exit 1
         ;;
@@ -58,7 +58,8 @@ needsMesa=false
 mesaVersion=$(installedVersion $mesa)
 if [ -z "$mesaVersion" ]; then
     needsMesa=true
-elif [ -z "${RELUME_KEEP_MESA:-}" ] && dpkg --compare-versions "$mesaVersion" lt "$oldestMesa"; then
+elif [ "$system" = "debian 12" ] && [ -z "${RELUME_KEEP_MESA:-}" ] &&
+    dpkg --compare-versions "$mesaVersion" lt "$testedMesa"; then
     needsMesa=true
 fi
 
