@@ -1,7 +1,54 @@
 #include "app/command.h"
 
-namespace relume {
+#include "assets/error.h"
+#include "assets/generate.h"
+#include "assets/gltf.h"
+#include "assets/log.h"
 
-void addSceneCommand(CLI::App&) {}
+#include <iostream>
+#include <memory>
+
+namespace relume {
+namespace {
+
+struct SceneOptions {
+    std::string name, output;
+    bool list = false;
+};
+
+void listScenes() {
+    for (const SceneName& scene : generatedSceneNames())
+        std::cout << scene.name << std::string(16 - scene.name.size(), ' ') << scene.description << "\n";
+}
+
+void makeScene(const SceneOptions& options) {
+    if (options.list) {
+        listScenes();
+        return;
+    }
+    if (options.name.empty()) throw UsageError("scene: which one? 'relume scene --list' shows the names");
+    if (options.output.empty()) throw UsageError("scene: where to? Pass -o FILE.glb");
+    if (!options.output.ends_with(".glb"))
+        throw UsageError("scene: '" + options.output +
+                         "' does not end in .glb: scenes are written as binary glTF");
+    const Scene scene = generateScene(options.name);
+    saveGlb(scene, options.output);
+    size_t triangles = 0;
+    for (const Mesh& mesh : scene.meshes)
+        for (const Primitive& primitive : mesh.primitives)
+            triangles += primitive.indices.size() / 3;
+    spdlog::info("{}: {} triangles in {} meshes", options.output, triangles, scene.meshes.size());
+}
+
+} // namespace
+
+void addSceneCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("scene", "Make one of the scenes that ship with Relume");
+    auto options = std::make_shared<SceneOptions>();
+    command->add_option("name", options->name, "The scene, see --list");
+    command->add_option("-o,--output", options->output, "The file to write (.glb)");
+    command->add_flag("-l,--list", options->list, "List the scenes and stop");
+    command->callback([options] { makeScene(*options); });
+}
 
 } // namespace relume

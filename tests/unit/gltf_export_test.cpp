@@ -116,7 +116,9 @@ TEST_F(GltfExport, KeepsMaterialsToTheBit) {
         EXPECT_EQ(a.metallic, b.metallic);
         EXPECT_EQ(a.roughness, b.roughness);
         EXPECT_EQ(a.alphaMode, b.alphaMode);
-        if (a.alphaMode == AlphaMode::Mask) EXPECT_EQ(a.alphaCutoff, b.alphaCutoff);
+        if (a.alphaMode == AlphaMode::Mask) {
+            EXPECT_EQ(a.alphaCutoff, b.alphaCutoff);
+        }
         EXPECT_EQ(a.doubleSided, b.doubleSided);
     }
 }
@@ -176,8 +178,12 @@ TEST_F(GltfExport, KeepsCamerasAndLights) {
         EXPECT_EQ(a.name, b.name);
         EXPECT_EQ(a.transform, b.transform);
         EXPECT_EQ(a.perspective, b.perspective);
-        if (a.perspective) EXPECT_EQ(a.yfov, b.yfov);
-        if (!a.perspective) EXPECT_EQ(a.ymag, b.ymag);
+        if (a.perspective) {
+            EXPECT_EQ(a.yfov, b.yfov);
+        }
+        if (!a.perspective) {
+            EXPECT_EQ(a.ymag, b.ymag);
+        }
         EXPECT_EQ(a.aspect, b.aspect);
         EXPECT_EQ(a.znear, b.znear);
         EXPECT_EQ(a.zfar, b.zfar);
@@ -231,7 +237,9 @@ TEST_F(GltfExport, IsAWellFormedContainer) {
         const size_t size = components * (accessor["componentType"] == 5123 ? 2 : 4);
         const size_t offset = accessor["byteOffset"];
         EXPECT_LE(offset + size * accessor["count"].get<size_t>(), view["byteLength"].get<size_t>());
-        if (view.contains("byteStride")) EXPECT_EQ(view["byteStride"], size);
+        if (view.contains("byteStride")) {
+            EXPECT_EQ(view["byteStride"], size);
+        }
         EXPECT_LE(view["byteOffset"].get<size_t>() + view["byteLength"].get<size_t>(), binSize);
     }
 }

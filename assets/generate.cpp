@@ -1,0 +1,41 @@
+#include "assets/generate.h"
+
+#include "assets/error.h"
+#include "assets/generate_scenes.h"
+
+namespace relume {
+namespace {
+
+struct Entry {
+    SceneName name;
+    Scene (*make)();
+};
+
+const std::vector<Entry>& entries() {
+    static const std::vector<Entry> all = {
+        {{"cornell_geom", "simple shapes in a Cornell box under a narrow light"}, generate::cornellGeom},
+        {{"cornell_layers", "a box cut into layers by a wedge and a shelf, with a closed dark cell"},
+         generate::cornellLayers},
+    };
+    return all;
+}
+
+} // namespace
+
+std::vector<SceneName> generatedSceneNames() {
+    std::vector<SceneName> names;
+    for (const Entry& entry : entries())
+        names.push_back(entry.name);
+    return names;
+}
+
+Scene generateScene(const std::string& name) {
+    std::string known;
+    for (const Entry& entry : entries()) {
+        if (entry.name.name == name) return entry.make();
+        known += (known.empty() ? "" : ", ") + entry.name.name;
+    }
+    throw Error("there is no scene '" + name + "': choose one of " + known);
+}
+
+} // namespace relume
