@@ -1,0 +1,96 @@
+// Rays against triangles and boxes. Legal as GLSL and as C++. In GLSL PRECISE is `precise`: what must come out alike in two
+// triangles that share a vertex or an edge may not be rearranged.
+#ifndef PRECISE
+#ifdef __cplusplus
+#define PRECISE
+#else
+#define PRECISE precise
+#endif
+#endif
+#ifdef __cplusplus
+#define MUL_ADD(a, b, c) ((a) * (b) + (c))
+#else
+#define MUL_ADD(a, b, c) fma(a, b, c)
+#endif
+
+// A ray with what all its tests need.
+struct BvhRay {
+    vec3 origin;    // [m]
+    vec3 direction; // any length
+    vec3 tangent;   // unit, with bitangent the plane that the ray pierces at right angles
+    vec3 bitangent;
+    vec3 inverse;   // 1 / direction, finite
+    vec3 shift;     // -origin * inverse
+};
+
+// A component of 0 becomes so small a one that the ray stays where it is in all boxes it can meet.
+FUNCTION float safeInverse(float d) {
+    return 1.0f / (abs(d) > 1e-20f ? d : (d < 0.0f ? -1e-20f : 1e-20f));
+}
+
+FUNCTION BvhRay bvhRay(vec3 origin, vec3 direction) {
+    BvhRay ray;
+    ray.origin = origin;
+    ray.direction = direction;
+    // Tangents without a square root of their own [Duff et al. 2017].
+    vec3 n = normalize(direction);
+    float s = n.z >= 0.0f ? 1.0f : -1.0f;
+    float a = -1.0f / (s + n.z);
+    float b = n.x * n.y * a;
+    ray.tangent = vec3(1.0f + s * n.x * n.x * a, s * b, -s * n.x);
+    ray.bitangent = vec3(b, s + n.y * n.y * a, -n.y);
+    ray.inverse = vec3(safeInverse(direction.x), safeInverse(direction.y), safeInverse(direction.z));
+    ray.shift = -origin * ray.inverse;
+    return ray;
+}
+
+// The part of [tMin, tMax] inside the box: empty when x > y. 0 <= tMin. Never misses a box that the ray touches: the far
+// end is moved out by more than the products' rounding; that of the sums is in the boxes, which the builder widens.
+FUNCTION vec2 boxRange(vec3 lo, vec3 hi, BvhRay ray, float tMin, float tMax) {
+    vec3 a = MUL_ADD(lo, ray.inverse, ray.shift), b = MUL_ADD(hi, ray.inverse, ray.shift);
+    vec3 enter = min(a, b), leave = max(a, b);
+    float x = max(max(enter.x, enter.y), max(enter.z, tMin));
+    float y = min(min(leave.x, leave.y), min(leave.z, tMax));
+    return vec2(x, y * 1.000001f);
+}
+
+// Where on the plane across the ray a corner lies, the ray being at (0, 0). Depends on the corner and the ray alone.
+FUNCTION vec2 acrossRay(vec3 corner, BvhRay ray) {
+    PRECISE vec3 v = corner - ray.origin;
+    PRECISE float x = MUL_ADD(v.x, ray.tangent.x, MUL_ADD(v.y, ray.tangent.y, v.z * ray.tangent.z));
+    PRECISE float y = MUL_ADD(v.x, ray.bitangent.x, MUL_ADD(v.y, ray.bitangent.y, v.z * ray.bitangent.z));
+    return vec2(x, y);
+}
+
+struct TriangleHit {
+    bool hit;
+    float t;      // in units of direction
+    float b1, b2; // barycentrics of p1 and p2
+};
+
+// Watertight: no ray passes between triangles that share edges and vertices. The corners are put into the plane across the
+// ray, each by itself; there the edge functions, differences of two rounded products, have the sign of the exact ones or
+// are 0, and are negated exactly when an edge is walked the other way [after Woop, Benthin and Wald 2013]. A 0 counts
+// as inside on both sides. The distance is the plane's, which keeps it exact for rays starting close to a large triangle.
+FUNCTION TriangleHit intersectTriangle(BvhTriangle triangle, BvhRay ray, float tMin, float tMax) {
+    TriangleHit result;
+    result.hit = false;
+    result.t = 0.0f;
+    result.b1 = 0.0f;
+    result.b2 = 0.0f;
+    vec2 a = acrossRay(triangle.p0, ray), b = acrossRay(triangle.p1, ray), c = acrossRay(triangle.p2, ray);
+    PRECISE float u = c.x * b.y - c.y * b.x;
+    PRECISE float v = a.x * c.y - a.y * c.x;
+    PRECISE float w = b.x * a.y - b.y * a.x;
+    float lowest = min(u, min(v, w)), highest = max(u, max(v, w));
+    float sum = u + v + w;
+    if ((lowest < 0.0f && highest > 0.0f) || sum == 0.0f) return result;
+    vec3 normal = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
+    float t = dot(triangle.p0 - ray.origin, normal) / dot(ray.direction, normal);
+    if (!(t >= tMin && t <= tMax)) return result;
+    result.hit = true;
+    result.t = t;
+    result.b1 = v / sum;
+    result.b2 = w / sum;
+    return result;
+}
