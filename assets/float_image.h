@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -9,8 +10,8 @@ namespace relume {
 /// Planes of 32-bit floats, row 0 on top = v 0.
 struct FloatImage {
     uint32_t width = 0, height = 0;
-    std::vector<std::string> channels;     // e.g. "R", "G", "B", "coverage"
-    std::vector<std::vector<float>> planes; // one per channel, [width * height]
+    std::vector<std::string> channels;             // e.g. "R", "G", "B", "coverage"
+    std::vector<std::vector<float>> planes;        // one per channel, [width * height]
     std::map<std::string, std::string> attributes; // strings written into the EXR header
 
     /// The plane of a channel, nullptr where there is none.
@@ -20,15 +21,22 @@ struct FloatImage {
 
 enum class ExrType { Float, Half };
 
-/// Reads an OpenEXR (all channels as float) or PNG (R, G, B decoded from sRGB to linear). Throws Error.
+/// The transfer function of sRGB [IEC 61966-2-1], exact; values outside [0, 1] follow the same curve,
+/// mirrored below 0.
+double srgbFromLinear(double linear);
+double linearFromSrgb(double encoded);
+
+/// Reads an OpenEXR (all channels as float, the data window, string attributes; R, G, B, A first, then by
+/// name) or PNG (R, G, B decoded from sRGB to linear). Throws Error.
 FloatImage readImage(const std::string& path);
 
-/// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. Goes to a temporary name in the
-/// same folder first and is renamed, so an existing file is replaced whole or not at all. Throws Error.
+/// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. Goes to a temporary
+/// name in the same folder first and is renamed, so an existing file is replaced whole or not at all. Equal
+/// images give equal bytes. Half cuts values beyond its range (65504) with a warning. Throws Error.
 void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
 
-/// Throws Error where writing `path` is sure to fail (folder missing or unwritable, unknown ending, too little space for
-/// `bytes`): call before long work.
+/// Throws Error where writing `path` is sure to fail (folder missing or unwritable, unknown ending, too
+/// little space for `bytes`): call before long work.
 void checkWritable(const std::string& path, uint64_t bytes = 0);
 
 } // namespace relume

@@ -1,0 +1,282 @@
+#include "assets/float_image.h"
+
+#include "assets/error.h"
+#include "assets/file_write.h"
+#include "assets/log.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+// Our own static copies: other libraries carry theirs under the same names.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace relume {
+namespace {
+
+constexpr uint64_t kMostPixels = uint64_t(1) << 30; // 32768^2: a larger header is a broken file
+constexpr uint64_t kMostPacking = 65536; // pixels per byte; the best case of EXR's codecs is far below
+
+enum class Format { Exr, Png };
+
+Format formatOf(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (ending == ".exr") return Format::Exr;
+    if (ending == ".png") return Format::Png;
+    throw Error(path + ": unknown image ending '" + ending + "': use .exr or .png");
+}
+
+std::string readBytes(const std::string& path) {
+    std::error_code code;
+    if (!std::filesystem::exists(path, code)) throw Error(path + ": no such file: check the name");
+    if (std::filesystem::is_directory(path, code)) throw Error(path + ": is a folder: name an image in it");
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (!file || file.bad()) throw Error(path + ": cannot be read: check its permissions");
+    return bytes;
+}
+
+class MemoryInput : public Imf::IStream {
+public:
+    MemoryInput(const char* name, const std::string& bytes) : IStream(name), bytes_(bytes) {}
+    bool read(char c[], int n) override {
+        if (n < 0 || uint64_t(n) > bytes_.size() - at_) throw std::runtime_error("the file ends too early");
+        std::memcpy(c, bytes_.data() + at_, size_t(n));
+        at_ += uint64_t(n);
+        return at_ < bytes_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t position) override {
+        if (position > bytes_.size()) throw std::runtime_error("the file ends too early");
+        at_ = position;
+    }
+
+private:
+    const std::string& bytes_;
+    uint64_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+public:
+    explicit MemoryOutput(const char* name) : OStream(name) {}
+    void write(const char c[], int n) override {
+        if (at_ + uint64_t(n) > bytes.size()) bytes.resize(at_ + uint64_t(n));
+        std::memcpy(bytes.data() + at_, c, size_t(n));
+        at_ += uint64_t(n);
+    }
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t position) override { at_ = position; }
+
+    std::string bytes;
+
+private:
+    uint64_t at_ = 0;
+};
+
+FloatImage readExr(const std::string& path, const std::string& bytes) {
+    MemoryInput stream(path.c_str(), bytes);
+    Imf::InputFile file(stream);
+    const Imath::Box2i window = file.header().dataWindow();
+    const uint64_t width = uint64_t(int64_t(window.max.x) - window.min.x + 1);
+    const uint64_t height = uint64_t(int64_t(window.max.y) - window.min.y + 1);
+    if (width > kMostPixels || height > kMostPixels || width * height > kMostPixels ||
+        width * height / kMostPacking > bytes.size())
+        throw std::runtime_error("its header claims " + std::to_string(width) + " x " +
+                                 std::to_string(height));
+
+    FloatImage image;
+    image.width = uint32_t(width);
+    image.height = uint32_t(height);
+    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) {
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+            throw std::runtime_error(std::string("channel ") + c.name() +
+                                     " is subsampled, which is not supported");
+        image.channels.emplace_back(c.name());
+    }
+    const auto rank = [](const std::string& name) { return std::string("RGBA").find(name); };
+    std::stable_sort(image.channels.begin(), image.channels.end(),
+                     [&](const std::string& a, const std::string& b) {
+                         return (a.size() == 1 ? rank(a) : std::string::npos) <
+                                (b.size() == 1 ? rank(b) : std::string::npos);
+                     });
+    Imf::FrameBuffer frame;
+    image.planes.resize(image.channels.size());
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        image.planes[c].resize(width * height);
+        frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), window));
+    }
+    file.setFrameBuffer(frame);
+    file.readPixels(window.min.y, window.max.y);
+    for (auto a = file.header().begin(); a != file.header().end(); ++a)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+            image.attributes[a.name()] = text->value();
+    return image;
+}
+
+std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut) {
+    std::vector<half> halves(plane.size());
+    for (size_t i = 0; i < plane.size(); ++i) {
+        const bool tooLarge = std::isfinite(plane[i]) && std::abs(plane[i]) > float(HALF_MAX);
+        cut += tooLarge;
+        halves[i] = half(tooLarge ? std::copysign(float(HALF_MAX), plane[i]) : plane[i]);
+    }
+    return halves;
+}
+
+std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type) {
+    Imf::Header header(int(image.width), int(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [name, value] : image.attributes)
+        header.insert(name, Imf::StringAttribute(value));
+
+    const bool isHalf = type == ExrType::Half;
+    const Imf::PixelType pixelType = isHalf ? Imf::HALF : Imf::FLOAT;
+    Imf::FrameBuffer frame;
+    std::vector<std::vector<half>> halves;
+    size_t cut = 0;
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        header.channels().insert(image.channels[c], Imf::Channel(pixelType));
+        const void* data = image.planes[c].data();
+        if (isHalf) data = halves.emplace_back(toHalf(image.planes[c], cut)).data();
+        frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, header.dataWindow()));
+    }
+    if (cut > 0)
+        spdlog::warn("{}: {} values beyond 65504 were cut to fit half: write float instead", path, cut);
+
+    MemoryOutput stream(path.c_str());
+    {
+        Imf::OutputFile file(stream, header);
+        file.setFrameBuffer(frame);
+        file.writePixels(int(image.height));
+    } // its destructor writes the table of lines
+    return std::move(stream.bytes);
+}
+
+FloatImage readPng(const std::string& bytes) {
+    if (bytes.size() > size_t(std::numeric_limits<int>::max())) throw std::runtime_error("too large");
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = int(bytes.size());
+    int width = 0, height = 0, channels = 0;
+    // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
+    const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
+        stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
+    if (!pixels) throw std::runtime_error(stbi_failure_reason());
+    FloatImage image;
+    image.width = uint32_t(width);
+    image.height = uint32_t(height);
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = float(linearFromSrgb(pixels.get()[3 * i + c] / 65535.0));
+    }
+    return image;
+}
+
+std::string encodePng(const std::string& path, const FloatImage& image) {
+    std::string pixels(size_t(image.width) * image.height * 3, '\0');
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        const std::vector<float>* plane = image.find(channel);
+        if (!plane) throw Error(path + ": the image has no channel " + channel + ": write .exr instead");
+        for (size_t i = 0; i < plane->size(); ++i) {
+            const float v = (*plane)[i];
+            const double clamped = v > 0.0f ? std::min(1.0, double(v)) : 0.0; // NaN becomes 0
+            pixels[3 * i + c] =
+                char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
+        }
+    }
+    std::string bytes;
+    const auto append = [](void* context, void* data, int size) {
+        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
+    };
+    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), 3, pixels.data(), 0))
+        throw Error(path + ": cannot be encoded as PNG: write .exr instead");
+    return bytes;
+}
+
+} // namespace
+
+const std::vector<float>* FloatImage::find(const std::string& channel) const {
+    const auto found = std::find(channels.begin(), channels.end(), channel);
+    return found == channels.end() ? nullptr : &planes[size_t(found - channels.begin())];
+}
+
+std::vector<float>& FloatImage::add(const std::string& channel) {
+    ASSERT(!find(channel));
+    channels.push_back(channel);
+    return planes.emplace_back(size_t(width) * height, 0.0f);
+}
+
+double srgbFromLinear(double linear) {
+    if (linear < 0) return -srgbFromLinear(-linear);
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+double linearFromSrgb(double encoded) {
+    if (encoded < 0) return -linearFromSrgb(-encoded);
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+FloatImage readImage(const std::string& path) {
+    const Format format = formatOf(path);
+    const std::string bytes = readBytes(path);
+    try {
+        return format == Format::Exr ? readExr(path, bytes) : readPng(bytes);
+    } catch (const std::bad_alloc&) {
+        throw Error(path + ": does not fit into memory: use a smaller image");
+    } catch (const std::exception& error) {
+        std::string reason = error.what();
+        std::replace(reason.begin(), reason.end(), '\n', ' ');
+        throw Error(path + ": cannot be read as an image (" + reason + "): is it complete?");
+    }
+}
+
+void writeImage(const std::string& path, const FloatImage& image, ExrType type) {
+    ASSERT(image.width > 0 && image.height > 0 && image.channels.size() == image.planes.size());
+    for (const std::vector<float>& plane : image.planes)
+        ASSERT(plane.size() == size_t(image.width) * image.height);
+    std::string bytes;
+    if (formatOf(path) == Format::Png) {
+        bytes = encodePng(path, image);
+    } else {
+        try {
+            bytes = encodeExr(path, image, type);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& error) {
+            throw Error(path + ": cannot be encoded as OpenEXR: " + error.what());
+        }
+    }
+    writeFileAtomically(path, bytes);
+}
+
+void checkWritable(const std::string& path, uint64_t bytes) {
+    formatOf(path);
+    checkFileWritable(path, bytes);
+}
+
+} // namespace relume
