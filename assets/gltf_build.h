@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 #include "assets/scene.h"
@@ -13,7 +14,9 @@ namespace relume::gltf {
 /// What the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
-    tinygltf::Model model;
+    tinygltf::Model model;        // without nodes and scenes: the parser is slow for very many
+    nlohmann::json nodes, scenes; // arrays as in the file
+    int defaultScene = 0;
     Scene scene;
     Warnings warnings;
 };

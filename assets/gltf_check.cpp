@@ -55,6 +55,7 @@ private:
     void mesh(const json& value, const std::string& where) const;
     void primitive(const json& value, const std::string& where) const;
     void node(const json& value, const std::string& where) const;
+    void light(const json& node, const std::string& where) const;
     void scene(const json& value, const std::string& where) const;
     void textureUse(const json& holder, const char* key, const std::string& where) const;
     void material(const json& value, const std::string& where) const;
@@ -271,6 +272,7 @@ void Checker::node(const json& value, const std::string& where) const {
     numbers(value, "rotation", where, 4);
     numbers(value, "scale", where, 3);
     numbers(value, "translation", where, 3);
+    light(value, where);
     const json* children = member(value, "children");
     if (!children) return;
     if (!children->is_array()) fail(where + ".children is no array");
@@ -278,6 +280,23 @@ void Checker::node(const json& value, const std::string& where) const {
         if (!child.is_number_unsigned() || child.get<uint64_t>() >= count("nodes"))
             fail(fmt::format("{}.children names node {}, but there are {}", where, quoted(child.dump()),
                              count("nodes")));
+}
+
+void Checker::light(const json& node, const std::string& where) const {
+    const json* extensions = member(node, "extensions");
+    if (!extensions) return;
+    object(*extensions, where + ".extensions");
+    const json* use = member(*extensions, "KHR_lights_punctual");
+    if (!use) return;
+    const std::string here = where + ".extensions.KHR_lights_punctual";
+    const int64_t value = integer(object(*use, here), "light", here);
+    if (value < 0) fail(here + " names no light");
+    const json* lights = member(root_, "extensions");
+    for (const char* key : {"KHR_lights_punctual", "lights"})
+        lights = lights && lights->is_object() ? member(*lights, key) : nullptr;
+    const uint64_t entries = lights && lights->is_array() ? lights->size() : 0;
+    if (static_cast<uint64_t>(value) >= entries)
+        fail(fmt::format("{} names light {}, but there are {}", here, value, entries));
 }
 
 void Checker::scene(const json& value, const std::string& where) const {

@@ -69,10 +69,12 @@ std::pair<size_t, size_t> checkContainer(File& file) {
     if (jsonEnd > length) throwDamaged(file.path, "is truncated inside the JSON chunk");
     if (jsonEnd == length) return {jsonBegin, jsonEnd};
     if (jsonEnd + kChunkHeaderBytes > length) throwDamaged(file.path, "is truncated behind the JSON chunk");
-    const size_t chunkBytes = readU32(bytes, jsonEnd);
-    if (readU32(bytes, jsonEnd + 4) == kBinChunk) file.chunkBytes = chunkBytes;
-    if (jsonEnd + kChunkHeaderBytes + chunkBytes > length)
-        throwDamaged(file.path, "is truncated inside the binary chunk");
+    const size_t chunkBegin = jsonEnd + kChunkHeaderBytes, chunkBytes = readU32(bytes, jsonEnd);
+    if (chunkBegin + chunkBytes > length) throwDamaged(file.path, "is truncated inside the binary chunk");
+    if (readU32(bytes, jsonEnd + 4) == kBinChunk) {
+        file.chunkBegin = chunkBegin;
+        file.chunkBytes = chunkBytes;
+    }
     return {jsonBegin, jsonEnd};
 }
 
@@ -130,6 +132,37 @@ File readFile(const std::string& path) {
     }
     if (!file.json.is_object()) throwDamaged(path, "its JSON is not an object");
     return file;
+}
+
+std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json) {
+    std::string text = json.dump();
+    if (!file.binary) return {text.begin(), text.end()};
+    while (text.size() % 4 != 0)
+        text += ' ';
+    // The parser wants whole words of data, where some exporters pad nothing.
+    const uint64_t chunkBytes = (file.chunkBytes + 3) / 4 * 4;
+    uint64_t length = kHeaderBytes + kChunkHeaderBytes + text.size();
+    if (chunkBytes > 0) length += kChunkHeaderBytes + chunkBytes;
+    if (length > std::numeric_limits<uint32_t>::max())
+        throw Error(
+            fmt::format("{}: is larger than 4 GiB, which glTF cannot hold: split the scene", file.path));
+    std::vector<uint8_t> bytes;
+    bytes.reserve(length);
+    const auto word = [&bytes](uint64_t value) {
+        for (int i = 0; i < 4; ++i)
+            bytes.push_back(static_cast<uint8_t>(value >> (8 * i)));
+    };
+    for (uint64_t value :
+         {uint64_t(kMagic), uint64_t(2), length, uint64_t(text.size()), uint64_t(kJsonChunk)})
+        word(value);
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    if (chunkBytes == 0) return bytes;
+    word(chunkBytes);
+    word(kBinChunk);
+    const auto chunk = file.bytes.begin() + static_cast<std::ptrdiff_t>(file.chunkBegin);
+    bytes.insert(bytes.end(), chunk, chunk + static_cast<std::ptrdiff_t>(file.chunkBytes));
+    bytes.resize(length);
+    return bytes;
 }
 
 } // namespace relume::gltf

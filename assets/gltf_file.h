@@ -13,6 +13,7 @@ struct File {
     std::string path;           // as given by the user
     std::vector<uint8_t> bytes; // the whole file
     bool binary = false;        // GLB container
+    uint64_t chunkBegin = 0;    // where the GLB's binary chunk's data begins in bytes
     uint64_t chunkBytes = 0;    // size of the GLB's binary chunk, 0: none
     nlohmann::json json;
 };
@@ -20,5 +21,8 @@ struct File {
 /// Reads a .gltf or .glb file and parses its JSON. Throws Error where the file is missing, truncated, not
 /// glTF 2.0, nested too deeply or no JSON.
 File readFile(const std::string& path);
+
+/// The file's bytes with another JSON text in place of its own, same container.
+std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json);
 
 } // namespace relume::gltf

@@ -15,24 +15,42 @@ namespace gltf {
 
 namespace {
 
+using nlohmann::json;
+
 /// The parser's messages are several lines long and quote whole data URIs.
 std::string firstLine(const std::string& text) {
     return quoted(text.substr(0, text.find('\n')));
 }
 
-void parse(const File& file, tinygltf::Model& model) {
+json takeArray(json& document, const char* section) {
+    const auto found = document.find(section);
+    if (found == document.end()) return json::array();
+    json taken = std::move(*found);
+    document.erase(found);
+    return taken;
+}
+
+/// Hands the parser all but what the checked JSON already tells as well.
+void parse(File file, Build& build) {
+    build.nodes = takeArray(file.json, "nodes");
+    build.scenes = takeArray(file.json, "scenes");
+    build.defaultScene = file.json.value("scene", 0);
+    file.json.erase("scene");
+    const std::vector<uint8_t> bytes = withJson(file, file.json);
+    file.json = nullptr;
+    file.bytes = {};
+
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(keepImageBytes, nullptr);
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
-    const unsigned int size = static_cast<unsigned int>(file.bytes.size());
+    const unsigned int size = static_cast<unsigned int>(bytes.size());
     std::string error, warning;
     bool good = false;
     try {
-        good =
-            file.binary
-                ? parser.LoadBinaryFromMemory(&model, &error, &warning, file.bytes.data(), size, folder)
-                : parser.LoadASCIIFromString(&model, &error, &warning,
-                                             reinterpret_cast<const char*>(file.bytes.data()), size, folder);
+        good = file.binary
+                   ? parser.LoadBinaryFromMemory(&build.model, &error, &warning, bytes.data(), size, folder)
+                   : parser.LoadASCIIFromString(&build.model, &error, &warning,
+                                                reinterpret_cast<const char*>(bytes.data()), size, folder);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& exception) {
@@ -47,7 +65,7 @@ void parse(const File& file, tinygltf::Model& model) {
 void warnUnsupported(const File& file, Build& build) {
     for (const std::string& name : unknownExtensions(file))
         build.warnings.add("extension " + quoted(name), "is not supported and ignored");
-    if (!build.model.animations.empty())
+    if (file.json.contains("animations") && !file.json["animations"].empty())
         build.warnings.add("animations", "are not supported, the scene stands as stored");
 }
 
@@ -58,12 +76,10 @@ void warnUnsupported(const File& file, Build& build) {
 Scene loadGltf(const std::string& path) {
     gltf::Build build;
     build.path = path;
-    {
-        const gltf::File file = gltf::readFile(path);
-        gltf::check(file);
-        gltf::parse(file, build.model);
-        gltf::warnUnsupported(file, build);
-    }
+    gltf::File file = gltf::readFile(path);
+    gltf::check(file);
+    gltf::warnUnsupported(file, build);
+    gltf::parse(std::move(file), build);
     build.scene.path = path;
     gltf::buildMaterials(build);
     gltf::buildMeshes(build);

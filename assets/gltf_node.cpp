@@ -12,28 +12,45 @@ namespace relume::gltf {
 
 namespace {
 
+using nlohmann::json;
+
 constexpr double kHalfPi = 1.57079632679489662;
 
-glm::dmat4 localTransform(const tinygltf::Node& node) {
+/// A node's member, nullptr where it has none.
+const json* member(const json& node, const char* key) {
+    const auto found = node.find(key);
+    return found == node.end() ? nullptr : &*found;
+}
+
+int indexOr(const json& node, const char* key, int fallback) {
+    const json* value = member(node, key);
+    return value ? value->get<int>() : fallback;
+}
+
+double at(const json& array, int i) {
+    return array[static_cast<size_t>(i)].get<double>();
+}
+
+glm::dmat4 localTransform(const json& node) {
     glm::dmat4 local(1.0);
-    if (node.matrix.size() == 16) {
+    if (const json* matrix = member(node, "matrix")) {
         for (int i = 0; i < 16; ++i)
-            local[i / 4][i % 4] = node.matrix[static_cast<size_t>(i)];
+            local[i / 4][i % 4] = at(*matrix, i);
         // An affine transform's last row; exporters round it.
         for (int c = 0; c < 4; ++c)
             local[c][3] = c == 3 ? 1.0 : 0.0;
         return local;
     }
-    if (node.rotation.size() == 4) {
-        const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    if (const json* rotation = member(node, "rotation")) {
+        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
         const double length = glm::length(q);
         if (length > 0.0) local = glm::mat4_cast(q / length);
     }
-    if (node.scale.size() == 3)
+    if (const json* scale = member(node, "scale"))
         for (int c = 0; c < 3; ++c)
-            local[c] *= node.scale[static_cast<size_t>(c)];
-    if (node.translation.size() == 3)
-        local[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
+            local[c] *= at(*scale, c);
+    if (const json* translation = member(node, "translation"))
+        local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
     return local;
 }
 
@@ -44,8 +61,13 @@ bool finite(const glm::mat4& m) {
     return true;
 }
 
-std::string nameOf(const tinygltf::Node& node, size_t index) {
-    return node.name.empty() ? fmt::format("node {}", index) : "node " + quoted(node.name);
+std::string nameOf(const json& node) {
+    return node.value("name", "");
+}
+
+std::string labelOf(const json& node, size_t index) {
+    const std::string name = nameOf(node);
+    return name.empty() ? fmt::format("node {}", index) : "node " + quoted(name);
 }
 
 Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const glm::mat4& transform) {
@@ -100,49 +122,48 @@ void addLight(Build& build, const tinygltf::Light& source, const std::string& no
 }
 
 std::vector<int> rootNodes(const Build& build) {
-    const tinygltf::Model& model = build.model;
-    if (!model.scenes.empty())
-        return model.scenes[static_cast<size_t>(std::max(model.defaultScene, 0))].nodes;
-    std::vector<bool> isChild(model.nodes.size());
-    for (const tinygltf::Node& node : model.nodes)
-        for (int child : node.children)
-            isChild[static_cast<size_t>(child)] = true;
     std::vector<int> roots;
+    if (!build.scenes.empty()) {
+        const json* nodes = member(build.scenes[static_cast<size_t>(build.defaultScene)], "nodes");
+        return nodes ? nodes->get<std::vector<int>>() : roots;
+    }
+    std::vector<bool> isChild(build.nodes.size());
+    for (const json& node : build.nodes)
+        if (const json* children = member(node, "children"))
+            for (const json& child : *children)
+                isChild[child.get<size_t>()] = true;
     for (size_t i = 0; i < isChild.size(); ++i)
         if (!isChild[i]) roots.push_back(static_cast<int>(i));
     return roots;
 }
 
 void addNode(Build& build, size_t index, const glm::mat4& world) {
-    const tinygltf::Node& node = build.model.nodes[index];
+    const json& node = build.nodes[index];
     if (!finite(world)) {
-        build.warnings.add(nameOf(node, index), "has a transform that is not finite and is ignored");
+        build.warnings.add(labelOf(node, index), "has a transform that is not finite and is ignored");
         return;
     }
-    if (node.mesh >= 0 && !build.scene.meshes[static_cast<size_t>(node.mesh)].primitives.empty()) {
+    const int mesh = indexOr(node, "mesh", -1), camera = indexOr(node, "camera", -1);
+    if (mesh >= 0 && !build.scene.meshes[static_cast<size_t>(mesh)].primitives.empty()) {
         Instance instance;
-        instance.name =
-            node.name.empty() ? build.scene.meshes[static_cast<size_t>(node.mesh)].name : node.name;
-        instance.mesh = node.mesh;
+        instance.name = nameOf(node);
+        if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
+        instance.mesh = mesh;
         instance.transform = world;
         build.scene.instances.push_back(std::move(instance));
     }
-    if (node.skin >= 0)
-        build.warnings.add(nameOf(node, index), "skins are not supported, the rest pose is used");
-    if (node.extensions.count("EXT_mesh_gpu_instancing"))
-        build.warnings.add(nameOf(node, index),
-                           "EXT_mesh_gpu_instancing is not supported, one instance is used");
-    if (node.camera >= 0)
+    if (camera >= 0)
         build.scene.cameras.push_back(
-            makeCamera(build.model.cameras[static_cast<size_t>(node.camera)], node.name, world));
-    const auto extension = node.extensions.find("KHR_lights_punctual");
-    if (extension == node.extensions.end()) return;
-    const double light = numberOr(extension->second, "light", -1.0);
-    if (light < 0.0 || light >= static_cast<double>(build.model.lights.size()))
-        throw Error(
-            fmt::format("{}: {} names light {}, but there are {}: the file is damaged, export it again",
-                        build.path, nameOf(node, index), light, build.model.lights.size()));
-    addLight(build, build.model.lights[static_cast<size_t>(light)], node.name, world);
+            makeCamera(build.model.cameras[static_cast<size_t>(camera)], nameOf(node), world));
+    if (member(node, "skin"))
+        build.warnings.add(labelOf(node, index), "skins are not supported, the rest pose is used");
+    const json* extensions = member(node, "extensions");
+    if (!extensions) return;
+    if (member(*extensions, "EXT_mesh_gpu_instancing"))
+        build.warnings.add(labelOf(node, index),
+                           "EXT_mesh_gpu_instancing is not supported, one instance is used");
+    if (const json* light = member(*extensions, "KHR_lights_punctual"))
+        addLight(build, build.model.lights[(*light)["light"].get<size_t>()], nameOf(node), world);
 }
 
 } // namespace
@@ -154,7 +175,7 @@ void buildNodes(Build& build) {
     };
     std::vector<Visit> stack;
     const std::vector<int> roots = rootNodes(build);
-    std::vector<bool> visited(build.model.nodes.size());
+    std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         stack.push_back({*root, glm::dmat4(1.0)});
     while (!stack.empty()) {
@@ -163,11 +184,12 @@ void buildNodes(Build& build) {
         const size_t index = static_cast<size_t>(visit.node);
         if (visited[index]) continue; // a scene may list a root twice; the check excludes all else
         visited[index] = true;
-        const tinygltf::Node& node = build.model.nodes[index];
+        const json& node = build.nodes[index];
         const glm::dmat4 world = visit.parent * localTransform(node);
         addNode(build, index, glm::mat4(world));
-        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-            stack.push_back({*child, world});
+        if (const json* children = member(node, "children"))
+            for (auto child = children->rbegin(); child != children->rend(); ++child)
+                stack.push_back({child->get<int>(), world});
     }
 }
 

@@ -1,0 +1,264 @@
+#include "assets/gltf.h"
+
+#include "assets/error.h"
+#include "assets/lightmap_atlas.h"
+#include "assets/world_mesh.h"
+#include "tests/unit/glb_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace relume {
+namespace {
+
+using nlohmann::json;
+using test::GlbBuilder;
+using test::squareScene;
+
+/// Loading must fail with one line that names the file and holds `part`.
+void expectError(const std::string& path, const std::string& part) {
+    try {
+        loadGltf(path);
+        ADD_FAILURE() << path << " was loaded";
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+        EXPECT_EQ(message.rfind(path, 0), 0u) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+}
+
+/// The square's scene with one thing spoiled.
+void expectSpoiled(const std::string& name, const std::string& part,
+                   const std::function<void(GlbBuilder&)>& spoil) {
+    GlbBuilder builder = squareScene();
+    spoil(builder);
+    SCOPED_TRACE(name);
+    expectError(builder.write(name + ".glb"), part);
+}
+
+TEST(GltfBadInput, MissingFileAndFolder) {
+    expectError(test::tempPath("none.glb"), "cannot be opened");
+    std::filesystem::create_directories(test::tempPath("folder.glb"));
+    expectError(test::tempPath("folder.glb"), "is a folder");
+}
+
+TEST(GltfBadInput, EveryTruncationIsAnError) {
+    const std::vector<uint8_t> whole = squareScene().bytes();
+    for (size_t size = 0; size < whole.size(); size += size < 64 ? 1 : 37) {
+        const std::string path =
+            test::writeBytes("cut.glb", {whole.begin(), whole.begin() + static_cast<long>(size)});
+        EXPECT_THROW(loadGltf(path), Error) << size;
+    }
+    expectError(test::writeBytes("half.glb", {whole.begin(), whole.begin() + 100}), "is truncated");
+}
+
+TEST(GltfBadInput, WrongMagicVersionOrText) {
+    std::vector<uint8_t> bytes = squareScene().bytes();
+    bytes[0] = 'x';
+    expectError(test::writeBytes("magic.glb", bytes), "wrong magic");
+    bytes[0] = 'g';
+    bytes[4] = 1;
+    expectError(test::writeBytes("version.glb", bytes), "GLB version 1");
+    expectError(test::writeText("list.gltf", "[1, 2]"), "glTF 2.0");
+    expectError(test::writeText("comma.gltf", "{\"asset\": {\"version\": \"2.0\"},,}"), "no valid JSON");
+    expectError(test::writeText("bare.gltf", "{}"), "asset.version");
+    expectError(test::writeText("old.gltf", "{\"asset\": {\"version\": \"1.0\"}}"), "is glTF '1.0'");
+    expectError(test::writeText("utf8.gltf", "{\"asset\": {\"version\": \"2.0\", \"x\": \"\xff\"}}"),
+                "no valid JSON");
+}
+
+TEST(GltfBadInput, DeeplyNestedJsonDoesNotExhaustTheStack) {
+    std::string text = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
+    text += std::string(1000000, '[') + std::string(1000000, ']') + "}";
+    expectError(test::writeText("nested.gltf", text), "nested more than");
+}
+
+TEST(GltfBadInput, EmptyScenes) {
+    expectError(test::writeText("empty.gltf", "{\"asset\": {\"version\": \"2.0\"}}"),
+                "no mesh with triangles");
+    expectSpoiled("no_nodes", "no mesh with triangles",
+                  [](GlbBuilder& b) { b.json["nodes"] = json::array(); });
+    expectSpoiled("no_primitives", "no mesh with triangles",
+                  [](GlbBuilder& b) { b.json["meshes"][0]["primitives"] = json::array(); });
+    expectSpoiled("no_positions", "no mesh with triangles",
+                  [](GlbBuilder& b) { b.json["meshes"][0]["primitives"][0]["attributes"] = json::object(); });
+}
+
+TEST(GltfBadInput, ViewsAndAccessorsPastTheEnd) {
+    expectSpoiled("view", "bufferViews[0] ends at byte",
+                  [](GlbBuilder& b) { b.json["bufferViews"][0]["byteLength"] = 1000000; });
+    expectSpoiled("view_offset", "bufferViews[0] ends at byte",
+                  [](GlbBuilder& b) { b.json["bufferViews"][0]["byteOffset"] = 1000000; });
+    expectSpoiled("view_huge", "bufferViews[0].byteOffset",
+                  [](GlbBuilder& b) { b.json["bufferViews"][0]["byteOffset"] = 18446744073709551600ull; });
+    expectSpoiled("accessor", "accessors[0] reads up to byte",
+                  [](GlbBuilder& b) { b.json["accessors"][0]["count"] = 5; });
+    expectSpoiled("stride", "accessors[0] reads up to byte",
+                  [](GlbBuilder& b) { b.json["bufferViews"][0]["byteStride"] = 16; });
+    expectSpoiled("zeros", "far too large", [](GlbBuilder& b) {
+        b.json["accessors"][0].erase("bufferView");
+        b.json["accessors"][0]["count"] = 2147483647;
+    });
+    expectSpoiled("buffer", "binary chunk", [](GlbBuilder& b) {
+        b.json["buffers"] = {{{"byteLength", 1000000}}};
+    });
+    expectSpoiled("buffer_file", "cannot be read", [](GlbBuilder& b) {
+        b.json["buffers"] = {{{"byteLength", 1000}, {"uri", "nowhere.bin"}}};
+    });
+}
+
+TEST(GltfBadInput, IndicesOutOfRange) {
+    expectSpoiled("vertex", "mesh 'Mesh' has index 77, but 4 vertices", [](GlbBuilder& b) {
+        b.json["meshes"][0]["primitives"][0]["indices"] = b.accessor<uint16_t>({0, 1, 77}, "SCALAR");
+    });
+    expectSpoiled("signed", "no unsigned integers", [](GlbBuilder& b) {
+        b.json["meshes"][0]["primitives"][0]["indices"] = b.accessor<int16_t>({0, 1, 2}, "SCALAR");
+    });
+    expectSpoiled("sparse", "sparse accessor's index", [](GlbBuilder& b) {
+        b.json["accessors"][0]["sparse"] = {
+            {"count", 1},
+            {"indices", {{"bufferView", b.view<uint16_t>({4, 0})}, {"componentType", 5123}}},
+            {"values", {{"bufferView", b.view<float>({7, 8, 9})}}}};
+    });
+    expectSpoiled("mesh", "nodes[0].mesh is 9, but there are 1 meshes",
+                  [](GlbBuilder& b) { b.json["nodes"][0]["mesh"] = 9; });
+    expectSpoiled("attribute", "POSITION is 99",
+                  [](GlbBuilder& b) { b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; });
+    expectSpoiled("material", ".material is 3",
+                  [](GlbBuilder& b) { b.json["meshes"][0]["primitives"][0]["material"] = 3; });
+    expectSpoiled("scene", "scene is 1", [](GlbBuilder& b) { b.json["scene"] = 1; });
+    expectSpoiled("child", "children names node",
+                  [](GlbBuilder& b) { b.json["nodes"][0]["children"] = {-1}; });
+    expectSpoiled("light", "names light 2", [](GlbBuilder& b) {
+        b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 2;
+    });
+    expectSpoiled("image", "images[0].bufferView", [](GlbBuilder& b) {
+        b.json["images"] = {{{"bufferView", 99}}};
+    });
+    expectSpoiled("counts", "4 positions but 3 of TEXCOORD_0", [](GlbBuilder& b) {
+        b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+            b.accessor<float>({0, 0, 1, 0, 1, 1}, "VEC2");
+    });
+    expectSpoiled("components", "wrong number of components", [](GlbBuilder& b) {
+        b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+            b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
+    });
+}
+
+TEST(GltfBadInput, WrongJsonTypes) {
+    expectSpoiled("meshes", "meshes is no array", [](GlbBuilder& b) { b.json["meshes"] = 7; });
+    expectSpoiled("mesh", "meshes[0] is not an object", [](GlbBuilder& b) { b.json["meshes"][0] = "x"; });
+    expectSpoiled("matrix", "not an array of 16 numbers", [](GlbBuilder& b) {
+        b.json["nodes"][0]["matrix"] = {1, 2, 3};
+    });
+    expectSpoiled("index", "nodes[0].mesh is '0.5'", [](GlbBuilder& b) { b.json["nodes"][0]["mesh"] = 0.5; });
+    expectSpoiled("type", "accessors[0].type",
+                  [](GlbBuilder& b) { b.json["accessors"][0]["type"] = "VEC9"; });
+    expectSpoiled("component", "componentType",
+                  [](GlbBuilder& b) { b.json["accessors"][0]["componentType"] = 5130; });
+}
+
+TEST(GltfBadInput, NodeHierarchyThatIsNoTree) {
+    expectSpoiled("diamond", "two parents", [](GlbBuilder& b) {
+        b.node({{"children", {0}}});
+        b.node({{"children", {0}}});
+    });
+    expectSpoiled("self", "must be a tree", [](GlbBuilder& b) {
+        b.json["nodes"][0]["children"] = {0};
+        b.json["scenes"] = {{{"nodes", {0}}}};
+    });
+    expectSpoiled("cycle", "must be a tree", [](GlbBuilder& b) {
+        b.node({{"children", {0}}});
+        b.json["nodes"][0]["children"] = {1};
+        b.json["scenes"] = {{{"nodes", {0}}}};
+    });
+    // Without a scene nothing leads into the cycle.
+    expectSpoiled("island", "no mesh with triangles", [](GlbBuilder& b) {
+        b.node({{"children", {0}}});
+        b.json["nodes"][0]["children"] = {1};
+    });
+}
+
+TEST(GltfBadInput, RequiredExtensions) {
+    expectSpoiled("unknown", "requires the extension 'ACME_secret'",
+                  [](GlbBuilder& b) { b.json["extensionsRequired"] = {"ACME_secret"}; });
+    expectSpoiled("draco", "without mesh compression",
+                  [](GlbBuilder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; });
+}
+
+void useImage(GlbBuilder& b, const json& image) {
+    b.json["images"] = {image};
+    b.json["textures"] = {{{"source", 0}}};
+    b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+}
+
+TEST(GltfBadInput, MissingOrBrokenImages) {
+    expectSpoiled("missing", "image file 'nowhere.png' is missing", [](GlbBuilder& b) {
+        useImage(b, {{"uri", "nowhere.png"}});
+    });
+    expectSpoiled("broken", "image 0 'Wood' cannot be decoded", [](GlbBuilder& b) {
+        std::vector<uint8_t> png = test::kTwoPixels;
+        png.resize(40);
+        useImage(b, {{"bufferView", b.view(png)}, {"mimeType", "image/png"}, {"name", "Wood"}});
+    });
+    expectSpoiled("webp", "has no PNG or JPEG image", [](GlbBuilder& b) {
+        useImage(b, {{"uri", "nowhere.png"}});
+        b.json["textures"] = {json::object()};
+    });
+}
+
+TEST(GltfBadInput, TrianglesWithNanAreDroppedWithAWarning) {
+    GlbBuilder b = squareScene();
+    const float nan = NAN, inf = INFINITY;
+    b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+        b.accessor<float>({0, 0, 0, 1, nan, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
+    const Scene scene = loadGltf(b.write("nan.glb"));
+    EXPECT_EQ(scene.meshes[0].primitives[0].indices.size(), 3u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("mesh 'Mesh': has positions that are not finite"), std::string::npos);
+    for (const glm::vec3& p : scene.meshes[0].primitives[0].positions)
+        EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
+
+    expectSpoiled("all_nan", "no mesh with triangles", [&](GlbBuilder& bad) {
+        bad.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+            bad.accessor<float>({inf, 0, 0, 1, nan, 0, 1, inf, 0, nan, 1, 0}, "VEC3");
+    });
+}
+
+/// Flipped bytes may give a scene or an Error, but nothing else; what loads must also flatten or fail
+/// cleanly.
+TEST(GltfBadInput, DamagedBytesNeverCrash) {
+    GlbBuilder b = squareScene();
+    useImage(b, {{"bufferView", b.view(test::kTwoPixels)}, {"mimeType", "image/png"}});
+    b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"color", {1, 1, 1}}}};
+    b.json["accessors"][0]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", b.view<uint16_t>({1, 0})}, {"componentType", 5123}}},
+        {"values", {{"bufferView", b.view<float>({7, 8, 9})}}}};
+    const std::vector<uint8_t> whole = b.bytes();
+    std::mt19937 random(1);
+    int loaded = 0, refused = 0;
+    for (int round = 0; round < 400; ++round) {
+        std::vector<uint8_t> bytes = whole;
+        for (uint32_t flips = 1 + random() % 4; flips > 0; --flips)
+            bytes[random() % bytes.size()] ^= 1 << random() % 8;
+        const std::string path = test::writeBytes("fuzz.glb", bytes);
+        try {
+            const Scene scene = loadGltf(path);
+            flatten(scene, buildAtlas(scene, 64));
+            ++loaded;
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(loaded, 0);
+    EXPECT_GT(refused, 0);
+}
+
+} // namespace
+} // namespace relume
