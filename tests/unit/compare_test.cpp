@@ -1,0 +1,114 @@
+#include "assets/float_image.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int status = -1;
+    std::string output, errors;
+};
+
+class CompareTest : public testing::Test {
+protected:
+    void SetUp() override {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ =
+            fs::path(testing::TempDir()) / (std::string("relume-") + info->name() + std::to_string(getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string image(const std::string& name, uint32_t size, float value) const {
+        FloatImage image{size, size, {}, {}, {}};
+        for (const char* channel : {"R", "G", "B"})
+            image.add(channel).assign(size_t(size) * size, value);
+        const std::string path = (folder_ / name).string();
+        writeImage(path, image);
+        return path;
+    }
+
+    /// Runs `relume compare` with these arguments.
+    Outcome compare(const std::string& arguments) const {
+        const std::string errors = (folder_ / "errors.txt").string();
+        FILE* pipe = popen((RELUME_BINARY " compare " + arguments + " 2>'" + errors + "'").c_str(), "r");
+        if (!pipe) return {};
+        Outcome outcome;
+        for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe))
+            outcome.output += char(c);
+        const int status = pclose(pipe);
+        outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        if (FILE* file = fopen(errors.c_str(), "r")) {
+            for (int c = fgetc(file); c != EOF; c = fgetc(file))
+                outcome.errors += char(c);
+            fclose(file);
+        }
+        return outcome;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(CompareTest, PrintsATable) {
+    const Outcome outcome = compare(image("a.exr", 4, 0.75f) + " " + image("b.exr", 4, 0.5f));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.errors, "");
+    for (const char* line : {"relRMSE           0.5  ", "RMSE             0.25  ", "maximum          0.25  ",
+                             "bias             0.25  ", "texels             16  compared"})
+        EXPECT_NE(outcome.output.find(line), std::string::npos) << line << "\nin\n" << outcome.output;
+}
+
+TEST_F(CompareTest, PrintsJson) {
+    const std::string a = image("a.exr", 4, 0.25f), b = image("b.exr", 4, 0.5f);
+    const auto json = nlohmann::json::parse(compare("--json " + a + " " + b).output);
+    EXPECT_EQ(json.at("a"), a);
+    EXPECT_EQ(json.at("b"), b);
+    EXPECT_DOUBLE_EQ(json.at("relRMSE"), 0.5);
+    EXPECT_DOUBLE_EQ(json.at("RMSE"), 0.25);
+    EXPECT_DOUBLE_EQ(json.at("bias"), -0.25);
+    EXPECT_DOUBLE_EQ(json.at("maximum"), 0.25);
+    EXPECT_GT(json.at("DFPR"), 0.1);
+    EXPECT_EQ(json.at("texels"), 16);
+    const auto black = nlohmann::json::parse(compare("--json " + a + " " + image("c.exr", 4, 0.0f)).output);
+    EXPECT_TRUE(black.at("relRMSE").is_null());
+}
+
+TEST_F(CompareTest, ComparesPngWithExr) {
+    const std::string png = image("a.png", 4, 0.5f), exr = image("b.exr", 4, 0.5f);
+    const auto json = nlohmann::json::parse(compare("--json " + png + " " + exr).output);
+    EXPECT_LT(json.at("DFPR"), 0.5 / 255 * 1.8); // half a level in each channel
+    EXPECT_GT(json.at("RMSE"), 0.0);
+}
+
+TEST_F(CompareTest, RefusesUnlikeSizes) {
+    const Outcome outcome = compare(image("a.exr", 4, 1) + " " + image("b.exr", 5, 1));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_NE(outcome.errors.find("a.exr is 4 x 4"), std::string::npos) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("b.exr is 5 x 5"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(CompareTest, FailsOnMissingFilesAndArguments) {
+    const std::string a = image("a.exr", 4, 1);
+    const Outcome missing = compare(a + " " + (folder_ / "none.exr").string());
+    EXPECT_EQ(missing.status, 1);
+    EXPECT_NE(missing.errors.find("none.exr: no such file"), std::string::npos) << missing.errors;
+    EXPECT_EQ(compare(a).status, 2);
+    EXPECT_EQ(compare("--nonsense " + a + " " + a).status, 2);
+    const Outcome help = compare("--help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_NE(help.output.find("--json"), std::string::npos);
+}
+
+} // namespace
+} // namespace relume

@@ -1,0 +1,104 @@
+#include "bake/metrics.h"
+
+#include "assets/error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace relume {
+namespace {
+
+FloatImage flat(uint32_t width, uint32_t height, float value) {
+    FloatImage image{width, height, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B"})
+        image.add(channel).assign(size_t(width) * height, value);
+    return image;
+}
+
+std::string errorOf(const FloatImage& a, const FloatImage& b) {
+    try {
+        compareImages(a, "a.exr", b, "b.exr");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Metrics, AreZeroForEqualImages) {
+    for (float value : {0.0f, 0.7f, 30.0f}) {
+        const Metrics m = compareImages(flat(3, 2, value), "a", flat(3, 2, value), "b");
+        EXPECT_EQ(m.relRmse, 0);
+        EXPECT_EQ(m.rmse, 0);
+        EXPECT_EQ(m.dfpr, 0);
+        EXPECT_EQ(m.maximum, 0);
+        EXPECT_EQ(m.bias, 0);
+        EXPECT_EQ(m.texels, 6u);
+        EXPECT_NEAR(m.meanA, value, 1e-12);
+    }
+}
+
+TEST(Metrics, FollowTheirDefinitions) {
+    FloatImage a = flat(2, 1, 0.5f), b = flat(2, 1, 0.5f);
+    a.planes[0] = {1.0f, 0.0f}; // R differs by +0.5, -0.5
+    a.planes[1] = {0.5f, 1.5f}; // G by 0, +1
+    const Metrics m = compareImages(a, "a", b, "b");
+    EXPECT_DOUBLE_EQ(m.rmse, std::sqrt((0.25 + 0.25 + 1.0) / 6));
+    EXPECT_DOUBLE_EQ(m.relRmse, m.rmse / 0.5);
+    EXPECT_DOUBLE_EQ(m.bias, 1.0 / 6);
+    EXPECT_DOUBLE_EQ(m.maximum, 1.0);
+    EXPECT_DOUBLE_EQ(m.meanA, 4.0 / 6);
+    EXPECT_DOUBLE_EQ(m.meanB, 0.5);
+    const double half = 1.055 * std::pow(0.5, 1 / 2.4) - 0.055; // 0.5 as displayed; 1.5 shows as 1
+    EXPECT_NEAR(m.dfpr, ((1 - half) + std::hypot(half, 1 - half)) / 2, 1e-12);
+}
+
+TEST(Metrics, IgnoreWhatOnlyDisplaysCannotTell) {
+    const Metrics m = compareImages(flat(1, 1, 3.0f), "a", flat(1, 1, 2.0f), "b");
+    EXPECT_EQ(m.dfpr, 0); // both are shown as white
+    EXPECT_DOUBLE_EQ(m.rmse, 1);
+    EXPECT_DOUBLE_EQ(m.relRmse, 0.5);
+}
+
+TEST(Metrics, CountTexelsCoveredInBothOnly) {
+    FloatImage a = flat(5, 1, 1.0f), b = flat(5, 1, 1.0f);
+    a.planes[0] = {2.0f, 100.0f, std::nanf(""), 50.0f, 1.0f};
+    a.add("coverage") = {1.0f, 0.5f, 0.0f, 1.0f, 1.0f};
+    b.add("coverage") = {1.0f, 1.0f, 1.0f, 0.5f, 1.0f};
+    const Metrics m = compareImages(a, "a", b, "b");
+    EXPECT_EQ(m.texels, 2u);
+    EXPECT_EQ(m.onlyA, 1u);
+    EXPECT_EQ(m.onlyB, 2u);
+    EXPECT_DOUBLE_EQ(m.maximum, 1);
+    EXPECT_DOUBLE_EQ(m.bias, 1.0 / 6);
+    // Without the channel all of b counts.
+    EXPECT_EQ(compareImages(a, "a", flat(5, 1, 1.0f), "b").texels, 3u);
+}
+
+TEST(Metrics, HaveAnAnswerToABlackReference) {
+    const Metrics m = compareImages(flat(2, 2, 1.0f), "a", flat(2, 2, 0.0f), "b");
+    EXPECT_TRUE(std::isinf(m.relRmse));
+    EXPECT_DOUBLE_EQ(m.rmse, 1);
+}
+
+TEST(Metrics, RefuseWhatCannotBeCompared) {
+    EXPECT_EQ(errorOf(flat(4, 3, 1), flat(3, 4, 1)),
+              "a.exr is 4 x 3, b.exr is 3 x 4: compare images of one size");
+    FloatImage grey{2, 2, {}, {}, {}};
+    grey.add("Y");
+    EXPECT_NE(errorOf(flat(2, 2, 1), grey).find("b.exr: has no channel R"), std::string::npos);
+    FloatImage bad = flat(3, 2, 1);
+    bad.planes[2][4] = std::nanf("");
+    bad.planes[0][5] = std::numeric_limits<float>::infinity();
+    EXPECT_NE(errorOf(flat(3, 2, 1), bad)
+                  .find("b.exr: 2 covered texels are NaN or infinite, the first at column 1, row 1"),
+              std::string::npos);
+    EXPECT_NE(errorOf(bad, flat(3, 2, 1)).find("a.exr: 2 covered"), std::string::npos);
+    FloatImage empty = flat(2, 2, 1);
+    empty.add("coverage");
+    EXPECT_NE(errorOf(empty, flat(2, 2, 1)).find("no texel is covered in both"), std::string::npos);
+}
+
+} // namespace
+} // namespace relume
