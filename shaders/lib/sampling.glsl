@@ -41,8 +41,7 @@ FUNCTION uint sobol2(uint index) {
 
 // Point `index` of the sequence scrambled by `seed`, in [0, 1)^2.
 FUNCTION vec2 sobolPoint(uint index, uint seed) {
-    uint i = owenScramble(reverseBits(index), seed); // shuffles the order as well, as Burley does
-    i = reverseBits(i);
+    uint i = owenScramble(index, seed); // shuffles the order as well, as Burley does: aligned runs stay together
     uint x = owenScramble(reverseBits(i), hash32(seed ^ 0x2c1b3c6du));
     uint y = owenScramble(sobol2(i), hash32(seed ^ 0x297a2d39u));
     return vec2(float(x >> 8), float(y >> 8)) * (1.0f / 16777216.0f);

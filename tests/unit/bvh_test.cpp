@@ -1,0 +1,238 @@
+#include "bake/trace/bvh_builder.h"
+
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "trace_world.h"
+
+namespace relume {
+namespace shader {
+namespace {
+
+// The shaders' traversal on the CPU.
+struct BvhWalk {
+    const Bvh* bvh;
+    std::function<bool(uint, float, float)> solid = [](uint, float, float) { return true; };
+    BvhNode bvhNode(uint index) { return bvh->nodes.at(index); }
+    BvhTriangle bvhTriangle(uint index) { return bvh->triangles.at(index); }
+    bool solidHit(uint id, float b1, float b2) { return solid(id, b1, b2); }
+#include "shaders/lib/intersect.glsl"
+#include "shaders/lib/bvh_traverse.glsl"
+
+    BvhHit bruteForce(vec3 origin, vec3 direction, float tMin, float tMax) {
+        const BvhRay ray = bvhRay(origin, direction);
+        BvhHit best{kNoPatch, tMax, 0, 0};
+        for (const BvhTriangle& triangle : bvh->triangles) {
+            const TriangleHit h = intersectTriangle(triangle, ray, tMin, best.t);
+            const uint id = triangle.id & 0x7fffffffu;
+            if (!h.hit || (h.t == best.t && id > best.triangle)) continue;
+            if (triangle.id != id && !solid(id, h.b1, h.b2)) continue;
+            best = {id, h.t, h.b1, h.b2};
+        }
+        return best;
+    }
+};
+
+} // namespace
+} // namespace shader
+
+namespace {
+
+using shader::BvhNode;
+using shader::BvhWalk;
+
+WorldMesh meshOf(const std::vector<glm::vec3>& corners) {
+    WorldMesh mesh;
+    mesh.positions = corners;
+    mesh.material.assign(corners.size() / 3, 0);
+    mesh.opaqueCount = mesh.triangleCount();
+    return mesh;
+}
+
+TraceScene roomWithSphere(uint32_t cells) {
+    TraceWorld world;
+    world.addRoom({0, 0, 0}, {4, 3, 5}, 3);
+    world.addBumpySphere({2, 1.2f, 2}, 0.8f, cells);
+    return world.build();
+}
+
+// Walks the whole tree; counts how often each triangle is met and checks that boxes hold what is below.
+void checkSubtree(const Bvh& bvh, int child, glm::vec3 lo, glm::vec3 hi, std::vector<int>& met) {
+    if (child >= 0) {
+        const BvhNode& node = bvh.nodes.at(size_t(child));
+        for (const auto& [l, h, c] :
+             {std::tuple(node.lo0, node.hi0, node.child0), std::tuple(node.lo1, node.hi1, node.child1)}) {
+            EXPECT_TRUE(glm::all(glm::greaterThanEqual(l, lo)) && glm::all(glm::lessThanEqual(h, hi)));
+            EXPECT_TRUE(c < 0 || c > child) << "not depth first";
+            checkSubtree(bvh, c, l, h, met);
+        }
+        return;
+    }
+    const uint32_t first = uint32_t(~child) >> 3, count = uint32_t(~child) & 7;
+    EXPECT_TRUE(count >= 1 && count <= 4);
+    for (uint32_t i = first; i < first + count; ++i) {
+        const shader::BvhTriangle& triangle = bvh.triangles.at(i);
+        ++met.at(triangle.id & 0x7fffffffu);
+        for (const glm::vec3& p : {triangle.p0, triangle.p1, triangle.p2})
+            EXPECT_TRUE(glm::all(glm::greaterThan(p, lo)) && glm::all(glm::lessThan(p, hi)));
+    }
+}
+
+void checkTree(const WorldMesh& mesh, const Bvh& bvh, int perTriangle = 1) {
+    std::vector<int> met(mesh.triangleCount(), 0);
+    checkSubtree(bvh, 0, glm::vec3(-1e30f), glm::vec3(1e30f), met);
+    EXPECT_LE(bvh.depth, shader::kBvhDepth);
+    for (int count : met)
+        EXPECT_EQ(count, perTriangle);
+}
+
+TEST(Bvh, holdsEveryTriangleOnceInsideItsBoxes) {
+    const TraceScene scene = roomWithSphere(40);
+    const Bvh bvh = buildBvh(scene.mesh);
+    checkTree(scene.mesh, bvh);
+    EXPECT_LT(bvh.depth, 30u);
+}
+
+TEST(Bvh, oneTriangle) {
+    const WorldMesh mesh = meshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const Bvh bvh = buildBvh(mesh);
+    checkTree(mesh, bvh, 2); // the root has its leaf on both sides
+    BvhWalk walk{&bvh};
+    EXPECT_EQ(walk.bvhClosestHit({0.2f, 0.2f, 1}, {0, 0, -1}, 0, 1e30f).triangle, 0u);
+    EXPECT_EQ(walk.bvhClosestHit({0.8f, 0.8f, 1}, {0, 0, -1}, 0, 1e30f).triangle, shader::kNoPatch);
+}
+
+TEST(Bvh, manyTrianglesInOnePlaceStayWithinTheStack) {
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 5000; ++i)
+        corners.insert(corners.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const WorldMesh mesh = meshOf(corners);
+    const Bvh bvh = buildBvh(mesh);
+    checkTree(mesh, bvh);
+    BvhWalk walk{&bvh};
+    EXPECT_EQ(walk.bvhClosestHit({0.2f, 0.2f, 1}, {0, 0, -1}, 0, 1e30f).triangle, 0u)
+        << "the lowest index of equals";
+}
+
+// Sizes growing geometrically drive the area heuristic to cut off one triangle at a time.
+TEST(Bvh, lopsidedScenesStayWithinTheStack) {
+    std::vector<glm::vec3> corners;
+    float x = 1e-15f;
+    for (int i = 0; i < 300; ++i, x *= 1.25f)
+        corners.insert(corners.end(), {{x, 0, 0}, {x, x, 0}, {x, 0, x}});
+    const WorldMesh mesh = meshOf(corners);
+    const Bvh bvh = buildBvh(mesh);
+    EXPECT_LE(bvh.depth, shader::kBvhDepth);
+    EXPECT_EQ(bvh.triangles.size(), 300u);
+}
+
+TEST(Bvh, isTheSameEveryTime) {
+    const TraceScene scene = roomWithSphere(120); // large enough for several threads
+    const Bvh a = buildBvh(scene.mesh), b = buildBvh(scene.mesh);
+    ASSERT_EQ(a.nodes.size(), b.nodes.size());
+    EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(BvhNode)), 0);
+    EXPECT_EQ(
+        std::memcmp(a.triangles.data(), b.triangles.data(), a.triangles.size() * sizeof(shader::BvhTriangle)),
+        0);
+}
+
+TEST(Bvh, splitsByTheAreaHeuristic) {
+    const TraceScene scene = roomWithSphere(40);
+    const Bvh bvh = buildBvh(scene.mesh);
+    // A median tree of this scene costs about twice as much.
+    EXPECT_LT(bvhCost(bvh), 40.0);
+}
+
+TEST(Bvh, findsWhatBruteForceFinds) {
+    const TraceScene scene = roomWithSphere(24);
+    const Bvh bvh = buildBvh(scene.mesh);
+    BvhWalk walk{&bvh};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(0, 1);
+    uint32_t hits = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const glm::vec3 origin = glm::vec3(4, 3, 5) * glm::vec3(unit(random), unit(random), unit(random));
+        glm::vec3 direction(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f);
+        if (i % 8 == 0) direction[i / 8 % 3] = 0; // parallel to a wall
+        if (i % 16 == 0) direction[(i / 8 + 1) % 3] = -0.0f;
+        const float tMin = i % 3 == 0 ? 0.5f : 0.0f, tMax = i % 2 == 0 ? 3.0f : 1e30f;
+        const auto found = walk.bvhClosestHit(origin, direction, tMin, tMax);
+        const auto expected = walk.bruteForce(origin, direction, tMin, tMax);
+        ASSERT_EQ(found.triangle, expected.triangle) << i;
+        ASSERT_EQ(walk.bvhAnyHit(origin, direction, tMin, tMax), expected.triangle != shader::kNoPatch) << i;
+        if (found.triangle == shader::kNoPatch) continue;
+        ++hits;
+        ASSERT_EQ(found.t, expected.t);
+        ASSERT_TRUE(found.t >= tMin && found.t <= tMax);
+        const glm::vec3* p = &scene.mesh.positions[found.triangle * 3];
+        const glm::vec3 on = p[0] * (1 - found.b1 - found.b2) + p[1] * found.b1 + p[2] * found.b2;
+        ASSERT_LT(glm::length(origin + found.t * direction - on), 1e-4f) << i;
+    }
+    EXPECT_GT(hits, 2000u);
+}
+
+// From inside a closed room every ray hits something, wherever it goes: here straight at vertices and edges.
+TEST(Bvh, leaksNowhere) {
+    for (const auto& [scale, shift] : {std::pair(1.0f, 0.0f), std::pair(0.01f, 0.0f),
+                                       std::pair(1000.0f, 0.0f), std::pair(1.0f, 1000.0f)}) {
+        TraceScene scene = roomWithSphere(30);
+        for (glm::vec3& p : scene.mesh.positions)
+            p = p * scale + shift;
+        const Bvh bvh = buildBvh(scene.mesh);
+        BvhWalk walk{&bvh};
+        std::mt19937 random(7);
+        std::uniform_real_distribution<float> unit(0, 1);
+        for (int i = 0; i < 20000; ++i) {
+            const size_t triangle = random() % scene.mesh.triangleCount();
+            const glm::vec3 a = scene.mesh.positions[triangle * 3 + random() % 3];
+            const glm::vec3 b = scene.mesh.positions[triangle * 3 + random() % 3];
+            const float s = i % 2 == 0 ? 0.0f : unit(random);
+            const glm::vec3 origin = glm::vec3(0.3f, 2.5f, 4.0f + unit(random)) * scale + shift;
+            const glm::vec3 direction = a + (b - a) * s - origin;
+            ASSERT_NE(walk.bvhClosestHit(origin, direction, 0, 1e30f).triangle, shader::kNoPatch)
+                << i << ", scale " << scale;
+        }
+    }
+}
+
+TEST(Bvh, raysFromASurfaceDoNotHitIt) {
+    const TraceScene scene = roomWithSphere(24);
+    const Bvh bvh = buildBvh(scene.mesh);
+    BvhWalk walk{&bvh};
+    for (size_t i = 0; i < 6 * 512; i += 7) { // the walls
+        const shader::Patch& patch = scene.patches[i];
+        for (uint32_t k = 0; k < 4; ++k) {
+            const glm::vec3 direction = shader::patchDirection(patch, shader::seedKey(patch), k);
+            const auto found =
+                walk.bvhClosestHit(patch.position + patch.offset * patch.normal, direction, 0, 1e30f);
+            ASSERT_NE(found.triangle, shader::kNoPatch);
+            EXPECT_NE(scene.hitTriangles[found.triangle].normal, patch.normal);
+        }
+    }
+}
+
+TEST(Bvh, maskedTrianglesAskForSolidity) {
+    WorldMesh mesh = meshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
+    mesh.opaqueCount = 1;
+    const Bvh bvh = buildBvh(mesh);
+    float asked1 = -1, asked2 = -1;
+    bool solid = false;
+    BvhWalk walk{&bvh, [&](uint32_t id, float b1, float b2) {
+                     EXPECT_EQ(id, 1u);
+                     asked1 = b1, asked2 = b2;
+                     return solid;
+                 }};
+    const glm::vec3 origin(0.25f, 0.5f, 2), down(0, 0, -1);
+    EXPECT_EQ(walk.bvhClosestHit(origin, down, 0, 1e30f).triangle, 0u);
+    EXPECT_FLOAT_EQ(asked1, 0.25f);
+    EXPECT_FLOAT_EQ(asked2, 0.5f);
+    EXPECT_FALSE(walk.bvhAnyHit(origin, down, 0, 1.5f));
+    solid = true;
+    EXPECT_EQ(walk.bvhClosestHit(origin, down, 0, 1e30f).triangle, 1u);
+    EXPECT_TRUE(walk.bvhAnyHit(origin, down, 0, 1.5f));
+}
+
+} // namespace
+} // namespace relume

@@ -1,0 +1,111 @@
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "bake/shader_types.h"
+
+namespace relume {
+namespace {
+
+using shader::Patch;
+
+// Any 2^m consecutive points from 0 on put one point in each elementary interval of area 2^-m: a (0, m,
+// 2)-net.
+TEST(Sampling, sobolPointsAreStratifiedHoweverScrambled) {
+    constexpr uint32_t m = 6, count = 1u << m;
+    for (uint32_t seed : {0u, 1u, 77u, 0xdeadbeefu}) {
+        for (uint32_t xBits = 0; xBits <= m; ++xBits) {
+            std::set<uint32_t> cells;
+            for (uint32_t i = 0; i < count; ++i) {
+                const glm::vec2 p = shader::sobolPoint(i, seed);
+                const uint32_t x = uint32_t(p.x * float(1u << xBits)),
+                               y = uint32_t(p.y * float(1u << (m - xBits)));
+                cells.insert(x << m | y);
+            }
+            EXPECT_EQ(cells.size(), count) << "seed " << seed << ", " << (1 << xBits) << " columns";
+        }
+    }
+}
+
+TEST(Sampling, sobolPointsLieInTheUnitSquareAndDependOnTheSeed) {
+    uint32_t equal = 0;
+    for (uint32_t i = 0; i < 4096; ++i) {
+        const glm::vec2 p = shader::sobolPoint(i, 5), q = shader::sobolPoint(i, 6);
+        EXPECT_TRUE(p.x >= 0 && p.y >= 0 && p.x < 1 && p.y < 1);
+        equal += p == q;
+    }
+    EXPECT_LT(equal, 4u);
+}
+
+TEST(Sampling, meanOfManyScramblesIsTheIntegral) {
+    double sum = 0;
+    for (uint32_t seed = 0; seed < 256; ++seed) {
+        for (uint32_t i = 0; i < 16; ++i) {
+            const glm::vec2 p = shader::sobolPoint(i, shader::hash32(seed));
+            sum += double(p.x) * p.x * p.y;
+        }
+    }
+    EXPECT_NEAR(sum / (256 * 16), 1.0 / 6.0, 1e-3);
+}
+
+// Density cos / pi: the mean cosine is 2/3, the mean of x^2 is 1/4.
+TEST(Sampling, cosineDirectionsHaveTheRightMoments) {
+    double cosine = 0, x2 = 0, x = 0;
+    constexpr uint32_t count = 4096;
+    for (uint32_t i = 0; i < count; ++i) {
+        const glm::vec3 d = shader::cosineDirection(shader::sobolPoint(i, 3));
+        EXPECT_NEAR(glm::length(d), 1.0f, 1e-6f);
+        EXPECT_GE(d.z, 0.0f);
+        cosine += d.z, x2 += d.x * d.x, x += d.x;
+    }
+    EXPECT_NEAR(cosine / count, 2.0 / 3.0, 1e-3);
+    EXPECT_NEAR(x2 / count, 0.25, 1e-3);
+    EXPECT_NEAR(x / count, 0.0, 1e-3);
+}
+
+TEST(Sampling, cosineDirectionHandlesTheSquaresCentreAndCorners) {
+    EXPECT_EQ(shader::cosineDirection({0.5f, 0.5f}), glm::vec3(0, 0, 1));
+    for (float u : {0.0f, 0.99999994f})
+        for (float v : {0.0f, 0.99999994f}) {
+            const glm::vec3 d = shader::cosineDirection({u, v});
+            EXPECT_NEAR(glm::length(d), 1.0f, 1e-6f);
+            EXPECT_NEAR(d.z, 0.0f, 1e-3f);
+        }
+}
+
+TEST(Sampling, aroundNormalIsARotation) {
+    const glm::vec3 normals[] = {{0, 0, 1},  {0, 0, -1},
+                                 {1, 0, 0},  glm::normalize(glm::vec3(1e-4f, 0, -1)),
+                                 {0, -1, 0}, glm::normalize(glm::vec3(1, 2, -3))};
+    for (const glm::vec3& n : normals) {
+        const glm::vec3 x = shader::aroundNormal(n, {1, 0, 0}), y = shader::aroundNormal(n, {0, 1, 0});
+        EXPECT_EQ(shader::aroundNormal(n, {0, 0, 1}), n);
+        EXPECT_NEAR(glm::length(x), 1.0f, 1e-5f);
+        EXPECT_NEAR(glm::length(y), 1.0f, 1e-5f);
+        EXPECT_NEAR(glm::dot(x, y), 0.0f, 1e-5f);
+        EXPECT_NEAR(glm::dot(x, n), 0.0f, 1e-5f);
+        EXPECT_NEAR(glm::dot(glm::cross(x, y), n), 1.0f, 1e-5f) << "mirrored";
+    }
+}
+
+TEST(Sampling, patchDirectionStaysAboveTheGeometricHorizon) {
+    Patch patch{};
+    patch.normal = {0, 0, 1};
+    for (float tilt : {0.0f, 0.5f, 1.2f, 1.57f}) {
+        patch.shading = {std::sin(tilt), 0, std::cos(tilt)};
+        uint32_t mirrored = 0;
+        for (uint32_t i = 0; i < 1024; ++i) {
+            const glm::vec3 d = shader::patchDirection(patch, 9, i);
+            EXPECT_GE(glm::dot(d, patch.normal), 0.0f);
+            EXPECT_NEAR(glm::length(d), 1.0f, 1e-5f);
+            mirrored += glm::dot(d, patch.shading) < 0;
+        }
+        if (tilt == 0.0f) {
+            EXPECT_EQ(mirrored, 0u);
+        }
+    }
+}
+
+} // namespace
+} // namespace relume
