@@ -1,7 +1,109 @@
+#include "app/bake_statistics.h"
 #include "app/command.h"
+#include "app/prepare.h"
+#include "app/trace_bench.h"
+#include "assets/log.h"
+
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
 
 namespace relume {
+namespace {
 
-void addBenchCommand(CLI::App&) {}
+struct Options {
+    std::string scene, device, json;
+    std::vector<std::string> tracers;
+    std::vector<uint32_t> sizes = {128, 256};
+    TraceBenchDesc bench;
+};
+
+std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) {
+    std::vector<TracerKind> kinds;
+    for (const std::string& name : o.tracers) {
+        std::string why;
+        const TracerKind kind = parseTracerKind(name);
+        kinds.push_back(kind == TracerKind::Auto ? chooseTracer(info, why) : kind);
+    }
+    if (!kinds.empty()) return kinds;
+    for (TracerKind kind : {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh, TracerKind::Embree}) {
+        if (tracerProblem(kind, info).empty()) kinds.push_back(kind);
+    }
+    return kinds;
+}
+
+void benchTrace(const Options& o) {
+    if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
+    const vk::Device device({.select = o.device});
+    fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().driver);
+    const std::string row = "{:<8} {:>5} {:>8} {:>9} {:>12} {:>12} {:>10} {:>12} {:>12}\n";
+    if (o.json != "-") {
+        fmt::print(fmt::runtime(row), "tracer", "size", "patches", "triangles", "occlusion", "with gather",
+                   "gather", "closest", "by tile");
+        fmt::print(fmt::runtime(row), "", "", "", "", "Mrays/s", "Mrays/s", "Gpairs/s", "Mrays/s", "Mrays/s");
+    }
+    nlohmann::ordered_json results = nlohmann::ordered_json::array();
+    for (uint32_t size : o.sizes) {
+        PreparedScene prepared = prepareScene({.path = o.scene, .size = size});
+        BakeSettings settings;
+        settings.size = size;
+        Baker baker(device, prepared.scene, std::move(prepared.mesh), settings);
+        for (TracerKind kind : tracersOf(o, device.info())) {
+            const TraceRates r = measureTracer(device, baker, kind, o.bench);
+            const auto mega = [](double x) { return fmt::format("{:.2f}", x * 1e-6); };
+            if (o.json != "-") {
+                fmt::print(fmt::runtime(row), r.tracer, r.size, r.patches, r.triangles, mega(r.occlusion),
+                           mega(r.occlusionGather), fmt::format("{:.2f}", r.gather * 1e-9),
+                           mega(r.closestPatch), mega(r.closestTile));
+                std::cout << std::flush;
+            }
+            results.push_back({{"tracer", r.tracer},
+                               {"size", r.size},
+                               {"patches", r.patches},
+                               {"triangles", r.triangles},
+                               {"occlusionRaysPerSecond", r.occlusion},
+                               {"occlusionWithGatherRaysPerSecond", r.occlusionGather},
+                               {"gatherPairsPerSecond", r.gather},
+                               {"closestRaysPerSecond", r.closestPatch},
+                               {"closestByTileRaysPerSecond", r.closestTile}});
+        }
+    }
+    if (o.json.empty()) return;
+    const nlohmann::ordered_json report = {{"version", RELUME_VERSION},
+                                           {"scene", o.scene},
+                                           {"device", device.info().name},
+                                           {"driver", device.info().driver},
+                                           {"results", results}};
+    if (o.json == "-")
+        std::cout << report.dump(2) << std::endl;
+    else
+        writeTextFile(o.json, report.dump(2) + "\n");
+}
+
+} // namespace
+
+void addBenchCommand(CLI::App& app) {
+    CLI::App* bench = app.add_subcommand("bench", "Measure speed");
+    bench->require_subcommand(1);
+    CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
+    auto options = std::make_shared<Options>();
+    trace->add_option("scene", options->scene, "glTF scene")->required();
+    trace->add_option("--sizes", options->sizes, "Lightmap edges")
+        ->delimiter(',')
+        ->capture_default_str()
+        ->check(CLI::Range(8u, Baker::kMaxSize));
+    trace->add_option("--tracer", options->tracers, "Tracers to measure (default: all this device can run)")
+        ->delimiter(',');
+    trace->add_option("--device", options->device, "Vulkan device: index or part of its name");
+    trace->add_option("--seconds", options->bench.seconds, "About how long each kernel runs")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 60.0));
+    trace->add_option("--batch-ms", options->bench.batchMs, "Aim of one submit")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 45.0));
+    trace->add_option("--json", options->json, "Write the results to this file, - for standard output");
+    trace->callback([options] { benchTrace(*options); });
+}
 
 } // namespace relume

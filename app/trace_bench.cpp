@@ -1,0 +1,210 @@
+#include "app/trace_bench.h"
+
+#include "bake/passes.h"
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+namespace relume {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using shader::kChunk;
+using shader::kSuper;
+using shader::kSuperBlocks;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr uint32_t kLinkSamples = 64;
+// A software device compiles a kernel when it is first run: batches before this many count for nothing.
+constexpr uint32_t kWarmUp = 2;
+
+class Bench {
+public:
+    Bench(const vk::Device& device, Baker& baker, TracerKind kind, const TraceBenchDesc& desc)
+        : device_(device), patches_(baker.patches()), light_(baker.light()), desc_(desc),
+          tracer_(makeTracer(kind, device, patches_.scene, light_.patches)), commands_(device),
+          timestamps_(device, 3), radiancePass_(device), gatherPass_(device, false) {}
+
+    void pairs(TraceRates& rates) {
+        allocatePairs();
+        double trace = 0, gather = 0;
+        uint64_t rays = 0, pairs = 0;
+        uint32_t batch = 1, next = 0, runs = 0;
+        const auto start = Clock::now();
+        while (secondsSince(start) < desc_.seconds || runs <= kWarmUp) {
+            const uint32_t count = std::min({batch, capacity_, static_cast<uint32_t>(supers_.size()) - next});
+            vk::upload(device_, rays_, zero_.data(), zero_.size() * sizeof(uint32_t));
+            const auto batchStart = Clock::now();
+            const auto [traced, gathered] = pairBatch(next, count);
+            const double seconds = secondsSince(batchStart);
+            batch = scaled(batch, seconds);
+            if (runs++ >= kWarmUp) {
+                trace += traced;
+                gather += gathered;
+                const auto counters = vk::readBuffer<uint32_t>(device_, rays_, shader::kRayCounters);
+                rays += std::accumulate(counters.begin(), counters.end(), uint64_t{0});
+                for (uint32_t s = next; s < next + count; ++s)
+                    pairs += pairsOf(supers_[s]);
+            }
+            next = next + count < supers_.size() ? next + count : 0;
+        }
+        rates.occlusion = static_cast<double>(rays) / trace;
+        rates.occlusionGather = static_cast<double>(rays) / (trace + gather);
+        rates.gather = static_cast<double>(pairs) / gather;
+    }
+
+    double closest(Rotation rotation) {
+        const uint32_t chunks = patches_.chunkCount();
+        const uint32_t most = std::min(chunks, device_.info().software() ? 256u : 4096u);
+        const vk::Buffer links(
+            device_,
+            {.size = VkDeviceSize{most} * kLinkSamples * kChunk * sizeof(uint32_t), .name = "links"});
+        double total = 0;
+        uint64_t rays = 0;
+        uint32_t batch = 4, next = 0, runs = 0;
+        const auto start = Clock::now();
+        while (secondsSince(start) < desc_.seconds || runs <= kWarmUp) {
+            const uint32_t count = std::min({batch, most, chunks - next});
+            const auto batchStart = Clock::now();
+            const double seconds = closestBatch(links, next, count, rotation);
+            batch = scaled(batch, secondsSince(batchStart));
+            if (runs++ >= kWarmUp) {
+                total += seconds;
+                rays += uint64_t{count} * kChunk * kLinkSamples;
+            }
+            next = next + count < chunks ? next + count : 0;
+        }
+        return static_cast<double>(rays) / total;
+    }
+
+private:
+    uint32_t scaled(uint32_t batch, double seconds) const {
+        const double factor = desc_.batchMs / std::max(0.01, 1000.0 * seconds);
+        return static_cast<uint32_t>(std::clamp(batch * std::min(factor, 4.0), 1.0, 1e6));
+    }
+
+    uint64_t patchesOf(uint32_t row) const {
+        return uint64_t{std::min(kSuper, patches_.chunkCount() - row * kSuper)} * kChunk;
+    }
+    uint64_t pairsOf(SuperBlock s) const {
+        return (s.row == s.column ? 1 : 2) * patchesOf(s.row) * patchesOf(s.column);
+    }
+
+    // All super-blocks in an order that visits every part of the scene early: a stride by the golden ratio.
+    void allocatePairs() {
+        const uint32_t rows = (patches_.chunkCount() + kSuper - 1) / kSuper;
+        std::vector<SuperBlock> ordered;
+        for (uint32_t row = 0; row < rows; ++row) {
+            for (uint32_t column = row; column < rows; ++column)
+                ordered.push_back({row, column});
+        }
+        const auto n = static_cast<uint32_t>(ordered.size());
+        auto stride = std::max(1u, static_cast<uint32_t>(0.618 * n));
+        while (std::gcd(stride, n) != 1)
+            ++stride;
+        for (uint64_t i = 0; i < n; ++i)
+            supers_.push_back(ordered[i * stride % n]);
+
+        capacity_ = std::min(n, device_.info().software() ? 16u : 512u);
+        const VkDeviceSize bitsBytes =
+            VkDeviceSize{capacity_} * kSuperBlocks * shader::kBlockWords * sizeof(uint32_t);
+        pairs_.bitsUnits = capacity_ * kSuperBlocks;
+        pairs_.supers = vk::makeBuffer(device_, supers_, "super-blocks");
+        pairs_.bits = vk::Buffer(device_, {.size = bitsBytes, .name = "visibility bits"});
+        pairs_.transposed = vk::Buffer(device_, {.size = bitsBytes, .name = "visibility bits, transposed"});
+        pairs_.partial = vk::Buffer(
+            device_, {.size = VkDeviceSize{capacity_} * 2 * shader::kSuperPatches * sizeof(glm::vec4),
+                      .name = "partial sums"});
+        zero_.assign(shader::kRayCounters, 0u);
+        rays_ = vk::makeBuffer(device_, zero_, "ray counters");
+        VkCommandBuffer cmd = commands_.begin();
+        radiancePass_.record(cmd, light_, patches_.chunkCount(), {.allSend = true});
+        vk::barrier(cmd);
+        vk::hostBarrier(cmd);
+        commands_.run();
+    }
+
+    // Seconds of tracing and of gathering.
+    std::pair<double, double> pairBatch(uint32_t first, uint32_t count) {
+        // Slots count from the first unit of the pass: batches stay within the buffer because they are waited
+        // for.
+        const OcclusionWork work{.supers = &pairs_.supers,
+                                 .chunkSends = &light_.chunkSends,
+                                 .firstUnit = first * kSuperBlocks,
+                                 .unitCount = count * kSuperBlocks,
+                                 .bits = &pairs_.bits,
+                                 .bitsUnits = pairs_.bitsUnits,
+                                 .rays = &rays_};
+        VkCommandBuffer cmd = commands_.begin();
+        timestamps_.reset(cmd);
+        timestamps_.mark(cmd, 0);
+        const auto start = Clock::now();
+        tracer_->occlusion(cmd, work);
+        const double cpu = secondsSince(start);
+        vk::barrier(cmd);
+        timestamps_.mark(cmd, 1);
+        gatherPass_.record(cmd, light_, pairs_, first, count, patches_.chunkCount(), {.allSend = true});
+        timestamps_.mark(cmd, 2);
+        vk::hostBarrier(cmd);
+        commands_.run();
+        return {tracer_->onCpu() ? cpu : 1e-3 * timestamps_.milliseconds(0, 1),
+                1e-3 * timestamps_.milliseconds(1, 2)};
+    }
+
+    double closestBatch(const vk::Buffer& links, uint32_t first, uint32_t count, Rotation rotation) {
+        VkCommandBuffer cmd = commands_.begin();
+        timestamps_.reset(cmd);
+        timestamps_.mark(cmd, 0);
+        const auto start = Clock::now();
+        tracer_->closest(cmd, {.firstChunk = first,
+                               .chunkCount = count,
+                               .firstSample = 0,
+                               .sampleCount = kLinkSamples,
+                               .rotation = rotation,
+                               .links = &links});
+        const double cpu = secondsSince(start);
+        timestamps_.mark(cmd, 1);
+        vk::hostBarrier(cmd);
+        commands_.run();
+        return tracer_->onCpu() ? cpu : 1e-3 * timestamps_.milliseconds(0, 1);
+    }
+
+    const vk::Device& device_;
+    const PatchSet& patches_;
+    LightBuffers& light_;
+    const TraceBenchDesc desc_;
+    std::unique_ptr<Tracer> tracer_;
+    vk::Commands commands_;
+    vk::Timestamps timestamps_;
+    RadiancePass radiancePass_;
+    GatherPass gatherPass_;
+    std::vector<SuperBlock> supers_;
+    std::vector<uint32_t> zero_;
+    uint32_t capacity_ = 0;
+    PairBuffers pairs_;
+    vk::Buffer rays_;
+};
+
+} // namespace
+
+TraceRates measureTracer(const vk::Device& device, Baker& baker, TracerKind kind,
+                         const TraceBenchDesc& desc) {
+    TraceRates rates;
+    rates.tracer = tracerName(kind);
+    rates.size = baker.patches().scene.size;
+    rates.patches = baker.patches().count;
+    rates.triangles = baker.patches().scene.mesh.triangleCount();
+    Bench bench(device, baker, kind, desc);
+    bench.pairs(rates);
+    rates.closestPatch = bench.closest(Rotation::Patch);
+    rates.closestTile = bench.closest(Rotation::Tile);
+    return rates;
+}
+
+} // namespace relume
