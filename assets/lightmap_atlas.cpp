@@ -271,6 +271,14 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size) {
     return atlas;
 }
 
+int lightmapSet(const Mesh& mesh) {
+    for (int set : {1, 0}) {
+        const SetQuality quality = assess(mesh, set);
+        if (quality.usable && quality.complete) return set;
+    }
+    return -1;
+}
+
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size) {
     AtlasStatistics statistics;
     UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));

@@ -34,6 +34,9 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size);
 /// The scene with the atlas in TEXCOORD_1: instances that were moved in it get a mesh of their own.
 Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas);
 
+/// The UV set all of a mesh's primitives have and that is a valid atlas by itself: 1, else 0, else -1.
+int lightmapSet(const Mesh& mesh);
+
 /// How well a scene's lightmap UVs use the atlas.
 struct AtlasStatistics {
     double coverage = 0; // covered share of the unit square [1]

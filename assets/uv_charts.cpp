@@ -1,51 +1,14 @@
 #include "assets/uv_charts.h"
 
+#include "assets/numbering.h"
+
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <numeric>
 
 namespace relume {
 
 namespace {
-
-constexpr uint32_t kEmpty = std::numeric_limits<uint32_t>::max();
-
-uint64_t mix(uint64_t h) { // finalizer of a multiplicative hash: every input bit reaches the low bits
-    h ^= h >> 32;
-    h *= 0xd6e8feb86659fd93ull;
-    h ^= h >> 32;
-    h *= 0xd6e8feb86659fd93ull;
-    return h ^ (h >> 32);
-}
-
-/// Maps keys to the number of their first appearance; open addressing, for a known number of insertions.
-template<typename Key>
-class Numbering {
-public:
-    explicit Numbering(size_t insertions) {
-        size_t slots = 16;
-        while (slots < 2 * insertions)
-            slots *= 2;
-        slots_.assign(slots, kEmpty);
-    }
-    /// The number of `key`, the next free one where it has none yet.
-    uint32_t operator()(const Key& key, uint64_t hash) {
-        size_t slot = hash & (slots_.size() - 1);
-        while (slots_[slot] != kEmpty && !(keys_[slots_[slot]] == key))
-            slot = (slot + 1) & (slots_.size() - 1);
-        if (slots_[slot] == kEmpty) {
-            slots_[slot] = static_cast<uint32_t>(keys_.size());
-            keys_.push_back(key);
-        }
-        return slots_[slot];
-    }
-    size_t size() const { return keys_.size(); }
-
-private:
-    std::vector<uint32_t> slots_;
-    std::vector<Key> keys_;
-};
 
 struct Corner {
     uint32_t bits[5];
@@ -63,7 +26,7 @@ Corner cornerOf(const glm::vec3& p, const glm::vec2& uv) {
 uint64_t hashOf(const Corner& corner) {
     uint64_t h = 0;
     for (uint32_t bits : corner.bits)
-        h = mix(h ^ (bits + 0x9e3779b97f4a7c15ull));
+        h = mixBits(h ^ (bits + 0x9e3779b97f4a7c15ull));
     return h;
 }
 
@@ -114,7 +77,7 @@ UvCharts findCharts(const Mesh& mesh, int set) {
         const uint32_t a = corners[i], b = corners[i % 3 == 2 ? i - 2 : i + 1];
         if (a == b) continue;
         const uint64_t key = (uint64_t(std::min(a, b)) << 32) | std::max(a, b);
-        const uint32_t edge = edges(key, mix(key));
+        const uint32_t edge = edges(key, mixBits(key));
         if (edge == firstTriangle.size()) {
             firstTriangle.push_back(triangle);
         } else {
@@ -123,14 +86,14 @@ UvCharts findCharts(const Mesh& mesh, int set) {
         }
     }
     UvCharts charts;
-    std::vector<uint32_t> number(parent.size(), kEmpty);
+    std::vector<uint32_t> number(parent.size(), kNoNumber);
     uint32_t triangle = 0;
     for (const Primitive& primitive : mesh.primitives) {
         charts.chart.emplace_back();
         if (!hasSet(primitive, set)) continue;
         for (size_t i = 0; i < primitive.indices.size(); i += 3, ++triangle) {
             uint32_t& chart = number[rootOf(parent, triangle)];
-            if (chart == kEmpty) chart = charts.count++;
+            if (chart == kNoNumber) chart = charts.count++;
             charts.chart.back().push_back(chart);
         }
     }

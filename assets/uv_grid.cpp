@@ -30,10 +30,12 @@ UvGrid::Point UvGrid::snap(glm::dvec2 p) const {
     return {std::llround(std::clamp(q.x, -bound, bound)), std::llround(std::clamp(q.y, -bound, bound))};
 }
 
-void UvGrid::add(glm::dvec2 pa, glm::dvec2 pb, glm::dvec2 pc) {
+/// Calls visit(first cell, one past the last) for each row of the triangle, until one call returns false.
+template<typename Visit>
+bool UvGrid::forEachSpan(glm::dvec2 pa, glm::dvec2 pb, glm::dvec2 pc, const Visit& visit) const {
     std::array<Point, 3> p = {snap(pa), snap(pb), snap(pc)};
     const int64_t area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
-    if (area == 0) return;
+    if (area == 0) return true;
     if (area < 0) std::swap(p[1], p[2]);
     const auto [low, high] = std::minmax({p[0].y, p[1].y, p[2].y});
     const int64_t rows = size_;
@@ -58,10 +60,29 @@ void UvGrid::add(glm::dvec2 pa, glm::dvec2 pb, glm::dvec2 pc) {
                 begin = std::max(begin, -floorDiv(rest, -dy * kSub));
             }
         }
-        uint8_t* cell = counts_.data() + size_t(row) * size_;
-        for (int64_t x = begin; x < end; ++x)
-            cell[x] = static_cast<uint8_t>(std::min(cell[x] + 1, 255));
+        const size_t first = size_t(row) * size_;
+        if (begin < end && !visit(first + static_cast<size_t>(begin), first + static_cast<size_t>(end)))
+            return false;
     }
+    return true;
+}
+
+void UvGrid::add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
+    forEachSpan(a, b, c, [this](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            counts_[i] = static_cast<uint8_t>(std::min(counts_[i] + 1, 255));
+        return true;
+    });
+}
+
+bool UvGrid::addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
+    const bool isFree = forEachSpan(a, b, c, [this](size_t begin, size_t end) {
+        const auto first = counts_.begin() + static_cast<std::ptrdiff_t>(begin);
+        return std::all_of(first, first + static_cast<std::ptrdiff_t>(end - begin),
+                           [](uint8_t n) { return n == 0; });
+    });
+    if (isFree) add(a, b, c);
+    return isFree;
 }
 
 uint64_t UvGrid::covered() const {

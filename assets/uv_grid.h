@@ -17,6 +17,9 @@ public:
     /// Either winding; parts outside the grid are ignored.
     void add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
+    /// Adds the triangle unless it covers a cell that another one covers; tells whether it was added.
+    bool addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
+
     uint64_t covered() const;    // cells with at least one triangle
     uint64_t overlapped() const; // cells with at least two
     uint64_t cells() const { return counts_.size(); }
@@ -30,6 +33,8 @@ private:
         int64_t x, y; // 1/256 cell
     };
     Point snap(glm::dvec2 p) const;
+    template<typename Visit>
+    bool forEachSpan(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, const Visit& visit) const;
 
     uint32_t size_;
     glm::dvec2 low_, scale_;

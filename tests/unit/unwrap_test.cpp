@@ -1,0 +1,200 @@
+#include "assets/unwrap.h"
+
+#include "assets/error.h"
+#include "assets/gltf.h"
+#include "assets/lightmap_atlas.h"
+#include "assets/planar_charts.h"
+#include "assets/world_mesh.h"
+#include "tests/unit/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace relume {
+namespace {
+
+/// Every mesh of the scene must have become a valid atlas that still shows the same triangles.
+void expectValid(Scene scene, const UnwrapDesc& desc, const std::string& name) {
+    SCOPED_TRACE(name);
+    const Scene before = scene;
+    unwrap(scene, desc);
+    ASSERT_EQ(scene.meshes.size(), before.meshes.size());
+    for (size_t m = 0; m < scene.meshes.size(); ++m) {
+        EXPECT_EQ(lightmapSet(scene.meshes[m]), 1);
+        for (size_t k = 0; k < scene.meshes[m].primitives.size(); ++k) {
+            const Primitive &now = scene.meshes[m].primitives[k], &then = before.meshes[m].primitives[k];
+            ASSERT_EQ(now.texCoord1.size(), now.positions.size());
+            ASSERT_EQ(now.normals.size(), now.positions.size());
+            ASSERT_EQ(now.indices.size(), then.indices.size());
+            for (size_t i = 0; i < now.indices.size(); ++i)
+                ASSERT_EQ(now.positions[now.indices[i]], then.positions[then.indices[i]]);
+            for (const glm::vec2& uv : now.texCoord1) {
+                ASSERT_GE(std::min(uv.x, uv.y), 0.0f);
+                ASSERT_LE(std::max(uv.x, uv.y), 1.0f);
+            }
+        }
+    }
+    const LightmapAtlas atlas = buildAtlas(scene, desc.size);
+    EXPECT_LT(measureAtlas(scene, atlas, desc.size).overlap, 0.01);
+    const WorldMesh mesh = flatten(scene, atlas);
+    EXPECT_EQ(std::count(mesh.chart.begin(), mesh.chart.end(), kNoChart), 0);
+    EXPECT_EQ(mesh.triangleCount(),
+              flatten(before, LightmapAtlas{std::vector<AtlasRect>(scene.instances.size()), false, {}})
+                  .triangleCount());
+}
+
+UnwrapDesc withDensity(double density) {
+    UnwrapDesc desc;
+    desc.density = density;
+    return desc;
+}
+
+TEST(Unwrap, CubeBecomesSixSquares) {
+    Scene scene = test::sceneOf(test::cube());
+    const UnwrapResult result = unwrap(scene, withDensity(16));
+    EXPECT_EQ(result.meshes, 1u);
+    EXPECT_EQ(result.charts, 6u);
+    EXPECT_EQ(result.density, 16.0);
+    EXPECT_EQ(scene.meshes[0].primitives[0].positions.size(), 24u);
+    EXPECT_EQ(flatten(scene, buildAtlas(scene, 64)).chartCount, 6u);
+    // Six squares of 16 texels in their packing, three by two: no density is lost to stretching.
+    const AtlasStatistics statistics = measureAtlas(scene, buildAtlas(scene, 64), 64);
+    EXPECT_NEAR(statistics.texelDensityMin, statistics.texelDensityMax, 1e-3 * statistics.texelDensityMax);
+    EXPECT_GT(statistics.coverage, 0.5);
+    expectValid(test::sceneOf(test::cube()), {}, "cube");
+}
+
+TEST(Unwrap, SmoothClosedSurfaces) {
+    expectValid(test::sceneOf(test::sphere()), {}, "sphere");
+    expectValid(test::sceneOf(test::torusKnot()), {}, "knot");
+    expectValid(test::sceneOf(test::torusKnot()), withDensity(100), "knot at 100 texels/m");
+}
+
+TEST(Unwrap, AnyScale) {
+    for (float scale : {1e-12f, 1e-3f, 1e4f, 1e8f}) {
+        Primitive knot = test::torusKnot(100, 12);
+        for (glm::vec3& p : knot.positions)
+            p *= scale;
+        SCOPED_TRACE(scale);
+        Scene scene = test::sceneOf(knot);
+        unwrap(scene, {});
+        EXPECT_EQ(lightmapSet(scene.meshes[0]), 1);
+    }
+}
+
+TEST(Unwrap, TrianglesInAnyOrder) {
+    expectValid(test::sceneOf(test::soup(3000, 9000, 1)), {}, "loose");
+    expectValid(test::sceneOf(test::soup(3000, 400, 2)), {}, "not manifold");
+    expectValid(test::sceneOf(test::soup(1, 3, 3)), {}, "single");
+}
+
+TEST(Unwrap, MoebiusStrip) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    constexpr uint32_t kSteps = 60;
+    for (uint32_t i = 0; i < kSteps; ++i)
+        for (float w : {-0.3f, 0.3f}) {
+            const float t = 6.28318531f * float(i) / kSteps, r = 1.0f + w * std::cos(0.5f * t);
+            positions.push_back({r * std::cos(t), r * std::sin(t), w * std::sin(0.5f * t)});
+        }
+    for (uint32_t i = 0; i < kSteps; ++i) {
+        const bool last = i + 1 == kSteps; // joined upside down
+        const uint32_t a = 2 * i, b = a + 1, c = last ? 1 : a + 2, d = last ? 0 : a + 3;
+        indices.insert(indices.end(), {a, c, d, a, d, b});
+    }
+    expectValid(test::sceneOf(test::primitiveOf(positions, indices)), {}, "moebius");
+}
+
+/// A flat ribbon winding twice around the centre at a gentle slope: all normals agree, its projection
+/// overlaps.
+TEST(Unwrap, SpiralThatOverlapsItsOwnProjectionIsCut) {
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i <= 128; ++i)
+        for (float r : {1.0f, 2.0f}) {
+            const float t = 12.5663706f * float(i) / 128;
+            positions.push_back({r * std::cos(t), r * std::sin(t), 0.05f * t});
+        }
+    for (uint32_t i = 0; i < 128; ++i) {
+        const uint32_t a = 2 * i;
+        indices.insert(indices.end(), {a, a + 1, a + 3, a, a + 3, a + 2});
+    }
+    Scene scene = test::sceneOf(test::primitiveOf(positions, indices));
+    const UnwrapResult result = unwrap(scene, {});
+    EXPECT_GE(result.charts, 2u);
+    EXPECT_LE(result.charts, 8u);
+    expectValid(test::sceneOf(test::primitiveOf(positions, indices)), {}, "spiral");
+}
+
+TEST(Unwrap, DensityIsThatOfTheWorld) {
+    // Twice as large in the world as in the mesh: 2 m at 50 texels/m.
+    Primitive square = test::square();
+    square.texCoord1.clear();
+    std::vector<glm::dvec3> corners;
+    for (uint32_t i : square.indices)
+        corners.push_back(2.0 * glm::dvec3(square.positions[i]));
+    const std::vector<PlanarChart> charts = cutPlanarCharts(corners);
+    ASSERT_EQ(charts.size(), 1u);
+    EXPECT_NEAR(charts[0].extent.x, 2.0, 1e-9);
+    EXPECT_NEAR(charts[0].extent.y, 2.0, 1e-9);
+
+    Scene scene;
+    const int mesh = test::addMesh(scene, square);
+    test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(2)));
+    test::addInstance(scene, mesh, glm::translate(glm::mat4(1), glm::vec3(9, 0, 0)));
+    EXPECT_NEAR(unwrap(scene, {}).density, 512 * std::sqrt(0.5 / 5.0), 1e-3);
+}
+
+TEST(Unwrap, ValidUvsStayUnlessAskedFor) {
+    Scene scene = test::sceneOf(test::square());
+    test::addInstance(scene, test::addMesh(scene, test::cube(), "Bare"));
+    const std::vector<glm::vec2> uvs = scene.meshes[0].primitives[0].texCoord1;
+    Scene all = scene;
+    EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
+    EXPECT_EQ(scene.meshes[0].primitives[0].texCoord1, uvs);
+    UnwrapDesc desc;
+    desc.onlyMissing = false;
+    EXPECT_EQ(unwrap(all, desc).meshes, 2u);
+}
+
+TEST(Unwrap, TexturesOnTexCoord1MoveAside) {
+    Scene scene = test::sceneOf(test::square({0, 0}, {4, 4})); // tiles: no lightmap
+    scene.images.push_back({"", 1, 1, {1, 2, 3, 4}});
+    scene.textures.push_back({0, Wrap::Repeat, Wrap::Repeat, false});
+    scene.materials.resize(1);
+    scene.materials[0].baseColorTexture = {0, 1, glm::mat3(1)};
+    scene.meshes[0].primitives[0].material = 0;
+    unwrap(scene, {});
+    const Primitive& primitive = scene.meshes[0].primitives[0];
+    EXPECT_EQ(scene.materials[static_cast<size_t>(primitive.material)].baseColorTexture.texCoord, 0);
+    EXPECT_EQ(scene.materials[0].baseColorTexture.texCoord, 1); // other meshes may still use it
+    EXPECT_EQ(*std::max_element(primitive.texCoord0.begin(), primitive.texCoord0.end(),
+                                [](const glm::vec2& a, const glm::vec2& b) { return a.x + a.y < b.x + b.y; }),
+              glm::vec2(4, 4));
+    EXPECT_EQ(lightmapSet(scene.meshes[0]), 1);
+}
+
+TEST(Unwrap, AbsurdDensityIsAnError) {
+    Scene scene = test::sceneOf(test::cube());
+    EXPECT_THROW(unwrap(scene, withDensity(1e9)), Error);
+}
+
+TEST(Unwrap, ReferenceScenesWithoutTheirUvs) {
+    const std::string folder = std::string(RELUME_SHARED_DIR) + "/scenes/rtrad/";
+    if (!std::filesystem::exists(folder + "Multilayer.glb"))
+        GTEST_SKIP() << "no " << folder << " here: the reference scenes are not part of the project";
+    for (const char* name : {"CornellLucy", "CornellGeom", "Multilayer", "Nvidia_Scene", "TextureScene"}) {
+        Scene scene = loadGltf(folder + name + ".glb");
+        for (Mesh& mesh : scene.meshes)
+            for (Primitive& primitive : mesh.primitives)
+                primitive.texCoord1.clear();
+        UnwrapDesc desc;
+        desc.onlyMissing = false;
+        expectValid(scene, desc, name);
+    }
+}
+
+} // namespace
+} // namespace relume
