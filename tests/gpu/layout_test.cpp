@@ -8,9 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <sstream>
 
 namespace relume {
@@ -27,24 +28,34 @@ struct Struct {
     std::vector<Member> members;
 };
 
+// Names and single signs, comments left out.
+std::vector<std::string> readTokens(const std::string& path) {
+    std::ifstream file(path);
+    std::vector<std::string> tokens;
+    for (std::string line; std::getline(file, line);) {
+        line.resize(std::min(line.find("//"), line.size()));
+        bool inName = false;
+        for (char c : line) {
+            const bool nameSign = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+            if (nameSign && inName) tokens.back() += c;
+            if (nameSign && !inName) tokens.emplace_back(1, c);
+            if (!nameSign && c != ' ') tokens.emplace_back(1, c);
+            inName = nameSign;
+        }
+    }
+    return tokens;
+}
+
 std::vector<Struct> readStructs() {
-    std::ifstream file(kShaderFolder + "/shared.h");
-    std::string text, line;
-    while (std::getline(file, line))
-        text += line.substr(0, line.find("//")) + '\n';
+    const std::vector<std::string> tokens = readTokens(kShaderFolder + "/shared.h");
     std::vector<Struct> structs;
-    const std::regex structText(R"(struct\s+(\w+)\s*\{([^}]*)\})"), memberText(R"((\w+)\s+([^;]+);)"),
-        word(R"(\w+)");
-    const auto matches = [](const std::string& s, const std::regex& r) {
-        return std::vector<std::smatch>(std::sregex_iterator(s.begin(), s.end(), r), std::sregex_iterator());
-    };
-    for (const std::smatch& found : matches(text, structText)) {
-        Struct entry{found[1], {}};
-        const std::string body = found[2];
-        for (const std::smatch& declaration : matches(body, memberText)) {
-            const std::string names = declaration[2];
-            for (const std::smatch& name : matches(names, word))
-                entry.members.push_back({declaration[1], name[0]});
+    for (size_t i = 0; i + 2 < tokens.size(); ++i) {
+        if (tokens[i] != "struct") continue;
+        Struct entry{tokens[i + 1], {}};
+        for (i += 3; i < tokens.size() && tokens[i] != "}"; ++i) { // each turn: type name, name, ... ;
+            const std::string type = tokens[i];
+            for (++i; i < tokens.size() && tokens[i] != ";"; ++i)
+                if (tokens[i] != ",") entry.members.push_back({type, tokens[i]});
         }
         structs.push_back(entry);
     }
