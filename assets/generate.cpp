@@ -16,6 +16,7 @@ const std::vector<Entry>& entries() {
         {{"cornell_geom", "simple shapes in a Cornell box under a narrow light"}, generate::cornellGeom},
         {{"cornell_layers", "a box cut into layers by a wedge and a shelf, with a closed dark cell"},
          generate::cornellLayers},
+        {{"cornell_statue", "a winged figure, finely folded, under a large light"}, generate::cornellStatue},
     };
     return all;
 }
