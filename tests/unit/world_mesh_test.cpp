@@ -169,8 +169,8 @@ TEST(Charts, ConnectThroughEqualPositionsAndUvsOnly) {
     EXPECT_EQ(make(0.0f, -1).count, 1u);
     EXPECT_EQ(make(0.1f, -1).count, 2u);
     EXPECT_EQ(make(0.1f, -1).chart[0], (std::vector<uint32_t>{0, 0, 1, 1}));
-    EXPECT_EQ(make(0.0f, 2).count,
-              2u); // one end of two edges of the first triangle has moved: it stands alone
+    EXPECT_EQ(make(0.0f, 1).count, 2u); // one end of the edge between the squares has moved
+    EXPECT_EQ(make(0.0f, 2).count, 3u); // one end of both edges that hold the first triangle
 }
 
 TEST(Charts, TouchingAtACornerDoesNotConnect) {
