@@ -48,7 +48,7 @@ class RayProgram {
 public:
     struct Desc {
         std::string raygen, miss, closestHit, anyHit; // shader names
-        Constants constants;                          // of the raygen shader
+        Constants constants = {};                     // of the raygen shader
     };
     RayProgram() = default;
     RayProgram(const Device& device, const Desc& desc); // throws Error
@@ -84,7 +84,7 @@ public:
         std::string vertex, fragment;  // shader names
         std::vector<VkFormat> formats; // of the colour attachments, at most 8
         uint32_t textureCount = 0;
-        Constants constants; // of both shaders
+        Constants constants = {}; // of both shaders
     };
     struct BoundTexture {
         VkImageView view = VK_NULL_HANDLE;
