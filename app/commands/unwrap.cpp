@@ -1,7 +1,58 @@
 #include "app/command.h"
+#include "assets/error.h"
+#include "assets/gltf.h"
+#include "assets/log.h"
+#include "assets/unwrap.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
 
 namespace relume {
+namespace {
 
-void addUnwrapCommand(CLI::App&) {}
+struct UnwrapOptions {
+    std::string scene, output;
+    UnwrapDesc desc;
+    bool all = false;
+};
+
+void runUnwrap(const UnwrapOptions& options) {
+    if (std::filesystem::path(options.output).extension() != ".glb")
+        throw UsageError(options.output + ": unwrap writes GLB: give a name that ends in .glb");
+    Scene scene = loadGltf(options.scene);
+    for (const std::string& warning : scene.warnings)
+        spdlog::warn("{}", warning);
+    UnwrapDesc desc = options.desc;
+    desc.onlyMissing = !options.all;
+    const UnwrapResult result = unwrap(scene, desc);
+    if (result.meshes == 0)
+        spdlog::warn("{}: every mesh has valid lightmap UVs, they are kept: pass --all to replace them",
+                     options.scene);
+    saveGlb(scene, options.output);
+    std::printf("%s: %u meshes unwrapped into %u charts at %.4g texels/m\n", options.output.c_str(),
+                result.meshes, result.charts, result.density);
+}
+
+} // namespace
+
+void addUnwrapCommand(CLI::App& app) {
+    const auto options = std::make_shared<UnwrapOptions>();
+    CLI::App* command =
+        app.add_subcommand("unwrap", "Make lightmap UVs (TEXCOORD_1) for meshes that have none");
+    command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
+        ->required()
+        ->type_name("SCENE");
+    command->add_option("-o,--output", options->output, "The scene with its new UVs (.glb)")
+        ->required()
+        ->type_name("OUT.glb");
+    command->add_option("--density", options->desc.density, "Texels per metre; without it, what fills --size")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--size", options->desc.size, "Lightmap edge the density aims at [texels]")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, 65536u));
+    command->add_flag("--all", options->all, "Replace valid lightmap UVs too");
+    command->callback([options] { runUnwrap(*options); });
+}
 
 } // namespace relume
