@@ -15,8 +15,7 @@ cmake --build --preset release --target relume
 
 mkdir -p $out
 started=$(date +%s.%N)
-$relume bake "$scene" -o $out/lightmap.exr --size 128 --error 0.02 --json $out/lightmap.json
-$relume bake "$scene" -o $out/lightmap.png --size 128 --error 0.02 --quiet
+$relume bake "$scene" -o $out/lightmap.exr --picture $out/lightmap.png --json $out/lightmap.json --size 128 --error 0.02
 seconds=$(echo "$started $(date +%s.%N)" | awk '{ printf "%.1f", $2 - $1 }')
 
 echo

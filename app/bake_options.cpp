@@ -13,6 +13,7 @@ constexpr double kRtradReflectivity = 0.9;
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
     command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
+    command.add_option("--picture", o.picture, "Write the lightmap to this .png as well");
     command.add_option("--size", o.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(CLI::Range(8u, Baker::kMaxSize));
@@ -69,6 +70,8 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
     }
     if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
+    if (!o.picture.empty() && !o.picture.ends_with(".png"))
+        throw UsageError("--picture: '" + o.picture + "' does not end in .png");
     BakeRequest request;
     request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
     request.bake.size = o.size;

@@ -13,7 +13,7 @@ namespace relume {
 
 /// What the user typed after `relume bake`.
 struct BakeOptions {
-    std::string scene, output, json, sceneOut, shaders, device;
+    std::string scene, output, picture, json, sceneOut, shaders, device;
     std::string method = "pure", tracer = "auto", preset, quantity;
     uint32_t size = 512;
     uint32_t passes = 0;                           // 0: not given

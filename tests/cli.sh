@@ -13,8 +13,8 @@ errors=0
 
 fail() {
     echo "FAILED: $1"
-    sed 's/^/  stdout: /' "$work/out"
-    sed 's/^/  stderr: /' "$work/err"
+    head -n 5 "$work/out" | sed 's/^/  stdout: /'
+    head -n 5 "$work/err" | sed 's/^/  stderr: /'
     errors=$((errors + 1))
 }
 
@@ -75,6 +75,7 @@ for verb in bake info unwrap compare; do
 done
 expectUsageError bake room.glb # no -o
 expectUsageError bake room.glb -o room.exr --size many
+expectUsageError bake room.glb -o room.exr --picture room.jpg
 expectUsageError bake room.glb -o room.exr --tracer nosuchtracer
 expectUsageError bake room.glb -o room.exr --method nosuchmethod
 expectUsageError bake room.glb -o room.exr --preset nosuchpreset
@@ -90,6 +91,7 @@ printf 'not a scene' >broken.glb
 expectWorldError broken.glb info broken.glb
 expectWorldError broken.glb bake broken.glb -o room.exr
 expectWorldError nosuchfolder bake broken.glb -o nosuchfolder/room.exr
+expectWorldError nosuchfolder bake broken.glb -o room.exr --picture nosuchfolder/room.png
 
 # A run that fails leaves nothing behind.
 left=$(ls | grep -vx broken.glb)

@@ -76,6 +76,7 @@ void bake(const BakeOptions& o) {
     const BakeRequest request = resolveBakeOptions(o);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
+    if (!o.picture.empty()) checkWritable(o.picture);
     if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
 
@@ -95,6 +96,7 @@ void bake(const BakeOptions& o) {
     const SolverProgress& progress = baker.solver().progress();
     addAttributes(image, o, request, progress);
     writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
+    if (!o.picture.empty()) writeImage(o.picture, image);
 
     spdlog::info("{} passes, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
                  progress.passes, static_cast<double>(progress.rays) * 1e-6, progress.seconds,
