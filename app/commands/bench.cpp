@@ -35,6 +35,10 @@ std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) 
 
 void benchTrace(const Options& o) {
     if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
+    std::vector<PreparedScene>
+        scenes; // loaded before anything is printed: a bad file leaves one line, its error
+    for (uint32_t size : o.sizes)
+        scenes.push_back(prepareScene({.path = o.scene, .size = size}));
     const vk::Device device({.select = o.device});
     fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().driver);
     const std::string row = "{:<8} {:>5} {:>8} {:>9} {:>12} {:>12} {:>10} {:>12} {:>12}\n";
@@ -44,10 +48,10 @@ void benchTrace(const Options& o) {
         fmt::print(fmt::runtime(row), "", "", "", "", "Mrays/s", "Mrays/s", "Gpairs/s", "Mrays/s", "Mrays/s");
     }
     nlohmann::ordered_json results = nlohmann::ordered_json::array();
-    for (uint32_t size : o.sizes) {
-        PreparedScene prepared = prepareScene({.path = o.scene, .size = size});
+    for (size_t i = 0; i < scenes.size(); ++i) {
+        PreparedScene& prepared = scenes[i];
         BakeSettings settings;
-        settings.size = size;
+        settings.size = o.sizes[i];
         Baker baker(device, prepared.scene, std::move(prepared.mesh), settings);
         for (TracerKind kind : tracersOf(o, device.info())) {
             const TraceRates r = measureTracer(device, baker, kind, o.bench);
