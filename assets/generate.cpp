@@ -17,6 +17,8 @@ const std::vector<Entry>& entries() {
         {{"cornell_layers", "a box cut into layers by a wedge and a shelf, with a closed dark cell"},
          generate::cornellLayers},
         {{"cornell_statue", "a winged figure, finely folded, under a large light"}, generate::cornellStatue},
+        {{"gallery", "rooms with pictures and plinths under many small coloured lights"}, generate::gallery},
+        {{"octagon", "a textured octagonal room with coloured lights"}, generate::octagon},
     };
     return all;
 }

@@ -1,4 +1,5 @@
 #include "assets/generate_builder.h"
+#include "assets/generate_furniture.h"
 #include "assets/generate_scenes.h"
 #include "assets/generate_shapes.h"
 
@@ -8,20 +9,6 @@ namespace relume::generate {
 namespace {
 
 constexpr glm::vec3 kWhite(0.74f, 0.73f, 0.70f), kRed(0.62f, 0.07f, 0.06f), kGreen(0.12f, 0.46f, 0.12f);
-
-// Objects stand a little inside the floor, so that no two faces share a plane.
-constexpr double kSunk = 0.0121;
-
-// A light that hangs from the ceiling by its rim: the lit face below, around it a collar that ends inside the
-// ceiling.
-Solid ceilingLight(const glm::dvec2& size, double depth, int lit, int collar) {
-    const glm::dvec3 corner(-size.x / 2, 0, size.y / 2);
-    Solid light = quad(corner, {size.x, 0, 0}, {0, 0, -size.y}).paint(lit).denser(2.0);
-    // Turned over: the moulding faces down.
-    Solid rim = moulding(size / 2.0, {{0.0, 0.0}, {0.02, 0.004}, {0.02, -depth - kSunk}});
-    rim.turn(glm::dmat3({1, 0, 0}, {0, -1, 0}, {0, 0, -1}));
-    return light.add(rim.paint(collar));
-}
 
 Solid coneOnGround(double radius, double height, int segments) {
     std::vector<glm::dvec2> profile;
@@ -72,7 +59,7 @@ Scene cornellGeom() {
     const int dark = builder.paint("Dark metal", {0.18f, 0.18f, 0.2f});
     const int lit = builder.lamp("Light strip", {56.0f, 48.0f, 37.0f});
     addWalls(builder, room({-2.0, 0.0, -2.25}, {2.0, 3.0, 3.0}), white, red, green);
-    builder.add("Light strip", ceilingLight({2.6, 0.14}, 0.05, lit, dark), {0.0, 2.95, -0.1});
+    builder.add("Light strip", ceilingLight({2.6, 0.14}, 0.05, lit, dark), {0.0, 3.0, -0.1});
 
     const int blue = builder.paint("Blue", {0.16f, 0.27f, 0.58f});
     const int yellow = builder.paint("Ochre", {0.72f, 0.48f, 0.12f});
@@ -107,7 +94,7 @@ Scene cornellLayers() {
     const int dark = builder.paint("Dark metal", {0.18f, 0.18f, 0.2f});
     const int lit = builder.lamp("Light", {12.5f, 11.0f, 8.8f});
     addWalls(builder, room({-2.0, 0.0, -2.1}, {2.0, 3.2, 2.3}), white, red, green);
-    builder.add("Light", ceilingLight({1.5, 0.9}, 0.05, lit, dark), {0.0, 3.15, -0.7});
+    builder.add("Light", ceilingLight({1.5, 0.9}, 0.05, lit, dark), {0.0, 3.2, -0.7});
 
     // The wedge lies across the room, broad at the back wall, an edge in front; what light there is below
     // comes around the edge. It runs through three walls: its open ends are outside.

@@ -1,4 +1,5 @@
 #include "assets/generate_builder.h"
+#include "assets/generate_furniture.h"
 #include "assets/generate_scenes.h"
 #include "assets/generate_shapes.h"
 
@@ -145,15 +146,6 @@ Solid wing(double side) {
     });
 }
 
-Solid plinth() {
-    const std::vector<glm::dvec2> profile = {{-0.015, 0.742}, {0.0, 0.735},   {0.0, 0.700},    {-0.02, 0.672},
-                                             {-0.05, 0.655},  {-0.05, 0.165}, {-0.02, 0.146},  {0.015, 0.112},
-                                             {0.015, 0.061},  {0.045, 0.052}, {0.045, -0.0121}};
-    Solid solid = moulding({0.437, 0.437}, profile);
-    const double half = 0.437 - 0.015;
-    return solid.add(quad({-half, 0.742, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}));
-}
-
 void addRoom(SceneBuilder& builder) {
     const int plaster = builder.paint("Plaster", {0.72f, 0.70f, 0.66f});
     const int slate = builder.paint("Slate blue", {0.12f, 0.24f, 0.42f});
@@ -192,7 +184,7 @@ Scene cornellStatue() {
     const int marble = builder.paint("Marble", {0.79f, 0.77f, 0.73f});
     const int brass = builder.paint("Brass", {0.72f, 0.52f, 0.20f});
     const glm::dvec3 place(0.0, 0.0, -0.31);
-    builder.add("Plinth", plinth().turnY(9.0).paint(stone), place);
+    builder.add("Plinth", plinth(0.387, 0.742).turnY(9.0).paint(stone), place);
 
     Solid figure = robe();
     figure.add(head());
