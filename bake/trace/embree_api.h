@@ -1,6 +1,8 @@
 #pragma once
 
 // Embree 3 and 4 behind one set of names: where the two differ, and nothing else.
+// All rays go as incoherent ones: with rays further apart than the triangles are large, Embree's way for
+// coherent packets costs 1.2 to 1.6 times as much, and it gains at most 5 % elsewhere.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -16,7 +18,7 @@ struct EmbreeOccludedQuery {
     RTCOccludedArguments arguments;
     EmbreeOccludedQuery() {
         rtcInitOccludedArguments(&arguments);
-        arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
     }
 };
 inline void embreeOccluded(const int* valid, RTCScene scene, EmbreeOccludedQuery& query, RTCRay8& rays) {
@@ -37,7 +39,7 @@ struct EmbreeOccludedQuery {
     RTCIntersectContext context;
     EmbreeOccludedQuery() {
         rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     }
 };
 inline void embreeOccluded(const int* valid, RTCScene scene, EmbreeOccludedQuery& query, RTCRay8& rays) {

@@ -1,6 +1,7 @@
 #include "bake/trace/embree_chunks.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #if defined(__x86_64__)
@@ -29,6 +30,28 @@ void addPatch(PatchChunk& chunk, uint32_t j, const Patch& patch, bool rtrad) {
     chunk.margin = std::min(chunk.margin, patch.offset);
 }
 
+void boundEnds(PatchChunk& chunk) {
+    if (chunk.sends == 0) return;
+    const uint32_t sender = uint32_t(std::countr_zero(chunk.sends));
+    for (uint32_t j = 0; j < kChunk; ++j) {
+        if (chunk.sends >> j & 1) continue;
+        chunk.ex[j] = chunk.ex[sender], chunk.ey[j] = chunk.ey[sender], chunk.ez[j] = chunk.ez[sender];
+    }
+    const auto bound = [&](uint64_t patches) {
+        EndBox box{glm::vec3(std::numeric_limits<float>::infinity()),
+                   glm::vec3(-std::numeric_limits<float>::infinity())};
+        for (uint32_t j = 0; j < kChunk; ++j) {
+            if ((patches >> j & 1) == 0) continue;
+            const glm::vec3 end(chunk.ex[j], chunk.ey[j], chunk.ez[j]);
+            box = {glm::min(box.lo, end), glm::max(box.hi, end)};
+        }
+        return box;
+    };
+    chunk.ends = bound(chunk.sends);
+    for (size_t q = 0; q < 4; ++q)
+        chunk.quarterEnds[q] = bound(chunk.sends & kQuarter[q]);
+}
+
 // All of b at or below the plane of all of a, with room for the rounding of pairFaces itself.
 bool belowPlane(const PatchChunk& a, const PatchChunk& b) {
     if (a.plane == glm::vec3(0)) return false;
@@ -54,6 +77,7 @@ std::vector<PatchChunk> buildChunks(const std::vector<Patch>& patches, bool rtra
         chunk.margin = infinity;
         for (uint32_t j = 0; j < kChunk; ++j)
             addPatch(chunk, j, patches[c * kChunk + j], rtrad);
+        boundEnds(chunk);
         chunk.height = infinity;
         for (uint32_t j = 0; j < kChunk; ++j)
             if (chunk.sends >> j & 1)

@@ -13,6 +13,7 @@
 #include "bake/trace/embree_api.h"
 #include "bake/trace/embree_chunks.h"
 #include "bake/trace/embree_pool.h"
+#include "bake/trace/embree_rays.h"
 
 namespace relume {
 
@@ -71,8 +72,8 @@ void keepSolid(const RTCFilterFunctionNArguments* args) {
 struct EmbreeScene::Impl {
     Impl(const TraceScene& traceScene, uint32_t threads);
     void attach(uint32_t first, uint32_t last, bool masked);
-    uint32_t block(uint32_t row, uint32_t column, uint32_t* bits) const;
-    void links(uint32_t chunk, const ClosestArrays& work, uint32_t sample, uint32_t* out) const;
+    uint32_t block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const;
+    void links(const Patch* patches, ChunkRays& directions, uint32_t* out) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
 
     const TraceScene& scene;
@@ -181,7 +182,7 @@ private:
 } // namespace
 
 // Returns the number of rays.
-uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, uint32_t* bits) const {
+uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const {
     const PatchChunk &a = chunks[row], &b = chunks[column];
     std::array<uint64_t, kChunk> visible{};
     uint32_t rays = 0;
@@ -198,8 +199,9 @@ uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, uint32_t* bits)
                 const uint32_t j = uint32_t(std::countr_zero(faces));
                 shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
                 if (scene.rtrad) {
+                    if (reversed) segment = {origin + segment.direction, -segment.direction, 0.0f, 1.0f};
                     const float distance = glm::length(segment.direction);
-                    segment = {origin, segment.direction / distance, 0.001f, distance - 0.002f};
+                    segment = {segment.origin, segment.direction / distance, 0.001f, distance - 0.002f};
                     if (segment.tMax <= segment.tMin) continue;
                 }
                 packet.add(i, j, segment);
@@ -221,8 +223,8 @@ void EmbreeScene::occlusion(const OcclusionArrays& work) {
         const uint32_t column = super.column * shader::kSuper + unit % shader::kSuper;
         if (row >= chunkCount || column >= chunkCount || row > column) return;
         if (work.chunkSends[row] == 0 && work.chunkSends[column] == 0) return;
-        const uint32_t rays =
-            impl.block(row, column, work.bits + size_t(unit % work.bitsUnits) * shader::kBlockWords);
+        const uint32_t rays = impl.block(row, column, work.reversed,
+                                         work.bits + size_t(unit % work.bitsUnits) * shader::kBlockWords);
         if (work.rays && rays > 0) std::atomic_ref(work.rays[unit % shader::kRayCounters]) += rays;
     });
 }
@@ -241,22 +243,20 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
 }
 
-void EmbreeScene::Impl::links(uint32_t chunk, const ClosestArrays& work, uint32_t sample,
-                              uint32_t* out) const {
-    const Patch* patches = &scene.patches[size_t(chunk) * kChunk];
+void EmbreeScene::Impl::links(const Patch* patches, ChunkRays& directions, uint32_t* out) const {
     EmbreeIntersectQuery query;
     alignas(64) RTCRayHit8 rays;
     alignas(64) std::array<int, kPacket> valid;
-    for (uint32_t first = 0; first < kChunk; first += kPacket) {
+    for (uint32_t first = 0; first < directions.count(); first += kPacket) {
+        const uint16_t* order = &directions.order()[first];
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
-            const Patch& patch = patches[first + lane];
+            const uint32_t number = order[lane];
+            const Patch& patch = patches[number % kChunk];
             valid[lane] = patch.flags & shader::kPatchSends ? -1 : 0;
-            const uint32_t key = shader::seedKey(work.rotation == Rotation::Tile ? patches[0] : patch);
-            const glm::vec3 direction = shader::patchDirection(patch, key, sample);
             const glm::vec3 origin = patch.position + patch.offset * patch.normal;
             rays.ray.org_x[lane] = origin.x, rays.ray.org_y[lane] = origin.y, rays.ray.org_z[lane] = origin.z;
-            rays.ray.dir_x[lane] = direction.x, rays.ray.dir_y[lane] = direction.y,
-            rays.ray.dir_z[lane] = direction.z;
+            rays.ray.dir_x[lane] = directions.x[number], rays.ray.dir_y[lane] = directions.y[number];
+            rays.ray.dir_z[lane] = directions.z[number];
             rays.ray.tnear[lane] = 0, rays.ray.tfar[lane] = std::numeric_limits<float>::infinity();
             rays.ray.time[lane] = 0;
             rays.ray.mask[lane] = ~0u;
@@ -267,21 +267,21 @@ void EmbreeScene::Impl::links(uint32_t chunk, const ClosestArrays& work, uint32_
         }
         embreeIntersect(valid.data(), embree.get(), query, rays);
         for (uint32_t lane = 0; lane < kPacket; ++lane)
-            out[first + lane] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
+            out[order[lane]] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
     }
 }
 
 void EmbreeScene::closest(const ClosestArrays& work) {
     const Impl& impl = *impl_;
-    // Eight samples of a chunk are one piece of work: enough to forget the hand-out, few enough to share
-    // evenly.
-    constexpr uint32_t kPiece = 8;
+    constexpr uint32_t kPiece = ChunkRays::kSamplesMax;
     const uint32_t pieces = (work.sampleCount + kPiece - 1) / kPiece;
     impl_->pool.run(work.chunkCount * pieces, [&](uint32_t k) {
         const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
-        for (uint32_t s = first; s < std::min(first + kPiece, work.sampleCount); ++s)
-            impl.links(work.firstChunk + chunk, work, work.firstSample + s,
-                       work.links + (size_t(chunk) * work.sampleCount + s) * kChunk);
+        const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
+        ChunkRays rays;
+        rays.setPatches(patches, work.rotation == Rotation::Tile);
+        rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
+        impl.links(patches, rays, work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);
     });
 }
 

@@ -19,47 +19,50 @@ FUNCTION uint reverseBits(uint x) {
 }
 
 // Nested uniform (Owen) scrambling by hashing in bit-reversed order [Laine and Karras 2011; Burley 2020].
-FUNCTION uint owenScramble(uint x, uint seed) {
-    x = reverseBits(x);
-    x += seed;
+FUNCTION uint owenHash(uint reversed, uint seed) {
+    uint x = reversed + seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     x ^= x * 0x8d22f6e6u;
-    return reverseBits(x);
+    return x;
 }
 
-// Second dimension of the Sobol sequence [Sobol 1967; Kollig and Keller 2002]; the first one is reverseBits(index).
-FUNCTION uint sobol2(uint index) {
-    uint result = 0u;
-    for (uint v = 0x80000000u; index != 0u; index >>= 1) {
-        if ((index & 1u) != 0u) result ^= v;
-        v ^= v >> 1;
-    }
-    return result;
+FUNCTION uint owenScramble(uint x, uint seed) { return reverseBits(owenHash(reverseBits(x), seed)); }
+
+// Second dimension of the Sobol sequence [Sobol 1967; Kollig and Keller 2002], bit-reversed; the first one, bit-reversed, is
+// the index itself. The generator matrix is Pascal's triangle modulo 2, a Kronecker power of ((1, 1), (0, 1)): one step
+// for each factor.
+FUNCTION uint reversedSobol2(uint index) {
+    index ^= (index & 0xaaaaaaaau) >> 1;
+    index ^= (index & 0xccccccccu) >> 2;
+    index ^= (index & 0xf0f0f0f0u) >> 4;
+    index ^= (index & 0xff00ff00u) >> 8;
+    return index ^ (index >> 16);
 }
 
 // Point `index` of the sequence scrambled by `seed`, in [0, 1)^2.
 FUNCTION vec2 sobolPoint(uint index, uint seed) {
     uint i = owenScramble(index, seed); // shuffles the order as well, as Burley does: aligned runs stay together
-    uint x = owenScramble(reverseBits(i), hash32(seed ^ 0x2c1b3c6du));
-    uint y = owenScramble(sobol2(i), hash32(seed ^ 0x297a2d39u));
-    return vec2(float(x >> 8), float(y >> 8)) * (1.0f / 16777216.0f);
+    uint x = reverseBits(owenHash(i, hash32(seed ^ 0x2c1b3c6du)));
+    uint y = reverseBits(owenHash(reversedSobol2(i), hash32(seed ^ 0x297a2d39u)));
+    // By way of int, which every processor converts in one instruction.
+    return vec2(float(int(x >> 8)), float(int(y >> 8))) * (1.0f / 16777216.0f);
 }
 
-// Cosine-distributed direction around +z by the concentric map [Shirley and Chiu 1997]; density cos / pi.
+// Cosine-distributed direction around +z by the concentric map [Shirley and Chiu 1997]; density cos / pi. Within an eighth of
+// the circle a few terms of the series for sine and cosine are exact to a float's last bit, on every device alike; no
+// branches, so that compilers put patches side by side in vector registers.
 FUNCTION vec3 cosineDirection(vec2 u) {
-    vec2 p = vec2(2.0f * u.x - 1.0f, 2.0f * u.y - 1.0f);
-    if (p.x == 0.0f && p.y == 0.0f) return vec3(0.0f, 0.0f, 1.0f);
-    float r, phi;
-    if (abs(p.x) > abs(p.y)) {
-        r = p.x;
-        phi = 0.785398163f * (p.y / p.x);
-    } else {
-        r = p.y;
-        phi = 1.570796327f - 0.785398163f * (p.x / p.y);
-    }
-    return vec3(r * cos(phi), r * sin(phi), sqrt(max(0.0f, 1.0f - r * r)));
+    float px = 2.0f * u.x - 1.0f, py = 2.0f * u.y - 1.0f;
+    bool wide = abs(px) > abs(py);
+    float r = wide ? px : py;
+    float ratio = (wide ? py : px) / (r == 0.0f ? 1.0f : r);
+    float a = 0.785398163f * ratio; // in [-pi/4, pi/4]
+    float a2 = a * a;
+    float s = a * (1.0f + a2 * (-1.6666667e-1f + a2 * (8.3333333e-3f + a2 * (-1.9841270e-4f + a2 * 2.7557319e-6f))));
+    float c = 1.0f + a2 * (-0.5f + a2 * (4.1666667e-2f + a2 * (-1.3888889e-3f + a2 * 2.4801587e-5f)));
+    return vec3(r * (wide ? c : s), r * (wide ? s : c), sqrt(max(0.0f, 1.0f - r * r)));
 }
 
 // A direction around unit n, from one around +z; the tangents follow n alone [Duff et al. 2017].

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "bake/shader_types.h"
+
+namespace relume {
+
+/// The cosine-distributed rays of one chunk's patches for some consecutive samples, by component. Sample k of
+/// patch i is number k * 64 + i. Made to be reused: 30 KiB.
+class ChunkRays {
+public:
+    static constexpr uint32_t kSamplesMax = 16;
+    static constexpr uint32_t kRaysMax = kSamplesMax * shader::kChunk;
+    template<typename T>
+    using Rays = std::array<T, kRaysMax>;
+
+    /// patches: the chunk's 64. perTile: all of them take the first one's random numbers.
+    void setPatches(const shader::Patch* patches, bool perTile);
+    /// Directions by shader::patchDirection, to the last bit or two.
+    void setSamples(uint32_t first, uint32_t count);
+    /// The numbers of all rays, those that go the same way next to each other: what makes packets of them
+    /// worth while.
+    uint32_t count() const { return count_; }
+    const Rays<uint16_t>& order() const { return order_; }
+
+    alignas(64) Rays<float> x, y, z; // directions, unit
+
+private:
+    using Lane = std::array<float, shader::kChunk>;
+    friend void fillDirections(ChunkRays& rays, uint32_t sample, uint32_t slot);
+    void sort();
+
+    struct alignas(64) Frames {
+        Lane sx, sy, sz; // shading normals
+        Lane nx, ny, nz; // geometric normals
+        std::array<uint32_t, shader::kChunk> seed;
+    } frames_;
+    alignas(64) Rays<uint32_t> cell_; // of the unit square that the sample's point lies in
+    Rays<uint16_t> order_;
+    uint32_t count_ = 0;
+};
+
+} // namespace relume
