@@ -35,6 +35,8 @@ void GatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const Pa
                         const TransportSettings& settings) const {
     const shader::TransposePush transpose{.supers = pairs.supers.address(),
                                           .bits = pairs.bits.address(),
+                                          .reversed =
+                                              (pairs.reversed ? pairs.reversed : pairs.bits).address(),
                                           .transposed = pairs.transposed.address(),
                                           .firstSuper = first,
                                           .bitsUnits = pairs.bitsUnits,

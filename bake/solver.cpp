@@ -38,7 +38,7 @@ uint64_t Solver::bytes(uint32_t chunkCount, bool software) {
     const uint64_t rows = superRows(chunkCount), supers = rows * (rows + 1) / 2;
     const uint64_t bitsBytes = uint64_t{kSuperBlocks} * shader::kBlockWords * sizeof(uint32_t);
     const uint64_t partialBytes = uint64_t{2} * shader::kSuperPatches * sizeof(glm::vec4);
-    return supers * sizeof(SuperBlock) + superCapacity(software) * (2 * bitsBytes + partialBytes);
+    return supers * sizeof(SuperBlock) + superCapacity(software) * (3 * bitsBytes + partialBytes);
 }
 
 Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& light, Tracer& tracer,
@@ -59,6 +59,9 @@ Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& 
     pairs_.supers =
         vk::Buffer(device, {.size = rows * (rows + 1) / 2 * sizeof(SuperBlock), .name = "super-blocks"});
     pairs_.bits = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits"});
+    if (settings.transport.rtrad) {
+        pairs_.reversed = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits, reversed"});
+    }
     pairs_.transposed = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits, transposed"});
     pairs_.partial =
         vk::Buffer(device, {.size = VkDeviceSize{capacity} * 2 * shader::kSuperPatches * sizeof(glm::vec4),
@@ -128,18 +131,23 @@ void Solver::beginPass() {
 void Solver::traceBatch(uint32_t unitCount) {
     const uint32_t chunkCount = patches_.chunkCount();
     const uint32_t firstSuper = nextUnit_ / kSuperBlocks, endSuper = (nextUnit_ + unitCount) / kSuperBlocks;
-    const OcclusionWork work{.supers = &pairs_.supers,
-                             .chunkSends = &light_.chunkSends,
-                             .firstUnit = nextUnit_,
-                             .unitCount = unitCount,
-                             .bits = &pairs_.bits,
-                             .bitsUnits = pairs_.bitsUnits,
-                             .rays = &rays_};
+    OcclusionWork work{.supers = &pairs_.supers,
+                       .chunkSends = &light_.chunkSends,
+                       .firstUnit = nextUnit_,
+                       .unitCount = unitCount,
+                       .bits = &pairs_.bits,
+                       .bitsUnits = pairs_.bitsUnits,
+                       .rays = &rays_};
     const auto start = Clock::now();
     VkCommandBuffer cmd = commands_.begin();
     timestamps_.reset(cmd);
     timestamps_.mark(cmd, 0);
     tracer_.occlusion(cmd, work);
+    if (pairs_.reversed) {
+        work.bits = &pairs_.reversed;
+        work.reversed = true;
+        tracer_.occlusion(cmd, work);
+    }
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);

@@ -81,6 +81,8 @@ struct AlphaMaterial {
     uint wrapS, wrapT; // enum Wrap
 };
 
+// Inner nodes on the longest way down, at most: the stack of a traversal.
+CONST uint kBvhDepth = 48u;
 // Our own binary BVH. Both children's boxes in one node of 64 bytes. child >= 0: inner node; < 0: leaf,
 // ~child holds first triangle << 3 | count (1..7).
 struct BvhNode {
@@ -129,6 +131,7 @@ struct OcclusionPush {
     uint rtrad;   // 1: RTRad's ray intervals
     uint groupsX; // workgroups in x; y counts on
     ADDRESS rays; // uint[kRayCounters], rays traced are added
+    uint reversed; // 1: rays start at the column's patches
 };
 struct ClosestPush {
     TraceGeometry geometry;
@@ -147,7 +150,8 @@ struct ClosestPush {
 struct TransposePush {
     ADDRESS supers;
     ADDRESS bits;
-    ADDRESS transposed; // uint[], as bits, rows and columns exchanged
+    ADDRESS reversed;   // bits traced from the other end; the same as bits where both ends agree
+    ADDRESS transposed; // uint[], as reversed, rows and columns exchanged
     uint firstSuper;
     uint bitsUnits;
     uint chunkCount;

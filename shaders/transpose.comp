@@ -15,13 +15,13 @@ void main() {
     uint column = pair.y * kSuper + unit % kSuper;
     if (row > column || column >= push.chunkCount) return;
 
-    Words bits = Words(push.bits);
+    Words bits = Words(push.bits), reversed = Words(push.reversed);
     uint base = (unit % push.bitsUnits) * kBlockWords;
     uint word = base + lane / 32u, shift = lane % 32u;
     uvec2 mask = uvec2(0u);
     for (uint i = 0u; i < 32u; ++i) {
-        mask.x |= ((bits.items[word + i * 2u] >> shift) & 1u) << i;
-        mask.y |= ((bits.items[word + 64u + i * 2u] >> shift) & 1u) << i;
+        mask.x |= ((reversed.items[word + i * 2u] >> shift) & 1u) << i;
+        mask.y |= ((reversed.items[word + 64u + i * 2u] >> shift) & 1u) << i;
     }
     if (row == column) mask |= uvec2(bits.items[base + lane * 2u], bits.items[base + lane * 2u + 1u]);
     Words transposed = Words(push.transposed);

@@ -15,6 +15,7 @@ struct OcclusionArrays {
     uint32_t firstUnit = 0, unitCount = 0;
     uint32_t* bits = nullptr;
     uint32_t bitsUnits = 0;
+    bool reversed = false;
     uint32_t* rays = nullptr; // may be left out
 };
 struct ClosestArrays {

@@ -28,6 +28,7 @@ public:
              .unitCount = work.unitCount,
              .bits = mappedAs<uint32_t>(work.bits, uint64_t(work.bitsUnits) * shader::kBlockWords),
              .bitsUnits = work.bitsUnits,
+             .reversed = work.reversed,
              .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
     }
 

@@ -49,7 +49,8 @@ public:
                 .chunkCount = chunkCount_,
                 .rtrad = rtrad_,
                 .groupsX = groupsX,
-                .rays = work.rays->address()};
+                .rays = work.rays->address(),
+                .reversed = work.reversed ? 1u : 0u};
     }
     shader::ClosestPush push(const ClosestWork& work) const {
         ASSERT(work.sampleCount % kSamplesPerInvocation == 0);

@@ -27,8 +27,9 @@ struct OcclusionWork {
     uint32_t firstUnit = 0, unitCount = 0;
     const vk::Buffer* bits = nullptr; // at least bitsUnits * kBlockWords words
     uint32_t bitsUnits = 0;
+    bool reversed = false; // rays start at the column's patches: only RTRad's intervals tell the ends apart
     const vk::Buffer* rays =
-        nullptr; // uint32_t[kRayCounters]: the unit's traced rays are added to slot u % kRayCounters
+        nullptr; // uint32_t[kRayCounters]: unit u's rays are added to slot u % kRayCounters
 };
 
 enum class Rotation : uint32_t { Patch, Tile };

@@ -20,7 +20,9 @@ void traceWord(uint unit, uint word, uint lane) {
     while (facing != 0u) {
         int j = findLSB(facing);
         facing &= facing - 1u;
-        Segment s = pairSegment(a, loadPatch(push.patches, first + uint(j)), push.rtrad != 0u);
+        Patch b = loadPatch(push.patches, first + uint(j));
+        bool rtrad = push.rtrad != 0u;
+        Segment s = push.reversed != 0u ? pairSegment(b, a, rtrad) : pairSegment(a, b, rtrad);
         if (s.tMax <= s.tMin || !occluded(s)) seen |= 1u << j;
     }
     Words(push.bits).items[(unit % push.bitsUnits) * kBlockWords + lane * 2u + word] = seen;
