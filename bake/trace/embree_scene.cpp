@@ -14,6 +14,7 @@
 #include "bake/trace/embree_chunks.h"
 #include "bake/trace/embree_pool.h"
 #include "bake/trace/embree_rays.h"
+#include "bake/trace/embree_shaft.h"
 
 namespace relume {
 
@@ -53,6 +54,13 @@ struct SceneRelease {
     void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
 };
 
+uint32_t countBits(const std::array<uint64_t, kChunk>& rows, uint64_t rowMask, uint64_t columnMask) {
+    uint32_t count = 0;
+    for (; rowMask != 0; rowMask &= rowMask - 1)
+        count += uint32_t(std::popcount(rows[size_t(std::countr_zero(rowMask))] & columnMask));
+    return count;
+}
+
 // Drops hits in the holes of masked triangles, for both kinds of query.
 void keepSolid(const RTCFilterFunctionNArguments* args) {
     const TraceScene& scene = *static_cast<const TraceScene*>(args->geometryUserPtr);
@@ -73,6 +81,7 @@ struct EmbreeScene::Impl {
     Impl(const TraceScene& traceScene, uint32_t threads);
     void attach(uint32_t first, uint32_t last, bool masked);
     uint32_t block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const;
+    void dropOpenPairs(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, kChunk>& rows) const;
     void links(const Patch* patches, ChunkRays& directions, uint32_t* out) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
 
@@ -81,10 +90,12 @@ struct EmbreeScene::Impl {
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease> device;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease> embree;
     std::vector<PatchChunk> chunks;
+    Bvh bvh; // for shafts
 };
 
 EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads)
-    : scene(traceScene), pool(threads), chunks(buildChunks(traceScene.patches, traceScene.rtrad)) {
+    : scene(traceScene), pool(threads), chunks(buildChunks(traceScene.patches, traceScene.rtrad)),
+      bvh(buildBvh(traceScene.mesh)) {
     const std::string config = "threads=" + std::to_string(pool.size());
     device.reset(rtcNewDevice(config.c_str()));
     if (!device)
@@ -181,36 +192,52 @@ private:
 
 } // namespace
 
-// Returns the number of rays.
+// Pairs in open shafts see each other: clears them from `rows`, what is left needs rays. First the whole
+// block is tried, then the pairs of quarters.
+void EmbreeScene::Impl::dropOpenPairs(const PatchChunk& a, const PatchChunk& b,
+                                      std::array<uint64_t, kChunk>& rows) const {
+    constexpr uint32_t kWorthwhile = 32; // rays that cost as much as one look at a shaft
+    if (countBits(rows, ~uint64_t(0), ~uint64_t(0)) < kWorthwhile) return;
+    if (Shaft(a, a.ends, b, b.ends).isOpen(bvh)) return rows.fill(0);
+    for (size_t qa = 0; qa < 4; ++qa) {
+        for (size_t qb = 0; qb < 4; ++qb) {
+            if (countBits(rows, kQuarter[qa], kQuarter[qb]) < kWorthwhile) continue;
+            if (!Shaft(a, a.quarterEnds[qa], b, b.quarterEnds[qb]).isOpen(bvh)) continue;
+            for (uint64_t rest = kQuarter[qa]; rest != 0; rest &= rest - 1)
+                rows[size_t(std::countr_zero(rest))] &= ~kQuarter[qb];
+        }
+    }
+}
+
+// Returns the number of facing pairs.
 uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const {
     const PatchChunk &a = chunks[row], &b = chunks[column];
     std::array<uint64_t, kChunk> visible{};
-    uint32_t rays = 0;
-    if (chunksMayFace(a, b)) {
-        facingRows(a, b, visible);
-        if (row == column)
-            for (uint32_t i = 0; i < kChunk; ++i)
-                visible[i] &= ~(uint64_t(2) << i) + 1;
-        OcclusionPacket packet(embree.get(), visible);
-        for (uint32_t i = 0; i < kChunk; ++i) {
-            const glm::vec3 origin(a.ex[i], a.ey[i], a.ez[i]);
-            rays += uint32_t(std::popcount(visible[i]));
-            for (uint64_t faces = visible[i]; faces != 0; faces &= faces - 1) {
-                const uint32_t j = uint32_t(std::countr_zero(faces));
-                shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
-                if (scene.rtrad) {
-                    if (reversed) segment = {origin + segment.direction, -segment.direction, 0.0f, 1.0f};
-                    const float distance = glm::length(segment.direction);
-                    segment = {segment.origin, segment.direction / distance, 0.001f, distance - 0.002f};
-                    if (segment.tMax <= segment.tMin) continue;
-                }
-                packet.add(i, j, segment);
+    if (chunksMayFace(a, b)) facingRows(a, b, visible);
+    if (row == column)
+        for (uint32_t i = 0; i < kChunk; ++i)
+            visible[i] &= ~(uint64_t(2) << i) + 1;
+    const uint32_t pairs = countBits(visible, ~uint64_t(0), ~uint64_t(0));
+    std::array<uint64_t, kChunk> asked = visible;
+    dropOpenPairs(a, b, asked);
+    OcclusionPacket packet(embree.get(), visible);
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        const glm::vec3 origin(a.ex[i], a.ey[i], a.ez[i]);
+        for (uint64_t rest = asked[i]; rest != 0; rest &= rest - 1) {
+            const uint32_t j = uint32_t(std::countr_zero(rest));
+            shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
+            if (scene.rtrad) {
+                if (reversed) segment = {origin + segment.direction, -segment.direction, 0.0f, 1.0f};
+                const float distance = glm::length(segment.direction);
+                segment = {segment.origin, segment.direction / distance, 0.001f, distance - 0.002f};
+                if (segment.tMax <= segment.tMin) continue;
             }
+            packet.add(i, j, segment);
         }
-        packet.trace();
     }
+    packet.trace();
     std::memcpy(bits, visible.data(), sizeof(visible));
-    return rays;
+    return pairs;
 }
 
 void EmbreeScene::occlusion(const OcclusionArrays& work) {
