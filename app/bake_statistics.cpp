@@ -1,14 +1,10 @@
 #include "app/bake_statistics.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
+#include "assets/file_write.h"
+
 #include <iostream>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace relume {
 namespace {
@@ -28,27 +24,6 @@ Json atlasJson(const PreparedScene& prepared) {
 }
 
 } // namespace
-
-void checkStatisticsPath(const std::string& path) {
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    if (std::filesystem::is_directory(path))
-        throw Error(path + ": is a folder: name a file for the statistics");
-    if (access(folder.c_str(), W_OK) != 0) {
-        throw Error(path + ": cannot write into folder '" + folder.string() + "': " + std::strerror(errno));
-    }
-}
-
-void writeTextFile(const std::string& path, const std::string& text) {
-    const std::string temporary = path + ".tmp" + std::to_string(getpid());
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file || std::rename(temporary.c_str(), path.c_str()) != 0) {
-        const std::string reason = std::strerror(errno);
-        std::remove(temporary.c_str());
-        throw Error(path + ": cannot write: " + reason + ": choose another folder");
-    }
-}
 
 void writeStatistics(const std::string& path, const BakeStatistics& s) {
     const SolverProgress& p = s.baker.solver().progress();
@@ -78,12 +53,13 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"raysPerSecond", p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds : 0.0},
                        {"traceSeconds", p.traceSeconds},
                        {"gatherSeconds", p.gatherSeconds},
+                       {"passSeconds", p.passSeconds},
                        {"seconds", seconds},
                        {"atlas", atlasJson(s.prepared)}};
     if (path == "-")
         std::cout << json.dump(2) << std::endl;
     else
-        writeTextFile(path, json.dump(2) + "\n");
+        writeFileAtomically(path, json.dump(2) + "\n");
 }
 
 } // namespace relume

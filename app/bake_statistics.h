@@ -19,10 +19,4 @@ struct BakeStatistics {
 /// Writes them as JSON to `path`, or to standard output for "-". Temporary name, then rename. Throws Error.
 void writeStatistics(const std::string& path, const BakeStatistics& statistics);
 
-/// Throws Error where writing `path` is sure to fail.
-void checkStatisticsPath(const std::string& path);
-
-/// Writes text to `path` under a temporary name, then renames. Throws Error.
-void writeTextFile(const std::string& path, const std::string& text);
-
 } // namespace relume

@@ -2,6 +2,7 @@
 
 #include "assets/gltf.h"
 #include "assets/log.h"
+#include "assets/unwrap.h"
 
 #include <chrono>
 
@@ -20,6 +21,11 @@ PreparedScene prepareScene(const PrepareDesc& desc) {
         spdlog::warn("{}", warning);
 
     const auto atlasStart = Clock::now();
+    if (desc.unwrap) {
+        const UnwrapResult made = unwrap(result.scene, {.density = desc.density, .size = desc.size});
+        spdlog::info("unwrapped {} meshes into {} charts at {:.3g} texels/m", made.meshes, made.charts,
+                     made.density);
+    }
     result.atlas = buildAtlas(result.scene, desc.size);
     for (const std::string& warning : result.atlas.warnings)
         spdlog::warn("{}", warning);

@@ -95,8 +95,13 @@ void Solver::step() {
         unitsPerMs_ = unitsPerMs_ > 0 ? std::min(rate, kMaxGrowth * unitsPerMs_) : rate;
         progress_.passFraction = static_cast<double>(nextUnit_) / unitCount;
     }
-    if (nextUnit_ >= unitCount) endPass();
+    const bool passEnds = nextUnit_ >= unitCount;
+    if (passEnds) endPass();
     progress_.seconds += secondsSince(start);
+    if (passEnds) {
+        const double before = std::accumulate(progress_.passSeconds.begin(), progress_.passSeconds.end(), 0.0);
+        progress_.passSeconds.push_back(progress_.seconds - before);
+    }
 }
 
 void Solver::beginPass() {

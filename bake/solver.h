@@ -26,6 +26,7 @@ struct SolverProgress {
     uint64_t pairs = 0;      // receiver-sender pairs that were gathered
     double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
     double seconds = 0;                         // inside step()
+    std::vector<double> passSeconds;            // the same, of each finished pass
     bool converged = false;                     // error below the aim (else the number of passes ended it)
 };
 

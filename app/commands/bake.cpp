@@ -4,6 +4,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "assets/gltf.h"
+#include "assets/file_write.h"
 #include "assets/log.h"
 #include "shaders/shader_library.h"
 
@@ -77,7 +78,8 @@ void bake(const BakeOptions& o) {
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
     if (!o.picture.empty()) checkWritable(o.picture);
-    if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
+    if (!o.sceneOut.empty()) checkFileWritable(o.sceneOut, 0);
+    if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
 
     PreparedScene prepared = prepareScene(request.prepare);

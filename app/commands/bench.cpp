@@ -1,7 +1,7 @@
-#include "app/bake_statistics.h"
 #include "app/command.h"
 #include "app/prepare.h"
 #include "app/trace_bench.h"
+#include "assets/file_write.h"
 #include "assets/log.h"
 
 #include <iostream>
@@ -34,7 +34,7 @@ std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) 
 }
 
 void benchTrace(const Options& o) {
-    if (!o.json.empty() && o.json != "-") checkStatisticsPath(o.json);
+    if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
     for (uint32_t size : o.sizes)
@@ -82,7 +82,7 @@ void benchTrace(const Options& o) {
     if (o.json == "-")
         std::cout << report.dump(2) << std::endl;
     else
-        writeTextFile(o.json, report.dump(2) + "\n");
+        writeFileAtomically(o.json, report.dump(2) + "\n");
 }
 
 } // namespace
