@@ -19,6 +19,7 @@ const std::vector<Entry>& entries() {
         {{"cornell_statue", "a winged figure, finely folded, under a large light"}, generate::cornellStatue},
         {{"gallery", "rooms with pictures and plinths under many small coloured lights"}, generate::gallery},
         {{"octagon", "a textured octagonal room with coloured lights"}, generate::octagon},
+        {{"atrium", "a two-storey court of columns and arches under a skylight"}, generate::atrium},
     };
     return all;
 }

@@ -137,6 +137,7 @@ TEST_F(GltfExport, KeepsTexturesAndTheirTransforms) {
     const float c = std::cos(0.3f), s = std::sin(0.3f);
     scene.materials[0].baseColorTexture = {
         0, 1, glm::mat3({2 * c, -2 * s, 0}, {3 * s, 3 * c, 0}, {0.5f, 0.25f, 1})};
+    scene.materials[0].emission = {1, 2, 3}; // without it the texture would not matter
     scene.materials[0].emissionTexture = {1, 0, glm::mat3(1.0f)};
     scene.materials[0].metallicRoughnessTexture = {1, 0, glm::mat3({4, 0, 0}, {0, -4, 0}, {0, 1, 1})};
     const Scene back = roundTrip(scene);
