@@ -16,7 +16,8 @@ Solid globe(double radius, int segments, int rows);
 /// picture [m].
 Solid framedPicture(const glm::dvec2& size, int picture, int frame);
 
-/// A lit rectangle in a collar, facing down from `depth` below the ceiling; the origin is in the ceiling's plane.
+/// A lit rectangle in a collar, facing down from `depth` below the ceiling; the origin is in the ceiling's
+/// plane.
 Solid ceilingLight(const glm::dvec2& size, double depth, int lit, int collar);
 
 /// A square plinth with foot and cornice, top at `height`. halfWidth: of the shaft.
