@@ -39,9 +39,8 @@ void measureSurfaces(const Scene& scene, const WorldMesh& mesh, SceneInfo& info)
         const Material& material = scene.materials[mesh.material[i]];
         if (material.emission == glm::vec3(0.0f)) continue;
         emitters.insert({mesh.instance[i], mesh.material[i]});
-        const double sides = material.doubleSided ? 2.0 : 1.0;
-        info.emitterArea += sides * area;
-        info.emitted += sides * area * glm::dvec3(material.emission);
+        info.emitterArea += area;
+        info.emitted += (material.doubleSided ? 2.0 : 1.0) * area * glm::dvec3(material.emission);
         info.texturedEmitters |= material.emissionTexture.texture >= 0;
     }
     info.emitters = static_cast<uint32_t>(emitters.size());
@@ -56,7 +55,7 @@ void addWarnings(const Scene& scene, const WorldMesh& mesh, SceneInfo& info) {
         if (used[i] && scene.materials[i].doubleSided)
             warnings.add(scene.materials[i].name.empty() ? fmt::format("material {}", i)
                                                          : "material " + quoted(scene.materials[i].name),
-                         "is double sided: its back shows the light of its front");
+                         "double sided, the back shows the light of the front");
     if (info.droppedTriangles > 0)
         warnings.add(fmt::format("{} triangles", info.droppedTriangles), "have no area and are dropped");
     if (info.emitters == 0 && scene.lights.empty())

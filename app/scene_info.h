@@ -15,8 +15,8 @@ struct SceneInfo {
     double area = 0;                 // [m^2]
 
     uint32_t emitters = 0;         // primitives of instances with emission
-    double emitterArea = 0;        // [m^2], both sides of double-sided ones
-    glm::dvec3 emitted{0.0};       // area x emission [cd], textures not counted in
+    double emitterArea = 0;        // [m^2], of one side
+    glm::dvec3 emitted{0.0};       // area x emission [cd] of all sides that emit, textures not counted in
     bool texturedEmitters = false; // then `emitted` is an upper bound
 
     bool mapped = false; // there are usable lightmap UVs; if not, what follows is empty

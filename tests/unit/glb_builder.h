@@ -111,7 +111,7 @@ struct GlbBuilder {
         while (bin.size() % 4 != 0)
             bin.push_back(0);
         nlohmann::json document = json;
-        if (document.contains("buffers") && document["buffers"].empty() && !bin.empty())
+        if (document["buffers"].is_array() && document["buffers"].empty() && !bin.empty())
             document["buffers"].push_back({{"byteLength", bin.size()}});
         std::string text = document.dump();
         while (text.size() % 4 != 0)

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/lightmap_atlas.h"
+#include "assets/unwrap.h"
 #include "assets/world_mesh.h"
 #include "tests/unit/glb_builder.h"
 
@@ -229,35 +230,107 @@ TEST(GltfBadInput, TrianglesWithNanAreDroppedWithAWarning) {
     });
 }
 
-/// Flipped bytes may give a scene or an Error, but nothing else; what loads must also flatten or fail
-/// cleanly.
-TEST(GltfBadInput, DamagedBytesNeverCrash) {
+/// A scene that uses most of what the import knows.
+GlbBuilder richScene() {
     GlbBuilder b = squareScene();
     useImage(b, {{"bufferView", b.view(test::kTwoPixels)}, {"mimeType", "image/png"}});
-    b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"color", {1, 1, 1}}}};
+    b.json["samplers"] = {{{"wrapS", 33071}}};
+    b.json["textures"][0]["sampler"] = 0;
+    b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    b.json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2;
+    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
+          ["KHR_texture_transform"] = {
+        {"offset", {0, 1}}, {"rotation", 1}, {"scale", {.5, .5}}, {"texCoord", 1}};
+    json& primitive = b.json["meshes"][0]["primitives"][0];
+    primitive["material"] = 0;
+    primitive["attributes"]["COLOR_0"] = b.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, "VEC3");
     b.json["accessors"][0]["sparse"] = {
         {"count", 1},
         {"indices", {{"bufferView", b.view<uint16_t>({1, 0})}, {"componentType", 5123}}},
         {"values", {{"bufferView", b.view<float>({7, 8, 9})}}}};
-    const std::vector<uint8_t> whole = b.bytes();
-    std::mt19937 random(1);
+    b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    b.json["nodes"][0]["translation"] = {1, 2, 3};
+    b.json["nodes"][0]["camera"] = 0;
+    b.node({{"children", {0}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}});
+    b.json["scenes"] = {{{"nodes", {1}}}};
+    b.json["scene"] = 0;
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", .7}, {"znear", .1}}}}};
+    while (b.bin.size() % 4 != 0)
+        b.bin.push_back(0);
+    b.json["buffers"] = {{{"byteLength", b.bin.size()}}};
+    b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"color", {1, 1, 1}}, {"spot", {{"outerConeAngle", .6}}}}};
+    return b;
+}
+
+struct Outcomes {
     int loaded = 0, refused = 0;
-    for (int round = 0; round < 400; ++round) {
-        std::vector<uint8_t> bytes = whole;
-        for (uint32_t flips = 1 + random() % 4; flips > 0; --flips)
-            bytes[random() % bytes.size()] ^= 1 << random() % 8;
-        const std::string path = test::writeBytes("fuzz.glb", bytes);
+    void add(const std::string& path) {
         try {
-            const Scene scene = loadGltf(path);
+            Scene scene = loadGltf(path);
+            unwrap(scene, {});
             flatten(scene, buildAtlas(scene, 64));
             ++loaded;
-        } catch (const Error&) {
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
             ++refused;
         }
     }
-    EXPECT_GT(loaded, 0);
-    EXPECT_GT(refused, 0);
+};
+
+/// Damage may leave a scene or give an Error, but nothing else; what loads must also flatten or fail cleanly.
+TEST(GltfBadInput, FlippedBitsNeverCrash) {
+    const std::vector<uint8_t> whole = richScene().bytes();
+    std::mt19937 random(1);
+    Outcomes outcomes;
+    for (int round = 0; round < 300; ++round) {
+        std::vector<uint8_t> bytes = whole;
+        for (uint32_t flips = 1 + random() % 4; flips > 0; --flips)
+            bytes[random() % bytes.size()] ^= 1 << random() % 8;
+        outcomes.add(test::writeBytes("bits.glb", bytes));
+    }
+    EXPECT_GT(outcomes.loaded, 10);
+    EXPECT_GT(outcomes.refused, 10);
+}
+
+TEST(GltfBadInput, OddJsonValuesNeverCrash) {
+    const json odd[] = {-1,
+                        0,
+                        1,
+                        3,
+                        0.5,
+                        255,
+                        4294967295ull,
+                        18446744073709551615ull,
+                        1e300,
+                        -1e300,
+                        nullptr,
+                        true,
+                        "",
+                        "x",
+                        json::array(),
+                        json::object(),
+                        {1, 2},
+                        {{"index", 0}}};
+    const GlbBuilder rich = richScene();
+    const json flat = rich.json.flatten();
+    std::vector<std::string> places;
+    for (const auto& [place, value] : flat.items())
+        places.push_back(place);
+    std::mt19937 random(2);
+    Outcomes outcomes;
+    for (int round = 0; round < 300; ++round) {
+        GlbBuilder b = rich;
+        std::string place = places[random() % places.size()];
+        // Half the time the object or array around the value.
+        if (random() % 2 == 0 && place.rfind('/') != 0) place.resize(place.rfind('/'));
+        b.json[json::json_pointer(place)] = odd[random() % std::size(odd)];
+        SCOPED_TRACE(place + " = " + b.json[json::json_pointer(place)].dump());
+        outcomes.add(b.write("values.glb"));
+    }
+    EXPECT_GT(outcomes.loaded, 10);
+    EXPECT_GT(outcomes.refused, 10);
 }
 
 } // namespace
