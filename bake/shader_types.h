@@ -8,6 +8,7 @@ namespace relume::shader {
 using namespace glm; // GLSL's names: vec3, uint, dot, ...
 using glm::uint;
 #define FUNCTION inline
+#define INOUT(T) T&
 #include "shaders/shared.h"
 #include "shaders/lib/pairs.glsl"
 #include "shaders/lib/form_factor.glsl"

@@ -168,7 +168,9 @@ Box Builder::boxOf(uint32_t first, uint32_t last) const {
     return box;
 }
 
+// The child that more rays enter comes first: any-hit traversal takes them in this order.
 BvhNode Builder::joined(const Box& box0, int child0, const Box& box1, int child1) const {
+    if (box1.halfArea() > box0.halfArea()) return joined(box1, child1, box0, child0);
     BvhNode node{};
     node.lo0 = box0.lo - margin_, node.hi0 = box0.hi + margin_, node.child0 = child0;
     node.lo1 = box1.lo - margin_, node.hi1 = box1.hi + margin_, node.child1 = child1;

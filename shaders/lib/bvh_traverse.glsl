@@ -12,9 +12,14 @@ struct BvhHit {
 
 const uint kBvhMasked = 0x80000000u; // bit of BvhTriangle::id
 
-// True if anything solid lies within [tMin, tMax], 0 <= tMin.
-FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax) {
+const uint kNoBlocker = 0xffffffffu;
+
+// True if anything solid lies within [tMin, tMax], 0 <= tMin. `blocker` is the triangle that stopped this invocation's last
+// blocked ray, in the builder's order (kNoBlocker at first): rays to neighbouring patches are mostly stopped by the same
+// one. Children are taken in the tree's order, the likelier one first: sorting them by distance costs more than it saves.
+FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax, INOUT(uint) blocker) {
     BvhRay ray = bvhRay(origin, direction);
+    if (blocker != kNoBlocker && intersectTriangle(bvhTriangle(blocker), ray, tMin, tMax).hit) return true;
     int stack[kBvhDepth];
     uint top = 0u;
     int current = 0;
@@ -29,9 +34,8 @@ FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax) {
                 current = stack[--top];
                 continue;
             }
-            bool first = in0 && (!in1 || r0.x <= r1.x);
-            if (in0 && in1) stack[top++] = first ? node.child1 : node.child0;
-            current = first ? node.child0 : node.child1;
+            if (in0 && in1) stack[top++] = node.child1;
+            current = in0 ? node.child0 : node.child1;
         }
         uint leaf = uint(~current);
         uint end = (leaf >> 3) + (leaf & 7u);
@@ -39,7 +43,11 @@ FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax) {
             BvhTriangle triangle = bvhTriangle(i);
             TriangleHit h = intersectTriangle(triangle, ray, tMin, tMax);
             if (!h.hit) continue;
-            if ((triangle.id & kBvhMasked) == 0u || solidHit(triangle.id & ~kBvhMasked, h.b1, h.b2)) return true;
+            if ((triangle.id & kBvhMasked) == 0u) {
+                blocker = i;
+                return true;
+            }
+            if (solidHit(triangle.id & ~kBvhMasked, h.b1, h.b2)) return true;
         }
         if (top == 0u) return false;
         current = stack[--top];

@@ -5,5 +5,6 @@
 #ifndef FUNCTION
 #define FUNCTION
 #endif
+#define INOUT(T) inout T
 #include "shared.h"
 #include "lib/buffers.glsl"

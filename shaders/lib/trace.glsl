@@ -40,7 +40,8 @@ BvhTriangle bvhTriangle(uint index) {
 }
 #include "lib/bvh_traverse.glsl"
 
-bool occluded(Segment s) { return bvhAnyHit(s.origin, s.direction, s.tMin, s.tMax); }
+uint lastBlocker = kNoBlocker;
+bool occluded(Segment s) { return bvhAnyHit(s.origin, s.direction, s.tMin, s.tMax, lastBlocker); }
 
 Hit closestHit(vec3 origin, vec3 direction) {
     BvhHit found = bvhClosestHit(origin, direction, 0.0, 1e30);

@@ -152,6 +152,7 @@ TEST(Bvh, findsWhatBruteForceFinds) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(0, 1);
     uint32_t hits = 0;
+    uint32_t blocker = walk.kNoBlocker;
     for (int i = 0; i < 5000; ++i) {
         const glm::vec3 origin = glm::vec3(4, 3, 5) * glm::vec3(unit(random), unit(random), unit(random));
         glm::vec3 direction(unit(random) - 0.5f, unit(random) - 0.5f, unit(random) - 0.5f);
@@ -161,7 +162,9 @@ TEST(Bvh, findsWhatBruteForceFinds) {
         const auto found = walk.bvhClosestHit(origin, direction, tMin, tMax);
         const auto expected = walk.bruteForce(origin, direction, tMin, tMax);
         ASSERT_EQ(found.triangle, expected.triangle) << i;
-        ASSERT_EQ(walk.bvhAnyHit(origin, direction, tMin, tMax), expected.triangle != shader::kNoPatch) << i;
+        ASSERT_EQ(walk.bvhAnyHit(origin, direction, tMin, tMax, blocker),
+                  expected.triangle != shader::kNoPatch)
+            << i;
         if (found.triangle == shader::kNoPatch) continue;
         ++hits;
         ASSERT_EQ(found.t, expected.t);
@@ -228,10 +231,11 @@ TEST(Bvh, maskedTrianglesAskForSolidity) {
     EXPECT_EQ(walk.bvhClosestHit(origin, down, 0, 1e30f).triangle, 0u);
     EXPECT_FLOAT_EQ(asked1, 0.25f);
     EXPECT_FLOAT_EQ(asked2, 0.5f);
-    EXPECT_FALSE(walk.bvhAnyHit(origin, down, 0, 1.5f));
+    uint32_t blocker = walk.kNoBlocker;
+    EXPECT_FALSE(walk.bvhAnyHit(origin, down, 0, 1.5f, blocker));
     solid = true;
     EXPECT_EQ(walk.bvhClosestHit(origin, down, 0, 1e30f).triangle, 1u);
-    EXPECT_TRUE(walk.bvhAnyHit(origin, down, 0, 1.5f));
+    EXPECT_TRUE(walk.bvhAnyHit(origin, down, 0, 1.5f, blocker));
 }
 
 } // namespace
