@@ -1,5 +1,7 @@
 #include "app/progress.h"
 
+#include "assets/log.h"
+
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -18,7 +20,7 @@ ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0), next_(Cloc
 }
 
 ProgressLine::~ProgressLine() {
-    if (terminal_) std::fputs("\r\033[K", stderr);
+    if (terminal_ && spdlog::should_log(spdlog::level::info)) std::fputs("\r\033[K", stderr);
 }
 
 bool ProgressLine::due() const {

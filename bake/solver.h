@@ -22,8 +22,9 @@ struct SolverProgress {
     uint32_t passes = 0;     // finished
     double passFraction = 0; // of the current pass's pairs
     double error = 1.0;      // remaining error of the iteration, relRMSE; 1 until it can be told
-    uint64_t rays = 0;       // traced; every unordered pair of facing patches once per pass
-    uint64_t pairs = 0;      // receiver-sender pairs that were gathered
+    uint64_t rays =
+        0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both ends)
+    uint64_t pairs = 0;                         // receiver-sender pairs that were gathered
     double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
     double seconds = 0;                         // inside step()
     std::vector<double> passSeconds;            // the same, of each finished pass

@@ -28,8 +28,9 @@ struct OcclusionWork {
     const vk::Buffer* bits = nullptr; // at least bitsUnits * kBlockWords words
     uint32_t bitsUnits = 0;
     bool reversed = false; // rays start at the column's patches: only RTRad's intervals tell the ends apart
-    const vk::Buffer* rays =
-        nullptr; // uint32_t[kRayCounters]: unit u's rays are added to slot u % kRayCounters
+    // uint32_t[kRayCounters]: unit u adds its facing pairs to slot u % kRayCounters, a ray each; with embree
+    // some of these are settled for a whole block by an empty shaft.
+    const vk::Buffer* rays = nullptr;
 };
 
 enum class Rotation : uint32_t { Patch, Tile };
