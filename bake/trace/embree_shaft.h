@@ -26,8 +26,7 @@ private:
     bool missesBox(const glm::vec3& lo, const glm::vec3& hi) const;
     bool missesTriangle(const shader::BvhTriangle& triangle) const;
 
-    // Planes through an edge of each box: the hull is where n . p <= d. Each n is >= 0 or <= 0 by component
-    // as its corner has it, `low` picks the corner of a box that lies deepest.
+    // Planes through an edge of each box: the hull lies where n . p <= d.
     alignas(32) Planes nx_, ny_, nz_, d_;
     EndBox bounds_; // of the hull
     float reach_;   // [m] largest coordinate, for rounding
