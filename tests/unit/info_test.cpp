@@ -1,0 +1,117 @@
+#include "app/scene_info.h"
+
+#include "app/command.h"
+#include "assets/error.h"
+#include "assets/gltf.h"
+#include "assets/lightmap_atlas.h"
+#include "tests/unit/glb_builder.h"
+#include "tests/unit/shapes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+using nlohmann::json;
+
+bool warns(const SceneInfo& info, const std::string& part) {
+    return std::any_of(info.warnings.begin(), info.warnings.end(),
+                       [&](const std::string& w) { return w.find(part) != std::string::npos; });
+}
+
+/// Runs one command line in this process and returns what it printed.
+std::string run(const std::string& line) {
+    CLI::App app;
+    addInfoCommand(app);
+    addUnwrapCommand(app);
+    testing::internal::CaptureStdout();
+    try {
+        app.parse(line, false);
+    } catch (...) {
+        testing::internal::GetCapturedStdout();
+        throw;
+    }
+    return testing::internal::GetCapturedStdout();
+}
+
+TEST(SceneInfo, CountsBoundsAndEmission) {
+    Primitive lamp = test::square({0, 0}, {.5f, .5f}), wall = test::square({.5f, .5f}, {1, 1});
+    lamp.material = 0;
+    wall.material = 1;
+    wall.indices.insert(wall.indices.end(), {0, 0, 1});
+    Scene scene = test::sceneOf(lamp);
+    test::addInstance(scene, test::addMesh(scene, wall), glm::scale(glm::mat4(1), glm::vec3(-3, 2, 1)));
+    scene.materials.resize(2);
+    scene.materials[0].emission = {1, 2, 3};
+    scene.materials[0].doubleSided = true;
+    scene.materials[0].name = "Lamp";
+    scene.materials[1].alphaMode = AlphaMode::Mask;
+    const SceneInfo info = inspectScene(scene, 100);
+    EXPECT_EQ(info.triangles, 4u);
+    EXPECT_EQ(info.maskedTriangles, 2u);
+    EXPECT_EQ(info.droppedTriangles, 1u);
+    EXPECT_EQ(info.low, glm::vec3(-3, 0, 0));
+    EXPECT_EQ(info.high, glm::vec3(1, 2, 0));
+    EXPECT_NEAR(info.area, 7.0, 1e-6);
+    EXPECT_EQ(info.emitters, 1u);
+    EXPECT_NEAR(info.emitterArea, 1.0, 1e-6);
+    EXPECT_NEAR(info.emitted.b, 6.0, 1e-6); // both sides
+    ASSERT_TRUE(info.mapped);
+    EXPECT_EQ(info.charts, 2u);
+    EXPECT_NEAR(info.statistics.coverage, 0.5, 1e-3);
+    EXPECT_NEAR(info.statistics.texelDensityMax, 50.0, 1e-3);
+    EXPECT_TRUE(warns(info, "material 'Lamp': double sided"));
+    EXPECT_TRUE(warns(info, "1 triangles: have no area"));
+    EXPECT_FALSE(warns(info, "bakes to black"));
+}
+
+TEST(SceneInfo, SceneWithoutLightOrUvsIsDescribedAllTheSame) {
+    Scene scene = test::sceneOf(test::cube());
+    const SceneInfo info = inspectScene(scene, 64);
+    EXPECT_EQ(info.triangles, 12u);
+    EXPECT_FALSE(info.mapped);
+    EXPECT_EQ(info.charts, 0u);
+    EXPECT_TRUE(warns(info, "no emitter and no light: it bakes to black"));
+    EXPECT_TRUE(warns(info, "--unwrap"));
+}
+
+TEST(InfoCommand, JsonHoldsTheAtlasMapping) {
+    test::GlbBuilder b = test::squareScene();
+    b.node({{"mesh", 0}, {"name", "Second"}, {"translation", {0, 0, 5}}});
+    const std::string path = b.write("info.glb");
+    const json info = json::parse(run("info --json --size 64 " + path));
+    EXPECT_EQ(info["triangles"], 4);
+    EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["bounds"]["max"], json({1, 1, 5}));
+    EXPECT_EQ(info["lightmap"]["repacked"], true);
+    EXPECT_EQ(info["lightmap"]["instances"][1]["name"], "Second");
+    EXPECT_EQ(info["lightmap"]["instances"][1]["texCoord"], 1);
+    // Two squares of n texels and 2 between them fill 64: n = 31 high at most.
+    EXPECT_NEAR(info["lightmap"]["instances"][0]["scale"][0].get<double>(), 31.0 / 64.0, 1e-6);
+    const std::string table = run("info " + path);
+    EXPECT_NE(table.find("repacked, a rectangle per instance"), std::string::npos);
+    EXPECT_NE(table.find("density"), std::string::npos);
+    EXPECT_THROW(run("info --size 0 " + path), CLI::ValidationError);
+    EXPECT_THROW(run("info"), CLI::RequiredError);
+}
+
+TEST(UnwrapCommand, WritesASceneThatCanBeBaked) {
+    test::GlbBuilder b;
+    b.node({{"mesh", b.mesh(b.square(), "Bare")}});
+    const std::string in = b.write("bare.glb"), out = test::tempPath("unwrapped.glb");
+    EXPECT_THROW(buildAtlas(loadGltf(in), 64), Error);
+    EXPECT_NE(run("unwrap " + in + " -o " + out + " --density 8")
+                  .find("1 meshes unwrapped into 1 charts at 8 texels/m"),
+              std::string::npos);
+    const Scene scene = loadGltf(out);
+    EXPECT_EQ(lightmapSet(scene.meshes.at(0)), 1);
+    EXPECT_EQ(buildAtlas(scene, 64).instances.at(0).texCoord, 1);
+    EXPECT_THROW(run("unwrap " + in + " -o out.png"), UsageError);
+    EXPECT_THROW(run("unwrap " + in + " -o " + out + " --density -1"), CLI::ValidationError);
+}
+
+} // namespace
+} // namespace relume
