@@ -24,7 +24,7 @@ ProgressLine::~ProgressLine() {
 }
 
 bool ProgressLine::due() const {
-    return Clock::now() >= next_;
+    return spdlog::should_log(spdlog::level::info) && Clock::now() >= next_; // not with --quiet
 }
 
 void ProgressLine::show(const std::string& text) {

@@ -53,7 +53,10 @@ uint64_t Baker::deviceBytes(uint32_t size, uint64_t triangles, bool software) {
     const uint64_t perPatch =
         sizeof(shader::Patch) + sizeof(shader::PatchEdges) + 5 * sizeof(glm::vec4) + 2 * sizeof(uint32_t);
     const auto chunks = static_cast<uint32_t>(texels / shader::kChunk + 1);
-    const uint64_t solve = texels * perPatch + Solver::bytes(chunks, software);
+    // A software device's memory is the host's, which holds the patches and the light once more.
+    constexpr uint64_t kHostBytes = 144;
+    const uint64_t solve =
+        texels * (perPatch + (software ? kHostBytes : 0)) + Solver::bytes(chunks, software);
     constexpr uint64_t kBytesPerTriangle =
         400; // corners, hit table, acceleration structure while it is built
     return std::max(cit, solve) + triangles * kBytesPerTriangle;
