@@ -16,15 +16,31 @@ namespace relume {
 
 namespace {
 
-constexpr uint32_t kGutter = 2;        // [texels], between charts
-constexpr double kFill = 0.5;          // share of an atlas that charts of usual shapes end up covering
+constexpr uint32_t kGutter = 2; // [texels], between charts
+constexpr double kFill = 0.5; // share of an atlas that charts of usual shapes cover: where the search starts
+constexpr double kRectFill = 0.85;     // share of an atlas that the meshes' rectangles fill when packed
+constexpr int kSearchSteps = 8;        // of the density; one packing each
+constexpr size_t kManyCharts = 20000;  // above it a packing takes long and the search is cut short
 constexpr double kMaxTexels = 65536.0; // [texels] to a side of one mesh
 
 /// UVs of a mesh's triangle corners, and which chart each triangle belongs to.
 struct Layout {
     std::vector<glm::vec2> uv;   // 3 per triangle
     std::vector<uint32_t> chart; // per triangle, kNoNumber: no area
-    uint32_t charts = 0;
+};
+
+/// A mesh to unwrap.
+struct Job {
+    size_t mesh;
+    std::vector<glm::dvec3> corners; // 3 per triangle [m], as the largest instance stands in the world
+    std::vector<PlanarChart> charts;
+    double instances = 0.0; // world area of all instances over that of the largest one
+};
+
+/// Charts in their places.
+struct Packing {
+    std::vector<PackedRect> rects;
+    uint32_t side = 1; // of the square that holds them all [texels]
 };
 
 double areaScale(const glm::dmat3& linear) {
@@ -61,18 +77,10 @@ double areaOf(const std::vector<glm::dvec3>& corners) {
     return area;
 }
 
-double densityThatFills(const Scene& scene, uint32_t size) {
-    double area = 0.0;
-    for (const Instance& instance : scene.instances)
-        area += areaOf(
-            cornersOf(scene.meshes[static_cast<size_t>(instance.mesh)], glm::dmat3(instance.transform)));
-    return area > 0.0 && std::isfinite(area) ? size * std::sqrt(kFill / area) : 1.0;
-}
-
-/// Gives each chart whole texels, packs them and scales to the unit square.
-Layout layOut(const std::vector<PlanarChart>& charts, size_t triangles, double density,
-              const std::string& name) {
-    std::vector<PackedRect> rects(charts.size());
+/// Gives each chart whole texels and packs them.
+Packing packCharts(const std::vector<PlanarChart>& charts, double density, const std::string& name) {
+    Packing packing;
+    packing.rects.resize(charts.size());
     double area = 0.0;
     uint32_t width = 1;
     for (size_t i = 0; i < charts.size(); ++i) {
@@ -82,32 +90,35 @@ Layout layOut(const std::vector<PlanarChart>& charts, size_t triangles, double d
             throw Error(
                 fmt::format("{} needs more than {} texels a side at {} texels/m: use a lower --density", name,
                             kMaxTexels, density));
-        rects[i].width = static_cast<uint32_t>(texels.x);
-        rects[i].height = static_cast<uint32_t>(texels.y);
-        width = std::max(width, rects[i].width);
+        packing.rects[i].width = static_cast<uint32_t>(texels.x);
+        packing.rects[i].height = static_cast<uint32_t>(texels.y);
+        width = std::max(width, packing.rects[i].width);
     }
     width = std::max(width, static_cast<uint32_t>(std::ceil(std::sqrt(area))));
     constexpr uint32_t kAnyHeight = 1u << 30;
-    ASSERT(packRects(rects, width, kAnyHeight, kGutter));
+    ASSERT(packRects(packing.rects, width, kAnyHeight, kGutter));
+    for (const PackedRect& rect : packing.rects)
+        packing.side = std::max({packing.side, rect.x + rect.width, rect.y + rect.height});
+    return packing;
+}
 
-    uint32_t side = 1;
-    for (const PackedRect& rect : rects)
-        side = std::max({side, rect.x + rect.width, rect.y + rect.height});
+/// UVs of the packed charts; `side` texels are one unit.
+Layout layOut(const Job& job, const Packing& packing, uint32_t side) {
     Layout layout;
-    layout.uv.resize(3 * triangles);
-    layout.chart.assign(triangles, kNoNumber);
-    layout.charts = static_cast<uint32_t>(charts.size());
-    for (size_t i = 0; i < charts.size(); ++i) {
+    layout.uv.resize(job.corners.size());
+    layout.chart.assign(job.corners.size() / 3, kNoNumber);
+    for (size_t i = 0; i < job.charts.size(); ++i) {
         // Stretched to fill its texels, so that straight borders run along texel edges.
-        const glm::dvec2 corner(rects[i].x, rects[i].y), texels(rects[i].width, rects[i].height);
-        const glm::dvec2 stretch = texels / glm::max(charts[i].extent, glm::dvec2(1e-300));
-        for (size_t t = 0; t < charts[i].triangles.size(); ++t) {
-            const uint32_t triangle = charts[i].triangles[t];
-            layout.chart[triangle] = static_cast<uint32_t>(i);
+        const PlanarChart& chart = job.charts[i];
+        const PackedRect& rect = packing.rects[i];
+        const glm::dvec2 corner(rect.x, rect.y), texels(rect.width, rect.height);
+        const glm::dvec2 stretch = texels / glm::max(chart.extent, glm::dvec2(1e-300));
+        for (size_t t = 0; t < chart.triangles.size(); ++t) {
+            layout.chart[chart.triangles[t]] = static_cast<uint32_t>(i);
             for (size_t k = 0; k < 3; ++k) {
                 const glm::dvec2 uv =
-                    (corner + glm::min(charts[i].uv[3 * t + k] * stretch, texels)) / double(side);
-                layout.uv[3 * triangle + k] = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
+                    (corner + glm::min(chart.uv[3 * t + k] * stretch, texels)) / double(side);
+                layout.uv[3 * chart.triangles[t] + k] = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
             }
         }
     }
@@ -186,38 +197,106 @@ private:
     std::vector<int> copies_; // of the scene's own materials, -1: none yet
 };
 
-void unwrapMesh(Mesh& mesh, const glm::dmat3& transform, double density, UnwrapResult& result) {
-    const std::string name = "mesh " + quoted(mesh.name);
-    const std::vector<glm::dvec3> corners = cornersOf(mesh, transform);
-    const std::vector<PlanarChart> charts = cutPlanarCharts(corners);
-    if (charts.empty()) return; // nothing but triangles without area
+std::string nameOf(const Scene& scene, const Job& job) {
+    return scene.path + ": mesh " + quoted(scene.meshes[job.mesh].name);
+}
+
+std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) {
+    const std::vector<glm::dmat3> transforms = largestTransforms(scene);
+    std::vector<Job> jobs;
+    std::vector<double> areas(scene.meshes.size());
+    for (const Instance& instance : scene.instances) {
+        const size_t mesh = static_cast<size_t>(instance.mesh);
+        if (chosen[mesh])
+            areas[mesh] += areaOf(cornersOf(scene.meshes[mesh], glm::dmat3(instance.transform)));
+    }
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+        if (!chosen[i]) continue;
+        Job job{i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0};
+        job.charts = cutPlanarCharts(job.corners);
+        const double largest = areaOf(job.corners);
+        job.instances = largest > 0.0 && std::isfinite(areas[i] / largest) ? areas[i] / largest : 1.0;
+        if (!job.charts.empty()) jobs.push_back(std::move(job)); // else nothing but triangles without area
+    }
+    return jobs;
+}
+
+/// The jobs' share of the scene's area: meshes that keep their UVs need the rest.
+double shareOf(const Scene& scene, const std::vector<Job>& jobs) {
+    double own = 0.0, all = 0.0;
+    for (const Job& job : jobs)
+        own += job.instances * areaOf(job.corners);
+    for (const Instance& instance : scene.instances)
+        all += areaOf(
+            cornersOf(scene.meshes[static_cast<size_t>(instance.mesh)], glm::dmat3(instance.transform)));
+    return own > 0.0 && own < all ? own / all : 1.0;
+}
+
+/// Texels that all instances need together at a density, gutters included.
+double texelsAt(const Scene& scene, const std::vector<Job>& jobs, double density) {
+    double texels = 0.0;
+    for (const Job& job : jobs) {
+        const double side = packCharts(job.charts, density, nameOf(scene, job)).side;
+        texels += job.instances * side * side;
+    }
+    return texels;
+}
+
+/// The density at which `texels` texels hold the instances of all jobs, with their gutters at full width.
+double densityThatFits(const Scene& scene, const std::vector<Job>& jobs, double texels) {
+    double area = 0.0;
+    size_t charts = 0;
+    for (const Job& job : jobs) {
+        area += job.instances * areaOf(job.corners);
+        charts += job.charts.size();
+    }
+    double density = area > 0.0 && std::isfinite(area) ? std::sqrt(kFill * texels / area) : 1.0, best = 0.0;
+    const int steps = charts > kManyCharts ? 2 : kSearchSteps;
+    for (int step = 0; step < steps; ++step) {
+        const double need = texelsAt(scene, jobs, density);
+        if (need <= texels) best = std::max(best, density);
+        density *= std::sqrt(texels / need);
+        // Packings jump: creep up on the limit from below once it has been met.
+        if (best > 0.0 && density <= best) density = best * 1.01;
+    }
+    return best > 0.0 ? best : density;
+}
+
+void unwrapMesh(Scene& scene, Job& job, const UnwrapDesc& desc, bool alone, UnwrapResult& result) {
+    Mesh& mesh = scene.meshes[job.mesh];
     const Mesh original = mesh;
-    Layout layout = layOut(charts, corners.size() / 3, density, name);
-    applyLayout(layout, mesh);
-    if (lightmapSet(mesh) != 1) {
+    for (bool single : {false, true}) {
         // Overlap finer than the grid that looks for it adds up in no known mesh; single triangles cannot
         // overlap.
+        if (single) job.charts = cutSingleTriangles(job.corners);
+        const Packing packing = packCharts(job.charts, result.density, nameOf(scene, job));
+        // A mesh alone in its scene is the atlas: its texels shall be those of the lightmap.
+        const bool aligned = alone && desc.density <= 0.0 && packing.side <= desc.size;
         mesh = original;
-        layout = layOut(cutSingleTriangles(corners), corners.size() / 3, density, name);
-        applyLayout(layout, mesh);
+        applyLayout(layOut(job, packing, aligned ? desc.size : packing.side), mesh);
+        if (lightmapSet(mesh) == 1) break;
     }
     ++result.meshes;
-    result.charts += layout.charts;
+    result.charts += static_cast<uint32_t>(job.charts.size());
 }
 
 } // namespace
 
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc) {
-    UnwrapResult result;
-    result.density = desc.density > 0.0 ? desc.density : densityThatFills(scene, desc.size);
-    const std::vector<glm::dmat3> transforms = largestTransforms(scene);
+    std::vector<bool> chosen(scene.meshes.size());
     TexCoordMover mover(scene);
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        Mesh& mesh = scene.meshes[i];
-        if (mesh.primitives.empty() || (desc.onlyMissing && lightmapSet(mesh) >= 0)) continue;
-        mover.run(mesh);
-        unwrapMesh(mesh, transforms[i], result.density, result);
+        chosen[i] =
+            !scene.meshes[i].primitives.empty() && !(desc.onlyMissing && lightmapSet(scene.meshes[i]) >= 0);
+        if (chosen[i]) mover.run(scene.meshes[i]);
     }
+    std::vector<Job> jobs = cutMeshes(scene, chosen);
+    const bool alone = scene.instances.size() == 1;
+    const double texels = (alone ? 1.0 : kRectFill) * desc.size * desc.size * shareOf(scene, jobs);
+    UnwrapResult result;
+    result.density = desc.density > 0.0 ? desc.density : densityThatFits(scene, jobs, texels);
+    for (Job& job : jobs)
+        unwrapMesh(scene, job, desc, alone, result);
     return result;
 }
 

@@ -144,7 +144,31 @@ TEST(Unwrap, DensityIsThatOfTheWorld) {
     const int mesh = test::addMesh(scene, square);
     test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(2)));
     test::addInstance(scene, mesh, glm::translate(glm::mat4(1), glm::vec3(9, 0, 0)));
-    EXPECT_NEAR(unwrap(scene, {}).density, 512 * std::sqrt(0.5 / 5.0), 1e-3);
+    // One rectangle of 2 m and one of 1 m, 5 m^2 in all, in 85 % of the atlas.
+    EXPECT_NEAR(unwrap(scene, {}).density, 512 * std::sqrt(0.85 / 5.0), 5.0);
+}
+
+TEST(Unwrap, FittedDensityKeepsTheGutterOnTheTexelGrid) {
+    // A mesh alone is the atlas: each chart of the cube is a box of whole texels, two or more from the next.
+    Scene scene = test::sceneOf(test::cube());
+    UnwrapDesc desc;
+    desc.size = 100;
+    unwrap(scene, desc);
+    ASSERT_FALSE(buildAtlas(scene, 100).repacked);
+    const Primitive& p = scene.meshes[0].primitives[0];
+    std::vector<glm::vec2> low(6, glm::vec2(200)), high(6, glm::vec2(-1));
+    for (size_t v = 0; v < 24; ++v) {
+        low[v / 4] = glm::min(low[v / 4], 100.0f * p.texCoord1[v]);
+        high[v / 4] = glm::max(high[v / 4], 100.0f * p.texCoord1[v]);
+        for (int c = 0; c < 2; ++c)
+            EXPECT_NEAR(100 * p.texCoord1[v][c], std::round(100 * p.texCoord1[v][c]), 1e-3f);
+    }
+    for (size_t a = 0; a < 6; ++a) {
+        EXPECT_GT(high[a].x - low[a].x, 25.0f); // 3 by 2 of at most 32
+        for (size_t b = 0; b < a; ++b)
+            EXPECT_TRUE(high[a].x + 1.99f < low[b].x || high[b].x + 1.99f < low[a].x ||
+                        high[a].y + 1.99f < low[b].y || high[b].y + 1.99f < low[a].y);
+    }
 }
 
 TEST(Unwrap, ValidUvsStayUnlessAskedFor) {
