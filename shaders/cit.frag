@@ -35,7 +35,9 @@ void main() {
         // The grown triangle's tips reach beyond the texels it touches.
         if (any(lessThan(pixel, pixelBounds.xy - 0.5)) || any(greaterThan(pixel, pixelBounds.zw + 0.5))) discard;
     }
-    vec3 b = bary;
+    // Interpolated one by one, the weights of a small or thin triangle sum to 1 only within 1e-5: of a far coordinate that
+    // is more than a patch's offset, and the point leaves the triangle's plane.
+    vec3 b = vec3(1.0 - bary.y - bary.z, bary.yz);
     vec3 dx = dFdx(b), dy = dFdy(b);
     if (grown != 0u) {
         // A centre outside the triangle stands for the nearest surface, never for the air beside it.
@@ -58,7 +60,9 @@ void main() {
     // A rough metal still sends light on, as Unity's meta pass has it.
     float diffuse = push.rtrad != 0u ? 1.0 : 1.0 - metallic + 0.5 * metallic * roughness * roughness;
 
-    outPosition = vec4(positions.items[i] * b.x + positions.items[i + 1u] * b.y + positions.items[i + 2u] * b.z, 1.0);
+    vec3 corner = positions.items[i];
+    vec3 along = (positions.items[i + 1u] - corner) * b.y + (positions.items[i + 2u] - corner) * b.z;
+    outPosition = vec4(corner + along, 1.0);
     float size = length(normal);
     outNormal = vec4(size > 0.0 ? normal / size : vec3(0.0), 0.0);
     outAlbedo = vec4(base.rgb * diffuse, base.a);
