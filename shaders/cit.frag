@@ -30,6 +30,14 @@ vec4 texel(int index, vec2 uv, vec2 dx, vec2 dy) {
     return textureGrad(textures[nonuniformEXT(index)], uv, dx, dy);
 }
 
+// A point on the triangle's edge moved a quarter of a texel towards its centre: on the very edge it would lie in the
+// neighbouring wall and see nothing.
+vec3 inwards(vec3 b) {
+    const float kInset = 0.25; // texels
+    float away = length(uvAt(push.lightmapUv, vec3(1.0 / 3.0)) - uvAt(push.lightmapUv, b)) * float(push.size);
+    return mix(b, vec3(1.0 / 3.0), min(1.0, kInset / max(away, 1e-6)));
+}
+
 void main() {
     if (grown != 0u) {
         // The grown triangle's tips reach beyond the texels it touches.
@@ -42,7 +50,7 @@ void main() {
     if (grown != 0u) {
         // A centre outside the triangle stands for the nearest surface, never for the air beside it.
         b = max(b, vec3(0.0));
-        b /= b.x + b.y + b.z;
+        b = inwards(b / (b.x + b.y + b.z));
     }
     uint i = triangle * 3u;
     Vec3s positions = Vec3s(push.positions), normals = Vec3s(push.normals);
