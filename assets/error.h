@@ -5,8 +5,8 @@
 
 namespace relume {
 
-/// Something in the world is wrong: a file, a driver, a shader, what the user typed. Thrown anywhere, caught once in
-/// main. The message is one line and names the file, the thing and the mend.
+/// Something in the world is wrong: a file, a driver, a shader, what the user typed. Thrown anywhere, caught
+/// once in main. The message is one line and names the file, the thing and the mend.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -25,7 +25,7 @@ namespace detail {
 } // namespace relume
 
 /// A bug in Relume when false. Stays on in release builds: a wrong lightmap is worse than an abort.
-#define ASSERT(condition)                                                                                            \
-    do {                                                                                                             \
-        if (!(condition)) ::relume::detail::assertFailed(#condition, __FILE__, __LINE__);                            \
+#define ASSERT(condition)                                                                                    \
+    do {                                                                                                     \
+        if (!(condition)) ::relume::detail::assertFailed(#condition, __FILE__, __LINE__);                    \
     } while (false)

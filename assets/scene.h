@@ -8,8 +8,8 @@
 
 namespace relume {
 
-/// Pixels of a texture as the file has them: 8 bits, 4 channels, row 0 first. Colour is sRGB encoded or linear
-/// according to its use (base colour and emission: sRGB; metallic-roughness: linear).
+/// Pixels of a texture as the file has them: 8 bits, 4 channels, row 0 first. Colour is sRGB encoded or
+/// linear according to its use (base colour and emission: sRGB; metallic-roughness: linear).
 struct Image {
     std::string name;
     uint32_t width = 0, height = 0;
@@ -46,8 +46,8 @@ struct Material {
     bool doubleSided = false;
 };
 
-/// Triangles of one material. Arrays other than positions may be empty where the file has none; normals never are
-/// after import (flat where missing, which splits vertices).
+/// Triangles of one material. Arrays other than positions may be empty where the file has none; normals never
+/// are after import (flat where missing, which splits vertices).
 struct Primitive {
     std::vector<glm::vec3> positions; // [m], object space
     std::vector<glm::vec3> normals;   // unit
@@ -72,9 +72,9 @@ struct Camera {
     std::string name;
     glm::mat4 transform{1.0f}; // looks along its -Z, +Y up
     bool perspective = true;
-    float yfov = 0.8f; // [rad]
-    float ymag = 1.0f; // half height [m], orthographic only
-    float aspect = 0.0f; // width / height, 0: that of the window
+    float yfov = 0.8f;                // [rad]
+    float ymag = 1.0f;                // half height [m], orthographic only
+    float aspect = 0.0f;              // width / height, 0: that of the window
     float znear = 0.01f, zfar = 0.0f; // [m], zfar 0: infinite
 };
 
@@ -85,13 +85,14 @@ struct Light {
     std::string name;
     LightType type = LightType::Point;
     glm::mat4 transform{1.0f};
-    glm::vec3 color{1.0f};   // linear
-    float intensity = 1.0f;  // [cd], directional: [lux]
-    float range = 0.0f;      // [m], 0: infinite
+    glm::vec3 color{1.0f};                                   // linear
+    float intensity = 1.0f;                                  // [cd], directional: [lux]
+    float range = 0.0f;                                      // [m], 0: infinite
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398f; // [rad]
 };
 
-/// A scene as the file tells it, with the node hierarchy resolved to world transforms. No GPU, no lightmap decisions.
+/// A scene as the file tells it, with the node hierarchy resolved to world transforms. No GPU, no lightmap
+/// decisions.
 struct Scene {
     std::string path; // as given by the user; "" for a generated scene
     std::vector<Image> images;

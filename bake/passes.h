@@ -17,7 +17,8 @@ struct TransportSettings {
 struct PairBuffers {
     vk::Buffer supers;     // SuperBlock, the pass's list
     vk::Buffer bits;       // kBlockWords words per unit
-    vk::Buffer reversed;   // the same, traced from the other end; empty where both ends agree (always but in the preset)
+    vk::Buffer reversed;   // the same, traced from the other end; empty where both ends agree (always but in
+                           // the preset)
     vk::Buffer transposed; // seen from the other side
     vk::Buffer partial;    // vec4[2 * kSuperPatches] per super-block of the batch
     uint32_t bitsUnits = 0;

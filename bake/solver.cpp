@@ -99,7 +99,8 @@ void Solver::step() {
     if (passEnds) endPass();
     progress_.seconds += secondsSince(start);
     if (passEnds) {
-        const double before = std::accumulate(progress_.passSeconds.begin(), progress_.passSeconds.end(), 0.0);
+        const double before =
+            std::accumulate(progress_.passSeconds.begin(), progress_.passSeconds.end(), 0.0);
         progress_.passSeconds.push_back(progress_.seconds - before);
     }
 }

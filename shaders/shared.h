@@ -128,9 +128,9 @@ struct OcclusionPush {
     uint unitCount;
     uint bitsUnits;
     uint chunkCount;
-    uint rtrad;   // 1: RTRad's ray intervals
-    uint groupsX; // workgroups in x; y counts on
-    ADDRESS rays; // uint[kRayCounters], rays traced are added
+    uint rtrad;    // 1: RTRad's ray intervals
+    uint groupsX;  // workgroups in x; y counts on
+    ADDRESS rays;  // uint[kRayCounters], rays traced are added
     uint reversed; // 1: rays start at the column's patches
 };
 struct ClosestPush {
