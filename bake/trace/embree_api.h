@@ -15,9 +15,14 @@ namespace relume {
 #if RTC_VERSION_MAJOR >= 4
 
 struct EmbreeOccludedQuery {
+    struct Context : RTCRayQueryContext {
+        uint32_t blocker; // for filter functions to write
+    } context;
     RTCOccludedArguments arguments;
     EmbreeOccludedQuery() {
+        rtcInitRayQueryContext(&context);
         rtcInitOccludedArguments(&arguments);
+        arguments.context = &context;
         arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
     }
 };
@@ -36,7 +41,9 @@ inline void embreeIntersect(const int* valid, RTCScene scene, EmbreeIntersectQue
 #else
 
 struct EmbreeOccludedQuery {
-    RTCIntersectContext context;
+    struct Context : RTCIntersectContext {
+        uint32_t blocker; // for filter functions to write
+    } context;
     EmbreeOccludedQuery() {
         rtcInitIntersectContext(&context);
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;

@@ -11,6 +11,7 @@
 
 #include "assets/error.h"
 #include "bake/trace/embree_api.h"
+#include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
 #include "bake/trace/embree_pool.h"
 #include "bake/trace/embree_rays.h"
@@ -59,6 +60,16 @@ uint32_t countBits(const std::array<uint64_t, kChunk>& rows, uint64_t rowMask, u
     for (; rowMask != 0; rowMask &= rowMask - 1)
         count += uint32_t(std::popcount(rows[size_t(std::countr_zero(rowMask))] & columnMask));
     return count;
+}
+
+constexpr uint32_t kNone = ~0u;
+
+// Takes note of an opaque triangle that stops an occlusion ray.
+void noteBlocker(const RTCFilterFunctionNArguments* args) {
+    for (uint32_t lane = 0; lane < args->N; ++lane)
+        if (args->valid[lane] != 0)
+            static_cast<EmbreeOccludedQuery::Context*>(args->context)->blocker =
+                RTCHitN_primID(args->hit, args->N, lane);
 }
 
 // Drops hits in the holes of masked triangles, for both kinds of query.
@@ -136,6 +147,8 @@ void EmbreeScene::Impl::attach(uint32_t first, uint32_t last, bool masked) {
         rtcSetGeometryUserData(geometry, const_cast<TraceScene*>(&scene));
         rtcSetGeometryIntersectFilterFunction(geometry, keepSolid);
         rtcSetGeometryOccludedFilterFunction(geometry, keepSolid);
+    } else {
+        rtcSetGeometryOccludedFilterFunction(geometry, noteBlocker);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(embree.get(), geometry, masked ? 1 : 0);
@@ -147,8 +160,8 @@ namespace {
 // Rays of one block on their way through Embree: filled lane by lane, traced when full.
 class OcclusionPacket {
 public:
-    OcclusionPacket(RTCScene scene, std::array<uint64_t, kChunk>& visible)
-        : scene_(scene), visible_(visible) {
+    OcclusionPacket(RTCScene scene, Blockers& blockers, std::array<uint64_t, kChunk>& visible)
+        : scene_(scene), blockers_(blockers), visible_(visible) {
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
             valid_[lane] = -1;
             rays_.time[lane] = 0;
@@ -173,7 +186,9 @@ public:
         if (count_ == 0) return;
         for (uint32_t lane = count_; lane < kPacket; ++lane)
             valid_[lane] = 0;
+        query_.context.blocker = kNone;
         embreeOccluded(valid_.data(), scene_, query_, rays_);
+        if (query_.context.blocker != kNone) blockers_.add(query_.context.blocker);
         for (uint32_t lane = 0; lane < count_; ++lane) {
             if (rays_.tfar[lane] < 0) visible_[pair_[lane] >> 6] &= ~(uint64_t(1) << (pair_[lane] & 63));
         }
@@ -186,6 +201,7 @@ private:
     std::array<uint16_t, kPacket> pair_;
     RTCScene scene_;
     EmbreeOccludedQuery query_;
+    Blockers& blockers_;
     std::array<uint64_t, kChunk>& visible_;
     uint32_t count_ = 0;
 };
@@ -220,10 +236,14 @@ uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, 
     const uint32_t pairs = countBits(visible, ~uint64_t(0), ~uint64_t(0));
     std::array<uint64_t, kChunk> asked = visible;
     dropOpenPairs(a, b, asked);
-    OcclusionPacket packet(embree.get(), visible);
+    Blockers blockers(scene.mesh.positions.data());
+    OcclusionPacket packet(embree.get(), blockers, visible);
     for (uint32_t i = 0; i < kChunk; ++i) {
         const glm::vec3 origin(a.ex[i], a.ey[i], a.ez[i]);
-        for (uint64_t rest = asked[i]; rest != 0; rest &= rest - 1) {
+        // RTRad's rays end well before the patches, where a triangle may stand.
+        const uint64_t hidden = scene.rtrad ? 0 : blockers.stopped(origin, b, asked[i]);
+        visible[i] &= ~hidden;
+        for (uint64_t rest = asked[i] & ~hidden; rest != 0; rest &= rest - 1) {
             const uint32_t j = uint32_t(std::countr_zero(rest));
             shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
             if (scene.rtrad) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/trace/bvh_builder.h"
+#include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
 #include "bake/trace/embree_pool.h"
 #include "bake/trace/embree_shaft.h"
@@ -382,6 +383,39 @@ TEST(EmbreeShaft, isOpenUnlessSomethingReachesIn) {
     EXPECT_FALSE(openPast({0.95f, 1, -0.5f})); // half in
     EXPECT_FALSE(openPast({0.5f, 1, -0.5f}, true));
     EXPECT_FALSE(openPast({0.5f, 1e-3f, -0.5f})); // close above the floor's patches
+}
+
+TEST(EmbreeBlockers, stopOnlyWhatTheirTrianglesStop) {
+    const TraceScene scene = furnishedRoom();
+    const std::vector<PatchChunk> chunks = buildChunks(scene.patches, false);
+    std::mt19937 random(5);
+    uint32_t hits = 0, found = 0, wrong = 0;
+    for (int k = 0; k < 4000; ++k) {
+        const uint32_t triangle = random() % scene.mesh.opaqueCount,
+                       i = random() % uint32_t(scene.patches.size());
+        const uint32_t column = random() % uint32_t(chunks.size());
+        Blockers blockers(scene.mesh.positions.data());
+        blockers.add(triangle);
+        const Patch& patch = scene.patches[i];
+        const uint64_t stopped =
+            blockers.stopped(patch.position + patch.offset * patch.normal, chunks[column], ~uint64_t(0));
+        TraceScene one;
+        one.mesh.positions.assign(&scene.mesh.positions[triangle * 3],
+                                  &scene.mesh.positions[triangle * 3] + 3);
+        one.mesh.material.resize(1);
+        one.mesh.opaqueCount = 1;
+        shader::AllTriangles all{one};
+        for (uint32_t j = 0; j < kChunk; ++j) {
+            const Patch& other = scene.patches[column * kChunk + j];
+            if (!(other.flags & shader::kPatchSends)) continue;
+            const shader::Segment s = shader::pairSegment(patch, other, false);
+            const bool hit = all.nearest(s.origin, s.direction, 0, 1).triangle != shader::kNoPatch;
+            hits += hit, found += stopped >> j & 1, wrong += (stopped >> j & 1) && !hit;
+        }
+    }
+    EXPECT_GT(hits, 1000u);
+    EXPECT_GT(found, hits * 9 / 10);
+    EXPECT_EQ(wrong, 0u);
 }
 
 TEST(WorkerPool, doesEverythingOnceHoweverOftenItIsUsed) {
