@@ -38,7 +38,8 @@ public:
         uint32_t batch = 1, next = 0, runs = 0;
         const auto start = Clock::now();
         while (secondsSince(start) < desc_.seconds || runs <= kWarmUp) {
-            const uint32_t count = std::min({batch, capacity_, static_cast<uint32_t>(supers_.size()) - next});
+            const uint32_t count =
+                std::min({batch, pairs_.capacity(), static_cast<uint32_t>(supers_.size()) - next});
             vk::upload(device_, rays_, zero_.data(), zero_.size() * sizeof(uint32_t));
             const auto batchStart = Clock::now();
             const auto [traced, gathered] = pairBatch(next, count);
@@ -111,20 +112,12 @@ private:
         for (uint64_t i = 0; i < n; ++i)
             supers_.push_back(ordered[i * stride % n]);
 
-        capacity_ = std::min(n, device_.info().software() ? 16u : 512u);
-        const VkDeviceSize bitsBytes =
-            VkDeviceSize{capacity_} * kSuperBlocks * shader::kBlockWords * sizeof(uint32_t);
-        pairs_.bitsUnits = capacity_ * kSuperBlocks;
-        pairs_.supers = vk::makeBuffer(device_, supers_, "super-blocks");
-        pairs_.bits = vk::Buffer(device_, {.size = bitsBytes, .name = "visibility bits"});
-        pairs_.transposed = vk::Buffer(device_, {.size = bitsBytes, .name = "visibility bits, transposed"});
-        pairs_.partial = vk::Buffer(
-            device_, {.size = VkDeviceSize{capacity_} * 2 * shader::kSuperPatches * sizeof(glm::vec4),
-                      .name = "partial sums"});
+        pairs_ = PairBuffers(device_, n, false);
+        vk::upload(device_, pairs_.supers, supers_.data(), supers_.size() * sizeof(SuperBlock));
         zero_.assign(shader::kRayCounters, 0u);
         rays_ = vk::makeBuffer(device_, zero_, "ray counters");
         VkCommandBuffer cmd = commands_.begin();
-        radiancePass_.record(cmd, light_, patches_.chunkCount(), {.allSend = true});
+        radiancePass_.record(cmd, light_, {.allSend = true});
         vk::barrier(cmd);
         vk::hostBarrier(cmd);
         commands_.run();
@@ -149,7 +142,7 @@ private:
         const double cpu = secondsSince(start);
         vk::barrier(cmd);
         timestamps_.mark(cmd, 1);
-        gatherPass_.record(cmd, light_, pairs_, first, count, patches_.chunkCount(), {.allSend = true});
+        gatherPass_.record(cmd, light_, pairs_, {first, count}, {.allSend = true});
         timestamps_.mark(cmd, 2);
         vk::hostBarrier(cmd);
         commands_.run();
@@ -186,7 +179,6 @@ private:
     GatherPass gatherPass_;
     std::vector<SuperBlock> supers_;
     std::vector<uint32_t> zero_;
-    uint32_t capacity_ = 0;
     PairBuffers pairs_;
     vk::Buffer rays_;
 };

@@ -18,6 +18,7 @@ struct LightBuffers {
     vk::Buffer chunkSends; // uint per chunk: whether anything in it sends in this pass
     vk::Buffer ligIn;      // vec4
     vk::Buffer ligOut;     // vec4
+    uint32_t chunkCount = 0;
 
     LightBuffers(const vk::Device& device, const PatchSet& set)
         : patches(vk::makeBuffer(device, set.scene.patches, "patches")),
@@ -28,7 +29,7 @@ struct LightBuffers {
           radiance(device, {.size = lightBytes(set), .name = "radiance"}),
           chunkSends(device, {.size = set.chunkCount() * sizeof(uint32_t), .name = "chunk sends"}),
           ligIn(device, {.size = lightBytes(set), .name = "ligIn"}),
-          ligOut(device, {.size = lightBytes(set), .name = "ligOut"}) {}
+          ligOut(device, {.size = lightBytes(set), .name = "ligOut"}), chunkCount(set.chunkCount()) {}
 
     static VkDeviceSize lightBytes(const PatchSet& set) {
         return set.scene.patches.size() * sizeof(glm::vec4);

@@ -2,14 +2,42 @@
 
 #include "bake/vk/commands.h"
 
+#include <algorithm>
+
 namespace relume {
 namespace {
 
 constexpr uint32_t kGroup = 64; // invocations, as in the shaders
 
+constexpr VkDeviceSize kBitsBytes =
+    VkDeviceSize{shader::kSuperBlocks} * shader::kBlockWords * sizeof(uint32_t);
+constexpr VkDeviceSize kPartialBytes = VkDeviceSize{2} * shader::kSuperPatches * sizeof(glm::vec4);
+
+// Super-blocks whose bits fit at once: 64 MiB and their transposes on a GPU, enough to fill it for 20 ms; a
+// few on a software device, where a batch is small and the cache counts.
+uint64_t superCapacity(bool software) {
+    return software ? 16 : 512;
+}
+
 } // namespace
 
-void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light, uint32_t chunkCount,
+PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, bool rtrad) {
+    // One more than there are: a batch may end within a super-block and begin within another.
+    const uint64_t slots = std::min(superCapacity(device.info().software()), superCount + 1);
+    bitsUnits = static_cast<uint32_t>(slots) * shader::kSuperBlocks;
+    supers = vk::Buffer(device, {.size = superCount * sizeof(SuperBlock), .name = "super-blocks"});
+    bits = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits"});
+    if (rtrad)
+        reversed = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits, reversed"});
+    transposed = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits, transposed"});
+    partial = vk::Buffer(device, {.size = slots * kPartialBytes, .name = "partial sums"});
+}
+
+uint64_t PairBuffers::bytes(uint64_t superCount, bool software) {
+    return superCount * sizeof(SuperBlock) + superCapacity(software) * (3 * kBitsBytes + kPartialBytes);
+}
+
+void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
                           const TransportSettings& settings) const {
     const shader::RadiancePush push{.patches = light.patches.address(),
                                     .albedo = light.albedo.address(),
@@ -17,11 +45,11 @@ void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light, uint32
                                     .ligIn = light.ligIn.address(),
                                     .radiance = light.radiance.address(),
                                     .chunkSends = light.chunkSends.address(),
-                                    .chunkCount = chunkCount,
+                                    .chunkCount = light.chunkCount,
                                     .reflectivity = settings.reflectivity,
                                     .rtrad = settings.rtrad ? 1u : 0u,
                                     .all = settings.allSend ? 1u : 0u};
-    program_.dispatch(cmd, push, (chunkCount + kGroup - 1) / kGroup);
+    program_.dispatch(cmd, push, (light.chunkCount + kGroup - 1) / kGroup);
 }
 
 // Staging senders in shared memory pays on GPUs (1.5x) and costs 3x on a software device.
@@ -31,17 +59,16 @@ GatherPass::GatherPass(const vk::Device& device, bool rtrad)
       reduce_(device, "reduce") {}
 
 void GatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const PairBuffers& pairs,
-                        uint32_t first, uint32_t count, uint32_t chunkCount,
-                        const TransportSettings& settings) const {
+                        const SuperRange& range, const TransportSettings& settings) const {
     const shader::TransposePush transpose{.supers = pairs.supers.address(),
                                           .bits = pairs.bits.address(),
                                           .reversed =
                                               (pairs.reversed ? pairs.reversed : pairs.bits).address(),
                                           .transposed = pairs.transposed.address(),
-                                          .firstSuper = first,
+                                          .firstSuper = range.first,
                                           .bitsUnits = pairs.bitsUnits,
-                                          .chunkCount = chunkCount};
-    transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, count);
+                                          .chunkCount = light.chunkCount};
+    transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, range.count);
     vk::barrier(cmd);
     const shader::GatherPush gather{.supers = pairs.supers.address(),
                                     .chunkSends = light.chunkSends.address(),
@@ -53,31 +80,30 @@ void GatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const Pa
                                     .radiance = light.radiance.address(),
                                     .albedo = light.albedo.address(),
                                     .partial = pairs.partial.address(),
-                                    .firstSuper = first,
+                                    .firstSuper = range.first,
                                     .bitsUnits = pairs.bitsUnits,
-                                    .chunkCount = chunkCount,
+                                    .chunkCount = light.chunkCount,
                                     .reflectivity = settings.reflectivity,
                                     .distanceFactor = settings.distanceFactor};
-    gather_.dispatch(cmd, gather, 2 * shader::kSuper, count);
+    gather_.dispatch(cmd, gather, 2 * shader::kSuper, range.count);
     vk::barrier(cmd);
     const shader::ReducePush reduce{.supers = pairs.supers.address(),
                                     .partial = pairs.partial.address(),
                                     .ligOut = light.ligOut.address(),
-                                    .firstSuper = first,
-                                    .superCount = count,
-                                    .patchCount = chunkCount * shader::kChunk};
-    reduce_.dispatch(cmd, reduce, chunkCount);
+                                    .firstSuper = range.first,
+                                    .superCount = range.count,
+                                    .patchCount = light.chunkCount * shader::kChunk};
+    reduce_.dispatch(cmd, reduce, light.chunkCount);
 }
 
-void FinishPass::record(VkCommandBuffer cmd, const LightBuffers& light, uint32_t chunkCount,
-                        bool rtrad) const {
+void FinishPass::record(VkCommandBuffer cmd, const LightBuffers& light, bool rtrad) const {
     const shader::FinishPush push{.patches = light.patches.address(),
                                   .emission = light.emission.address(),
                                   .ligIn = light.ligIn.address(),
                                   .ligOut = light.ligOut.address(),
-                                  .patchCount = chunkCount * shader::kChunk,
+                                  .patchCount = light.chunkCount * shader::kChunk,
                                   .rtrad = rtrad ? 1u : 0u};
-    program_.dispatch(cmd, push, chunkCount);
+    program_.dispatch(cmd, push, light.chunkCount);
 }
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bake/light_buffers.h"
+#include "bake/trace/tracer.h"
 #include "bake/vk/program.h"
 
 namespace relume {
@@ -22,27 +23,37 @@ struct PairBuffers {
     vk::Buffer transposed; // seen from the other side
     vk::Buffer partial;    // vec4[2 * kSuperPatches] per super-block of the batch
     uint32_t bitsUnits = 0;
+
+    PairBuffers() = default;
+    /// For a list of superCount super-blocks and as many per batch as pay on the device.
+    PairBuffers(const vk::Device& device, uint64_t superCount, bool rtrad);
+    uint32_t capacity() const { return bitsUnits / shader::kSuperBlocks; } // super-blocks per batch
+    static uint64_t bytes(uint64_t superCount, bool software);             // at most
+};
+
+/// Consecutive super-blocks of the list.
+struct SuperRange {
+    uint32_t first = 0, count = 0;
 };
 
 /// Forms what each patch sends and notes which chunks send at all. Reads ligIn.
 class RadiancePass {
 public:
     explicit RadiancePass(const vk::Device& device) : program_(device, "radiance") {}
-    void record(VkCommandBuffer cmd, const LightBuffers& light, uint32_t chunkCount,
-                const TransportSettings& settings) const;
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const TransportSettings& settings) const;
 
 private:
     vk::ComputeProgram program_;
 };
 
-/// RTL, second half: transposes the bits of `count` super-blocks from `first` on, gathers both sides and adds
-/// the sums to ligOut in the list's order. Reads bits, patches and radiance. Barriers between its three
+/// RTL, second half: transposes the bits of some super-blocks, gathers both sides and adds the sums
+/// to ligOut in the list's order. Reads bits, patches and radiance. Barriers between its three
 /// dispatches are its own, those around it the caller's.
 class GatherPass {
 public:
     GatherPass(const vk::Device& device, bool rtrad);
-    void record(VkCommandBuffer cmd, const LightBuffers& light, const PairBuffers& pairs, uint32_t first,
-                uint32_t count, uint32_t chunkCount, const TransportSettings& settings) const;
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const PairBuffers& pairs,
+                const SuperRange& range, const TransportSettings& settings) const;
 
 private:
     vk::ComputeProgram transpose_, gather_, reduce_;
@@ -52,7 +63,7 @@ private:
 class FinishPass {
 public:
     explicit FinishPass(const vk::Device& device) : program_(device, "finish") {}
-    void record(VkCommandBuffer cmd, const LightBuffers& light, uint32_t chunkCount, bool rtrad) const;
+    void record(VkCommandBuffer cmd, const LightBuffers& light, bool rtrad) const;
 
 private:
     vk::ComputeProgram program_;

@@ -18,11 +18,6 @@ double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Super-blocks whose bits fit at once: 64 MiB and their transposes on a GPU, enough to fill it for 20 ms; a
-// few on a software device, where a batch is small and the cache counts.
-uint32_t superCapacity(bool software) {
-    return software ? 16 : 512;
-}
 // The first batch of a bake, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstUnits = 16;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
@@ -35,10 +30,8 @@ uint32_t superRows(uint32_t chunkCount) {
 } // namespace
 
 uint64_t Solver::bytes(uint32_t chunkCount, bool software) {
-    const uint64_t rows = superRows(chunkCount), supers = rows * (rows + 1) / 2;
-    const uint64_t bitsBytes = uint64_t{kSuperBlocks} * shader::kBlockWords * sizeof(uint32_t);
-    const uint64_t partialBytes = uint64_t{2} * shader::kSuperPatches * sizeof(glm::vec4);
-    return supers * sizeof(SuperBlock) + superCapacity(software) * (3 * bitsBytes + partialBytes);
+    const uint64_t rows = superRows(chunkCount);
+    return PairBuffers::bytes(rows * (rows + 1) / 2, software);
 }
 
 Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& light, Tracer& tracer,
@@ -51,21 +44,7 @@ Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& 
         throw Error("pure method: " + std::to_string(patches.count) +
                     " patches are more than it can pair: use a smaller --size");
     }
-    const auto capacity = static_cast<uint32_t>(
-        std::min<uint64_t>(superCapacity(device.info().software()), rows * (rows + 1) / 2 + 1));
-    const VkDeviceSize bitsBytes =
-        VkDeviceSize{capacity} * kSuperBlocks * shader::kBlockWords * sizeof(uint32_t);
-    pairs_.bitsUnits = capacity * kSuperBlocks;
-    pairs_.supers =
-        vk::Buffer(device, {.size = rows * (rows + 1) / 2 * sizeof(SuperBlock), .name = "super-blocks"});
-    pairs_.bits = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits"});
-    if (settings.transport.rtrad) {
-        pairs_.reversed = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits, reversed"});
-    }
-    pairs_.transposed = vk::Buffer(device, {.size = bitsBytes, .name = "visibility bits, transposed"});
-    pairs_.partial =
-        vk::Buffer(device, {.size = VkDeviceSize{capacity} * 2 * shader::kSuperPatches * sizeof(glm::vec4),
-                            .name = "partial sums"});
+    pairs_ = PairBuffers(device, rows * (rows + 1) / 2, settings.transport.rtrad);
     rays_ = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 
     // RTRad starts from the emission itself, lighting from nothing.
@@ -109,7 +88,7 @@ void Solver::beginPass() {
     VkCommandBuffer cmd = commands_.begin();
     vkCmdFillBuffer(cmd, light_.ligOut.handle(), 0, VK_WHOLE_SIZE, 0);
     vkCmdFillBuffer(cmd, rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-    radiancePass_.record(cmd, light_, patches_.chunkCount(), settings_.transport);
+    radiancePass_.record(cmd, light_, settings_.transport);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
@@ -158,8 +137,7 @@ void Solver::traceBatch(uint32_t unitCount) {
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
     if (endSuper > firstSuper) {
-        gatherPass_.record(cmd, light_, pairs_, firstSuper, endSuper - firstSuper, chunkCount,
-                           settings_.transport);
+        gatherPass_.record(cmd, light_, pairs_, {firstSuper, endSuper - firstSuper}, settings_.transport);
         vk::barrier(cmd);
     }
     timestamps_.mark(cmd, 2);
@@ -185,7 +163,7 @@ uint64_t Solver::raysSoFar() {
 
 void Solver::endPass() {
     VkCommandBuffer cmd = commands_.begin();
-    finishPass_.record(cmd, light_, patches_.chunkCount(), settings_.transport.rtrad);
+    finishPass_.record(cmd, light_, settings_.transport.rtrad);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
