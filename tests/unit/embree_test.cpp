@@ -390,7 +390,7 @@ TEST(EmbreeBlockers, stopOnlyWhatTheirTrianglesStop) {
     const std::vector<PatchChunk> chunks = buildChunks(scene.patches, false);
     std::mt19937 random(5);
     uint32_t hits = 0, found = 0, wrong = 0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 20000; ++k) {
         const uint32_t triangle = random() % scene.mesh.opaqueCount,
                        i = random() % uint32_t(scene.patches.size());
         const uint32_t column = random() % uint32_t(chunks.size());
@@ -407,13 +407,13 @@ TEST(EmbreeBlockers, stopOnlyWhatTheirTrianglesStop) {
         shader::AllTriangles all{one};
         for (uint32_t j = 0; j < kChunk; ++j) {
             const Patch& other = scene.patches[column * kChunk + j];
-            if (!(other.flags & shader::kPatchSends)) continue;
+            if (!shader::pairFaces(patch, other)) continue;
             const shader::Segment s = shader::pairSegment(patch, other, false);
             const bool hit = all.nearest(s.origin, s.direction, 0, 1).triangle != shader::kNoPatch;
             hits += hit, found += stopped >> j & 1, wrong += (stopped >> j & 1) && !hit;
         }
     }
-    EXPECT_GT(hits, 1000u);
+    EXPECT_GT(hits, 300u);
     EXPECT_GT(found, hits * 9 / 10);
     EXPECT_EQ(wrong, 0u);
 }
