@@ -40,9 +40,13 @@ Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& 
       radiancePass_(device), gatherPass_(device, settings.transport.rtrad), finishPass_(device),
       commands_(device), timestamps_(device, 3) {
     const uint64_t rows = superRows(patches.chunkCount());
-    if (rows * (rows + 1) / 2 * kSuperBlocks > std::numeric_limits<uint32_t>::max()) {
-        throw Error("pure method: " + std::to_string(patches.count) +
-                    " patches are more than it can pair: use a smaller --size");
+    constexpr uint64_t kMaxRows = 5791; // whose units can still be numbered by 32 bits
+    if (rows > kMaxRows) {
+        const double fits =
+            patches.scene.size * std::sqrt(static_cast<double>(kMaxRows) / static_cast<double>(rows));
+        throw Error("pure method: the pairs of " + std::to_string(patches.count) +
+                    " patches are too many: --size " + std::to_string(static_cast<uint32_t>(fits) / 64 * 64) +
+                    " fits");
     }
     pairs_ = PairBuffers(device, rows * (rows + 1) / 2, settings.transport.rtrad);
     rays_ = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
