@@ -1,0 +1,99 @@
+#include "app/prepare.h"
+#include "assets/float_image.h"
+#include "bake/baker.h"
+#include "bake/metrics.h"
+#include "tests/gpu/gpu_environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+// RTRad's own pictures. It showed the lightmap stretched over 1440 x 810 pixels, bilinear with 8-bit weights,
+// wrapped at the borders, clamped and sRGB encoded to 8 bits; DFPR is the mean RGB distance in units of full
+// scale.
+
+namespace relume {
+namespace {
+
+const std::string kScene = RELUME_SHARED_DIR "/scenes/rtrad/CornellLucy.glb";
+const std::string kPictures = RELUME_SHARED_DIR "/references/rtrad/";
+
+FloatImage bakePreset(uint32_t size, TracerKind tracer) {
+    PreparedScene prepared = prepareScene({.path = kScene, .size = size});
+    BakeSettings settings;
+    settings.size = size;
+    settings.tracer = tracer;
+    settings.solver = {.transport = {.reflectivity = 0.9f, .rtrad = true}, .passes = 2, .error = 0};
+    Baker baker(testDevice(), prepared.scene, std::move(prepared.mesh), settings);
+    while (!baker.solver().done())
+        baker.solver().step();
+    return baker.lightmap({.quantity = Quantity::Radiance});
+}
+
+struct Taps {
+    uint32_t i0, i1;
+    double f;
+};
+Taps tapsAt(uint32_t pixel, uint32_t pixels, uint32_t texels) {
+    const double t = (pixel + 0.5) / pixels * texels - 0.5, base = std::floor(t);
+    const auto wrapped = [&](double i) {
+        return static_cast<uint32_t>((static_cast<int64_t>(i) + texels) % texels);
+    };
+    return {wrapped(base), wrapped(base + 1), std::round((t - base) * 256) / 256};
+}
+
+double encoded(double linear) {
+    const double x = std::clamp(linear, 0.0, 1.0);
+    return std::round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055));
+}
+
+double dfprAgainst(const FloatImage& lightmap, const std::string& picture) {
+    const FloatImage shown = readImage(picture);
+    double sum = 0;
+    for (uint32_t y = 0; y < shown.height; ++y) {
+        const Taps v = tapsAt(y, shown.height, lightmap.height);
+        for (uint32_t x = 0; x < shown.width; ++x) {
+            const Taps u = tapsAt(x, shown.width, lightmap.width);
+            double squares = 0;
+            for (const char* channel : {"R", "G", "B"}) {
+                const auto& plane = *lightmap.find(channel);
+                const auto at = [&](uint32_t i, uint32_t j) {
+                    return double{plane[size_t{j} * lightmap.width + i]};
+                };
+                const double top = at(u.i0, v.i0) * (1 - u.f) + at(u.i1, v.i0) * u.f;
+                const double bottom = at(u.i0, v.i1) * (1 - u.f) + at(u.i1, v.i1) * u.f;
+                const double theirs = encoded((*shown.find(channel))[size_t{y} * shown.width + x]);
+                const double difference = encoded(top * (1 - v.f) + bottom * v.f) - theirs;
+                squares += difference * difference;
+            }
+            sum += std::sqrt(squares);
+        }
+    }
+    return sum / 255 / (static_cast<double>(shown.width) * shown.height);
+}
+
+TEST(Reference, purePresetMatchesRtradsPicture) {
+    if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
+    std::string why;
+    const TracerKind tracer = chooseTracer(testDevice().info(), why);
+    EXPECT_LE(dfprAgainst(bakePreset(128, tracer), kPictures + "128_1x1.png"), 0.001);
+}
+
+// Every other tracer gives the same map, so it matches the picture too.
+TEST(Reference, presetIsTheSameWithEveryTracer) {
+    if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
+    constexpr uint32_t kSize = 48;
+    std::string why;
+    const FloatImage expected = bakePreset(kSize, chooseTracer(testDevice().info(), why));
+    for (TracerKind tracer : {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh}) {
+        if (!tracerProblem(tracer, testDevice().info()).empty()) continue;
+        const FloatImage image = bakePreset(kSize, tracer);
+        EXPECT_LE(compareImages(image, tracerName(tracer), expected, "expected").dfpr, 0.0002)
+            << tracerName(tracer);
+    }
+}
+
+} // namespace
+} // namespace relume
