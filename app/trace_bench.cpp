@@ -21,6 +21,7 @@ double secondsSince(Clock::time_point start) {
 }
 
 constexpr uint32_t kLinkSamples = 64;
+constexpr double kGolden = 0.618;
 // A software device compiles a kernel when it is first run: batches before this many count for nothing.
 constexpr uint32_t kWarmUp = 2;
 
@@ -68,6 +69,8 @@ public:
             {.size = VkDeviceSize{most} * kLinkSamples * kChunk * sizeof(uint32_t), .name = "links"});
         double total = 0;
         uint64_t rays = 0;
+        // Portions begin at chunks that a golden-ratio stride picks, so that all parts of the scene count.
+        const auto stride = std::max(1u, static_cast<uint32_t>(kGolden * chunks));
         uint32_t batch = 4, next = 0, runs = 0;
         const auto start = Clock::now();
         while (secondsSince(start) < desc_.seconds || runs <= kWarmUp) {
@@ -77,9 +80,9 @@ public:
             batch = scaled(batch, secondsSince(batchStart));
             if (runs++ >= kWarmUp) {
                 total += seconds;
-                rays += uint64_t{count} * kChunk * kLinkSamples;
+                rays += sendingPatches(next, count) * kLinkSamples;
             }
-            next = next + count < chunks ? next + count : 0;
+            next = (next + stride) % chunks;
         }
         return static_cast<double>(rays) / total;
     }
@@ -90,6 +93,13 @@ private:
         return static_cast<uint32_t>(std::clamp(batch * std::min(factor, 4.0), 1.0, 1e6));
     }
 
+    // Only these have rays.
+    uint64_t sendingPatches(uint32_t firstChunk, uint32_t count) const {
+        const auto first = patches_.scene.patches.begin() + firstChunk * kChunk;
+        return static_cast<uint64_t>(std::count_if(first, first + count * kChunk, [](const shader::Patch& p) {
+            return (p.flags & shader::kPatchSends) != 0;
+        }));
+    }
     uint64_t patchesOf(uint32_t row) const {
         return uint64_t{std::min(kSuper, patches_.chunkCount() - row * kSuper)} * kChunk;
     }
@@ -106,7 +116,7 @@ private:
                 ordered.push_back({row, column});
         }
         const auto n = static_cast<uint32_t>(ordered.size());
-        auto stride = std::max(1u, static_cast<uint32_t>(0.618 * n));
+        auto stride = std::max(1u, static_cast<uint32_t>(kGolden * n));
         while (std::gcd(stride, n) != 1)
             ++stride;
         for (uint64_t i = 0; i < n; ++i)

@@ -72,10 +72,13 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
             device, scene, mesh,
             {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
         clock.end("cit");
-        patches_ = buildPatches(scene, std::move(mesh), group, rtrad);
+        patches_ = buildPatches(scene, std::move(mesh), group,
+                                {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
+        Solver::checkPairs(patches_);
     }
     if (patches_.clampedAlbedo > 0) {
-        spdlog::warn("{} patches have an albedo above 0.98, which is clamped: lower the base colour",
+        spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
+                     "lower the base colour",
                      patches_.clampedAlbedo);
     }
     light_ = std::make_unique<LightBuffers>(device, patches_);
@@ -125,9 +128,10 @@ void Baker::findInvalid(const vk::Device& device, TracerKind kind) {
         invalid_, patches_.count);
     vk::upload(device, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
+    if (!tracer_->onCpu()) return; // reads them from the device
     tracer_.reset();
     tracer_ = makeTracer(kind, device, patches_.scene,
-                         light_->patches); // tracers may keep the patches in a form of their own
+                         light_->patches); // it keeps them in a form of its own
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

@@ -29,7 +29,7 @@ struct PhaseTime {
 class Baker {
 public:
     /// The largest lightmap edge.
-    static constexpr uint32_t kMaxSize = 8192;
+    static constexpr uint32_t kMaxSize = 4096; // texels are numbered by 24 bits in Patch::flags
 
     /// Throws Error when the size does not fit the device's memory (before anything is allocated), no texel
     /// is covered or the tracer cannot run.

@@ -19,6 +19,15 @@ uint64_t superCapacity(bool software) {
     return software ? 16 : 512;
 }
 
+// One workgroup per chunk, counted on in y: 65535 in x are all that a device must take.
+template<typename Push>
+void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
+                    uint32_t chunks) {
+    constexpr uint32_t kMaxX = 32768;
+    const uint32_t x = std::min(chunks, kMaxX);
+    program.dispatch(cmd, push, x, (chunks + x - 1) / x);
+}
+
 } // namespace
 
 PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, bool rtrad) {
@@ -93,17 +102,16 @@ void GatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const Pa
                                     .firstSuper = range.first,
                                     .superCount = range.count,
                                     .patchCount = light.chunkCount * shader::kChunk};
-    reduce_.dispatch(cmd, reduce, light.chunkCount);
+    dispatchChunks(reduce_, cmd, reduce, light.chunkCount);
 }
 
 void FinishPass::record(VkCommandBuffer cmd, const LightBuffers& light, bool rtrad) const {
-    const shader::FinishPush push{.patches = light.patches.address(),
-                                  .emission = light.emission.address(),
+    const shader::FinishPush push{.emission = light.emission.address(),
                                   .ligIn = light.ligIn.address(),
                                   .ligOut = light.ligOut.address(),
                                   .patchCount = light.chunkCount * shader::kChunk,
                                   .rtrad = rtrad ? 1u : 0u};
-    program_.dispatch(cmd, push, light.chunkCount);
+    dispatchChunks(program_, cmd, push, light.chunkCount);
 }
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #include "bake/patches.h"
 
 #include "assets/error.h"
+#include "assets/float_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,9 @@ constexpr float kMaxAlbedo = 0.98f; // above, the iteration hardly ends (convent
 constexpr float kOffset = 1e-4f;    // of a texel's size, along the normal
 constexpr float kFloatError =
     8.0f * 0.5f * std::numeric_limits<float>::epsilon(); // of a coordinate after interpolation
-// The area of a chart's texels is corrected to that of its triangles, but never by more than this: beyond,
-// texels were lost to another chart drawn over them.
-constexpr float kMaxAreaCorrection = 2.0f;
+// A chart's texels are scaled to the area of its triangles, but never up by more than this: a chart two
+// texels wide may catch one centre in each direction; where more is missing another chart was drawn over it.
+constexpr float kMaxAreaCorrection = 4.0f;
 
 // The affine map from the lightmap to the world that a triangle defines.
 struct TriangleFrame {
@@ -60,12 +61,13 @@ struct ThinChart {
 
 class Builder {
 public:
-    Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad)
-        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(rtrad) {
+    Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad),
+          maxAlbedo_(kMaxAlbedo / std::max(desc.reflectivity, 1e-6f)) {
         materials_.emplace_back(); // glTF's default material
         set_.scene.mesh = std::move(mesh);
         set_.scene.size = group.size;
-        set_.scene.rtrad = rtrad;
+        set_.scene.rtrad = desc.rtrad;
         const WorldMesh& m = set_.scene.mesh;
         frames_.reserve(m.triangleCount());
         for (uint32_t t = 0; t < m.triangleCount(); ++t)
@@ -99,7 +101,8 @@ private:
         std::vector<uint32_t> largest(m.chartCount, kNoPatch);
         for (uint32_t t = 0; t < m.triangleCount(); ++t) {
             const uint32_t chart = m.chart[t];
-            if (chart == kNoChart) continue;
+            // Of a masked chart the holes are no patches, and how much is hole only its texels tell.
+            if (chart == kNoChart || (!rtrad_ && t >= m.opaqueCount)) continue;
             area[chart] += frames_[t].area;
             if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
                 largest[chart] = t;
@@ -112,10 +115,9 @@ private:
         const uint32_t tiles = (group_.size + kTile - 1) / kTile;
         thin_.resize(size_t{tiles} * tiles);
         for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
-            if (texels[chart] > 0.0) {
+            if (texels[chart] > 0.0 && area[chart] > 0.0) {
                 const auto scale = static_cast<float>(area[chart] / texels[chart]);
-                if (!rtrad_)
-                    areaScale_[chart] = std::clamp(scale, 1.0f / kMaxAreaCorrection, kMaxAreaCorrection);
+                if (!rtrad_) areaScale_[chart] = std::min(scale, kMaxAreaCorrection);
             } else if (!rtrad_ && largest[chart] != kNoPatch) {
                 const glm::uvec2 texel = texelOf(centroidUv(largest[chart]));
                 thin_[texel.y / kTile * tiles + texel.x / kTile].push_back(
@@ -182,7 +184,7 @@ private:
     }
 
     // A chart that covers no texel centre: one patch at the centroid of its largest triangle with the whole
-    // chart's area. Its colour is the material's factor: no texel was shaded.
+    // chart's area and the colour in its middle.
     NewPatch thinPatch(const ThinChart& thin) {
         const WorldMesh& m = set_.scene.mesh;
         const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
@@ -197,11 +199,37 @@ private:
              texel.y * group_.size + texel.x);
         const Material& material = materials_[m.material[thin.triangle]];
         const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
-        const float diffuse =
-            1.0f - material.metallic + 0.5f * material.metallic * material.roughness * material.roughness;
-        result.albedo = clampAlbedo(material.baseColor * color * diffuse);
-        result.emission = glm::vec4(material.emission, 0.0f);
+        const glm::vec4 surface =
+            textureAt(material.metallicRoughnessTexture, m.metallicUv, thin.triangle, false);
+        const float metallic = material.metallic * surface.b, roughness = material.roughness * surface.g;
+        const float diffuse = 1.0f - metallic + 0.5f * metallic * roughness * roughness;
+        const glm::vec4 base = textureAt(material.baseColorTexture, m.baseUv, thin.triangle, true);
+        result.albedo = clampAlbedo(material.baseColor * color * base * diffuse);
+        result.emission = glm::vec4(material.emission, 0.0f) *
+                          textureAt(material.emissionTexture, m.emissionUv, thin.triangle, true);
         return result;
+    }
+
+    // The texel in the middle of a triangle, repeated beyond the edges; white without a texture.
+    glm::vec4 textureAt(const TextureRef& ref, const std::vector<glm::vec2>& uvs, uint32_t triangle,
+                        bool srgb) const {
+        if (ref.texture < 0) return glm::vec4(1.0f);
+        const int index = scene_.textures[static_cast<size_t>(ref.texture)].image;
+        const Image& image = scene_.images[static_cast<size_t>(index)];
+        const glm::vec2* corner = &uvs[size_t{triangle} * 3];
+        const glm::vec2 uv = glm::fract((corner[0] + corner[1] + corner[2]) / 3.0f);
+        const auto x =
+            std::min(image.width - 1, static_cast<uint32_t>(uv.x * static_cast<float>(image.width)));
+        const auto y =
+            std::min(image.height - 1, static_cast<uint32_t>(uv.y * static_cast<float>(image.height)));
+        glm::vec4 value;
+        for (int k = 0; k < 4; ++k) {
+            const float v =
+                static_cast<float>(image.rgba[(size_t{y} * image.width + x) * 4 + static_cast<size_t>(k)]) /
+                255.0f;
+            value[k] = srgb && k < 3 ? static_cast<float>(linearFromSrgb(v)) : v;
+        }
+        return value;
     }
 
     void fill(NewPatch& p, glm::vec3 position, glm::vec3 shading, glm::vec3 normal, float area,
@@ -232,9 +260,9 @@ private:
     }
 
     glm::vec4 clampAlbedo(glm::vec4 albedo) {
-        if (rtrad_ || std::max({albedo.r, albedo.g, albedo.b}) <= kMaxAlbedo) return albedo;
+        if (rtrad_ || std::max({albedo.r, albedo.g, albedo.b}) <= maxAlbedo_) return albedo;
         ++set_.clampedAlbedo;
-        return glm::min(albedo, glm::vec4(kMaxAlbedo));
+        return glm::min(albedo, glm::vec4(maxAlbedo_));
     }
 
     void addBounds() {
@@ -323,6 +351,7 @@ private:
     std::vector<Material> materials_;
     const TextureGroup& group_;
     const bool rtrad_;
+    const float maxAlbedo_; // whose product with the reflectivity is kMaxAlbedo
     PatchSet set_;
     std::vector<TriangleFrame> frames_;               // per triangle
     std::vector<float> areaScale_;                    // per chart
@@ -332,8 +361,8 @@ private:
 
 } // namespace
 
-PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad) {
-    Builder builder(scene, std::move(mesh), group, rtrad);
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc) {
+    Builder builder(scene, std::move(mesh), group, desc);
     return builder.build();
 }
 

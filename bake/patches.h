@@ -20,14 +20,19 @@ struct PatchSet {
     std::vector<glm::vec4> albedo;           // a unused
     std::vector<glm::vec4> emission;         // [cd/m^2], a unused
     uint32_t count = 0;                      // patches without padding
-    uint32_t clampedAlbedo = 0;              // patches whose albedo was above 0.98
+    uint32_t clampedAlbedo = 0;              // patches whose albedo times reflectivity was above 0.98
 
     uint32_t chunkCount() const { return scene.chunkCount(); }
 };
 
+struct PatchDesc {
+    float reflectivity = 1.0f; // scales the albedo later; their product is clamped to 0.98
+    bool rtrad = false;
+};
+
 /// Takes over the mesh. rtrad: shading normals for everything, no offsets, no back sides, no area correction,
 /// albedo as it is. Throws Error when no texel is covered.
-PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, bool rtrad);
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc);
 
 /// Marks patches as lying inside something (kPatchSends cleared): those more than half of whose links are
 /// kLinkBack. links: [chunk][sample][64]. Returns how many.

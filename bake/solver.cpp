@@ -21,7 +21,7 @@ double secondsSince(Clock::time_point start) {
 // The first batch of a bake, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstUnits = 16;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
-constexpr double kMaxGrowth = 8.0;
+constexpr double kMaxGrowth = 4.0;
 
 uint32_t superRows(uint32_t chunkCount) {
     return (chunkCount + kSuper - 1) / kSuper;
@@ -34,11 +34,7 @@ uint64_t Solver::bytes(uint32_t chunkCount, bool software) {
     return PairBuffers::bytes(rows * (rows + 1) / 2, software);
 }
 
-Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& light, Tracer& tracer,
-               const SolverSettings& settings)
-    : device_(device), patches_(patches), light_(light), tracer_(tracer), settings_(settings),
-      radiancePass_(device), gatherPass_(device, settings.transport.rtrad), finishPass_(device),
-      commands_(device), timestamps_(device, 3) {
+void Solver::checkPairs(const PatchSet& patches) {
     const uint64_t rows = superRows(patches.chunkCount());
     constexpr uint64_t kMaxRows = 5791; // whose units can still be numbered by 32 bits
     if (rows > kMaxRows) {
@@ -48,6 +44,14 @@ Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& 
                     " patches are too many: --size " + std::to_string(static_cast<uint32_t>(fits) / 64 * 64) +
                     " fits");
     }
+}
+
+Solver::Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& light, Tracer& tracer,
+               const SolverSettings& settings)
+    : device_(device), patches_(patches), light_(light), tracer_(tracer), settings_(settings),
+      radiancePass_(device), gatherPass_(device, settings.transport.rtrad), finishPass_(device),
+      commands_(device), timestamps_(device, 3) {
+    const uint64_t rows = superRows(patches.chunkCount());
     pairs_ = PairBuffers(device, rows * (rows + 1) / 2, settings.transport.rtrad);
     rays_ = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 
@@ -70,11 +74,10 @@ void Solver::step() {
         const double wanted = unitsPerMs_ > 0 ? unitsPerMs_ * settings_.batchMs : kFirstUnits;
         // Bits of a super-block that is only partly traced stay until the rest has come.
         const uint32_t room = nextUnit_ / kSuperBlocks * kSuperBlocks + pairs_.bitsUnits - nextUnit_;
-        const auto units = static_cast<uint32_t>(
-            std::clamp(wanted, 1.0, static_cast<double>(std::min(room, unitCount - nextUnit_))));
+        const Portion portion = cutPortion(wanted, std::min(room, unitCount - nextUnit_));
         const auto batchStart = Clock::now();
-        traceBatch(units);
-        const double rate = units / std::max(1e-3, 1000.0 * secondsSince(batchStart));
+        traceBatch(portion.units);
+        const double rate = std::max(1.0, portion.busy) / std::max(1e-3, 1000.0 * secondsSince(batchStart));
         unitsPerMs_ = unitsPerMs_ > 0 ? std::min(rate, kMaxGrowth * unitsPerMs_) : rate;
         progress_.passFraction = static_cast<double>(nextUnit_) / unitCount;
     }
@@ -86,6 +89,21 @@ void Solver::step() {
             std::accumulate(progress_.passSeconds.begin(), progress_.passSeconds.end(), 0.0);
         progress_.passSeconds.push_back(progress_.seconds - before);
     }
+}
+
+// So many units that about `wanted` of them have a sender: the others cost next to nothing.
+Solver::Portion Solver::cutPortion(double wanted, uint32_t most) const {
+    Portion portion;
+    while (portion.units < most && portion.busy < wanted) {
+        const uint32_t unit = nextUnit_ + portion.units, left = kSuperBlocks - unit % kSuperBlocks;
+        const double share = busyShare_[unit / kSuperBlocks];
+        const double missing = std::max(1.0, std::ceil((wanted - portion.busy) / share));
+        const uint32_t take =
+            std::min(most - portion.units, static_cast<uint32_t>(std::min<double>(left, missing)));
+        portion.units += take;
+        portion.busy += take * share;
+    }
+    return portion;
 }
 
 void Solver::beginPass() {
@@ -100,14 +118,17 @@ void Solver::beginPass() {
     // Pairs of super-rows in which somebody sends, row by row.
     const auto sends = vk::readBuffer<uint32_t>(device_, light_.chunkSends, patches_.chunkCount());
     const uint32_t rows = superRows(patches_.chunkCount());
-    std::vector<bool> rowSends(rows, false);
-    for (uint32_t chunk = 0; chunk < sends.size(); ++chunk) {
-        if (sends[chunk] != 0) rowSends[chunk / kSuper] = true;
-    }
+    std::vector<uint32_t> sending(rows, 0); // chunks of each row
+    for (uint32_t chunk = 0; chunk < sends.size(); ++chunk)
+        sending[chunk / kSuper] += sends[chunk] != 0;
     supers_.clear();
+    busyShare_.clear();
     for (uint32_t row = 0; row < rows; ++row) {
         for (uint32_t column = row; column < rows; ++column) {
-            if (rowSends[row] || rowSends[column]) supers_.push_back({row, column});
+            if (sending[row] + sending[column] == 0) continue;
+            supers_.push_back({row, column});
+            const double silent = static_cast<double>(kSuper - sending[row]) * (kSuper - sending[column]);
+            busyShare_.push_back(static_cast<float>(1.0 - silent / kSuperBlocks));
         }
     }
     if (!supers_.empty())
@@ -173,7 +194,7 @@ void Solver::endPass() {
     commands_.run();
     progress_.rays = raysSoFar();
     ++progress_.passes;
-    progress_.passFraction = 1.0;
+    progress_.passFraction = 0;
     measureChange(vk::readBuffer<glm::vec4>(device_, light_.ligOut, patches_.scene.patches.size()));
     std::swap(light_.ligIn, light_.ligOut);
     inPass_ = false;

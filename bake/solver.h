@@ -51,11 +51,18 @@ public:
     const std::vector<glm::vec4>& light() const { return last_; }
 
     static constexpr uint32_t kMaxPasses = 256;
+    /// Throws Error, with the size that fits, when there are more pairs than can be numbered.
+    static void checkPairs(const PatchSet& patches);
     /// Device bytes of the solver's own buffers, beside LightBuffers.
     static uint64_t bytes(uint32_t chunkCount, bool software);
 
 private:
+    struct Portion {
+        uint32_t units = 0;
+        double busy = 0; // of these have a sender, about
+    };
     void beginPass();
+    Portion cutPortion(double wanted, uint32_t most) const;
     void traceBatch(uint32_t unitCount);
     void endPass();
     void measureChange(const std::vector<glm::vec4>& now);
@@ -73,9 +80,10 @@ private:
     PairBuffers pairs_;
     vk::Buffer rays_;
     std::vector<SuperBlock> supers_; // of the current pass
+    std::vector<float> busyShare_;   // of each one: units in which somebody sends, > 0
     bool inPass_ = false, done_ = false;
     uint32_t nextUnit_ = 0; // of supers_, in units
-    double unitsPerMs_ = 0; // measured; 0: nothing yet
+    double unitsPerMs_ = 0; // with senders, measured; 0: nothing yet
     double lastChange_ = 0; // RMS [cd/m^2] of the last pass
     std::vector<glm::vec4> last_;
     SolverProgress progress_;

@@ -98,6 +98,20 @@ std::vector<shader::CitMaterial> citMaterials(const Scene& scene, TextureArray& 
     return result;
 }
 
+std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector<VkFormat>& formats,
+                                     uint32_t size) {
+    std::vector<vk::Image2D> images;
+    for (VkFormat format : formats) {
+        images.emplace_back(device, vk::Image2D::Desc{.width = size,
+                                                      .height = size,
+                                                      .format = format,
+                                                      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                                      .name = "texture group"});
+    }
+    return images;
+}
+
 // Copies an image in TRANSFER_SRC_OPTIMAL to the host, one row of values per texel row.
 template<typename T>
 std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image) {
@@ -137,18 +151,10 @@ TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene,
                                .textureCount = static_cast<uint32_t>(bound.size()),
                                .constants = {}},
                               bound);
-    std::vector<vk::Image2D> images;
+    const std::vector<vk::Image2D> images = makeTargets(device, formats, desc.size);
     std::vector<const vk::Image2D*> targets;
-    images.reserve(formats.size());
-    for (VkFormat format : formats) {
-        images.emplace_back(device, vk::Image2D::Desc{.width = desc.size,
-                                                      .height = desc.size,
-                                                      .format = format,
-                                                      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-                                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                                                      .name = "texture group"});
-        targets.push_back(&images.back());
-    }
+    for (const vk::Image2D& image : images)
+        targets.push_back(&image);
 
     const vk::Buffer positions = vk::makeBuffer(device, mesh.positions, "positions");
     const vk::Buffer normals = vk::makeBuffer(device, mesh.normals, "normals");

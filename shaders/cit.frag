@@ -59,14 +59,16 @@ void main() {
     vec4 color = colors.items[i] * b.x + colors.items[i + 1u] * b.y + colors.items[i + 2u] * b.z;
 
     CitMaterial m = CitMaterials(push.materials).items[Words(push.material).items[triangle]];
+    bool rtrad = push.rtrad != 0u; // knows neither vertex colours, nor emission textures, nor holes
+    if (rtrad) color = vec4(1.0);
     vec4 base = m.baseColor * color * texel(m.baseTexture, uvAt(push.baseUv, b), uvAt(push.baseUv, dx), uvAt(push.baseUv, dy));
-    if (m.alphaCutoff > 0.0 && base.a < m.alphaCutoff) discard;
-    vec3 emission = m.emission * texel(m.emissionTexture, uvAt(push.emissionUv, b), uvAt(push.emissionUv, dx),
+    if (!rtrad && m.alphaCutoff > 0.0 && base.a < m.alphaCutoff) discard;
+    vec3 emission = m.emission * texel(rtrad ? -1 : m.emissionTexture, uvAt(push.emissionUv, b), uvAt(push.emissionUv, dx),
                                        uvAt(push.emissionUv, dy)).rgb;
     vec4 surface = texel(m.metallicTexture, uvAt(push.metallicUv, b), uvAt(push.metallicUv, dx), uvAt(push.metallicUv, dy));
     float metallic = m.metallic * surface.b, roughness = m.roughness * surface.g;
     // A rough metal still sends light on, as Unity's meta pass has it.
-    float diffuse = push.rtrad != 0u ? 1.0 : 1.0 - metallic + 0.5 * metallic * roughness * roughness;
+    float diffuse = rtrad ? 1.0 : 1.0 - metallic + 0.5 * metallic * roughness * roughness;
 
     vec3 corner = positions.items[i];
     vec3 along = (positions.items[i + 1u] - corner) * b.y + (positions.items[i + 2u] - corner) * b.z;

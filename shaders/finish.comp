@@ -9,7 +9,7 @@ const float kRtradLight = 0.1;
 layout(local_size_x = 64) in;
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
     Vec4s ligOut = Vec4s(push.ligOut);
     vec4 light = vec4(ligOut.items[index].rgb, 1.0);

@@ -8,7 +8,7 @@ layout(push_constant, scalar) uniform Push { ReducePush push; };
 layout(local_size_x = 64) in;
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
     uint super = index / kSuperPatches, local = index % kSuperPatches;
     Vec4s partial = Vec4s(push.partial), ligOut = Vec4s(push.ligOut);

@@ -194,7 +194,6 @@ struct RadiancePush {
     uint all; // 1: chunks without light count as senders too
 };
 struct FinishPush {
-    ADDRESS patches;
     ADDRESS emission;
     ADDRESS ligIn;
     ADDRESS ligOut;

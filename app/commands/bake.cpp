@@ -35,14 +35,22 @@ std::string progressText(Solver& solver, const SolverSettings& settings) {
     return text + fmt::format("  {} left{}", formatDuration(left), counted ? "" : " in this pass");
 }
 
+void stopIfInterrupted() {
+    if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");
+}
+
 // Steps the solver to its end. Throws Error when the user interrupts.
 void solve(Solver& solver, const SolverSettings& settings) {
-    const InterruptGuard guard;
     ProgressLine line;
     while (!solver.done()) {
         solver.step();
-        if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");
-        if (line.due()) line.show(progressText(solver, settings));
+        stopIfInterrupted();
+        if (!solver.done() && line.due()) line.show(progressText(solver, settings));
+    }
+    if (!solver.progress().converged && settings.passes == 0) {
+        spdlog::warn(
+            "the error is still {:.2g} after {} passes: lower the albedo or --reflectivity, or raise --error",
+            solver.progress().error, solver.progress().passes);
     }
 }
 
@@ -58,22 +66,27 @@ void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& r
         "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
         "preset={}",
         o.size, request.bake.solver.passes, request.bake.solver.error,
-        request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor, o.dilate,
-        request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0, o.preset.empty() ? "none" : o.preset);
+        request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor,
+        request.lightmap.rtrad ? 1 : o.dilate, request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0,
+        o.preset.empty() ? "none" : o.preset);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }
 
-void warnIfDark(const Scene& scene) {
-    for (const Material& m : scene.materials) {
-        if (m.emission != glm::vec3(0.0f)) return;
+void warnIfDark(const Scene& scene, const PatchSet& patches) {
+    for (uint32_t i = 0; i < patches.count; ++i) {
+        const bool emits =
+            patches.emission[i].r > 0 || patches.emission[i].g > 0 || patches.emission[i].b > 0;
+        if (emits && (patches.scene.patches[i].flags & shader::kPatchSends) != 0) return;
     }
-    spdlog::warn("{}: no material emits, the lightmap will be black: give a material an emissive factor{}",
+    spdlog::warn("{}: nothing that has lightmap UVs emits, the lightmap will be black: give a material an "
+                 "emissive factor{}",
                  scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
 }
 
 void bake(const BakeOptions& o) {
     const auto start = Clock::now();
+    const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(o);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
@@ -83,15 +96,15 @@ void bake(const BakeOptions& o) {
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
 
     PreparedScene prepared = prepareScene(request.prepare);
-    warnIfDark(prepared.scene);
+    stopIfInterrupted();
     const auto deviceStart = Clock::now();
     const vk::Device device({.select = o.device, .validation = o.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     const double deviceSeconds = secondsSince(deviceStart);
-    if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);
 
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     spdlog::info("{} patches", baker.patches().count);
+    warnIfDark(prepared.scene, baker.patches());
     solve(baker.solver(), request.bake.solver);
     const auto writeStart = Clock::now();
     FloatImage image = baker.lightmap(request.lightmap);
@@ -99,6 +112,7 @@ void bake(const BakeOptions& o) {
     addAttributes(image, o, request, progress);
     writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
     if (!o.picture.empty()) writeImage(o.picture, image);
+    if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);
 
     spdlog::info("{} passes, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
                  progress.passes, static_cast<double>(progress.rays) * 1e-6, progress.seconds,
