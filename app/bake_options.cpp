@@ -63,7 +63,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
 BakeRequest resolveBakeOptions(const BakeOptions& o) {
     const bool rtrad = o.preset == "rtrad";
     if (rtrad && o.quantity == "lighting") {
-        throw UsageError("--quantity lighting: the rtrad preset computes RTRad's radiosity only; leave it "
+        throw UsageError("--quantity lighting: --preset rtrad computes RTRad's radiosity only; leave it "
                          "out or use radiance");
     }
     if (!rtrad && o.distanceFactor >= 0) {
