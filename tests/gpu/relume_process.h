@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace relume {
+
+/// A run of the relume executable as a user starts it, its outputs caught.
+struct ProcessResult {
+    int status = -1; // exit status; 128 + signal where one ended it
+    std::string out, err;
+};
+
+/// `onErr` sees all of stderr so far whenever more has come, and returns a signal to send, or 0.
+ProcessResult runRelume(const std::vector<std::string>& arguments,
+                        const std::function<int(const std::string& err)>& onErr = nullptr);
+/// The same for another program, by path.
+ProcessResult runProgram(const std::string& program, const std::vector<std::string>& arguments,
+                         const std::function<int(const std::string& err)>& onErr = nullptr);
+
+/// A new folder under the system's temporary one; removed with all that is in it.
+class TemporaryFolder {
+public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::string path(const std::string& name) const { return path_ + "/" + name; }
+    /// Names of the files in it, sorted.
+    std::vector<std::string> files() const;
+
+private:
+    std::string path_;
+};
+
+} // namespace relume
