@@ -13,6 +13,8 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
     static const std::vector<Entry> all = {
+        {{"cornell_small", "a Cornell box with a small light in the ceiling and two boxes"},
+         generate::cornellSmall},
         {{"cornell_geom", "simple shapes in a Cornell box under a narrow light"}, generate::cornellGeom},
         {{"cornell_layers", "a box cut into layers by a wedge and a shelf, with a closed dark cell"},
          generate::cornellLayers},

@@ -5,6 +5,7 @@
 // One function per generated scene, in assets/scene_<name>.cpp.
 namespace relume::generate {
 
+Scene cornellSmall();
 Scene cornellGeom();
 Scene cornellLayers();
 Scene cornellStatue();

@@ -51,6 +51,27 @@ void addWalls(SceneBuilder& builder, Room walls, int white, int left, int right)
 
 } // namespace
 
+Scene cornellSmall() {
+    SceneBuilder builder;
+    const int white = builder.paint("White", kWhite);
+    const int red = builder.paint("Red", kRed);
+    const int green = builder.paint("Green", kGreen);
+    const int lit = builder.lamp("Light", {60.0f, 52.0f, 40.0f});
+    Room walls = room({-1.0, 0.0, -1.0}, {1.0, 2.0, 1.0});
+    // The light fills an opening: nothing hides behind it and it has no other side.
+    constexpr double kEdge = 0.25, kFrom = 0.5 - kEdge / 4.0, kTo = 0.5 + kEdge / 4.0;
+    walls.ceiling = panelWithOpening({-1.0, 2.0, 1.0}, {2.0, 0, 0}, {0, 0, -2.0}, {kFrom, kFrom}, {kTo, kTo});
+    addWalls(builder, walls, white, red, green);
+    builder.add("Light",
+                quad({-kEdge / 2, 0.0, kEdge / 2}, {kEdge, 0, 0}, {0, 0, -kEdge}).paint(lit).denser(2.0),
+                {0.0, 2.0, 0.0});
+    builder.add("Tall box", box({0.57, 1.19, 0.59}).turnY(17.3).paint(white), {-0.37, -kSunk, -0.31});
+    builder.add("Low box", box({0.61, 0.58, 0.57}).turnY(-18.1).paint(white), {0.37, -kSunk, 0.33});
+
+    builder.camera("Front", {0.0f, 1.0f, 0.97f}, {0.0f, 0.93f, -0.5f}, 78.0f);
+    return builder.build();
+}
+
 Scene cornellGeom() {
     SceneBuilder builder;
     const int white = builder.paint("White", kWhite);

@@ -1,60 +1,157 @@
 #include "app/command.h"
+#include "app/heat_map.h"
+#include "assets/error.h"
+#include "assets/log.h"
+#include "bake/flip.h"
 #include "bake/metrics.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct CompareOptions {
-    std::string a, b;
+    std::string a, b, mask, diff;
+    std::vector<std::string> metrics; // lower case; none: all
+    double pixelsPerDegree = kFlipPixelsPerDegree;
     bool json = false;
 };
 
-void printJson(const CompareOptions& options, const Metrics& m) {
-    nlohmann::ordered_json json = {{"a", options.a}, {"b", options.b}};
-    json["relRMSE"] =
-        std::isfinite(m.relRmse) ? nlohmann::ordered_json(m.relRmse) : nullptr; // JSON has no infinity
-    json["RMSE"] = m.rmse;
-    json["DFPR"] = m.dfpr;
-    json["maximum"] = m.maximum;
-    json["bias"] = m.bias;
+/// What is printed of a comparison.
+struct Value {
+    const char* option; // as --metric takes it
+    const char* name;
+    const char* meaning;
+    double value;
+};
+
+bool wants(const CompareOptions& options, const char* metric) {
+    const std::vector<std::string>& chosen = options.metrics;
+    return chosen.empty() || std::find(chosen.begin(), chosen.end(), metric) != chosen.end();
+}
+
+std::array<Value, 6> valuesOf(const Metrics& m, double flipMean) {
+    return {{{"relrmse", "relRMSE", "RMSE / mean of B", m.relRmse},
+             {"rmse", "RMSE", "root of the mean squared difference", m.rmse},
+             {"dfpr", "DFPR", "mean RGB distance as displayed (sRGB), full scale 1", m.dfpr},
+             {"flip", "FLIP", "mean difference seen when flipping between the two, full scale 1", flipMean},
+             {"maximum", "maximum", "largest difference of a channel", m.maximum},
+             {"bias", "bias", "mean of A - B", m.bias}}};
+}
+
+/// A picture of the differences: what it shows and the value at the bright end of its ramp.
+struct Difference {
+    std::string quantity;
+    double scale = 1;
+};
+
+// The picture shows what the first --metric measures.
+Difference writeDifference(const CompareOptions& options, const ImagePair& pair, const Metrics& m,
+                           const std::vector<float>& flipMap) {
+    const std::string first = options.metrics.empty() ? "relrmse" : options.metrics.front();
+    Difference difference;
+    std::vector<float> map;
+    if (first == "flip") {
+        difference.quantity = "FLIP";
+        map = flipMap;
+    } else if (first == "dfpr") {
+        difference.quantity = "RGB distance as displayed";
+        map = pair.displayedDifferences();
+    } else {
+        difference.quantity = "difference";
+        map = pair.differences();
+        if (first == "relrmse" && m.meanB > 0) { // relative to a black image there is nothing
+            difference.quantity = "difference / mean of B";
+            for (float& value : map)
+                value = static_cast<float>(value / m.meanB);
+        }
+    }
+    if (first != "flip") difference.scale = heatScale(map, pair.covered());
+    writeImage(options.diff, heatMap(pair.width(), map, pair.covered(), difference.scale));
+    return difference;
+}
+
+Json jsonOf(const CompareOptions& options, const Metrics& m, double flipMean,
+            const std::optional<Difference>& difference) {
+    Json json = {{"a", options.a}, {"b", options.b}};
+    if (!options.mask.empty()) json["mask"] = options.mask;
+    for (const Value& v : valuesOf(m, flipMean)) {
+        if (wants(options, v.option))
+            json[v.name] = std::isfinite(v.value) ? Json(v.value) : nullptr; // JSON has no infinity
+    }
+    if (wants(options, "flip")) json["pixelsPerDegree"] = options.pixelsPerDegree;
     json["meanA"] = m.meanA;
     json["meanB"] = m.meanB;
     json["texels"] = m.texels;
     json["onlyA"] = m.onlyA;
     json["onlyB"] = m.onlyB;
-    // A file name need not be UTF-8.
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+    json["masked"] = m.masked;
+    if (difference)
+        json["diff"] = {
+            {"file", options.diff}, {"quantity", difference->quantity}, {"scale", difference->scale}};
+    return json;
 }
 
-void printTable(const Metrics& m) {
+void printTable(const CompareOptions& options, const Metrics& m, double flipMean,
+                const std::optional<Difference>& difference) {
     const auto line = [](const char* name, double value, const char* meaning) {
         std::printf("%-8s %12.6g  %s\n", name, value, meaning);
     };
-    line("relRMSE", m.relRmse, "RMSE / mean of B");
-    line("RMSE", m.rmse, "root of the mean squared difference");
-    line("DFPR", m.dfpr, "mean RGB distance as displayed (sRGB), full scale 1");
-    line("maximum", m.maximum, "largest difference of a channel");
-    line("bias", m.bias, "mean of A - B");
+    for (const Value& v : valuesOf(m, flipMean))
+        line(v.name, v.value, v.meaning);
     line("mean A", m.meanA, "");
     line("mean B", m.meanB, "");
-    std::printf("%-8s %12llu  compared; covered only in A %llu, only in B %llu\n", "texels",
+    std::printf("%-8s %12llu  compared; covered only in A %llu, only in B %llu", "texels",
                 static_cast<unsigned long long>(m.texels), static_cast<unsigned long long>(m.onlyA),
                 static_cast<unsigned long long>(m.onlyB));
+    if (m.masked > 0) std::printf("; masked %llu", static_cast<unsigned long long>(m.masked));
+    std::printf("\n");
+    if (difference)
+        std::printf("%-8s %12.6g  bright end of %s: %s\n", "diff", difference->scale, options.diff.c_str(),
+                    difference->quantity.c_str());
 }
 
 void runCompare(const CompareOptions& options) {
+    if (!options.diff.empty()) {
+        if (!options.diff.ends_with(".png"))
+            throw UsageError("--diff: '" + options.diff + "' does not end in .png");
+        checkWritable(options.diff);
+    }
     const FloatImage a = readImage(options.a), b = readImage(options.b);
-    const Metrics metrics = compareImages(a, options.a, b, options.b);
-    if (options.json)
-        printJson(options, metrics);
-    else
-        printTable(metrics);
+    const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImage(options.mask);
+    const NamedImage mask{maskImage, options.mask};
+    const ImagePair pair({a, options.a}, {b, options.b}, options.mask.empty() ? nullptr : &mask);
+    const Metrics metrics = pair.measure();
+    std::vector<float> flipMap;
+    if (wants(options, "flip")) flipMap = pair.flipDifferences(options.pixelsPerDegree);
+    const double flipMean = flipMap.empty() ? 0.0 : pair.mean(flipMap);
+
+    std::optional<Difference> difference;
+    if (!options.diff.empty()) {
+        difference = writeDifference(options, pair, metrics, flipMap);
+        spdlog::info("wrote {}: {} from 0 (black) to {:g} (white)", options.diff, difference->quantity,
+                     difference->scale);
+    }
+    if (options.json) {
+        // A file name need not be UTF-8.
+        const Json json = jsonOf(options, metrics, flipMean, difference);
+        std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    } else if (options.metrics.empty()) {
+        printTable(options, metrics, flipMean, difference);
+    } else {
+        for (const std::string& metric : options.metrics)
+            for (const Value& v : valuesOf(metrics, flipMean))
+                if (metric == v.option) std::printf("%.9g\n", v.value);
+    }
 }
 
 } // namespace
@@ -64,6 +161,25 @@ void addCompareCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("compare", "Measure how far lightmap A is from lightmap B");
     command->add_option("a", options->a, "OpenEXR or PNG image")->required()->type_name("A");
     command->add_option("b", options->b, "The reference, of the same size")->required()->type_name("B");
+    std::vector<std::string> names;
+    for (const Value& v : valuesOf({}, 0))
+        names.emplace_back(v.option);
+    command
+        ->add_option("--metric", options->metrics,
+                     "Print only these values, a line each: relrmse, rmse, dfpr, flip, maximum, bias")
+        ->delimiter(',')
+        ->allow_extra_args(false) // else it would take A and B
+        ->transform(CLI::IsMember(names, CLI::ignore_case))
+        ->type_name("NAME,...");
+    command->add_option("--mask", options->mask,
+                        "Image of the same size: compare only where its R (or coverage) is above 0.5");
+    command->add_option(
+        "--diff", options->diff,
+        "Write a heat map of the differences (of what the first --metric measures) to this .png");
+    command
+        ->add_option("--ppd", options->pixelsPerDegree, "Pixels per degree of the viewer's sight, for FLIP")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 1000.0));
     command->add_flag("--json", options->json, "Print JSON instead of a table");
     command->callback([options] { runCompare(*options); });
 }

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -108,6 +109,74 @@ TEST_F(CompareTest, FailsOnMissingFilesAndArguments) {
     const Outcome help = compare("--help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.output.find("--json"), std::string::npos);
+}
+
+TEST_F(CompareTest, PrintsTheMetricsAskedFor) {
+    const std::string files = image("a.exr", 4, 0.75f) + " " + image("b.exr", 4, 0.5f);
+    EXPECT_EQ(compare("--metric rmse " + files).output, "0.25\n");
+    EXPECT_EQ(compare(files + " --metric relrmse,Maximum --metric bias").output, "0.5\n0.25\n0.25\n");
+    const double seen = std::stod(compare("--metric flip " + files).output);
+    // Grey on grey: lightness 116 (cbrt(0.75) - cbrt(0.5)), by the paper's formulas (flip_test.cpp).
+    const double knee = 0.4 * std::pow(203.31, 0.7);
+    EXPECT_NEAR(seen, 0.95 / knee * std::pow(116 * (std::cbrt(0.75) - std::cbrt(0.5)), 0.7), 1e-4);
+    const std::string black = image("c.exr", 4, 0.0f);
+    EXPECT_EQ(compare("--metric relrmse " + image("a.exr", 4, 1) + " " + black).output, "inf\n");
+    EXPECT_EQ(compare("--metric nonsense " + files).status, 2);
+    EXPECT_EQ(compare("--ppd 0 " + files).status, 2);
+    const auto json = nlohmann::json::parse(compare("--json --metric rmse " + files).output);
+    EXPECT_TRUE(json.contains("RMSE"));
+    EXPECT_FALSE(json.contains("FLIP"));
+    EXPECT_GT(nlohmann::json::parse(compare("--json " + files).output).at("FLIP"), 0.1);
+}
+
+TEST_F(CompareTest, ComparesUnderAMask) {
+    const std::string a = image("a.exr", 4, 0.75f), b = image("b.exr", 4, 0.5f);
+    FloatImage half{4, 4, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B"})
+        half.add(channel) = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+    const std::string mask = (folder_ / "mask.png").string();
+    writeImage(mask, half);
+    const Outcome outcome = compare(a + " " + b + " --mask " + mask);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_NE(outcome.output.find("texels              8  compared"), std::string::npos) << outcome.output;
+    EXPECT_NE(outcome.output.find("masked 8"), std::string::npos) << outcome.output;
+    EXPECT_EQ(nlohmann::json::parse(compare(a + " " + b + " --json --mask " + mask).output).at("masked"), 8);
+
+    const Outcome unlike = compare(a + " " + b + " --mask " + image("small.exr", 2, 1));
+    EXPECT_EQ(unlike.status, 1);
+    EXPECT_NE(unlike.errors.find("small.exr is 2 x 2"), std::string::npos) << unlike.errors;
+    const Outcome empty = compare(a + " " + b + " --mask " + image("zero.exr", 4, 0));
+    EXPECT_EQ(empty.status, 1);
+    EXPECT_NE(empty.errors.find("zero.exr: lets no covered texel through"), std::string::npos)
+        << empty.errors;
+    EXPECT_EQ(compare(a + " " + b + " --mask " + (folder_ / "none.png").string()).status, 1);
+}
+
+TEST_F(CompareTest, DrawsTheDifferences) {
+    const std::string a = image("a.exr", 4, 0.75f), b = image("b.exr", 4, 0.5f);
+    const std::string png = (folder_ / "diff.png").string();
+    const Outcome outcome = compare(a + " " + b + " --diff " + png);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_NE(outcome.errors.find("difference / mean of B from 0 (black) to 0.5 (white)"), std::string::npos)
+        << outcome.errors;
+    EXPECT_EQ(readImage(png).planes[0][5], 1.0f); // 50 % of the mean everywhere: the end of the scale
+    const auto json = nlohmann::json::parse(compare(a + " " + b + " --json --diff " + png).output);
+    EXPECT_EQ(json.at("diff").at("scale"), 0.5);
+    compare(a + " " + b + " --metric flip --diff " + png);
+    const FloatImage seen = readImage(png);
+    EXPECT_GT(seen.planes[1][5], 0.1f);
+    EXPECT_LT(seen.planes[1][5], 1.0f);
+    compare(a + " " + a + " --diff " + png);
+    EXPECT_EQ(readImage(png).planes[0][5], 0.0f);
+    // Nothing is relative to black.
+    EXPECT_EQ(compare(a + " " + image("c.exr", 4, 0) + " --diff " + png).status, 0);
+    EXPECT_EQ(readImage(png).planes[0][5] > 0.1f, true);
+
+    EXPECT_EQ(compare(a + " " + b + " --diff " + (folder_ / "diff.exr").string()).status, 2);
+    const Outcome unwritable = compare(a + " " + b + " --diff " + (folder_ / "no" / "diff.png").string());
+    EXPECT_EQ(unwritable.status, 1);
+    EXPECT_EQ(unwritable.output, "");
+    EXPECT_NE(unwritable.errors.find("diff.png"), std::string::npos) << unwritable.errors;
 }
 
 } // namespace

@@ -100,5 +100,48 @@ TEST(Metrics, RefuseWhatCannotBeCompared) {
     EXPECT_NE(errorOf(empty, flat(2, 2, 1)).find("no texel is covered in both"), std::string::npos);
 }
 
+TEST(Metrics, CountWhatTheMaskLetsThrough) {
+    FloatImage a = flat(4, 1, 1.0f), b = flat(4, 1, 1.0f), mask = flat(4, 1, 0.0f);
+    a.planes[0] = {2.0f, 3.0f, std::nanf(""), 100.0f};
+    mask.planes[0] = {1.0f, 0.51f, 0.5f, 0.0f}; // R alone decides
+    mask.planes[1] = {0.0f, 0.0f, 1.0f, 1.0f};
+    const NamedImage named{mask, "mask.png"};
+    const Metrics m = ImagePair({a, "a"}, {b, "b"}, &named).measure();
+    EXPECT_EQ(m.texels, 2u);
+    EXPECT_EQ(m.masked, 2u);
+    EXPECT_DOUBLE_EQ(m.maximum, 2);
+    mask.add("coverage") = {0.0f, 0.5f, 0.0f, 1.0f}; // goes before R: a lightmap can be a mask
+    EXPECT_EQ(ImagePair({a, "a"}, {b, "b"}, &named).measure().maximum, 99);
+
+    const auto errorWith = [&](const FloatImage& image) -> std::string {
+        const NamedImage bad{image, "mask.png"};
+        try {
+            ImagePair({b, "a.exr"}, {b, "b.exr"}, &bad);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(errorWith(flat(4, 2, 1)), "mask.png is 4 x 2, a.exr is 4 x 1: use a mask of the images' size");
+    EXPECT_NE(errorWith(flat(4, 1, 0.5f)).find("mask.png: lets no covered texel through"), std::string::npos);
+}
+
+TEST(Metrics, MapTheDifferencesOfEachTexel) {
+    FloatImage a = flat(3, 1, 0.5f), b = flat(3, 1, 0.5f);
+    a.planes[0] = {0.8f, 0.5f, std::nanf("")};
+    a.planes[1] = {0.9f, 0.5f, 0.5f};
+    a.add("coverage") = {1.0f, 1.0f, 0.0f};
+    const ImagePair pair({a, "a"}, {b, "b"});
+    const std::vector<float> map = pair.differences();
+    EXPECT_NEAR(map[0], 0.5 / std::sqrt(3.0), 1e-6);
+    EXPECT_EQ(map[1], 0.0f);
+    EXPECT_EQ(map[2], 0.0f);
+    EXPECT_NEAR(pair.mean(map), 0.25 / std::sqrt(3.0), 1e-6);
+    EXPECT_NEAR(pair.mean(pair.displayedDifferences()), pair.measure().dfpr, 1e-6);
+    const std::vector<float> seen = pair.flipDifferences(67.0);
+    EXPECT_GT(seen[0], 0.01f);
+    EXPECT_EQ(seen[2], 0.0f);
+}
+
 } // namespace
 } // namespace relume
