@@ -1,6 +1,7 @@
 #include "bake/baker.h"
 
 #include "assets/log.h"
+#include "bake/pair_solver.h"
 #include "bake/texture_group.h"
 
 #include <algorithm>
@@ -28,15 +29,20 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void checkMemory(const vk::Device& device, uint32_t size, uint64_t triangles) {
-    const bool software = device.info().software();
+void checkMemory(const vk::Device& device, const BakeSettings& settings, uint64_t triangles) {
+    const uint32_t size = settings.size;
+    const auto bytes = [&](uint32_t edge) {
+        BakeSettings smaller = settings;
+        smaller.size = edge;
+        return Baker::deviceBytes(smaller, triangles, device.info().software());
+    };
     const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
-    const uint64_t needed = Baker::deviceBytes(size, triangles, software);
+    const uint64_t needed = bytes(size);
     const uint32_t imageLimit = std::min(Baker::kMaxSize, device.limits().maxImageDimension2D);
     if (needed <= limit && size <= imageLimit) return;
     constexpr uint32_t kStep = 64;
     uint32_t fits = std::min(size, imageLimit) / kStep * kStep;
-    while (fits > 0 && Baker::deviceBytes(fits, triangles, software) > limit)
+    while (fits > 0 && bytes(fits) > limit)
         fits -= kStep;
     throw Error(
         "--size " + std::to_string(size) + " needs " + std::to_string(needed >> 20) + " MiB on '" +
@@ -46,8 +52,8 @@ void checkMemory(const vk::Device& device, uint32_t size, uint64_t triangles) {
 
 } // namespace
 
-uint64_t Baker::deviceBytes(uint32_t size, uint64_t triangles, bool software) {
-    const uint64_t texels = uint64_t{size} * size;
+uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software) {
+    const uint64_t texels = uint64_t{settings.size} * settings.size;
     // The CIT pass' images are gone before the solver's buffers come.
     const uint64_t cit = texels * (4 * sizeof(glm::vec4) + sizeof(uint32_t)) + texels * sizeof(glm::vec4);
     const uint64_t perPatch =
@@ -56,7 +62,7 @@ uint64_t Baker::deviceBytes(uint32_t size, uint64_t triangles, bool software) {
     // A software device's memory is the host's, which holds the patches and the light once more.
     constexpr uint64_t kHostBytes = 144;
     const uint64_t solve =
-        texels * (perPatch + (software ? kHostBytes : 0)) + Solver::bytes(chunks, software);
+        texels * (perPatch + (software ? kHostBytes : 0)) + solverBytes(chunks, software, settings.solver);
     constexpr uint64_t kBytesPerTriangle =
         400; // corners, hit table, acceleration structure while it is built
     return std::max(cit, solve) + triangles * kBytesPerTriangle;
@@ -64,7 +70,7 @@ uint64_t Baker::deviceBytes(uint32_t size, uint64_t triangles, bool software) {
 
 Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings)
     : settings_(settings) {
-    checkMemory(device, settings.size, mesh.triangleCount());
+    checkMemory(device, settings, mesh.triangleCount());
     const bool rtrad = settings.solver.transport.rtrad;
     PhaseClock clock(phases_);
     {
@@ -74,7 +80,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
         clock.end("cit");
         patches_ = buildPatches(scene, std::move(mesh), group,
                                 {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
-        Solver::checkPairs(patches_);
+        if (isPairMethod(settings.solver.method)) PairSolver::checkPairs(patches_);
     }
     if (patches_.clampedAlbedo > 0) {
         spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
@@ -92,7 +98,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
     clock.end("tracer");
     if (!rtrad) findInvalid(device, kind);
     clock.end("validity");
-    solver_ = std::make_unique<Solver>(device, patches_, *light_, *tracer_, settings.solver);
+    solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
     clock.end("solver set-up");
 }
 

@@ -45,7 +45,7 @@ public:
     FloatImage lightmap(LightmapDesc desc) const;
 
     /// Device bytes a bake of this size takes when every texel is covered.
-    static uint64_t deviceBytes(uint32_t size, uint64_t triangles, bool software);
+    static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
 
 private:
     void findInvalid(const vk::Device& device, TracerKind kind);

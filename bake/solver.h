@@ -1,92 +1,126 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "bake/passes.h"
 #include "bake/trace/tracer.h"
-#include "bake/vk/commands.h"
 
 namespace relume {
 
+/// How the senders of light are chosen.
+enum class Method {
+    Pure,        // every patch sends to every other one
+    Static,      // one patch of every window stands for it
+    MonteCarlo,  // the same, drawn for each receiving chunk and window
+    Mipmapped,   // one sender with the mean of every window
+    Adaptive,    // leaves of a quad-tree over ligIn
+    Directional, // what cosine-distributed directions hit
+    Hybrid,      // points on emitters for direct light, directions for the rest
+};
+
+/// Throws UsageError for an unknown name.
+Method parseMethod(const std::string& name);
+const char* methodName(Method method);
+/// Pair methods ask about pairs of patches, the others about directions.
+inline bool isPairMethod(Method method) {
+    return method != Method::Directional && method != Method::Hybrid;
+}
+
+/// Of the pair methods.
+struct PairSettings {
+    uint32_t window = 1;     // static, Monte-Carlo, mipmapped: edge of a window [texels], a power of two
+    double threshold = 0.05; // adaptive: difference up to which nodes are merged, relative to the mean light
+    uint32_t node = 8;       // adaptive: edge of the largest node [texels], a power of two
+    double thresholdRamp = 1.0; // adaptive: factor on the threshold from pass to pass
+};
+
+/// Of directional and hybrid.
+struct LinkSettings {
+    uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
+    bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
+    bool keepLinks =
+        true; // the links of a round stay in memory (transport cache); else each bounce traces them
+};
+
+/// Memory that bits and links may take for later passes.
+struct CacheSettings {
+    enum class Kind {
+        Auto,
+        None,
+        Bits,
+        Links
+    } kind = Kind::Auto; // Auto: bits or links, as the method has them
+    uint64_t bytes = 0;  // at most; 0: a third of the free device memory
+};
+
 struct SolverSettings {
+    Method method = Method::Pure;
+    PairSettings pairs;
+    LinkSettings links;
+    CacheSettings cache;
     TransportSettings transport;
-    uint32_t passes = 0; // stop after this many; 0: by error alone
+    uint32_t passes = 0; // pair methods: stop after this many; link methods: bounces of each round; 0: by
+                         // error alone
     double error =
-        0.01; // stop when the iteration's remaining error (relRMSE) is below this; 0: by passes alone
+        0.01; // stop when the remaining error (relRMSE) is below this; 0: by passes and samples alone
     double batchMs = 20.0; // aim of one submit
 };
 
 /// Where a bake stands, and what it has cost.
 struct SolverProgress {
-    uint32_t passes = 0;     // finished
-    double passFraction = 0; // of the current pass's pairs
-    double error = 1.0;      // remaining error of the iteration, relRMSE; 1 until it can be told
-    uint64_t rays =
-        0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both ends)
-    uint64_t pairs = 0;                         // receiver-sender pairs that were gathered
+    uint32_t passes = 0;     // finished; link methods: bounces of all rounds
+    uint32_t samples = 0;    // link methods: directions per patch so far
+    double passFraction = 0; // of the current pass
+    double error = 1.0;      // remaining error, relRMSE; 1 until it can be told
+    uint64_t rays = 0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both
+                       // ends), or directions and segments traced
+    uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered
     double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
     double seconds = 0;                         // inside step()
     std::vector<double> passSeconds;            // the same, of each finished pass
-    bool converged = false;                     // error below the aim (else the number of passes ended it)
+    bool converged = false;  // error below the aim (else the number of passes or samples ended it)
+    uint64_t cacheBytes = 0; // memory that bits or links are kept in
+    double cachedShare = 0;  // of the pairs or links of a pass
+    uint64_t raysSaved = 0;  // that a later pass found in the cache
 };
 
-/// Pure progressive radiosity, resumable: each step() does one batch. A pass gathers every patch's light from
-/// every other patch and adds one bounce; ligIn and ligOut swap between passes. Visibility of a pair is
-/// traced once per pass and serves both ends. Sums run over super-blocks of 1024 x 1024 pairs in a fixed
-/// order, so neither batch sizes nor timing change a byte.
+/// Progressive radiosity, resumable: each step() does one batch. Neither batch sizes nor timing change a byte
+/// of the result.
 class Solver {
 public:
-    /// All must outlive the solver; light.ligIn and ligOut are set to the starting light. Throws Error.
-    Solver(const vk::Device& device, const PatchSet& patches, LightBuffers& light, Tracer& tracer,
-           const SolverSettings& settings);
+    static constexpr uint32_t kMaxPasses = 256;
 
+    virtual ~Solver() = default;
     bool done() const { return done_; }
     /// One batch, waited for. Call until done(). Throws Error on device loss.
-    void step();
+    virtual void step() = 0;
     const SolverProgress& progress() const { return progress_; }
-    /// progress().rays and those of the current pass; asks the device.
-    uint64_t raysSoFar();
-    /// Light of the last finished pass, one vec4 per patch.
-    const std::vector<glm::vec4>& light() const { return last_; }
+    /// progress().rays and those of the current pass; may ask the device.
+    virtual uint64_t raysSoFar() { return progress_.rays; }
+    /// Light of the last finished pass for display and output, one vec4 per patch.
+    virtual const std::vector<glm::vec4>& light() = 0;
 
-    static constexpr uint32_t kMaxPasses = 256;
-    /// Throws Error, with the size that fits, when there are more pairs than can be numbered.
-    static void checkPairs(const PatchSet& patches);
-    /// Device bytes of the solver's own buffers, beside LightBuffers.
-    static uint64_t bytes(uint32_t chunkCount, bool software);
-
-private:
-    struct Portion {
-        uint32_t units = 0;
-        double busy = 0; // of these have a sender, about
-    };
-    void beginPass();
-    Portion cutPortion(double wanted, uint32_t most) const;
-    void traceBatch(uint32_t unitCount);
-    void endPass();
-    void measureChange(const std::vector<glm::vec4>& now);
-
-    const vk::Device& device_;
-    const PatchSet& patches_;
-    LightBuffers& light_;
-    Tracer& tracer_;
-    SolverSettings settings_;
-    RadiancePass radiancePass_;
-    GatherPass gatherPass_;
-    FinishPass finishPass_;
-    vk::Commands commands_;
-    vk::Timestamps timestamps_;
-    PairBuffers pairs_;
-    vk::Buffer rays_;
-    std::vector<SuperBlock> supers_; // of the current pass
-    std::vector<float> busyShare_;   // of each one: units in which somebody sends, > 0
-    bool inPass_ = false, done_ = false;
-    uint32_t nextUnit_ = 0; // of supers_, in units
-    double unitsPerMs_ = 0; // with senders, measured; 0: nothing yet
-    double lastChange_ = 0; // RMS [cd/m^2] of the last pass
-    std::vector<glm::vec4> last_;
+protected:
+    bool done_ = false;
     SolverProgress progress_;
 };
+
+/// What a solver works on; all must outlive it.
+struct SolverInput {
+    const vk::Device& device;
+    const Scene& scene;
+    const PatchSet& patches;
+    LightBuffers& light; // ligIn and ligOut are set to the starting light
+    Tracer& tracer;
+};
+
+/// Throws Error when the method cannot run (too many pairs, not enough memory).
+std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings);
+
+/// Device bytes of a solver's own buffers, beside LightBuffers, for patches in so many chunks.
+uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 
 } // namespace relume

@@ -21,6 +21,8 @@ CONST uint kSuperBlocks = 256u;   // kSuper * kSuper
 CONST uint kBlockWords = 128u;    // 32-bit words of a block: 64 rows of 2
 CONST uint kSuperPatches = 1024u; // kSuper * kChunk
 CONST uint kRayCounters = 4096u;  // rays are counted in slots by unit, to spread the atomics
+// Samples belong in turn to so many sequences that are scrambled independently: their spread is the error.
+CONST uint kReplicates = 4u;
 
 // Patch::flags, bits 0..7
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
@@ -146,6 +148,16 @@ struct ClosestPush {
     uint sampleCount;
     uint size;    // lightmap edge [texels]
     uint perTile; // 1: all patches of a chunk share their directions
+};
+struct SegmentPush {
+    TraceGeometry geometry;
+    ADDRESS patches; // Patch[]
+    ADDRESS targets; // vec4[chunkCount][targetCount][64]
+    ADDRESS bits;    // uint[chunkCount][ceil(targetCount / 32)][64]
+    ADDRESS rays;    // uint[kRayCounters], rays traced are added
+    uint firstChunk;
+    uint chunkCount;
+    uint targetCount;
 };
 struct TransposePush {
     ADDRESS supers;

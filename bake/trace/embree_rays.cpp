@@ -18,7 +18,9 @@ void ChunkRays::setPatches(const shader::Patch* patches, bool perTile) {
         const shader::Patch& patch = patches[i];
         frames_.sx[i] = patch.shading.x, frames_.sy[i] = patch.shading.y, frames_.sz[i] = patch.shading.z;
         frames_.nx[i] = patch.normal.x, frames_.ny[i] = patch.normal.y, frames_.nz[i] = patch.normal.z;
-        frames_.seed[i] = shader::hash32(shader::seedKey(patches[perTile ? 0 : i]));
+        const uint32_t key = shader::seedKey(patches[perTile ? 0 : i]);
+        for (uint32_t r = 0; r < shader::kReplicates; ++r)
+            frames_.seed[r][i] = shader::replicateSeed(key, r);
     }
 }
 
@@ -79,7 +81,8 @@ void fillDirections(ChunkRays& rays, uint32_t sample, uint32_t slot) {
     const float* const frames[] = {f.sx.data(), f.sy.data(), f.sz.data(),
                                    f.nx.data(), f.ny.data(), f.nz.data()};
     float* const out[] = {&rays.x[slot], &rays.y[slot], &rays.z[slot]};
-    fill(frames, f.seed.data(), sample, out, &rays.cell_[slot]);
+    fill(frames, f.seed[sample % shader::kReplicates].data(), shader::replicateIndex(sample), out,
+         &rays.cell_[slot]);
 }
 
 void ChunkRays::setSamples(uint32_t first, uint32_t count) {

@@ -35,7 +35,7 @@ private:
     struct alignas(64) Frames {
         Lane sx, sy, sz; // shading normals
         Lane nx, ny, nz; // geometric normals
-        std::array<uint32_t, shader::kChunk> seed;
+        std::array<std::array<uint32_t, shader::kChunk>, shader::kReplicates> seed;
     } frames_;
     alignas(64) Rays<uint32_t> cell_; // of the unit square that the sample's point lies in
     Rays<uint16_t> order_;

@@ -95,6 +95,7 @@ struct EmbreeScene::Impl {
     void dropOpenPairs(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, kChunk>& rows) const;
     void links(const Patch* patches, ChunkRays& directions, uint32_t* out) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
+    uint32_t targets(const Patch* patches, const glm::vec4* ends, uint32_t count, uint32_t* bits) const;
 
     const TraceScene& scene;
     WorkerPool pool;
@@ -329,6 +330,48 @@ void EmbreeScene::closest(const ClosestArrays& work) {
         rays.setPatches(patches, work.rotation == Rotation::Tile);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
         impl.links(patches, rays, work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);
+    });
+}
+
+// One word for each of a chunk's patches. Rays of neighbouring patches to the same target fill a packet.
+// Returns their number.
+uint32_t EmbreeScene::Impl::targets(const Patch* patches, const glm::vec4* ends, uint32_t count,
+                                    uint32_t* bits) const {
+    std::array<uint64_t, kChunk> free{}; // per target, a bit for each patch
+    Blockers blockers(scene.mesh.positions.data());
+    OcclusionPacket packet(embree.get(), blockers, free);
+    uint32_t rays = 0;
+    for (uint32_t s = 0; s < count; ++s) {
+        for (uint32_t i = 0; i < kChunk; ++i) {
+            const glm::vec4& end = ends[size_t{s} * kChunk + i];
+            if (!(end.w > 0.0f)) continue;
+            const glm::vec3 origin = patches[i].position + patches[i].offset * patches[i].normal;
+            free[s] |= uint64_t{1} << i;
+            packet.add(s, i, {origin, glm::vec3(end) - origin, 0.0f, 1.0f});
+            ++rays;
+        }
+    }
+    packet.trace();
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        bits[i] = 0;
+        for (uint32_t s = 0; s < count; ++s)
+            bits[i] |= uint32_t(free[s] >> i & 1) << s;
+    }
+    return rays;
+}
+
+void EmbreeScene::segments(const SegmentArrays& work) {
+    const Impl& impl = *impl_;
+    constexpr uint32_t kPerWord = 32;
+    const uint32_t words = (work.targetCount + kPerWord - 1) / kPerWord;
+    impl_->pool.run(work.chunkCount * words, [&](uint32_t k) {
+        const uint32_t chunk = k / words, first = k % words * kPerWord;
+        const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
+        const glm::vec4* ends = work.targets + (size_t(chunk) * work.targetCount + first) * kChunk;
+        const uint32_t count = std::min(kPerWord, work.targetCount - first);
+        const uint32_t rays = impl.targets(patches, ends, count, work.bits + size_t(k) * kChunk);
+        const uint32_t slot = (work.firstChunk + chunk) % shader::kRayCounters;
+        if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
     });
 }
 

@@ -25,6 +25,14 @@ struct ClosestArrays {
     uint32_t* links = nullptr;
 };
 
+struct SegmentArrays {
+    uint32_t firstChunk = 0, chunkCount = 0;
+    uint32_t targetCount = 0;
+    const glm::vec4* targets = nullptr;
+    uint32_t* bits = nullptr;
+    uint32_t* rays = nullptr; // may be left out
+};
+
 /// The scene in Embree, traced in packets by all cores; needs no Vulkan. Borrows the TraceScene. Results do
 /// not depend on the number of threads.
 class EmbreeScene {
@@ -38,6 +46,7 @@ public:
     void occlusion(const OcclusionArrays& work);
     /// As tracer.h has it. A patch without kPatchSends gets kLinkDark for all samples.
     void closest(const ClosestArrays& work);
+    void segments(const SegmentArrays& work);
 
 private:
     struct Impl;

@@ -42,6 +42,17 @@ public:
                         .links = mappedAs<uint32_t>(work.links, links)});
     }
 
+    void segments(VkCommandBuffer, const SegmentWork& work) override {
+        const uint64_t words = (work.targetCount + 31) / 32;
+        scene_.segments({.firstChunk = work.firstChunk,
+                         .chunkCount = work.chunkCount,
+                         .targetCount = work.targetCount,
+                         .targets = mappedAs<glm::vec4>(work.targets, uint64_t(work.chunkCount) *
+                                                                          work.targetCount * shader::kChunk),
+                         .bits = mappedAs<uint32_t>(work.bits, work.chunkCount * words * shader::kChunk),
+                         .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
+    }
+
 private:
     uint32_t chunkCount_;
     EmbreeScene scene_;

@@ -11,6 +11,11 @@ namespace {
 
 using shader::kChunk;
 constexpr uint32_t kSamplesPerInvocation = 8; // lib/closest.glsl
+constexpr uint32_t kTargetsPerWord = 32;      // lib/segments.glsl
+
+uint32_t segmentWords(const SegmentWork& work) {
+    return (work.targetCount + kTargetsPerWord - 1) / kTargetsPerWord;
+}
 
 // The tables of a TraceScene on the device, and the push constants that point to them.
 class SceneBuffers {
@@ -68,6 +73,17 @@ public:
                 .perTile = work.rotation == Rotation::Tile ? 1u : 0u};
     }
 
+    shader::SegmentPush push(const SegmentWork& work) const {
+        return {.geometry = geometry_,
+                .patches = patches_,
+                .targets = work.targets->address(),
+                .bits = work.bits->address(),
+                .rays = work.rays->address(),
+                .firstChunk = work.firstChunk,
+                .chunkCount = work.chunkCount,
+                .targetCount = work.targetCount};
+    }
+
 private:
     static std::vector<uint8_t> wholeWords(std::vector<uint8_t> bytes) {
         bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -86,7 +102,7 @@ public:
     ComputeTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
                   const std::string& name)
         : buffers_(device, scene, patches), name_(name), occlusion_(device, "occlusion_" + name),
-          closest_(device, "closest_" + name) {}
+          closest_(device, "closest_" + name), segments_(device, "segments_" + name) {}
 
     const char* name() const override { return name_.c_str(); }
     bool onCpu() const override { return false; }
@@ -100,6 +116,9 @@ public:
         closest_.dispatch(cmd, buffers_.push(work), work.chunkCount,
                           work.sampleCount / kSamplesPerInvocation);
     }
+    void segments(VkCommandBuffer cmd, const SegmentWork& work) override {
+        segments_.dispatch(cmd, buffers_.push(work), work.chunkCount, segmentWords(work));
+    }
 
 protected:
     static constexpr uint32_t kGroupsX = 32768; // below every device's maxComputeWorkGroupCount
@@ -107,7 +126,7 @@ protected:
 
 private:
     std::string name_;
-    vk::ComputeProgram occlusion_, closest_;
+    vk::ComputeProgram occlusion_, closest_, segments_;
 };
 
 class BvhTracer final : public ComputeTracer {
@@ -154,6 +173,11 @@ public:
                                            .closestHit = "hit_rchit",
                                            .anyHit = anyHit,
                                            .constants = {}});
+        segments_ = vk::RayProgram(device, {.raygen = "segments_rgen",
+                                            .miss = "hit_rmiss",
+                                            .closestHit = "hit_rchit",
+                                            .anyHit = anyHit,
+                                            .constants = {}});
     }
 
     const char* name() const override { return "rtp"; }
@@ -166,11 +190,14 @@ public:
         closest_.trace(cmd, buffers_.push(work), kChunk,
                        work.chunkCount * (work.sampleCount / kSamplesPerInvocation));
     }
+    void segments(VkCommandBuffer cmd, const SegmentWork& work) override {
+        segments_.trace(cmd, buffers_.push(work), kChunk, work.chunkCount * segmentWords(work));
+    }
 
 private:
     SceneBuffers buffers_;
     vk::Accel accel_;
-    vk::RayProgram occlusion_, closest_;
+    vk::RayProgram occlusion_, closest_, segments_;
 };
 
 } // namespace

@@ -44,6 +44,20 @@ struct ClosestWork {
     const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64]
 };
 
+/// Segments from the patches of some chunks to points of their own. Target s of patch i of chunk c is
+/// targets[((c - firstChunk) * targetCount + s) * 64 + i]: xyz where the segment ends [m], already off its
+/// surface; w <= 0: not asked for. Bit s % 32 of word ((c - firstChunk) * words + s / 32) * 64 + i, words =
+/// ceil(targetCount / 32), is set when it was asked for and nothing is in between.
+struct SegmentWork {
+    uint32_t firstChunk = 0, chunkCount = 0;
+    uint32_t targetCount = 0; // per patch, > 0
+    const vk::Buffer* targets =
+        nullptr; // vec4[chunkCount * targetCount * 64], mapped where the tracer runs on the CPU
+    const vk::Buffer* bits = nullptr; // uint32_t[chunkCount * words * 64], too
+    const vk::Buffer* rays =
+        nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
+};
+
 /// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call
 /// per batch. GPU tracers record into cmd; the CPU tracer runs at once and writes into host-visible buffers.
 /// Either way the result is there for what is recorded into cmd afterwards, behind a barrier that the caller
@@ -55,6 +69,8 @@ public:
     virtual bool onCpu() const = 0;
     virtual void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) = 0;
     virtual void closest(VkCommandBuffer cmd, const ClosestWork& work) = 0;
+    /// Not for the RTRad preset. On the CPU the targets must be there when this is called.
+    virtual void segments(VkCommandBuffer cmd, const SegmentWork& work) = 0;
 };
 
 enum class TracerKind { Auto, Rtp, Query, Bvh, Embree };

@@ -77,11 +77,16 @@ FUNCTION vec3 aroundNormal(vec3 n, vec3 d) {
 
 FUNCTION uint seedKey(Patch p) { return p.flags >> 8; }
 
+// Samples take turns among kReplicates sequences: which one, as a seed for the scrambling, and the place in it.
+FUNCTION uint replicateSeed(uint key, uint sampleIndex) { return hash32(key * kReplicates + sampleIndex % kReplicates); }
+FUNCTION uint replicateIndex(uint sampleIndex) { return sampleIndex / kReplicates; }
+
 // Direction of sample `index` for patch p: density cos / pi around the shading normal. `key` seeds the scrambling: seedKey of
 // the patch itself, or of its chunk's first patch (Rotation::Tile). Below the geometric horizon it is mirrored up, so no
 // ray starts inside.
 FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
-    vec3 d = aroundNormal(p.shading, cosineDirection(sobolPoint(index, hash32(key))));
+    vec2 u = sobolPoint(replicateIndex(index), replicateSeed(key, index));
+    vec3 d = aroundNormal(p.shading, cosineDirection(u));
     float c = dot(d, p.normal);
     return c < 0.0f ? d - 2.0f * c * p.normal : d;
 }

@@ -25,7 +25,9 @@ FloatImage bakePreset(uint32_t size, TracerKind tracer) {
     BakeSettings settings;
     settings.size = size;
     settings.tracer = tracer;
-    settings.solver = {.transport = {.reflectivity = 0.9f, .rtrad = true}, .passes = 2, .error = 0};
+    settings.solver.transport = {.reflectivity = 0.9f, .rtrad = true};
+    settings.solver.passes = 2;
+    settings.solver.error = 0;
     Baker baker(testDevice(), prepared.scene, std::move(prepared.mesh), settings);
     while (!baker.solver().done())
         baker.solver().step();
