@@ -13,8 +13,10 @@ using glm::uint;
 #include "shaders/lib/pairs.glsl"
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
+#include "shaders/lib/emitters.glsl"
 
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
+static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
 } // namespace relume::shader

@@ -60,6 +60,40 @@ struct ChunkBounds {
     float size; // [m], the largest patch edge
 };
 
+// EmitterPolygon::shape
+CONST uint kEmitterTriangle = 3u; // c3 repeats c2
+CONST uint kEmitterQuad = 4u;     // convex
+CONST uint kEmitterParallelogram = 5u;
+
+// A plane convex light of one radiance, counter-clockwise seen from its front, where it shines.
+struct EmitterPolygon {
+    vec3 c0; // [m]
+    float area; // [m^2]
+    vec3 c1;
+    float offset; // [m], along the normal: where rays to it end
+    vec3 c2;
+    float split; // share of the area that the triangle c0 c1 c2 has; 1 for a triangle
+    vec3 c3;
+    uint shape;
+    vec3 radiance; // [cd/m^2]
+    uint triangle; // the WorldMesh triangle it was made from, or the first one of two
+};
+
+// EmitterNode::link: the first of two children that lie side by side, or the polygon of a leaf with this bit.
+CONST uint kEmitterLeaf = 0x80000000u;
+CONST uint kNoEmitter = 0xffffffffu;
+CONST uint kEmitterDepth = 48u; // inner nodes on the longest way down, at most
+
+// A node of the tree over the emitters; 0 is the root. Every normal below it is within the cone.
+struct EmitterNode {
+    vec3 lo; // [m]
+    float power; // area times mean of the radiance's components, as a share of all emitters'
+    vec3 hi; // [m]
+    float cosCone; // cosine of the cone's half angle; 1: all normals are the axis
+    vec3 axis; // unit
+    uint link;
+};
+
 // One triangle of the tracers' scene, in WorldMesh order.
 struct HitTriangle {
     vec2 uv0, uv1, uv2;  // lightmap UVs

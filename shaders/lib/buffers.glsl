@@ -18,3 +18,34 @@ Patch loadPatch(ADDRESS patches, uint index) {
     p.flags = c.w;
     return p;
 }
+
+EmitterPolygon loadEmitterPolygon(ADDRESS polygons, uint index) {
+    Rows rows = Rows(polygons);
+    uvec4 a = rows.items[index * 5u], b = rows.items[index * 5u + 1u], c = rows.items[index * 5u + 2u];
+    uvec4 d = rows.items[index * 5u + 3u], r = rows.items[index * 5u + 4u];
+    EmitterPolygon e;
+    e.c0 = uintBitsToFloat(a.xyz);
+    e.area = uintBitsToFloat(a.w);
+    e.c1 = uintBitsToFloat(b.xyz);
+    e.offset = uintBitsToFloat(b.w);
+    e.c2 = uintBitsToFloat(c.xyz);
+    e.split = uintBitsToFloat(c.w);
+    e.c3 = uintBitsToFloat(d.xyz);
+    e.shape = d.w;
+    e.radiance = uintBitsToFloat(r.xyz);
+    e.triangle = r.w;
+    return e;
+}
+
+EmitterNode loadEmitterNode(ADDRESS nodes, uint index) {
+    Rows rows = Rows(nodes);
+    uvec4 a = rows.items[index * 3u], b = rows.items[index * 3u + 1u], c = rows.items[index * 3u + 2u];
+    EmitterNode e;
+    e.lo = uintBitsToFloat(a.xyz);
+    e.power = uintBitsToFloat(a.w);
+    e.hi = uintBitsToFloat(b.xyz);
+    e.cosCone = uintBitsToFloat(b.w);
+    e.axis = uintBitsToFloat(c.xyz);
+    e.link = c.w;
+    return e;
+}
