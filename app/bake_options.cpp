@@ -1,5 +1,7 @@
 #include "app/bake_options.h"
 
+#include "bake/link_solver.h"
+
 #include <CLI/CLI.hpp>
 
 namespace relume {
@@ -7,6 +9,32 @@ namespace {
 
 constexpr double kDefaultError = 0.01;
 constexpr double kRtradReflectivity = 0.9;
+
+// Of the methods that follow directions.
+void addLinkOptions(CLI::App& command, BakeOptions& o) {
+    command
+        .add_option(
+            "--samples", o.samples,
+            "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
+        ->check(CLI::Range(1u, LinkSolver::kMaxSamples));
+    command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
+}
+
+void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
+    const bool links = !isPairMethod(solver.method);
+    if (o.samples > 0 && !links)
+        throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
+    if (o.noSmooth && solver.method != Method::Hybrid)
+        throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
+    if (links && solver.transport.rtrad) {
+        throw UsageError(std::string("--method ") + methodName(solver.method) +
+                         ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
+    }
+    solver.links.samples = o.samples;
+    solver.links.smooth = !o.noSmooth;
+    // For these, passes are bounces: how many samples they need is another question.
+    if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
+}
 
 } // namespace
 
@@ -17,15 +45,17 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--size", o.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(CLI::Range(8u, Baker::kMaxSize));
-    command.add_option("--method", o.method, "How light is gathered: pure")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"pure"}));
+    command.add_option("--method", o.method, "How light is gathered: hybrid (default), directional or pure")
+        ->check(CLI::IsMember({"pure", "directional", "hybrid"}));
+    command.add_option("--error-map", o.errorMap,
+                       "Write each texel's standard error as an image, .exr or .png");
     command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
         ->check(CLI::Range(1u, Solver::kMaxPasses));
     command
         .add_option("--error", o.error,
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
         ->check(CLI::Range(1e-6, 1.0));
+    addLinkOptions(command, o);
     command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh or embree")->capture_default_str();
     command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
     command
@@ -86,6 +116,11 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     solver.passes = o.passes;
     solver.error = o.error > 0 ? o.error : o.passes > 0 ? 0.0 : kDefaultError;
     solver.batchMs = o.batchMs;
+    if (!o.method.empty())
+        solver.method = parseMethod(o.method);
+    else
+        solver.method = rtrad ? Method::Pure : Method::Hybrid;
+    resolveLinkOptions(o, solver);
     const bool radiance = rtrad || o.quantity == "radiance";
     request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,
                         .reflectivity = solver.transport.reflectivity,

@@ -13,8 +13,9 @@ namespace relume {
 
 /// What the user typed after `relume bake`.
 struct BakeOptions {
-    std::string scene, output, picture, json, sceneOut, shaders, device;
-    std::string method = "pure", tracer = "auto", preset, quantity;
+    std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;
+    std::string method; // "": hybrid, of the RTRad preset pure
+    std::string tracer = "auto", preset, quantity;
     uint32_t size = 512;
     uint32_t passes = 0;                           // 0: not given
     double error = 0;                              // 0: not given
@@ -22,6 +23,8 @@ struct BakeOptions {
     double density = 0;
     double batchMs = 20;
     uint32_t dilate = 4;
+    uint32_t samples = 0; // 0: not given
+    bool noSmooth = false;
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
 };
 

@@ -146,4 +146,14 @@ FloatImage Baker::lightmap(LightmapDesc desc) const {
     return makeLightmap(patches_, solver_->light(), desc);
 }
 
+FloatImage Baker::errorMap() const {
+    const std::vector<float> errors = solver_->errors();
+    if (errors.empty())
+        throw Error("--error-map: one pass says nothing about its error: let the bake run for two or more");
+    std::vector<glm::vec4> grey;
+    for (float e : errors)
+        grey.emplace_back(e, e, e, 1.0f);
+    return makeLightmap(patches_, grey, {.quantity = Quantity::Lighting, .sew = false});
+}
+
 } // namespace relume

@@ -43,6 +43,9 @@ public:
     uint32_t invalidPatches() const { return invalid_; }
     /// The lightmap of the last finished pass.
     FloatImage lightmap(LightmapDesc desc) const;
+    /// Solver::errors() as a grey image in lighting's unit; texels beside charts stay empty. Throws Error
+    /// when there is nothing to tell yet.
+    FloatImage errorMap() const;
 
     /// Device bytes a bake of this size takes when every texel is covered.
     static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -217,7 +218,7 @@ void PairSolver::measureChange(const std::vector<glm::vec4>& now) {
         sum += double{now[i].r} + now[i].g + now[i].b;
         count += 3;
     }
-    last_ = now;
+    const std::vector<glm::vec4> before = std::exchange(last_, now);
     const double change = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
     const double mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
     if (change == 0.0 || mean <= 0.0) {
@@ -225,6 +226,10 @@ void PairSolver::measureChange(const std::vector<glm::vec4>& now) {
     } else if (lastChange_ > 0.0) {
         const double q = change / lastChange_;
         progress_.error = q < 1.0 ? change * q / (1.0 - q) / mean : 1.0;
+        const auto left = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
+        errors_.resize(now.size());
+        for (size_t i = 0; i < now.size(); ++i)
+            errors_[i] = left * glm::length(glm::vec3(now[i] - before[i])) / std::sqrt(3.0f);
     }
     lastChange_ = change;
 }

@@ -16,6 +16,7 @@ public:
     void step() override;
     uint64_t raysSoFar() override; // asks the device
     const std::vector<glm::vec4>& light() override { return last_; }
+    std::vector<float> errors() override { return errors_; }
 
     /// Throws Error, with the size that fits, when there are more pairs than can be numbered.
     static void checkPairs(const PatchSet& patches);
@@ -51,6 +52,7 @@ private:
     double unitsPerMs_ = 0; // with senders, measured; 0: nothing yet
     double lastChange_ = 0; // RMS [cd/m^2] of the last pass
     std::vector<glm::vec4> last_;
+    std::vector<float> errors_; // of each patch, by what the last pass changed
 };
 
 } // namespace relume

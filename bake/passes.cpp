@@ -7,8 +7,6 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kGroup = 64; // invocations, as in the shaders
-
 constexpr VkDeviceSize kBitsBytes =
     VkDeviceSize{shader::kSuperBlocks} * shader::kBlockWords * sizeof(uint32_t);
 constexpr VkDeviceSize kPartialBytes = VkDeviceSize{2} * shader::kSuperPatches * sizeof(glm::vec4);
@@ -57,8 +55,9 @@ void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
                                     .chunkCount = light.chunkCount,
                                     .reflectivity = settings.reflectivity,
                                     .rtrad = settings.rtrad ? 1u : 0u,
-                                    .all = settings.allSend ? 1u : 0u};
-    program_.dispatch(cmd, push, (light.chunkCount + kGroup - 1) / kGroup);
+                                    .all = settings.allSend ? 1u : 0u,
+                                    .reflected = settings.reflectedOnly ? 1u : 0u};
+    dispatchChunks(program_, cmd, push, light.chunkCount);
 }
 
 // Staging senders in shared memory pays on GPUs (1.5x) and costs 3x on a software device.

@@ -12,6 +12,7 @@ struct TransportSettings {
     float distanceFactor = 1.0f; // RTRad preset only
     bool rtrad = false;          // RTRad's form factor, clamps and light skip
     bool allSend = false;        // dark chunks count as senders too: a pass of full length
+    bool reflectedOnly = false;  // what patches send is without their emission, which is sampled by itself
 };
 
 /// Buffers of one batch of super-blocks. Slot of a unit: unit % bitsUnits (see OcclusionWork).

@@ -1,5 +1,6 @@
 #include "bake/solver.h"
 
+#include "bake/link_solver.h"
 #include "bake/pair_solver.h"
 
 #include <array>
@@ -18,6 +19,9 @@ constexpr std::array<Name, 7> kNames = {{{Method::Pure, "pure"},
                                          {Method::Adaptive, "adaptive"},
                                          {Method::Directional, "directional"},
                                          {Method::Hybrid, "hybrid"}}};
+
+// Of the free device memory that bits and links may take if nothing else is said.
+constexpr double kCacheShare = 1.0 / 3.0;
 
 } // namespace
 
@@ -38,10 +42,16 @@ const char* methodName(Method method) {
 }
 
 std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings) {
-    return std::make_unique<PairSolver>(input, settings);
+    SolverSettings complete = settings;
+    if (complete.cache.bytes == 0)
+        complete.cache.bytes =
+            static_cast<uint64_t>(kCacheShare * static_cast<double>(input.device.freeMemory()));
+    if (isPairMethod(settings.method)) return std::make_unique<PairSolver>(input, complete);
+    return std::make_unique<LinkSolver>(input, complete);
 }
 
-uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings&) {
+uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
+    if (!isPairMethod(settings.method)) return LinkBuffers::bytes(chunkCount, software, settings);
     return PairSolver::bytes(chunkCount, software);
 }
 

@@ -41,19 +41,16 @@ struct PairSettings {
 struct LinkSettings {
     uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
     bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
-    bool keepLinks =
-        true; // the links of a round stay in memory (transport cache); else each bounce traces them
 };
 
-/// Memory that bits and links may take for later passes.
+/// Memory that bits and links may take for later passes. Without a cache they trace the same rays again.
 struct CacheSettings {
-    enum class Kind {
-        Auto,
-        None,
-        Bits,
-        Links
-    } kind = Kind::Auto; // Auto: bits or links, as the method has them
-    uint64_t bytes = 0;  // at most; 0: a third of the free device memory
+    enum class Kind { Auto, None, Bits, Links };
+    Kind kind = Kind::Auto; // Auto: bits or links, as the method has them
+    uint64_t bytes = 0;     // at most; 0: a third of the free device memory
+
+    bool keepsBits() const { return kind == Kind::Auto || kind == Kind::Bits; }
+    bool keepsLinks() const { return kind == Kind::Auto || kind == Kind::Links; }
 };
 
 struct SolverSettings {
@@ -102,6 +99,9 @@ public:
     virtual uint64_t raysSoFar() { return progress_.rays; }
     /// Light of the last finished pass for display and output, one vec4 per patch.
     virtual const std::vector<glm::vec4>& light() = 0;
+    /// How far each patch's light may still be off, one number per patch in light()'s unit; empty when that
+    /// cannot be told yet.
+    virtual std::vector<float> errors() = 0;
 
 protected:
     bool done_ = false;

@@ -237,7 +237,83 @@ struct RadiancePush {
     uint chunkCount;
     float reflectivity;
     uint rtrad;
-    uint all; // 1: chunks without light count as senders too
+    uint all;       // 1: chunks without light count as senders too
+    uint reflected; // 1: without emission
+};
+struct EmitterSamplesPush {
+    ADDRESS patches;
+    ADDRESS polygons; // EmitterPolygon[]
+    ADDRESS nodes;    // EmitterNode[]
+    ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
+    ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
+    uint firstChunk;
+    uint round;
+    uint pickCount;
+    uint pointCount; // per pick, a multiple of kReplicates
+    uint all;        // 1: pick i is emitter i; 0: picks are drawn
+};
+struct DirectPush {
+    ADDRESS targets;
+    ADDRESS picks;
+    ADDRESS bits;
+    ADDRESS sums;   // vec4[kReplicates][patchCount]
+    ADDRESS direct; // vec4[patchCount]: the mean so far
+    uint firstChunk;
+    uint pickCount;
+    uint pointCount;
+    uint all;
+    uint patchCount;
+    float scale; // from the sum of all sums to the mean
+};
+struct LinkPush {
+    ADDRESS links;    // uint[chunkCount][sampleCount][64]
+    ADDRESS radiance; // vec4[]
+    ADDRESS direct;   // vec4[] added to ligOut; 0: nothing
+    ADDRESS ligOut;   // vec4[]
+    ADDRESS sums;     // vec4[kReplicates][patchCount], added to; 0: not
+    uint firstChunk;
+    uint chunkCount;
+    uint sampleCount; // a multiple of kReplicates
+    uint patchCount;
+};
+struct ComposePush {
+    ADDRESS sums;
+    ADDRESS direct; // 0: nothing
+    ADDRESS light;  // vec4[], written
+    uint patchCount;
+    float scale; // from the sum of all sums to the mean
+};
+struct ChangePush {
+    ADDRESS patches;
+    ADDRESS ligIn;
+    ADDRESS ligOut;
+    ADDRESS sums; // vec4[chunkCount]
+    uint chunkCount;
+};
+// Over a chunk's patches: light and variances of the mean, R, G and B together.
+struct ResolveSums {
+    float light;
+    float direct;   // variance
+    float indirect; // variance
+    float raw;      // variance, not smoothed
+    float bias;     // squares of what smoothing moves, less what noise explains of it
+    float count;
+};
+struct SmoothPush {
+    ADDRESS patches;
+    ADDRESS patchChart;
+    ADDRESS texelToPatch;
+    ADDRESS sums;       // vec4[kReplicates][patchCount], of links
+    ADDRESS rows;       // vec4[kReplicates][patchCount], smoothed along rows
+    ADDRESS directSums; // vec4[kReplicates][patchCount]; 0: none
+    ADDRESS result;     // vec4[patchCount]: lighting, standard error
+    ADDRESS chunkSums;  // ResolveSums[chunkCount]
+    uint chunkCount;
+    uint patchCount;
+    uint size;   // lightmap edge [texels]
+    uint reach;  // [texels], 0: no smoothing
+    float sigma; // [texels]
+    float scale, directScale; // from a replicate's sum to its mean
 };
 struct FinishPush {
     ADDRESS emission;

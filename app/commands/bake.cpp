@@ -23,6 +23,10 @@ double secondsSince(Clock::time_point start) {
 // Pass, percent, rays per second and the time left: of this pass when only the error can end the bake.
 std::string progressText(Solver& solver, const SolverSettings& settings) {
     const SolverProgress& p = solver.progress();
+    if (!isPairMethod(settings.method)) {
+        return fmt::format("{} directions per patch  {:.1f} Mrays/s  error {:.2g}", p.samples,
+                           p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds * 1e-6 : 0.0, p.error);
+    }
     const double done = p.passes + p.passFraction, perPass = done > 0 ? p.seconds / done : 0.0;
     const bool counted = settings.passes > 0;
     const double left = perPass * (counted ? settings.passes - done : 1.0 - p.passFraction);
@@ -47,7 +51,11 @@ void solve(Solver& solver, const SolverSettings& settings) {
         stopIfInterrupted();
         if (!solver.done() && line.due()) line.show(progressText(solver, settings));
     }
-    if (!solver.progress().converged && settings.passes == 0) {
+    if (solver.progress().converged || settings.error == 0) return;
+    if (!isPairMethod(settings.method) && settings.links.samples == 0) {
+        spdlog::warn("the error is still {:.2g} after {} directions per patch: raise --error",
+                     solver.progress().error, solver.progress().samples);
+    } else if (isPairMethod(settings.method) && settings.passes == 0) {
         spdlog::warn(
             "the error is still {:.2g} after {} passes: lower the albedo or --reflectivity, or raise --error",
             solver.progress().error, solver.progress().passes);
@@ -84,13 +92,15 @@ void warnIfDark(const Scene& scene, const PatchSet& patches) {
                  scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
 }
 
-void bake(const BakeOptions& o) {
+void bake(BakeOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(o);
+    o.method = methodName(request.bake.solver.method);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
     if (!o.picture.empty()) checkWritable(o.picture);
+    if (!o.errorMap.empty()) checkWritable(o.errorMap);
     if (!o.sceneOut.empty()) checkFileWritable(o.sceneOut, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
@@ -112,10 +122,14 @@ void bake(const BakeOptions& o) {
     addAttributes(image, o, request, progress);
     writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
     if (!o.picture.empty()) writeImage(o.picture, image);
+    if (!o.errorMap.empty()) writeImage(o.errorMap, baker.errorMap());
     if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);
 
-    spdlog::info("{} passes, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
-                 progress.passes, static_cast<double>(progress.rays) * 1e-6, progress.seconds,
+    spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.method,
+                 isPairMethod(request.bake.solver.method)
+                     ? fmt::format("{} passes", progress.passes)
+                     : fmt::format("{} directions per patch", progress.samples),
+                 static_cast<double>(progress.rays) * 1e-6, progress.seconds,
                  static_cast<double>(progress.rays) * 1e-6 / progress.seconds, progress.error);
     spdlog::info("wrote {} ({} in all)", o.output, formatDuration(secondsSince(start)));
     if (device.validationMessages() > 0) {

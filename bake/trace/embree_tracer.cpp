@@ -33,13 +33,14 @@ public:
     }
 
     void closest(VkCommandBuffer, const ClosestWork& work) override {
-        const uint64_t links = uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
+        const uint64_t links =
+            work.linksOffset + uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
         scene_.closest({.firstChunk = work.firstChunk,
                         .chunkCount = work.chunkCount,
                         .firstSample = work.firstSample,
                         .sampleCount = work.sampleCount,
                         .rotation = work.rotation,
-                        .links = mappedAs<uint32_t>(work.links, links)});
+                        .links = mappedAs<uint32_t>(work.links, links) + work.linksOffset});
     }
 
     void segments(VkCommandBuffer, const SegmentWork& work) override {

@@ -61,7 +61,7 @@ public:
         ASSERT(work.sampleCount % kSamplesPerInvocation == 0);
         return {.geometry = geometry_,
                 .patches = patches_,
-                .links = work.links->address(),
+                .links = work.links->address() + work.linksOffset * sizeof(uint32_t),
                 .hitTriangles = hitTriangles_.address(),
                 .texelToPatch = texelToPatch_.address(),
                 .patchChart = patchChart_.address(),

@@ -36,12 +36,14 @@ struct OcclusionWork {
 enum class Rotation : uint32_t { Patch, Tile };
 
 /// Closest hits of cosine-distributed directions (shaders/lib/sampling.glsl) of some chunks: link of patch i
-/// of chunk c for sample k goes to links[((c - firstChunk) * sampleCount + (k - firstSample)) * 64 + i].
+/// of chunk c for sample k goes to links[linksOffset + ((c - firstChunk) * sampleCount + (k - firstSample)) *
+/// 64 + i].
 struct ClosestWork {
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0; // sampleCount: a multiple of 8
     Rotation rotation = Rotation::Patch;
-    const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64]
+    const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64] and what lies before
+    uint64_t linksOffset = 0;          // [links]
 };
 
 /// Segments from the patches of some chunks to points of their own. Target s of patch i of chunk c is

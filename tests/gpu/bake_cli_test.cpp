@@ -32,9 +32,11 @@ class BakeCommand : public testing::Test {
 protected:
     BakeCommand() { saveGlb(room(0.5f, 1.0f, 14), scene_); }
 
-    /// Under validation; `relume bake` fails when it complains.
+    /// By pairs unless told otherwise, under validation: `relume bake` fails when it complains.
     ProcessResult bake(const Strings& more) const {
         Strings arguments = {"bake", scene_, "--size", "64", "--validate"};
+        if (std::find(more.begin(), more.end(), "--method") == more.end())
+            arguments.insert(arguments.end(), {"--method", "pure"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runRelume(arguments);
     }
@@ -129,6 +131,26 @@ TEST_F(BakeCommand, RadianceIsEmissionAndAlbedoTimesLighting) {
     }
 }
 
+// What the command does when nothing is said about the method; its error is written, too.
+TEST_F(BakeCommand, TheDefaultIsHybrid) {
+    const ProcessResult r = runRelume({"bake", scene_, "--size", "64", "--validate", "--error", "0.02", "-o",
+                                       path("map.exr"), "--error-map", path("error.exr")});
+    ASSERT_EQ(r.status, 0) << r.err;
+    expectFiles({"error.exr", "map.exr"});
+    const FloatImage map = readImage(path("map.exr")), error = readImage(path("error.exr"));
+    EXPECT_EQ(map.attributes.at("relume:method"), "hybrid");
+    double squares = 0, count = 0, distance = 0;
+    for (size_t i = 0; i < map.planes[0].size(); ++i) {
+        if (map.planes[3][i] != 1.0f) continue;
+        squares += double{error.planes[0][i]} * error.planes[0][i];
+        distance += (map.planes[0][i] - 2.0) * (map.planes[0][i] - 2.0); // 1 / (1 - a)
+        ++count;
+    }
+    EXPECT_GT(squares, 0.0);
+    EXPECT_LT(std::sqrt(squares / count), 0.02 * 2.0);
+    EXPECT_LT(std::sqrt(distance / count), 1.5 * 0.02 * 2.0);
+}
+
 TEST_F(BakeCommand, ErrorEndsTheBake) {
     const ProcessResult r = bake({"-o", path("map.exr"), "--error", "0.001", "--quantity", "radiance"});
     ASSERT_EQ(r.status, 0) << r.err;
@@ -208,6 +230,10 @@ TEST_F(BakeCommand, AContradictionIsAUsageError) {
                                 {"--passes", "0"},
                                 {"--error", "0"},
                                 {"--method", "magic"},
+                                {"--method", "hybrid", "--preset", "rtrad"},
+                                {"--samples", "0", "--method", "directional"},
+                                {"--no-smooth", "--method", "directional"},
+                                {"--samples", "64"},
                                 {"--picture", "x.jpg"},
                                 {"--batch-ms", "1000"}}) {
         Strings arguments = {"-o", out};
@@ -260,8 +286,8 @@ TEST_F(BakeCommand, ASizeThatDoesNotFitIsRefusedWithOneThatDoes) {
     maker.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.material(0.5f, 1.0f), glm::uvec2(64));
     saveGlb(maker.scene(), scene_);
     constexpr int kSize = 3072;
-    const ProcessResult r =
-        runRelume({"bake", scene_, "-o", path("map.exr"), "--size", std::to_string(kSize)});
+    const ProcessResult r = runRelume(
+        {"bake", scene_, "-o", path("map.exr"), "--method", "pure", "--size", std::to_string(kSize)});
     EXPECT_EQ(r.status, 1) << r.err;
     EXPECT_FALSE(contains(r.err, "wrote")) << r.err;
     const size_t end = r.err.rfind(" fits");

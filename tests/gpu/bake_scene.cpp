@@ -191,6 +191,10 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.passes = desc.passes;
     settings.solver.error = desc.error;
     settings.solver.batchMs = desc.batchMs;
+    settings.solver.method = desc.method;
+    settings.solver.links.samples = desc.samples;
+    settings.solver.links.smooth = desc.smooth;
+    settings.solver.cache = desc.cache;
     return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
 }
 

@@ -67,6 +67,10 @@ struct BakeDesc {
     uint32_t passes = 1;
     double error = 0;
     double batchMs = 20;
+    Method method = Method::Pure;
+    uint32_t samples = 0; // link methods: directions per patch
+    bool smooth = false;
+    CacheSettings cache = {};
 };
 
 struct Baked {

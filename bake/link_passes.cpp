@@ -1,0 +1,188 @@
+#include "bake/link_passes.h"
+
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// So few emitters are all sampled by every patch; of more, each patch picks some in every round.
+constexpr uint32_t kAllEmitters = 4;
+constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
+// A round's rays should fill a GPU: 4M are a few milliseconds there.
+constexpr uint32_t kGpuRays = 4u << 20;
+constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and round
+// Chunks of one submit at most: their targets are 16 KiB each for 16 points.
+constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
+constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
+constexpr uint32_t kMaxX = 32768;        // workgroups in x, below every device's limit
+
+uint64_t vec4s(uint64_t count) {
+    return count * sizeof(glm::vec4);
+}
+
+template<typename Push>
+void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
+                    uint32_t chunks) {
+    const uint32_t x = std::min(chunks, kMaxX);
+    program.dispatch(cmd, push, x, (chunks + x - 1) / x);
+}
+
+} // namespace
+
+RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, bool software) {
+    RoundShape shape;
+    const uint32_t wanted = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
+    shape.links = std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
+    shape.all = emitters <= kAllEmitters;
+    shape.picks = shape.all ? emitters : shape.links / kPointsPerPick;
+    shape.points = shape.all ? shape.links : kPointsPerPick;
+    return shape;
+}
+
+LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc)
+    : polygons(vk::makeBuffer(device, desc.emitters.polygons, "emitters")),
+      nodes(vk::makeBuffer(device, desc.emitters.nodes, "light tree")),
+      patchChart(vk::makeBuffer(device, patches.scene.patchChart, "chart of patch")),
+      texelToPatch(vk::makeBuffer(device, patches.scene.texelToPatch, "texel to patch")) {
+    const uint32_t chunks = patches.chunkCount();
+    const uint64_t count = patches.scene.patches.size();
+    batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
+    const uint64_t targetCount = uint64_t{desc.shape.targets()} * batchChunks * kChunk;
+    if (desc.hybrid && targetCount > 0) {
+        const uint64_t words = (desc.shape.targets() + kTargetsPerWord - 1) / kTargetsPerWord;
+        targets = vk::Buffer(device, {.size = vec4s(targetCount), .name = "points on emitters"});
+        picks = vk::Buffer(device, {.size = vec4s(uint64_t{desc.shape.picks} * batchChunks * kChunk),
+                                    .name = "picked emitters"});
+        bits = vk::Buffer(device,
+                          {.size = words * batchChunks * kChunk * sizeof(uint32_t), .name = "seen points"});
+        directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
+    }
+    const uint64_t chunkBytes = uint64_t{desc.shape.links} * kChunk * sizeof(uint32_t);
+    keptChunks = static_cast<uint32_t>(std::min<uint64_t>(chunks, desc.linkBytes / chunkBytes));
+    links = vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
+    linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
+    linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
+    direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
+    if (desc.smooth) rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
+    result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
+    constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
+    chunkSums = vk::Buffer(device, {.size = chunks * kSums, .name = "sums per chunk"});
+    rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
+}
+
+uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
+    const uint64_t count = uint64_t{chunkCount} * kChunk;
+    const bool hybrid = settings.method == Method::Hybrid;
+    const uint64_t batch = std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
+    // Of the largest round shape: what a small scene takes does not matter.
+    const uint64_t perChunk = kChunk * (kAllEmitters * kLeastSamples * sizeof(glm::vec4) + 128);
+    const uint64_t sums = kReplicates * (1 + (hybrid ? 1 : 0) + (hybrid && settings.links.smooth ? 1 : 0));
+    const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
+    return count * (vec4s(sums + 2) + 2 * sizeof(uint32_t) + kept) + batch * perChunk;
+}
+
+void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                               const RoundShape& shape, ChunkRange range, uint32_t round) const {
+    const shader::EmitterSamplesPush push{.patches = light.patches.address(),
+                                          .polygons = buffers.polygons.address(),
+                                          .nodes = buffers.nodes.address(),
+                                          .targets = buffers.targets.address(),
+                                          .picks = buffers.picks.address(),
+                                          .firstChunk = range.first,
+                                          .round = round,
+                                          .pickCount = shape.picks,
+                                          .pointCount = shape.points,
+                                          .all = shape.all ? 1u : 0u};
+    samples_.dispatch(cmd, push, range.count, shape.picks);
+}
+
+void DirectPass::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                              const RoundShape& shape, ChunkRange range, uint32_t rounds) const {
+    const shader::DirectPush push{.targets = buffers.targets.address(),
+                                  .picks = buffers.picks.address(),
+                                  .bits = buffers.bits.address(),
+                                  .sums = buffers.directSums.address(),
+                                  .direct = buffers.direct.address(),
+                                  .firstChunk = range.first,
+                                  .pickCount = shape.picks,
+                                  .pointCount = shape.points,
+                                  .all = shape.all ? 1u : 0u,
+                                  .patchCount = light.chunkCount * kChunk,
+                                  .scale = 1.0f / static_cast<float>(kReplicates * rounds)};
+    gather_.dispatch(cmd, push, range.count);
+}
+
+void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                            const Work& work) const {
+    const shader::LinkPush push{.links = work.links,
+                                .radiance = light.radiance.address(),
+                                .direct = work.hybrid ? buffers.direct.address() : 0,
+                                .ligOut = light.ligOut.address(),
+                                .sums = work.accumulate ? buffers.linkSums.address() : 0,
+                                .firstChunk = work.range.first,
+                                .chunkCount = work.range.count,
+                                .sampleCount = work.samples,
+                                .patchCount = light.chunkCount * kChunk};
+    dispatchChunks(gather_, cmd, push, work.range.count);
+}
+
+void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                                   bool hybrid, uint32_t samples) const {
+    const shader::ComposePush push{.sums = buffers.linkSums.address(),
+                                   .direct = hybrid ? buffers.direct.address() : 0,
+                                   .light = light.ligIn.address(),
+                                   .patchCount = light.chunkCount * kChunk,
+                                   .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
+    dispatchChunks(compose_, cmd, push, light.chunkCount);
+}
+
+void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light,
+                               const LinkBuffers& buffers) const {
+    const shader::ChangePush push{.patches = light.patches.address(),
+                                  .ligIn = light.ligIn.address(),
+                                  .ligOut = light.ligOut.address(),
+                                  .sums = buffers.chunkSums.address(),
+                                  .chunkCount = light.chunkCount};
+    dispatchChunks(change_, cmd, push, light.chunkCount);
+}
+
+void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                         const Work& work) const {
+    constexpr float kReachInSigmas = 2.0f;
+    constexpr uint32_t kMaxReach = 8;   // lib/smoothing.glsl
+    constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
+    uint32_t reach = 0;
+    if (buffers.rows && work.sigma >= kLeastSigma)
+        reach = std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * work.sigma)));
+    const float perReplicate = static_cast<float>(work.samples) / static_cast<float>(kReplicates);
+    const shader::SmoothPush push{
+        .patches = light.patches.address(),
+        .patchChart = buffers.patchChart.address(),
+        .texelToPatch = buffers.texelToPatch.address(),
+        .sums = buffers.linkSums.address(),
+        .rows = buffers.rows ? buffers.rows.address() : 0,
+        .directSums = work.directRounds > 0 && buffers.directSums ? buffers.directSums.address() : 0,
+        .result = buffers.result.address(),
+        .chunkSums = buffers.chunkSums.address(),
+        .chunkCount = light.chunkCount,
+        .patchCount = light.chunkCount * kChunk,
+        .size = work.size,
+        .reach = reach,
+        .sigma = work.sigma,
+        .scale = work.samples > 0 ? 1.0f / perReplicate : 0.0f,
+        .directScale = work.directRounds > 0 ? 1.0f / static_cast<float>(work.directRounds) : 0.0f};
+    if (reach > 0) {
+        dispatchChunks(smooth_, cmd, push, light.chunkCount);
+        vk::barrier(cmd);
+    }
+    dispatchChunks(resolve_, cmd, push, light.chunkCount);
+}
+
+} // namespace relume

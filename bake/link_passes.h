@@ -1,0 +1,110 @@
+#pragma once
+
+#include "bake/emitters.h"
+#include "bake/light_buffers.h"
+#include "bake/solver.h"
+#include "bake/vk/program.h"
+
+namespace relume {
+
+/// What one round takes of each patch: so many that a batch fills the device.
+struct RoundShape {
+    uint32_t links = 16;  // directions per patch
+    uint32_t picks = 0;   // of emitters, per patch; all of them where there are few
+    uint32_t points = 16; // on each picked emitter
+    bool all = true;      // pick i is emitter i
+    uint32_t targets() const { return picks * points; }
+};
+RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, bool software);
+
+/// Buffers of the link methods. "Sums" hold each replicate's samples by themselves:
+/// vec4[kReplicates][patches].
+struct LinkBuffers {
+    vk::Buffer polygons, nodes; // EmitterPolygon, EmitterNode
+    vk::Buffer patchChart, texelToPatch;
+    vk::Buffer targets, picks, bits; // of one batch of direct light
+    vk::Buffer links;                // uint[chunk][links of a round][64], of the first keptChunks chunks
+    vk::Buffer linksStaging;         // of one batch beyond these
+    vk::Buffer linkSums, directSums;
+    vk::Buffer direct;        // vec4 per patch, the mean
+    vk::Buffer rows, result;  // of smoothing, and its outcome
+    vk::Buffer chunkSums;     // per chunk, read back
+    vk::Buffer rays;          // uint[kRayCounters]
+    uint32_t batchChunks = 0; // at most in one submit
+    uint32_t keptChunks = 0;
+
+    struct Desc {
+        const EmitterSet& emitters;
+        RoundShape shape;
+        bool hybrid = false;
+        bool smooth = false;
+        uint64_t linkBytes = 0; // at most, for links that later bounces gather again
+    };
+    LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
+    static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
+};
+
+struct ChunkRange {
+    uint32_t first = 0, count = 0;
+};
+
+/// Direct light: draws points on emitters, and adds the light of those that a tracer's segments reach.
+class DirectPass {
+public:
+    explicit DirectPass(const vk::Device& device)
+        : samples_(device, "emitter_samples"), gather_(device, "direct") {}
+    /// Writes targets and picks of a round. Barriers are the caller's, here and below.
+    void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                       const RoundShape& shape, ChunkRange range, uint32_t round) const;
+    /// Reads bits; adds to directSums and updates direct. rounds: finished ones, this one included.
+    void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                      const RoundShape& shape, ChunkRange range, uint32_t rounds) const;
+
+private:
+    vk::ComputeProgram samples_, gather_;
+};
+
+/// Light over links: the mean of what the links' patches send, and of direct light, to ligOut.
+class LinkGatherPass {
+public:
+    explicit LinkGatherPass(const vk::Device& device)
+        : gather_(device, "links"), compose_(device, "compose") {}
+    struct Work {
+        VkDeviceAddress links = 0; // of range.first on
+        uint32_t samples = 0;      // per patch
+        bool hybrid = false;       // direct light is added to ligOut
+        bool accumulate = false;   // add to linkSums
+        ChunkRange range;
+    };
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                const Work& work) const;
+    /// ligIn = direct light and the mean of `samples` links.
+    void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                       bool hybrid, uint32_t samples) const;
+
+private:
+    vk::ComputeProgram gather_, compose_;
+};
+
+/// Sums over chunks: what a bounce changed, and the result with its errors.
+class ResolvePass {
+public:
+    explicit ResolvePass(const vk::Device& device)
+        : change_(device, "change"), smooth_(device, "smooth"), resolve_(device, "resolve") {}
+    /// Compares ligOut with ligIn: vec4 per chunk in chunkSums.
+    void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
+    struct Work {
+        uint32_t size = 0;         // lightmap edge [texels]
+        uint32_t samples = 0;      // links per patch in linkSums
+        uint32_t directRounds = 0; // in directSums; 0: no direct light
+        float sigma = 0;           // of smoothing [texels], 0: none
+    };
+    /// result and ResolveSums per chunk in chunkSums.
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                const Work& work) const;
+
+private:
+    vk::ComputeProgram change_, smooth_, resolve_;
+};
+
+} // namespace relume

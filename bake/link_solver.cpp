@@ -1,0 +1,402 @@
+#include "bake/link_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace relume {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using shader::kChunk;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The first batch of each kind, before anything is measured: surely below 50 ms.
+constexpr uint32_t kFirstChunks = 16;
+// A batch may grow this much over the one before: a first measurement may have caught shader compilation.
+constexpr double kMaxGrowth = 4.0;
+// Of the error that is asked for, what the bounces of the first round may leave; later rounds go on with
+// them.
+constexpr double kIterationShare = 0.2;
+constexpr double kLeastIterationError = 1e-4;
+// A segment towards a light costs about so much of a closest hit.
+constexpr double kSegmentCost = 0.3;
+// The error is looked at after every round at first, then each time their number has grown by a quarter.
+constexpr double kCheckGrowth = 1.25;
+// Smoothing is as wide as its error is small: widths that are tried [texels], and how often the model is
+// asked again with what the new width showed.
+constexpr double kSigmaStep = 0.1, kMostSigma = 4.0;
+constexpr uint32_t kSigmaTries = 3;
+// A width within this factor of the best one is left alone: the error hardly depends on it there.
+constexpr double kSigmaSlack = 1.25;
+
+double updatedRate(double rate, double chunks, double seconds) {
+    const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
+    return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
+}
+
+} // namespace
+
+LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
+    : input_(input), settings_(settings), hybrid_(settings.method == Method::Hybrid),
+      emitters_(hybrid_
+                    ? buildEmitters(input.scene, input.patches.scene.mesh, {.size = input.patches.scene.size})
+                    : EmitterSet{}),
+      shape_(chooseRoundShape(input.patches.count, static_cast<uint32_t>(emitters_.polygons.size()),
+                              input.device.info().software())),
+      buffers_(input.device, input.patches,
+               {.emitters = emitters_,
+                .shape = shape_,
+                .hybrid = hybrid_,
+                .smooth = hybrid_ && settings.links.smooth,
+                .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
+      radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device),
+      resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3) {
+    settings_.transport.reflectedOnly = hybrid_;
+    const PatchSet& patches = input.patches;
+    senders_.assign(patches.chunkCount(), 0);
+    for (uint32_t i = 0; i < patches.count; ++i)
+        senders_[i / kChunk] += (patches.scene.patches[i].flags & shader::kPatchSends) != 0;
+
+    VkCommandBuffer cmd = commands_.begin();
+    for (const vk::Buffer* buffer : {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct,
+                                     &buffers_.rays, &input.light.ligIn, &input.light.ligOut}) {
+        if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
+    }
+    vk::barrier(cmd);
+    commands_.run();
+    light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
+    const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
+    progress_.cacheBytes = kept;
+    progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / patches.chunkCount();
+}
+
+void LinkSolver::step() {
+    if (done_) return;
+    const auto start = Clock::now();
+    if (state_.stage == Stage::Plan) plan();
+    if (state_.stage == Stage::Direct)
+        directBatch();
+    else if (state_.stage == Stage::Links)
+        linkBatch();
+    progress_.passFraction = static_cast<double>(state_.nextChunk) / input_.patches.chunkCount();
+    progress_.seconds += secondsSince(start);
+}
+
+// Direct light first, then links; then whichever takes more of the error away for its rays.
+void LinkSolver::plan() {
+    const uint32_t rounds = state_.directRounds + state_.linkRounds;
+    // With a number of samples alone, errors decide nothing.
+    if (settings_.error > 0 && rounds > 0 && rounds >= state_.nextCheck) check();
+    if (progress_.converged || enoughRounds()) {
+        if (stale_) resolve();
+        done_ = true;
+        return;
+    }
+    begin(wantsDirect() ? Stage::Direct : Stage::Links);
+}
+
+void LinkSolver::begin(Stage stage) {
+    state_.stage = stage;
+    state_.nextChunk = 0;
+    state_.bounce = 0;
+    if (stage == Stage::Links) {
+        beginBounce();
+    } else {
+        VkCommandBuffer cmd = commands_.begin();
+        vkCmdFillBuffer(cmd, buffers_.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+        vk::barrier(cmd);
+        commands_.run();
+    }
+}
+
+bool LinkSolver::enoughRounds() const {
+    const uint32_t limit = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
+    const uint32_t wanted = (limit + shape_.links - 1) / shape_.links;
+    const bool linksDone = state_.linkRounds >= wanted || (hybrid_ && settings_.passes == 1);
+    const bool directDone = shape_.picks == 0 || !hybrid_ || state_.directRounds >= wanted;
+    return linksDone && directDone;
+}
+
+bool LinkSolver::wantsDirect() const {
+    if (!hybrid_ || shape_.picks == 0) return false;
+    if (state_.directRounds == 0 || settings_.passes == 1) return true;
+    if (state_.linkRounds == 0) return false;
+    if (settings_.links.samples > 0) return state_.directRounds <= state_.linkRounds;
+    // Variance falls as 1 / rounds at least; what one more takes away, for its cost.
+    const auto gain = [](double variance, double then, double now, double cost) {
+        return variance * then / (now * now * cost);
+    };
+    return gain(state_.directVariance, state_.directAtCheck, state_.directRounds,
+                kSegmentCost * shape_.targets()) >
+           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, shape_.links);
+}
+
+ChunkRange LinkSolver::nextRange(double chunksPerMs, uint32_t most) const {
+    const double wanted = chunksPerMs > 0 ? chunksPerMs * settings_.batchMs : kFirstChunks;
+    const uint32_t left = input_.patches.chunkCount() - state_.nextChunk;
+    return {state_.nextChunk, std::min({left, most, static_cast<uint32_t>(std::max(1.0, wanted))})};
+}
+
+void LinkSolver::directBatch() {
+    const ChunkRange range = nextRange(directRate_, buffers_.batchChunks);
+    const auto start = Clock::now();
+    const SegmentWork work{.firstChunk = range.first,
+                           .chunkCount = range.count,
+                           .targetCount = shape_.targets(),
+                           .targets = &buffers_.targets,
+                           .bits = &buffers_.bits,
+                           .rays = &buffers_.rays};
+    VkCommandBuffer cmd = commands_.begin();
+    directPass_.recordSamples(cmd, input_.light, buffers_, shape_, range, state_.directRounds);
+    vk::barrier(cmd);
+    double cpuTrace = 0;
+    if (input_.tracer.onCpu()) {
+        vk::hostBarrier(cmd);
+        commands_.run();
+        cmd = commands_.begin();
+        const auto traceStart = Clock::now();
+        input_.tracer.segments(cmd, work);
+        cpuTrace = secondsSince(traceStart);
+    }
+    timestamps_.reset(cmd);
+    timestamps_.mark(cmd, 0);
+    if (!input_.tracer.onCpu()) input_.tracer.segments(cmd, work);
+    vk::barrier(cmd);
+    timestamps_.mark(cmd, 1);
+    directPass_.recordGather(cmd, input_.light, buffers_, shape_, range, state_.directRounds + 1);
+    timestamps_.mark(cmd, 2);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    progress_.traceSeconds += input_.tracer.onCpu() ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
+    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
+    directRate_ = updatedRate(directRate_, range.count, secondsSince(start));
+    state_.nextChunk += range.count;
+    if (state_.nextChunk < input_.patches.chunkCount()) return;
+    const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
+    progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
+    ++state_.directRounds;
+    stale_ = true;
+    state_.stage = Stage::Plan;
+}
+
+void LinkSolver::beginBounce() {
+    const bool counted = settings_.passes > 0;
+    VkCommandBuffer cmd = commands_.begin();
+    if (state_.bounce == 0) {
+        const uint32_t samples = counted ? 0 : state_.linkRounds * shape_.links;
+        gatherPass_.recordCompose(cmd, input_.light, buffers_, hybrid_, samples);
+        vk::barrier(cmd);
+    }
+    radiancePass_.record(cmd, input_.light, settings_.transport);
+    vk::barrier(cmd);
+    commands_.run();
+    state_.nextChunk = 0;
+    // Hybrid's first pass is its direct light.
+    const uint32_t bounces = hybrid_ ? settings_.passes - 1 : settings_.passes;
+    if (counted)
+        state_.last = state_.bounce + 1 >= bounces;
+    else if (state_.linkRounds > 0)
+        state_.last = true;
+    else if (state_.bounce == 0)
+        state_.last = false;
+}
+
+void LinkSolver::linkBatch() {
+    // Chunks whose links this round has traced already, at its first bounce.
+    const bool kept = state_.nextChunk < buffers_.keptChunks;
+    const bool trace = state_.bounce == 0 || !kept;
+    const uint32_t room = kept ? buffers_.keptChunks - state_.nextChunk : buffers_.batchChunks;
+    const ChunkRange range =
+        trace ? nextRange(traceRate_, std::min(room, buffers_.batchChunks)) : nextRange(gatherRate_, room);
+    const uint64_t offset = kept ? uint64_t{range.first} * shape_.links * kChunk : 0; // [words]
+    const vk::Buffer& links = kept ? buffers_.links : buffers_.linksStaging;
+    const auto start = Clock::now();
+    VkCommandBuffer cmd = commands_.begin();
+    timestamps_.reset(cmd);
+    timestamps_.mark(cmd, 0);
+    if (trace) {
+        input_.tracer.closest(cmd, {.firstChunk = range.first,
+                                    .chunkCount = range.count,
+                                    .firstSample = state_.linkRounds * shape_.links,
+                                    .sampleCount = shape_.links,
+                                    .rotation = Rotation::Patch,
+                                    .links = &links,
+                                    .linksOffset = offset});
+    }
+    const double cpuTrace = secondsSince(start);
+    vk::barrier(cmd);
+    timestamps_.mark(cmd, 1);
+    gatherPass_.record(cmd, input_.light, buffers_,
+                       {.links = links.address() + offset * sizeof(uint32_t),
+                        .samples = shape_.links,
+                        .hybrid = hybrid_,
+                        .accumulate = state_.last,
+                        .range = range});
+    timestamps_.mark(cmd, 2);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    progress_.traceSeconds +=
+        input_.tracer.onCpu() && trace ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
+    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
+    double& rate = trace ? traceRate_ : gatherRate_;
+    rate = updatedRate(rate, range.count, secondsSince(start));
+    const auto first = senders_.begin() + range.first;
+    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * shape_.links;
+    (trace ? progress_.rays : progress_.raysSaved) += count;
+    progress_.pairs += count;
+    state_.nextChunk += range.count;
+    if (state_.nextChunk >= input_.patches.chunkCount()) endBounce();
+}
+
+void LinkSolver::endBounce() {
+    ++progress_.passes;
+    const bool settling = settings_.passes == 0 && state_.linkRounds == 0 && !state_.last;
+    if (settling) measureChange();
+    std::swap(input_.light.ligIn, input_.light.ligOut);
+    ++state_.bounce;
+    if (!state_.last) {
+        const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
+        if (settling) state_.last = state_.iterationError <= aim || state_.bounce + 1 >= kMaxPasses;
+        return beginBounce();
+    }
+    if (settings_.passes == 0)
+        state_.iterationError *= state_.ratio; // this bounce's own share
+    else
+        state_.iterationError = 0; // what more bounces would add is not asked for
+    ++state_.linkRounds;
+    progress_.samples = state_.linkRounds * shape_.links;
+    stale_ = true;
+    state_.stage = Stage::Plan;
+}
+
+// The remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two changes
+// (conventions.md, Errors).
+void LinkSolver::measureChange() {
+    VkCommandBuffer cmd = commands_.begin();
+    resolvePass_.recordChange(cmd, input_.light, buffers_);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    const auto sums =
+        vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount());
+    glm::dvec3 total(0.0);
+    for (const glm::vec4& sum : sums)
+        total += glm::dvec3(sum);
+    const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
+    const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
+    if (change == 0.0 || mean <= 0.0) {
+        state_.iterationError = state_.ratio = 0.0;
+    } else if (state_.change > 0.0) {
+        state_.ratio = change / state_.change;
+        const bool falling = state_.ratio < 1.0;
+        state_.iterationError = falling ? change * state_.ratio / (1.0 - state_.ratio) / mean : 1.0;
+    }
+    state_.change = change;
+}
+
+// The error that is left, from what the replicates say and the iteration; kept in progress().
+void LinkSolver::check() {
+    const uint32_t rounds = state_.directRounds + state_.linkRounds;
+    state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(kCheckGrowth * rounds));
+    if (state_.linkRounds == 0 && !(hybrid_ && settings_.passes == 1)) return; // no bounces yet
+    resolve();
+    progress_.converged = settings_.error > 0 && progress_.error <= settings_.error;
+}
+
+void LinkSolver::resolve() {
+    shader::ResolveSums sums = resolveOnce();
+    for (uint32_t tries = 1; tries < kSigmaTries && buffers_.rows; ++tries) {
+        const double before = state_.sigma;
+        adaptSigma(sums);
+        if (state_.sigma == before) break;
+        sums = resolveOnce();
+    }
+    state_.directVariance = sums.direct;
+    state_.indirectVariance = sums.indirect + std::max(0.0f, sums.bias);
+    state_.directAtCheck = state_.directRounds;
+    state_.linksAtCheck = state_.linkRounds;
+    progress_.error = 0;
+    if (sums.light > 0) {
+        const double mean = sums.light / (3.0 * sums.count);
+        const double variance = (state_.directVariance + state_.indirectVariance) / (3.0 * sums.count);
+        const bool settled = hybrid_ && settings_.passes == 1;
+        const double iteration = settled ? 0.0 : state_.iterationError;
+        progress_.error = std::sqrt(variance / (mean * mean) + iteration * iteration);
+    }
+    stale_ = false;
+    light_.clear();
+}
+
+shader::ResolveSums LinkSolver::resolveOnce() {
+    VkCommandBuffer cmd = commands_.begin();
+    resolvePass_.record(cmd, input_.light, buffers_,
+                        {.size = input_.patches.scene.size,
+                         .samples = state_.linkRounds * shape_.links,
+                         .directRounds = state_.directRounds,
+                         .sigma = static_cast<float>(state_.sigma)});
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    const auto chunks =
+        vk::readBuffer<shader::ResolveSums>(input_.device, buffers_.chunkSums, input_.patches.chunkCount());
+    std::array<double, 6> total{};
+    for (const shader::ResolveSums& s : chunks) {
+        const std::array<float, 6> terms = {s.light, s.direct, s.indirect, s.raw, s.bias, s.count};
+        for (size_t k = 0; k < total.size(); ++k)
+            total[k] += terms[k];
+    }
+    const auto f = [&](size_t k) { return static_cast<float>(total[k]); };
+    return {f(0), f(1), f(2), f(3), f(4), f(5)};
+}
+
+// Of a smooth function the mean over a width sigma is off by sigma^2 times its curvature, and independent
+// noise falls with the area, 1 / (1 + a sigma^2): the squares of both, as measured at one width, tell the
+// best one.
+void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
+    const double s2 = state_.sigma * state_.sigma;
+    if (!(sums.raw > 0.0f)) {
+        state_.sigma = 0;
+        return;
+    }
+    // Where nothing was smoothed only the ideal Gaussian's share is known, and no bias: try a narrow one.
+    constexpr double kGaussian = 4.0 * std::numbers::pi;
+    const double a =
+        s2 > 0 && sums.indirect > 0.0f ? std::max(0.0, sums.raw / sums.indirect - 1.0) / s2 : kGaussian;
+    const double b = s2 > 0 ? std::max(0.0f, sums.bias) / (s2 * s2) : sums.raw;
+    const auto error = [&](double sigma) {
+        const double t2 = sigma * sigma;
+        return sums.raw / (1.0 + a * t2) + b * t2 * t2;
+    };
+    double best = 0;
+    for (double sigma = kSigmaStep; sigma <= kMostSigma; sigma += kSigmaStep) {
+        if (error(sigma) < error(best)) best = sigma;
+    }
+    const bool close = best < kSigmaSlack * state_.sigma && state_.sigma < kSigmaSlack * best;
+    if (!close) state_.sigma = best;
+}
+
+const std::vector<glm::vec4>& LinkSolver::light() {
+    if (stale_ && state_.directRounds + state_.linkRounds > 0) resolve();
+    if (light_.empty())
+        light_ =
+            vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());
+    return light_;
+}
+
+std::vector<float> LinkSolver::errors() {
+    std::vector<float> result;
+    for (const glm::vec4& v : light())
+        result.push_back(v.w);
+    return result;
+}
+
+} // namespace relume

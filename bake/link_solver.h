@@ -1,0 +1,77 @@
+#pragma once
+
+#include "bake/link_passes.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+
+/// Directional and hybrid. A round takes a few samples of every patch: points on emitters (hybrid) or links.
+/// The first round of links is iterated until its bounces have settled; later ones start from the light so
+/// far and need one bounce each, so that light and samples improve together. With a number of passes given,
+/// each round starts from nothing and has just so many bounces. The mean over rounds is the result; the
+/// spread of the replicates is its error.
+class LinkSolver final : public Solver {
+public:
+    /// Throws Error.
+    LinkSolver(const SolverInput& input, const SolverSettings& settings);
+
+    void step() override;
+    /// Direct and (smoothed) indirect light; w: standard error.
+    const std::vector<glm::vec4>& light() override;
+    std::vector<float> errors() override; // standard errors
+
+    /// Directions per patch beyond which no error is worth the time.
+    static constexpr uint32_t kMaxSamples = 65536;
+
+private:
+    enum class Stage : uint32_t { Plan, Direct, Links };
+    /// Everything that decides what comes next.
+    struct State {
+        Stage stage = Stage::Plan;
+        uint32_t directRounds = 0, linkRounds = 0; // finished
+        uint32_t bounce = 0;                       // of the current round
+        uint32_t nextChunk = 0;
+        uint32_t nextCheck = 0; // rounds of both kinds after which the error is looked at
+        bool last = false;      // this bounce is the round's last one: it counts
+        double change = 0;      // RMS of the last bounce [cd/m^2]
+        double ratio = 0;       // of the last two changes
+        double iterationError = 1, directVariance = 0, indirectVariance = 0;
+        double sigma = 2.0; // of smoothing [texels]; what suits the noise is learnt from the result itself
+        uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
+    };
+
+    void plan();
+    void begin(Stage stage);
+    bool enoughRounds() const;
+    bool wantsDirect() const;
+    void directBatch();
+    void linkBatch();
+    void beginBounce();
+    void endBounce();
+    void measureChange();
+    void check();
+    void resolve();
+    shader::ResolveSums resolveOnce();
+    void adaptSigma(const shader::ResolveSums& sums);
+    ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
+
+    const SolverInput input_;
+    SolverSettings settings_;
+    bool hybrid_;
+    EmitterSet emitters_;
+    RoundShape shape_;
+    LinkBuffers buffers_;
+    RadiancePass radiancePass_;
+    DirectPass directPass_;
+    LinkGatherPass gatherPass_;
+    ResolvePass resolvePass_;
+    vk::Commands commands_;
+    vk::Timestamps timestamps_;
+    State state_;
+    double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
+    std::vector<uint32_t> senders_;                          // of each chunk: patches that take part
+    bool stale_ = true;                                      // light_ is behind the sums
+    std::vector<glm::vec4> light_;                           // empty: not read back yet
+};
+
+} // namespace relume

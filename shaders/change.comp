@@ -1,0 +1,27 @@
+// How much a bounce changed the light, summed over each chunk: x squares of the difference, y the light, z patches. One
+// workgroup per chunk.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { ChangePush push; };
+
+layout(local_size_x = 64) in;
+
+shared vec4 terms[kChunk];
+
+void main() {
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
+    if (chunk >= push.chunkCount) return;
+    uint index = chunk * kChunk + lane;
+    uint flags = loadPatch(push.patches, index).flags;
+    vec4 term = vec4(0.0);
+    if ((flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u) {
+        vec3 now = Vec4s(push.ligOut).items[index].rgb, change = now - Vec4s(push.ligIn).items[index].rgb;
+        term = vec4(dot(change, change), now.r + now.g + now.b, 1.0, 0.0);
+    }
+    terms[lane] = term;
+    barrier();
+    if (lane != 0u) return;
+    for (uint i = 1u; i < kChunk; ++i) term += terms[i];
+    Vec4s(push.sums).items[chunk] = term;
+}

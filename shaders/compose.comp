@@ -1,0 +1,16 @@
+// The light that bounces on: direct light and the mean of all links so far. One invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { ComposePush push; };
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+    if (index >= push.patchCount) return;
+    vec3 sum = vec3(0.0);
+    for (uint q = 0u; q < kReplicates; ++q) sum += Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
+    Vec4s(push.light).items[index] = vec4(direct + sum * push.scale, 1.0);
+}

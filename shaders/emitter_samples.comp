@@ -1,0 +1,57 @@
+// Points on emitters for the patches of some chunks: which emitter, where on it, and what it would send unshadowed. One
+// workgroup per chunk (x) and pick (y), one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+#include "lib/form_factor.glsl"
+#include "lib/emitters.glsl"
+layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
+EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
+#include "lib/pick_emitter.glsl"
+
+layout(local_size_x = 64) in;
+
+// Keep the numbers of picks and of points apart from those of directions, which start from the same seeds.
+const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
+
+void main() {
+    uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
+    Patch p = loadPatch(push.patches, (push.firstChunk + chunk) * kChunk + lane);
+    uint base = (chunk * push.pickCount + pick) * push.pointCount;
+    uint key = seedKey(p);
+    bool all = push.all != 0u;
+
+    uint emitter = pick, sequence = 0u; // of the pick's points, where it has one of its own
+    float probability = 1.0;
+    if (!all) {
+        uint number = push.round * push.pickCount + pick;
+        uint seed = hash32(replicateSeed(key, number) ^ kPickSalt);
+        emitter = pickEmitter(p.position, p.shading, sobolPoint(replicateIndex(number), seed).x, probability);
+        sequence = replicateIndex(number) * push.pointCount;
+    }
+    vec3 light = vec3(0.0);
+    EmitterPolygon e;
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u) {
+        e = loadEmitterPolygon(push.polygons, emitter);
+        light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
+    }
+    bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
+    vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
+    for (uint s = 0u; s < push.pointCount; ++s) {
+        vec4 target = vec4(0.0);
+        if (shines) {
+            // All emitters: a patch's points take turns among the replicates. Picked ones: a pick's belong to one.
+            uint number = all ? push.round * push.pointCount + s : pick;
+            uint index = all ? replicateIndex(number) : sequence + s;
+            uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
+            vec3 y = emitterPoint(e, sobolPoint(index, seed));
+            float f = emitterPointFactor(p.position, p.shading, e, y);
+            // Below the geometric horizon it is hidden, and not asked for.
+            bool above = dot(y - p.position, p.normal) > p.offset;
+            target = vec4(y + off, above ? f : -f);
+        }
+        Vec4s(push.targets).items[(base + s) * kChunk + lane] = target;
+    }
+    Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane] = vec4(light, 0.0);
+}

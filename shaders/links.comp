@@ -1,0 +1,30 @@
+// Gathers light over links, sample by sample of each replicate: the mean radiance of what cosine-distributed directions
+// hit is lighting. One workgroup per chunk, one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { LinkPush push; };
+
+layout(local_size_x = 64) in;
+
+vec3 sent(uint link) { return link < kLinkFirstSpecial ? Vec4s(push.radiance).items[link].rgb : vec3(0.0); }
+
+void main() {
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (chunk >= push.chunkCount) return;
+    uint lane = gl_LocalInvocationID.x, index = (push.firstChunk + chunk) * kChunk + lane;
+    Words links = Words(push.links);
+    vec3 sum[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) sum[q] = vec3(0.0);
+    for (uint k = 0u; k < push.sampleCount; k += kReplicates) {
+        uint row = (chunk * push.sampleCount + k) * kChunk + lane;
+        for (uint q = 0u; q < kReplicates; ++q) sum[q] += sent(links.items[row + q * kChunk]);
+    }
+    vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
+    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
+    Vec4s(push.ligOut).items[index] = vec4(direct + total / float(push.sampleCount), 1.0);
+    if (push.sums != 0ul) {
+        Vec4s sums = Vec4s(push.sums);
+        for (uint q = 0u; q < kReplicates; ++q) sums.items[q * push.patchCount + index].rgb += sum[q];
+    }
+}

@@ -1,0 +1,76 @@
+// The result: direct light plus indirect light, smoothed along columns (rows are done), with each patch's standard error from
+// the spread of the replicates in w. Sums for the error of the whole go to one ResolveSums per chunk. One workgroup per
+// chunk.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { SmoothPush push; };
+#include "lib/smoothing.glsl"
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer SumsList { ResolveSums items[]; };
+
+layout(local_size_x = 64) in;
+
+shared ResolveSums terms[kChunk];
+
+// Variance of the mean of the replicates, added over R, G and B.
+float spread(vec3 v[kReplicates]) {
+    vec3 mean = 0.25 * (v[0] + v[1] + v[2] + v[3]);
+    float sum = 0.0;
+    for (uint q = 0u; q < kReplicates; ++q) sum += dot(v[q] - mean, v[q] - mean);
+    return sum / float(kReplicates * (kReplicates - 1u));
+}
+
+void main() {
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
+    if (chunk >= push.chunkCount) return;
+    uint index = chunk * kChunk + lane;
+    vec3 direct[kReplicates], raw[kReplicates], smoothed[kReplicates], moved[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) {
+        direct[q] = push.directSums != 0ul ? push.directScale * Vec4s(push.directSums).items[q * push.patchCount + index].rgb
+                                           : vec3(0.0);
+        raw[q] = push.scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+        smoothed[q] = vec3(0.0);
+    }
+    if (push.reach > 0u) {
+        Taps taps = smoothingTaps(index, ivec2(0, 1));
+        for (uint t = 0u; t < 2u * push.reach + 1u; ++t) {
+            if (taps.weight[t] == 0.0) continue;
+            for (uint q = 0u; q < kReplicates; ++q) {
+                vec3 row = Vec4s(push.rows).items[q * push.patchCount + taps.index[t]].rgb;
+                smoothed[q] += push.scale * taps.weight[t] * row;
+            }
+        }
+    } else {
+        smoothed = raw;
+    }
+    for (uint q = 0u; q < kReplicates; ++q) moved[q] = smoothed[q] - raw[q];
+    vec3 mean = 0.25 * (smoothed[0] + smoothed[1] + smoothed[2] + smoothed[3]);
+    vec3 move = 0.25 * (moved[0] + moved[1] + moved[2] + moved[3]);
+    // Sums of weights of both signs may end a little below nothing.
+    vec3 light = max(0.25 * (direct[0] + direct[1] + direct[2] + direct[3]) + mean, 0.0);
+
+    ResolveSums term = ResolveSums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    uint flags = loadPatch(push.patches, index).flags;
+    float directVariance = spread(direct), indirectVariance = spread(smoothed);
+    if ((flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u) {
+        term.light = light.r + light.g + light.b;
+        term.direct = directVariance;
+        term.indirect = indirectVariance;
+        term.raw = spread(raw);
+        term.bias = dot(move, move) - spread(moved);
+        term.count = 1.0;
+    }
+    Vec4s(push.result).items[index] = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
+    terms[lane] = term;
+    barrier();
+    if (lane != 0u) return;
+    for (uint i = 1u; i < kChunk; ++i) {
+        term.light += terms[i].light;
+        term.direct += terms[i].direct;
+        term.indirect += terms[i].indirect;
+        term.raw += terms[i].raw;
+        term.bias += terms[i].bias;
+        term.count += terms[i].count;
+    }
+    SumsList(push.chunkSums).items[chunk] = term;
+}

@@ -1,0 +1,22 @@
+// First half of smoothing the indirect light: along rows of texels, each replicate by itself. One invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { SmoothPush push; };
+#include "lib/smoothing.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+    if (index >= push.patchCount) return;
+    Taps taps = smoothingTaps(index, ivec2(1, 0));
+    vec3 value[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
+    for (uint t = 0u; t < 2u * push.reach + 1u; ++t) {
+        if (taps.weight[t] == 0.0) continue;
+        for (uint q = 0u; q < kReplicates; ++q)
+            value[q] += taps.weight[t] * Vec4s(push.sums).items[q * push.patchCount + taps.index[t]].rgb;
+    }
+    for (uint q = 0u; q < kReplicates; ++q) Vec4s(push.rows).items[q * push.patchCount + index] = vec4(value[q], 0.0);
+}

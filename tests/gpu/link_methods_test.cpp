@@ -1,0 +1,219 @@
+// Directional and hybrid: closed forms, the pure method, and what must not change a byte.
+#include "assets/generate.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/unit/closed_forms.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace relume {
+namespace {
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+bool sameBytes(const FloatImage& a, const FloatImage& b) {
+    if (a.planes.size() != b.planes.size()) return false;
+    for (size_t k = 0; k < a.planes.size(); ++k) {
+        if (a.planes[k].size() != b.planes[k].size()) return false;
+        if (std::memcmp(a.planes[k].data(), b.planes[k].data(), a.planes[k].size() * sizeof(float)) != 0)
+            return false;
+    }
+    return true;
+}
+
+/// Area times reflected light [cd] of all patches that are shown.
+double reflectedFlux(const Baked& baked) {
+    double flux = 0;
+    const std::vector<uint32_t>& map = baked.patches.scene.texelToPatch;
+    for (size_t texel = 0; texel < map.size(); ++texel) {
+        if (map[texel] == shader::kNoPatch) continue;
+        const uint32_t i = map[texel];
+        double light = 0;
+        for (size_t k = 0; k < 3; ++k)
+            light += baked.patches.albedo[i][static_cast<int>(k)] * baked.lighting.planes[k][texel];
+        flux += baked.patches.scene.patches[i].area * light / 3;
+    }
+    return flux;
+}
+
+} // namespace
+
+class LinkMethods : public testing::TestWithParam<Method> {};
+INSTANTIATE_TEST_SUITE_P(Both, LinkMethods, testing::Values(Method::Directional, Method::Hybrid),
+                         [](const auto& info) { return std::string(methodName(info.param)); });
+
+TEST_P(LinkMethods, FurnaceEndsAtTheSeriesLimit) {
+    for (const float albedo : {0.25f, 0.8f}) {
+        SceneMaker maker(64);
+        const auto walls =
+            maker.box({3, 1, -2}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(albedo, 1.0f), 20);
+        const Baked baked = bakeScene(
+            maker.scene(),
+            {.size = maker.size(), .passes = 0, .error = 0.002, .method = GetParam(), .samples = 4096});
+        for (const TexelRect& wall : walls) {
+            const TexelStatistics s = statistics(baked.radiance, wall);
+            EXPECT_EQ(s.count, wall.width * wall.height);
+            EXPECT_NEAR(s.mean, 1.0 / (1.0 - albedo), 0.004 / (1.0 - albedo)) << albedo;
+        }
+    }
+}
+
+TEST_P(LinkMethods, ParallelSquares) {
+    SceneMaker maker(65);
+    const TexelRect receiver = maker.quad({0, 0, 0}, kX, kY, maker.material(0.0f), glm::uvec2(32));
+    maker.quad({0, 0, 1}, kY, kX, maker.material(0.0f, 1.0f), glm::uvec2(32));
+    const Baked baked =
+        bakeScene(maker.scene(), {.size = maker.size(), .passes = 1, .method = GetParam(), .samples = 256});
+    const double exact = closed::parallelRectangles(1, 1, 1);
+    EXPECT_NEAR(statistics(baked.lighting, receiver).mean, exact, 0.005 * exact);
+}
+
+TEST_P(LinkMethods, ADarkCellStaysDark) {
+    SceneMaker maker(128);
+    maker.box({-1, -1, -1}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.8f, 1.0f), 20);
+    const auto cell =
+        maker.box({-0.3f, -0.3f, -0.3f}, {0.6f * kX, 0.6f * kY, 0.6f * kZ}, maker.material(0.8f), 12);
+    const Baked baked =
+        bakeScene(maker.scene(), {.size = maker.size(), .passes = 3, .method = GetParam(), .samples = 64});
+    for (const TexelRect& wall : cell)
+        EXPECT_EQ(statistics(baked.lighting, wall).max, 0.0);
+}
+
+// With the same number of bounces both must find what pairs find; pure itself is some percent off at this
+// size, where texels meet in corners.
+TEST_P(LinkMethods, ReflectsAsMuchAsPure) {
+    for (const char* name : {"cornell_geom", "cornell_layers"}) {
+        const Scene scene = generateScene(name);
+        const Baked pure = bakeScene(scene, {.size = 64, .passes = 3});
+        const Baked links =
+            bakeScene(scene, {.size = 64, .passes = 3, .method = GetParam(), .samples = 1024});
+        EXPECT_NEAR(reflectedFlux(links) / reflectedFlux(pure), 1.0, 0.01) << name;
+        EXPECT_LT(relativeError(links.lighting, pure.lighting), GetParam() == Method::Hybrid ? 0.09 : 0.3)
+            << name;
+    }
+}
+
+// At the size that the scene's charts are made for: see agreement_test.cpp.
+TEST_P(LinkMethods, TracersAgree) {
+    const Scene scene = generateScene("cornell_geom");
+    BakeDesc desc{.size = 128, .passes = 2, .method = GetParam(), .samples = 16};
+    desc.tracer = TracerKind::Embree;
+    const Baked first = bakeScene(scene, desc);
+    for (TracerKind kind : tracersOfTestDevice()) {
+        desc.tracer = kind;
+        EXPECT_LT(relativeError(bakeScene(scene, desc).lighting, first.lighting), 5e-3) << tracerName(kind);
+    }
+}
+
+TEST_P(LinkMethods, CacheAndBatchesChangeNoByte) {
+    const Scene scene = generateScene("cornell_geom");
+    const BakeDesc desc{.size = 48, .passes = 3, .method = GetParam(), .samples = 32};
+    const Baked first = bakeScene(scene, desc);
+    EXPECT_EQ(first.progress.cachedShare, 1.0);
+    EXPECT_GT(first.progress.raysSaved, 0u);
+    BakeDesc other = desc;
+    other.batchMs = 1;
+    EXPECT_TRUE(sameBytes(first.lighting, bakeScene(scene, other).lighting)) << "small batches";
+    other.cache.kind = CacheSettings::Kind::None;
+    const Baked without = bakeScene(scene, other);
+    EXPECT_TRUE(sameBytes(first.lighting, without.lighting)) << "no cache";
+    EXPECT_EQ(without.progress.raysSaved, 0u);
+    EXPECT_GT(without.progress.rays, first.progress.rays);
+    other.cache = {.kind = CacheSettings::Kind::Links, .bytes = 5 * 16 * shader::kChunk * sizeof(uint32_t)};
+    const Baked some = bakeScene(scene, other);
+    EXPECT_TRUE(sameBytes(first.lighting, some.lighting)) << "five chunks cached";
+    EXPECT_GT(some.progress.raysSaved, 0u);
+    EXPECT_LT(some.progress.raysSaved, first.progress.raysSaved);
+}
+
+// The error that is told is the distance to a bake with sixteen times the samples.
+TEST_P(LinkMethods, ErrorIsTold) {
+    const Scene scene = generateScene("cornell_geom");
+    BakeDesc desc{.size = 48, .passes = 0, .error = 0, .method = GetParam(), .samples = 128};
+    const Baked reference = [&] {
+        BakeDesc longer = desc;
+        longer.samples *= 16;
+        return bakeScene(scene, longer);
+    }();
+    for (const bool smooth : {false, true}) {
+        desc.smooth = smooth;
+        const Baked baked = bakeScene(scene, desc);
+        const double distance = relativeError(baked.lighting, reference.lighting);
+        EXPECT_NEAR(baked.progress.error / distance, 1.0, 0.3) << "smoothed: " << smooth;
+    }
+}
+
+// Texel by texel, a near emitter that leans below the horizon: exact where nothing is hidden.
+TEST(Hybrid, UnhiddenEmittersAreExact) {
+    const glm::vec3 corner(-0.3f, 0.0f, -0.5f), u = kY, v = glm::vec3(-0.3f, 0.1f, 1.2f);
+    SceneMaker maker(64);
+    const TexelRect plate = maker.quad({0, 0, 0}, kX, kY, maker.material(0.0f), glm::uvec2(16));
+    maker.quad(corner, u, v, maker.material(0.0f, 1.0f), glm::uvec2(32));
+    const Baked baked = bakeScene(
+        maker.scene(), {.size = maker.size(), .passes = 1, .method = Method::Hybrid, .samples = 64});
+    const auto vec = [](glm::vec3 p) { return closed::Vec{p.x, p.y, p.z}; };
+    for (uint32_t row = 0; row < plate.height; ++row) {
+        for (uint32_t column = 0; column < plate.width; ++column) {
+            const glm::vec3 p((static_cast<float>(column) + 0.5f) / 16.0f,
+                              (static_cast<float>(row) + 0.5f) / 16.0f, 0.0f);
+            const double exact =
+                closed::integratedParallelogram(vec(p), {0, 0, 1}, vec(corner), vec(u), vec(v), 1e-6);
+            EXPECT_NEAR(texel(baked.lighting, plate, column, row), exact, 1e-3 * exact + 1e-5);
+        }
+    }
+}
+
+// A hundredth of a texel wide, and the only light there is.
+TEST(Hybrid, ATinyEmitterIsFound) {
+    SceneMaker maker(64);
+    const TexelRect floor =
+        maker.quad({-1, -1, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(32));
+    constexpr float kEdge = 6e-4f;
+    maker.quad({0, 0, 1}, kEdge * kY, kEdge * kX, maker.material(0.0f, 1e6f), glm::uvec2(1));
+    const Baked baked = bakeScene(
+        maker.scene(), {.size = maker.size(), .passes = 2, .method = Method::Hybrid, .samples = 16});
+    for (uint32_t row = 0; row < floor.height; ++row) {
+        for (uint32_t column = 0; column < floor.width; ++column) {
+            const double x = (column + 0.5) / 16 - 1 - 0.5 * kEdge, y = (row + 0.5) / 16 - 1 - 0.5 * kEdge;
+            const double r2 = x * x + y * y + 1;
+            const double exact = 1e6 * kEdge * kEdge / (closed::kPi * r2 * r2);
+            EXPECT_NEAR(texel(baked.lighting, floor, column, row), exact, 0.002 * exact);
+        }
+    }
+}
+
+// Forty lamps, far more than are sampled one by one.
+TEST(Hybrid, ManyEmittersAddUp) {
+    SceneMaker maker(96);
+    const TexelRect floor =
+        maker.quad({-2, -2, 0}, 4.0f * kX, 4.0f * kY, maker.material(0.0f), glm::uvec2(24));
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 40; ++i) {
+        corners.emplace_back(-2.0f + 0.4f * static_cast<float>(i % 8),
+                             -2.0f + 0.8f * static_cast<float>(i / 8),
+                             1.0f + 0.1f * static_cast<float>(i % 3));
+        maker.quad(corners.back(), 0.1f * kY, 0.1f * kX, maker.material(0.0f, 1.0f + static_cast<float>(i)),
+                   glm::uvec2(2));
+    }
+    const Baked baked = bakeScene(
+        maker.scene(), {.size = maker.size(), .passes = 1, .method = Method::Hybrid, .samples = 256});
+    double sum = 0, exactSum = 0;
+    for (uint32_t row = 0; row < floor.height; ++row) {
+        for (uint32_t column = 0; column < floor.width; ++column) {
+            const closed::Vec p{(column + 0.5) / 6 - 2, (row + 0.5) / 6 - 2, 0};
+            for (size_t i = 0; i < corners.size(); ++i) {
+                const glm::vec3 c = corners[i];
+                exactSum += (1.0 + static_cast<double>(i)) *
+                            closed::integratedParallelogram(p, {0, 0, 1}, {c.x, c.y, c.z}, {0, 0.1, 0},
+                                                            {0.1, 0, 0}, 1e-5);
+            }
+            sum += texel(baked.lighting, floor, column, row);
+        }
+    }
+    EXPECT_NEAR(sum / exactSum, 1.0, 0.005);
+}
+
+} // namespace relume
