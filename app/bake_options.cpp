@@ -36,6 +36,18 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }
 
+void addVoxelOptions(CLI::App& command, BakeOptions& o) {
+    command
+        .add_option("--voxels", o.voxels,
+                    "Voxels along each edge of the voxel map (default 128; --tracer voxel, --voxel-ratio)")
+        ->check(CLI::Range(kMinVoxels, kMaxVoxels));
+    command
+        .add_option("--voxel-ratio", o.voxelRatio,
+                    "One sender in this many marches through voxels; 0: none, 1: all")
+        ->capture_default_str()
+        ->check(CLI::Range(0u, 256u));
+}
+
 } // namespace
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
@@ -56,7 +68,8 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
         ->check(CLI::Range(1e-6, 1.0));
     addLinkOptions(command, o);
-    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh or embree")->capture_default_str();
+    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or voxel")->capture_default_str();
+    addVoxelOptions(command, o);
     command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
     command
         .add_option("--quantity", o.quantity,
@@ -90,6 +103,19 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
 }
 
+VoxelSettings resolveVoxels(const BakeOptions& o) {
+    const bool voxelTracer = parseTracerKind(o.tracer) == TracerKind::Voxel;
+    if (voxelTracer && o.voxelRatio > 1) {
+        throw UsageError("--voxel-ratio " + std::to_string(o.voxelRatio) +
+                         ": mixes voxels into another tracer; leave out --tracer voxel");
+    }
+    if (o.voxels > 0 && !voxelTracer && o.voxelRatio == 0)
+        throw UsageError("--voxels: only with --tracer voxel or --voxel-ratio");
+    VoxelSettings voxels{.ratio = voxelTracer ? 1 : o.voxelRatio};
+    if (o.voxels > 0) voxels.resolution = o.voxels;
+    return voxels;
+}
+
 BakeRequest resolveBakeOptions(const BakeOptions& o) {
     const bool rtrad = o.preset == "rtrad";
     if (rtrad && o.quantity == "lighting") {
@@ -107,6 +133,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     request.bake.size = o.size;
     request.bake.conservative = o.conservative;
     request.bake.tracer = parseTracerKind(o.tracer);
+    request.bake.voxels = resolveVoxels(o);
     SolverSettings& solver = request.bake.solver;
     solver.transport.rtrad = rtrad;
     solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity

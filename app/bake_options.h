@@ -17,7 +17,9 @@ struct BakeOptions {
     std::string method; // "": hybrid, of the RTRad preset pure
     std::string tracer = "auto", preset, quantity;
     uint32_t size = 512;
-    uint32_t passes = 0;                           // 0: not given
+    uint32_t passes = 0; // 0: not given
+    uint32_t voxels = 0; // 0: not given
+    uint32_t voxelRatio = 0;
     double error = 0;                              // 0: not given
     double reflectivity = -1, distanceFactor = -1; // negative: not given
     double density = 0;
@@ -37,5 +39,7 @@ struct BakeRequest {
     LightmapDesc lightmap;
 };
 BakeRequest resolveBakeOptions(const BakeOptions& options);
+/// The part of it that concerns voxels; a ratio of 0: they play no part.
+VoxelSettings resolveVoxels(const BakeOptions& options);
 
 } // namespace relume

@@ -34,6 +34,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
         total += phase.seconds;
     }
     seconds["total"] = total;
+    const VoxelSettings voxels = resolveVoxels(s.options);
     const Json json = {{"version", RELUME_VERSION},
                        {"scene", s.options.scene},
                        {"output", s.options.output},
@@ -42,6 +43,8 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"device", s.device.name},
                        {"driver", s.device.driver},
                        {"tracer", s.baker.tracer().name()},
+                       {"voxels", voxels.ratio > 0 ? voxels.resolution : 0},
+                       {"voxelRatio", voxels.ratio},
                        {"triangles", s.baker.patches().scene.mesh.triangleCount()},
                        {"patches", s.baker.patches().count},
                        {"invalidPatches", s.baker.invalidPatches()},

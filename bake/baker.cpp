@@ -29,6 +29,10 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+bool usesVoxels(const BakeSettings& settings) {
+    return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
+}
+
 void checkMemory(const vk::Device& device, const BakeSettings& settings, uint64_t triangles) {
     const uint32_t size = settings.size;
     const auto bytes = [&](uint32_t edge) {
@@ -65,7 +69,8 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bo
         texels * (perPatch + (software ? kHostBytes : 0)) + solverBytes(chunks, software, settings.solver);
     constexpr uint64_t kBytesPerTriangle =
         400; // corners, hit table, acceleration structure while it is built
-    return std::max(cit, solve) + triangles * kBytesPerTriangle;
+    const uint64_t voxels = usesVoxels(settings) ? VoxelMap::bytes(settings.voxels.resolution) : 0;
+    return std::max(cit, solve) + triangles * kBytesPerTriangle + voxels;
 }
 
 Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings)
@@ -90,20 +95,43 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
     light_ = std::make_unique<LightBuffers>(device, patches_);
     clock.end("patches");
 
-    std::string why = "as asked for";
-    const TracerKind kind =
-        settings.tracer == TracerKind::Auto ? chooseTracer(device.info(), why) : settings.tracer;
-    spdlog::info("tracer: {} ({})", tracerName(kind), why);
-    tracer_ = makeTracer(kind, device, patches_.scene, light_->patches);
-    clock.end("tracer");
-    if (!rtrad) findInvalid(device, kind);
-    clock.end("validity");
+    makeTracers(device);
+    PhaseClock setUp(phases_);
     solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
-    clock.end("solver set-up");
+    setUp.end("solver set-up");
+}
+
+// Whether a patch lies inside something is told by triangles: a voxel knows no inside.
+void Baker::makeTracers(const vk::Device& device) {
+    std::string why = "as asked for";
+    TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
+    if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
+    const bool marches = usesVoxels(settings_);
+    spdlog::info("tracer: {} ({})", tracerName(kind), why);
+    if (marches) {
+        spdlog::info("voxels: {} through {}^3 of them",
+                     settings_.voxels.ratio > 1 ? fmt::format("1 sender in {}", settings_.voxels.ratio)
+                                                : "all senders",
+                     settings_.voxels.resolution);
+    }
+    PhaseClock clock(phases_);
+    if (!marches || !settings_.solver.transport.rtrad) {
+        const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
+        tracer_ = makeTracer(exact, device, patches_.scene, light_->patches);
+        clock.end("tracer");
+    }
+    if (!settings_.solver.transport.rtrad) findInvalid(device);
+    if (marches) clock.end("validity");
+    // A tracer on the CPU keeps the patches in a form of its own.
+    if (marches || (invalid_ > 0 && tracer_->onCpu())) {
+        tracer_.reset();
+        tracer_ = makeTracer(kind, device, patches_.scene, light_->patches, settings_.voxels);
+    }
+    clock.end(marches ? "voxels" : "validity");
 }
 
 // Patches inside something are found once, before the first pass, by short batches of closest hits.
-void Baker::findInvalid(const vk::Device& device, TracerKind kind) {
+void Baker::findInvalid(const vk::Device& device) {
     // 131072 rays on a GPU, 16384 on the CPU: below 50 ms on every device that was measured.
     const uint32_t chunksPerBatch = device.info().software() ? 8 : 64;
     const uint32_t chunks = patches_.chunkCount();
@@ -134,10 +162,6 @@ void Baker::findInvalid(const vk::Device& device, TracerKind kind) {
         invalid_, patches_.count);
     vk::upload(device, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
-    if (!tracer_->onCpu()) return; // reads them from the device
-    tracer_.reset();
-    tracer_ = makeTracer(kind, device, patches_.scene,
-                         light_->patches); // it keeps them in a form of its own
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

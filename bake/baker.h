@@ -15,6 +15,7 @@ struct BakeSettings {
     uint32_t size = 512; // lightmap edge [texels]
     bool conservative = false;
     TracerKind tracer = TracerKind::Auto;
+    VoxelSettings voxels;  // of the voxel tracer; a ratio above 0 mixes it with `tracer`
     SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
 };
 
@@ -51,7 +52,8 @@ public:
     static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
 
 private:
-    void findInvalid(const vk::Device& device, TracerKind kind);
+    void makeTracers(const vk::Device& device);
+    void findInvalid(const vk::Device& device);
 
     BakeSettings settings_;
     PatchSet patches_;

@@ -19,4 +19,5 @@ static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBou
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
+static_assert(sizeof(VoxelGrid) == 56 && sizeof(CvmPush) <= 128);
 } // namespace relume::shader

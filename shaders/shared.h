@@ -142,12 +142,26 @@ struct BvhTriangle {
     uint unused1;
 };
 
+// Sides of a voxel by which patches are kept: +x, -x, +y, -y, +z, -z.
+CONST uint kVoxelSides = 6u;
+// A voxel map. p lies in voxel floor((p - origin) * scale).
+struct VoxelGrid {
+    ADDRESS bits;    // uint[], 1 bit per voxel, x runs fastest, then y: set where a triangle touches it
+    ADDRESS ranks;   // uint[], per word of bits: set bits before it
+    ADDRESS patches; // uint[kVoxelSides] per set voxel, by the side that the surface faces: a patch, kLinkDark or
+                     // kNoPatch for none
+    vec3 origin;     // [m]
+    vec3 scale;      // [voxels / m]
+    uint resolution; // voxels along each axis
+    uint ratio;      // one sender (group of samples) in `ratio` marches voxels; 1: all
+};
+
 // Push constants of the kernels. Buffers come by address.
 
 // What rays are traced against; the first member of every tracing kernel's push constants.
 struct TraceGeometry {
-    ADDRESS accel;          // top level acceleration structure, or BvhNode[]
-    ADDRESS triangles;      // BvhTriangle[] (bvh only)
+    ADDRESS accel;          // top level acceleration structure, BvhNode[] or VoxelGrid
+    ADDRESS triangles;      // BvhTriangle[] (bvh), corners as vec3[] (voxel map while it is made)
     ADDRESS alphaTriangles; // AlphaTriangle[]
     ADDRESS alphaMaterials; // AlphaMaterial[]
     ADDRESS alphaTexels;    // bytes
@@ -335,6 +349,16 @@ struct CitPush {
     uint size;          // lightmap edge [texels]
     uint grownCount;    // this many triangles are first drawn grown to all texels they touch
     uint rtrad;
+};
+struct CvmPush {
+    TraceGeometry geometry;
+    ADDRESS hitTriangles; // HitTriangle[]
+    ADDRESS texelToPatch; // uint[]
+    ADDRESS patchChart;   // uint[]
+    uint firstTriangle;
+    uint size;    // lightmap edge [texels]
+    uint patches; // 1: stores the voxels' patches, 0: sets their bits
+    uint rtrad;   // 1: one voxel per pixel, as RTRad
 };
 struct CitMaterial {
     vec4 baseColor;

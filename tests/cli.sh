@@ -77,6 +77,10 @@ expectUsageError bake room.glb # no -o
 expectUsageError bake room.glb -o room.exr --size many
 expectUsageError bake room.glb -o room.exr --picture room.jpg
 expectUsageError bake room.glb -o room.exr --tracer nosuchtracer
+expectUsageError bake room.glb -o room.exr --tracer voxel --voxels 31
+expectUsageError bake room.glb -o room.exr --tracer voxel --voxel-ratio 2
+expectUsageError bake room.glb -o room.exr --voxels 64
+expectUsageError bake room.glb -o room.exr --voxel-ratio 257
 expectUsageError bake room.glb -o room.exr --method nosuchmethod
 expectUsageError bake room.glb -o room.exr --preset nosuchpreset
 expectUsageError bake room.glb -o room.exr --quantity nosuchquantity

@@ -64,6 +64,7 @@ void solve(Solver& solver, const SolverSettings& settings) {
 
 void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& request,
                    const SolverProgress& progress) {
+    const VoxelSettings& voxels = request.bake.voxels;
     const size_t slash = o.scene.find_last_of('/');
     image.attributes["relume:version"] = RELUME_VERSION;
     image.attributes["relume:scene"] = slash == std::string::npos ? o.scene : o.scene.substr(slash + 1);
@@ -72,11 +73,11 @@ void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& r
         request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
     image.attributes["relume:settings"] = fmt::format(
         "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
-        "preset={}",
+        "preset={} voxels={} voxel-ratio={}",
         o.size, request.bake.solver.passes, request.bake.solver.error,
         request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor,
         request.lightmap.rtrad ? 1 : o.dilate, request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0,
-        o.preset.empty() ? "none" : o.preset);
+        o.preset.empty() ? "none" : o.preset, voxels.ratio > 0 ? voxels.resolution : 0, voxels.ratio);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }

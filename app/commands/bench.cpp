@@ -27,7 +27,8 @@ std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) 
         kinds.push_back(kind == TracerKind::Auto ? chooseTracer(info, why) : kind);
     }
     if (!kinds.empty()) return kinds;
-    for (TracerKind kind : {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh, TracerKind::Embree}) {
+    for (TracerKind kind :
+         {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh, TracerKind::Embree, TracerKind::Voxel}) {
         if (tracerProblem(kind, info).empty()) kinds.push_back(kind);
     }
     return kinds;

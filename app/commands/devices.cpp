@@ -17,7 +17,8 @@ namespace relume {
 
 namespace {
 
-constexpr TracerKind kKinds[] = {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh, TracerKind::Embree};
+constexpr TracerKind kKinds[] = {TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh, TracerKind::Embree,
+                                 TracerKind::Voxel};
 
 std::string versionText(uint32_t version) {
     return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),

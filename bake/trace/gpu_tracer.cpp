@@ -155,6 +155,18 @@ private:
     vk::Accel accel_;
 };
 
+class VoxelTracer final : public ComputeTracer {
+public:
+    VoxelTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
+                const VoxelSettings& settings)
+        : ComputeTracer(device, scene, patches, "voxel"), map_(device, scene, settings) {
+        buffers_.setAccel(map_.address(), 0);
+    }
+
+private:
+    VoxelMap map_;
+};
+
 class PipelineTracer final : public Tracer {
 public:
     PipelineTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
@@ -213,6 +225,11 @@ std::unique_ptr<Tracer> makeQueryTracer(const vk::Device& device, const TraceSce
 std::unique_ptr<Tracer> makeBvhTracer(const vk::Device& device, const TraceScene& scene,
                                       const vk::Buffer& patches) {
     return std::make_unique<BvhTracer>(device, scene, patches);
+}
+
+std::unique_ptr<Tracer> makeVoxelTracer(const vk::Device& device, const TraceScene& scene,
+                                        const vk::Buffer& patches, const VoxelSettings& settings) {
+    return std::make_unique<VoxelTracer>(device, scene, patches, settings);
 }
 
 } // namespace relume

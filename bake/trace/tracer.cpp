@@ -1,6 +1,7 @@
 #include "bake/trace/tracer.h"
 
 #include "bake/trace/gpu_tracer.h"
+#include "bake/trace/mixed_tracer.h"
 
 #include <array>
 
@@ -11,11 +12,12 @@ struct Name {
     TracerKind kind;
     const char* name;
 };
-constexpr std::array<Name, 5> kNames = {{{TracerKind::Auto, "auto"},
+constexpr std::array<Name, 6> kNames = {{{TracerKind::Auto, "auto"},
                                          {TracerKind::Rtp, "rtp"},
                                          {TracerKind::Query, "query"},
                                          {TracerKind::Bvh, "bvh"},
-                                         {TracerKind::Embree, "embree"}}};
+                                         {TracerKind::Embree, "embree"},
+                                         {TracerKind::Voxel, "voxel"}}};
 
 } // namespace
 
@@ -23,7 +25,7 @@ TracerKind parseTracerKind(const std::string& name) {
     for (const Name& n : kNames) {
         if (name == n.name) return n.kind;
     }
-    throw UsageError("--tracer " + name + ": unknown; choose auto, rtp, query, bvh or embree");
+    throw UsageError("--tracer " + name + ": unknown; choose auto, rtp, query, bvh, embree or voxel");
 }
 
 const char* tracerName(TracerKind kind) {
@@ -53,17 +55,31 @@ std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info) {
     // Bits and links are written by the CPU straight into the device's memory.
     if (kind == TracerKind::Embree && !info.software())
         return "its results would have to cross the bus: embree goes with a software device";
+    if (kind == TracerKind::Voxel && !info.fragmentStores) return "fragmentStoresAndAtomics is missing";
     return "";
 }
 
-std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
-                                   const vk::Buffer& patches) {
-    std::string why;
-    if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
+namespace {
+
+void checkTracer(TracerKind kind, const vk::Device& device) {
     const std::string problem = tracerProblem(kind, device.info());
-    if (!problem.empty()) {
-        throw Error(std::string("tracer ") + tracerName(kind) + " cannot run on '" + device.info().name +
-                    "': " + problem + " (relume devices lists what can)");
+    if (problem.empty()) return;
+    throw Error(std::string("tracer ") + tracerName(kind) + " cannot run on '" + device.info().name +
+                "': " + problem + " (relume devices lists what can)");
+}
+
+} // namespace
+
+std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
+                                   const vk::Buffer& patches, const VoxelSettings& voxels) {
+    std::string why;
+    if (voxels.ratio == 1) kind = TracerKind::Voxel;
+    if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
+    checkTracer(kind, device);
+    if (voxels.ratio > 1 && kind != TracerKind::Voxel) {
+        checkTracer(TracerKind::Voxel, device);
+        return makeMixedTracer(device, makeTracer(kind, device, scene, patches),
+                               makeVoxelTracer(device, scene, patches, voxels));
     }
     switch (kind) {
     case TracerKind::Rtp:
@@ -72,6 +88,8 @@ std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, co
         return makeQueryTracer(device, scene, patches);
     case TracerKind::Bvh:
         return makeBvhTracer(device, scene, patches);
+    case TracerKind::Voxel:
+        return makeVoxelTracer(device, scene, patches, {.resolution = voxels.resolution});
     default:
         return makeEmbreeTracer(scene);
     }

@@ -6,6 +6,7 @@
 
 #include "bake/trace/trace_scene.h"
 #include "bake/vk/buffer.h"
+#include "bake/voxel_map.h"
 
 namespace relume {
 
@@ -75,7 +76,7 @@ public:
     virtual void segments(VkCommandBuffer cmd, const SegmentWork& work) = 0;
 };
 
-enum class TracerKind { Auto, Rtp, Query, Bvh, Embree };
+enum class TracerKind { Auto, Rtp, Query, Bvh, Embree, Voxel };
 
 /// Throws UsageError for an unknown name.
 TracerKind parseTracerKind(const std::string& name);
@@ -87,9 +88,10 @@ std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info);
 const char* tracerName(TracerKind kind);
 
 /// Builds the acceleration structure. `patches` holds scene.patches on the device. Throws Error when the
-/// device cannot.
+/// device cannot. `voxels` is for the voxel tracer; with a ratio of 1 that one is what comes, with a ratio
+/// above 1 it takes its share of the work of a tracer of another kind (mixed_tracer.h).
 std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
-                                   const vk::Buffer& patches);
+                                   const vk::Buffer& patches, const VoxelSettings& voxels = {});
 std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene);
 
 } // namespace relume

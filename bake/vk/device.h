@@ -38,6 +38,7 @@ struct DeviceInfo {
     std::vector<std::string> missing; // what Relume needs and this device lacks; empty: usable
     bool rayTracingPipeline = false;
     bool rayQuery = false;
+    bool fragmentStores = false; // fragmentStoresAndAtomics
     bool externalMemory = false; // VK_KHR_external_memory_fd
     bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
     /// Drivers emulate the pipeline on GPUs without RT cores but offer ray queries only where there are some.

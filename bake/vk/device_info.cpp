@@ -81,6 +81,7 @@ void readFeatures(VkPhysicalDevice physical, const std::vector<VkExtensionProper
     const bool accelWorks = accel && features.accel.accelerationStructure;
     info.rayTracingPipeline = accelWorks && pipeline && features.pipeline.rayTracingPipeline;
     info.rayQuery = accelWorks && query && features.query.rayQuery;
+    info.fragmentStores = features.core.features.fragmentStoresAndAtomics;
     if (!features.core.features.shaderInt64) info.missing.emplace_back("shaderInt64");
     for (const Need& need : kNeeds)
         if (!(features.vulkan12.*need.feature)) info.missing.emplace_back(need.name);
@@ -109,7 +110,8 @@ void enableFeatures(const FeatureChain& supported, FeatureChain& enabled) {
     VkPhysicalDeviceFeatures& on = enabled.core.features;
     on.shaderInt64 = VK_TRUE;
     on.samplerAnisotropy = has.samplerAnisotropy;
-    // Writable buffer references in a vertex or fragment shader need these, even where only read.
+    // Writable buffer references in a vertex or fragment shader need these, even where only read; the CVM
+    // pass writes.
     on.vertexPipelineStoresAndAtomics = has.vertexPipelineStoresAndAtomics;
     on.fragmentStoresAndAtomics = has.fragmentStoresAndAtomics;
     enabled.accel.accelerationStructure = supported.accel.accelerationStructure;

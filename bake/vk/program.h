@@ -82,7 +82,7 @@ class RasterProgram {
 public:
     struct Desc {
         std::string vertex, fragment;  // shader names
-        std::vector<VkFormat> formats; // of the colour attachments, at most 8
+        std::vector<VkFormat> formats; // of the colour attachments, at most 8; none: fragments write buffers
         uint32_t textureCount = 0;
         Constants constants = {}; // of both shaders
     };
@@ -103,12 +103,21 @@ public:
     void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
               uint32_t vertexCount) {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
-        drawBytes(cmd, &push, sizeof(Push), targets, vertexCount);
+        ASSERT(!targets.empty());
+        drawBytes(cmd, &push, sizeof(Push), targets, {targets[0]->width(), targets[0]->height()},
+                  vertexCount);
+    }
+    /// Without colour attachments: draws over extent.width x extent.height pixels what the fragments write
+    /// into buffers. The barrier behind it is the caller's.
+    template<typename Push>
+    void draw(VkCommandBuffer cmd, const Push& push, VkExtent2D extent, uint32_t vertexCount) {
+        static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
+        drawBytes(cmd, &push, sizeof(Push), {}, extent, vertexCount);
     }
 
 private:
     void drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size,
-                   std::span<const Image2D* const> targets, uint32_t vertexCount);
+                   std::span<const Image2D* const> targets, VkExtent2D extent, uint32_t vertexCount);
     void createDescriptors(uint32_t count, std::span<const BoundTexture> textures);
     void createRenderPass(std::span<const VkFormat> formats);
     void createPipeline(const Desc& desc);

@@ -13,7 +13,7 @@ constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_ST
 
 RasterProgram::RasterProgram(const Device& device, const Desc& desc, std::span<const BoundTexture> textures)
     : device_(device) {
-    ASSERT(textures.size() == desc.textureCount && !desc.formats.empty());
+    ASSERT(textures.size() == desc.textureCount);
     if (desc.formats.size() > device.limits().maxColorAttachments)
         throw Error("device '" + device.info().name + "' draws into " +
                     std::to_string(device.limits().maxColorAttachments) + " images at once, " +
@@ -161,11 +161,11 @@ void RasterProgram::createPipeline(const Desc& desc) {
 }
 
 void RasterProgram::drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size,
-                              std::span<const Image2D* const> targets, uint32_t vertexCount) {
+                              std::span<const Image2D* const> targets, VkExtent2D extent,
+                              uint32_t vertexCount) {
     std::vector<VkImageView> views;
     for (const Image2D* target : targets)
         views.push_back(target->view());
-    const VkExtent2D extent{targets[0]->width(), targets[0]->height()};
     VkFramebufferCreateInfo info{VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
     info.renderPass = renderPass_;
     info.attachmentCount = static_cast<uint32_t>(views.size());

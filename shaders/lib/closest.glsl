@@ -3,6 +3,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Hit
 
 uint texelPatch(uint texel) { return Words(push.texelToPatch).items[texel]; }
 uint chartOfPatch(uint index) { return Words(push.patchChart).items[index]; }
+#ifdef TRACER_VOXEL
+uint closestLink(Patch p, vec3 direction) { return voxelLink(p, direction); }
+#else
 #include "lib/hit.glsl"
 
 uint linkOf(Hit found, vec3 direction) {
@@ -13,20 +16,26 @@ uint linkOf(Hit found, vec3 direction) {
     return patchAtHit(t, found.b1, found.b2, push.size);
 }
 
+uint closestLink(Patch p, vec3 direction) {
+    return linkOf(closestHit(p.position + p.offset * p.normal, direction), direction);
+}
+#endif
+
 const uint kSamplesPerInvocation = 8u;
 
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {
+#ifdef TRACER_VOXEL
+    if (!voxelsServeSamples(push.firstSample / kSamplesPerInvocation + sampleGroup)) return;
+#endif
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     uint key = seedKey(p);
     if (push.perTile != 0u) key = seedKey(loadPatch(push.patches, (push.firstChunk + chunk) * kChunk));
-    vec3 origin = p.position + p.offset * p.normal;
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
         uint link = kLinkDark;
         if ((p.flags & kPatchSends) != 0u) {
-            vec3 direction = patchDirection(p, key, push.firstSample + local);
-            link = linkOf(closestHit(origin, direction), direction);
+            link = closestLink(p, patchDirection(p, key, push.firstSample + local));
         }
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] = link;
     }

@@ -15,6 +15,14 @@ void traceWord(uint unit, uint word, uint lane) {
         Patch b = loadPatch(push.patches, first + j);
         if (first + j > receiver && pairFaces(a, b)) facing |= 1u << j;
     }
+#ifdef TRACER_VOXEL
+    uint marched = 0u; // bits that are not another tracer's
+    for (uint j = 0u; j < 32u; ++j) {
+        Patch sender = push.reversed != 0u ? a : loadPatch(push.patches, first + j);
+        if (voxelsServe(sender)) marched |= 1u << j;
+    }
+    facing &= marched;
+#endif
     if (facing != 0u) atomicAdd(Words(push.rays).items[unit % kRayCounters], uint(bitCount(facing)));
     uint seen = 0u;
     while (facing != 0u) {
@@ -22,8 +30,11 @@ void traceWord(uint unit, uint word, uint lane) {
         facing &= facing - 1u;
         Patch b = loadPatch(push.patches, first + uint(j));
         bool rtrad = push.rtrad != 0u;
-        Segment s = push.reversed != 0u ? pairSegment(b, a, rtrad) : pairSegment(a, b, rtrad);
-        if (s.tMax <= s.tMin || !occluded(s)) seen |= 1u << j;
+        if (push.reversed != 0u ? patchesSee(b, a, rtrad) : patchesSee(a, b, rtrad)) seen |= 1u << j;
     }
-    Words(push.bits).items[(unit % push.bitsUnits) * kBlockWords + lane * 2u + word] = seen;
+    uint at = (unit % push.bitsUnits) * kBlockWords + lane * 2u + word;
+#ifdef TRACER_VOXEL
+    if (grid.ratio > 1u) seen |= Words(push.bits).items[at] & ~marched;
+#endif
+    Words(push.bits).items[at] = seen;
 }

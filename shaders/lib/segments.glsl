@@ -3,16 +3,26 @@ const uint kTargetsPerWord = 32u;
 
 void traceTargets(uint chunk, uint word, uint lane) {
     Patch p = loadPatch(push.patches, (push.firstChunk + chunk) * kChunk + lane);
-    vec3 origin = p.position + p.offset * p.normal;
     uint first = word * kTargetsPerWord, count = min(kTargetsPerWord, push.targetCount - first);
     uint seen = 0u, rays = 0u;
+#ifdef TRACER_VOXEL
+    uint marched = 0u; // bits that are not another tracer's
+#endif
     for (uint s = 0u; s < count; ++s) {
         vec4 target = Vec4s(push.targets).items[(chunk * push.targetCount + first + s) * kChunk + lane];
+#ifdef TRACER_VOXEL
+        if (!voxelsServeTarget(first + s)) continue;
+        marched |= 1u << s;
+#endif
         if (target.w <= 0.0) continue;
         ++rays;
-        if (!occluded(Segment(origin, target.xyz - origin, 0.0, 1.0))) seen |= 1u << s;
+        if (pointSeen(p, target.xyz)) seen |= 1u << s;
     }
     if (rays != 0u) atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], rays);
     uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
-    Words(push.bits).items[(chunk * words + word) * kChunk + lane] = seen;
+    uint at = (chunk * words + word) * kChunk + lane;
+#ifdef TRACER_VOXEL
+    if (grid.ratio > 1u) seen |= Words(push.bits).items[at] & ~marched;
+#endif
+    Words(push.bits).items[at] = seen;
 }

@@ -5,6 +5,9 @@
 #ifdef TRACER_PIPELINE
 #extension GL_EXT_ray_tracing : require
 #endif
+#ifdef TRACER_VOXEL
+#include "lib/voxels.glsl"
+#else
 #include "lib/masked.glsl"
 
 struct Hit {
@@ -94,5 +97,18 @@ bool occluded(Segment s) {
 Hit closestHit(vec3 origin, vec3 direction) {
     traceRayEXT(accelerationStructureEXT(geometry.accel), 0u, 0xff, 0, 0, 0, origin, 0.0, direction, 1e30, 0);
     return hit;
+}
+#endif
+
+// Whether patch `to` is seen from patch `from`, which of both is the lower one or RTRad's receiver.
+bool patchesSee(Patch from, Patch to, bool rtrad) {
+    Segment s = pairSegment(from, to, rtrad);
+    return s.tMax <= s.tMin || !occluded(s);
+}
+
+// Whether nothing stands between patch p and a point off its own surface.
+bool pointSeen(Patch p, vec3 target) {
+    vec3 origin = p.position + p.offset * p.normal;
+    return !occluded(Segment(origin, target - origin, 0.0, 1.0));
 }
 #endif

@@ -188,6 +188,7 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     BakeSettings settings;
     settings.size = desc.size;
     settings.tracer = desc.tracer;
+    settings.voxels = desc.voxels;
     settings.solver.passes = desc.passes;
     settings.solver.error = desc.error;
     settings.solver.batchMs = desc.batchMs;

@@ -71,6 +71,7 @@ struct BakeDesc {
     uint32_t samples = 0; // link methods: directions per patch
     bool smooth = false;
     CacheSettings cache = {};
+    VoxelSettings voxels = {};
 };
 
 struct Baked {

@@ -20,11 +20,12 @@ namespace {
 const std::string kScene = RELUME_SHARED_DIR "/scenes/rtrad/CornellLucy.glb";
 const std::string kPictures = RELUME_SHARED_DIR "/references/rtrad/";
 
-FloatImage bakePreset(uint32_t size, TracerKind tracer) {
+FloatImage bakePreset(uint32_t size, TracerKind tracer, const VoxelSettings& voxels = {}) {
     PreparedScene prepared = prepareScene({.path = kScene, .size = size});
     BakeSettings settings;
     settings.size = size;
     settings.tracer = tracer;
+    settings.voxels = voxels;
     settings.solver.transport = {.reflectivity = 0.9f, .rtrad = true};
     settings.solver.passes = 2;
     settings.solver.error = 0;
@@ -81,6 +82,30 @@ TEST(Reference, purePresetMatchesRtradsPicture) {
     std::string why;
     const TracerKind tracer = chooseTracer(testDevice().info(), why);
     EXPECT_LE(dfprAgainst(bakePreset(128, tracer), kPictures + "128_1x1.png"), 0.001);
+}
+
+TEST(Reference, voxelMarchingMatchesRtradsPicture) {
+    if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
+    const FloatImage image = bakePreset(256, TracerKind::Voxel, {.resolution = 32});
+    EXPECT_LE(dfprAgainst(image, kPictures + "256_VXRM_32.png"), 0.001);
+}
+
+// One sender in four marches, whatever tracer serves the others; the light lies between both.
+TEST(Reference, voxelRatioMixesMarchesAndRays) {
+    if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
+    constexpr uint32_t kSize = 48;
+    const VoxelSettings mixture{.resolution = 32, .ratio = 4};
+    const FloatImage rays = bakePreset(kSize, TracerKind::Bvh);
+    const FloatImage mixed = bakePreset(kSize, TracerKind::Bvh, mixture);
+    const FloatImage voxels = bakePreset(kSize, TracerKind::Voxel, {.resolution = 32});
+    const auto distance = [](const FloatImage& a, const FloatImage& b) {
+        return compareImages(a, "a", b, "b").dfpr;
+    };
+    EXPECT_GT(distance(mixed, rays), 0.001);
+    EXPECT_LT(distance(mixed, rays), distance(mixed, voxels));
+    EXPECT_LT(distance(mixed, voxels), distance(rays, voxels));
+    if (!tracerProblem(TracerKind::Embree, testDevice().info()).empty()) return;
+    EXPECT_LE(distance(mixed, bakePreset(kSize, TracerKind::Embree, mixture)), 0.0002);
 }
 
 // Every other tracer gives the same map, so it matches the picture too.
