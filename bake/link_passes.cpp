@@ -70,7 +70,10 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
     direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
-    if (desc.smooth) rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
+    if (desc.smooth) {
+        rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
+        distances = vk::Buffer(device, {.size = count * sizeof(float), .name = "link distances"});
+    }
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
     constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
     chunkSums = vk::Buffer(device, {.size = chunks * kSums, .name = "sums per chunk"});
@@ -85,7 +88,7 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
     const uint64_t perChunk = kChunk * (kAllEmitters * kLeastSamples * sizeof(glm::vec4) + 128);
     const uint64_t sums = kReplicates * (1 + (hybrid ? 1 : 0) + (hybrid && settings.links.smooth ? 1 : 0));
     const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
-    return count * (vec4s(sums + 2) + 2 * sizeof(uint32_t) + kept) + batch * perChunk;
+    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t) + kept) + batch * perChunk;
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -133,6 +136,17 @@ void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, cons
     dispatchChunks(gather_, cmd, push, work.range.count);
 }
 
+void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& light,
+                                     const LinkBuffers& buffers, const Work& work) const {
+    const shader::LinkDistancePush push{.patches = light.patches.address(),
+                                        .links = work.links,
+                                        .distances = buffers.distances.address(),
+                                        .firstChunk = work.range.first,
+                                        .chunkCount = work.range.count,
+                                        .sampleCount = work.samples};
+    dispatchChunks(distance_, cmd, push, work.range.count);
+}
+
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                                    bool hybrid, uint32_t samples) const {
     const shader::ComposePush push{.sums = buffers.linkSums.address(),
@@ -171,6 +185,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .directSums = work.directRounds > 0 && buffers.directSums ? buffers.directSums.address() : 0,
         .result = buffers.result.address(),
         .chunkSums = buffers.chunkSums.address(),
+        .distances = buffers.distances ? buffers.distances.address() : 0,
         .chunkCount = light.chunkCount,
         .patchCount = light.chunkCount * kChunk,
         .size = work.size,

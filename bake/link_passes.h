@@ -27,6 +27,7 @@ struct LinkBuffers {
     vk::Buffer linksStaging;         // of one batch beyond these
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
+    vk::Buffer distances;     // float per patch [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back
     vk::Buffer rays;          // uint[kRayCounters]
@@ -68,7 +69,7 @@ private:
 class LinkGatherPass {
 public:
     explicit LinkGatherPass(const vk::Device& device)
-        : gather_(device, "links"), compose_(device, "compose") {}
+        : gather_(device, "links"), distance_(device, "link_distance"), compose_(device, "compose") {}
     struct Work {
         VkDeviceAddress links = 0; // of range.first on
         uint32_t samples = 0;      // per patch
@@ -78,12 +79,15 @@ public:
     };
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
+    /// Distances of these links' ends, for smoothing.
+    void recordDistances(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                         const Work& work) const;
     /// ligIn = direct light and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        bool hybrid, uint32_t samples) const;
 
 private:
-    vk::ComputeProgram gather_, compose_;
+    vk::ComputeProgram gather_, distance_, compose_;
 };
 
 /// Sums over chunks: what a bounce changed, and the result with its errors.

@@ -27,8 +27,9 @@ constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
 // A segment towards a light costs about so much of a closest hit.
 constexpr double kSegmentCost = 0.3;
-// The error is looked at after every round at first, then each time their number has grown by a quarter.
-constexpr double kCheckGrowth = 1.25;
+// The error is looked at again when so much of the rounds that it seems to need are done (variance falls as 1
+// / rounds or faster), and when their number has doubled.
+constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 // Smoothing is as wide as its error is small: widths that are tried [texels], and how often the model is
 // asked again with what the new width showed.
 constexpr double kSigmaStep = 0.1, kMostSigma = 4.0;
@@ -234,12 +235,14 @@ void LinkSolver::linkBatch() {
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
-    gatherPass_.record(cmd, input_.light, buffers_,
-                       {.links = links.address() + offset * sizeof(uint32_t),
-                        .samples = shape_.links,
-                        .hybrid = hybrid_,
-                        .accumulate = state_.last,
-                        .range = range});
+    const LinkGatherPass::Work work{.links = links.address() + offset * sizeof(uint32_t),
+                                    .samples = shape_.links,
+                                    .hybrid = hybrid_,
+                                    .accumulate = state_.last,
+                                    .range = range};
+    gatherPass_.record(cmd, input_.light, buffers_, work);
+    if (buffers_.distances && state_.linkRounds == 0 && state_.last)
+        gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
     timestamps_.mark(cmd, 2);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
@@ -306,10 +309,13 @@ void LinkSolver::measureChange() {
 // The error that is left, from what the replicates say and the iteration; kept in progress().
 void LinkSolver::check() {
     const uint32_t rounds = state_.directRounds + state_.linkRounds;
-    state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(kCheckGrowth * rounds));
+    state_.nextCheck = rounds + 1;
     if (state_.linkRounds == 0 && !(hybrid_ && settings_.passes == 1)) return; // no bounces yet
     resolve();
-    progress_.converged = settings_.error > 0 && progress_.error <= settings_.error;
+    progress_.converged = progress_.error <= settings_.error;
+    const double off = progress_.error / settings_.error;
+    const double growth = std::min(kCheckGrowth, kCheckShare * off * off);
+    state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(growth * rounds));
 }
 
 void LinkSolver::resolve() {

@@ -367,13 +367,18 @@ PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& gr
 }
 
 uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
+    // Half of what a texel just below a floor looks at is the floor's back, the other half nothing at all.
+    constexpr double kLeastBacks = 0.4;
     uint32_t marked = 0;
     for (uint32_t i = 0; i < patches.count; ++i) {
-        uint32_t backs = 0;
+        uint32_t backs = 0, sky = 0;
         const size_t base = size_t{i / kChunk} * sampleCount * kChunk + i % kChunk;
-        for (uint32_t k = 0; k < sampleCount; ++k)
-            backs += links[base + size_t{k} * kChunk] == shader::kLinkBack;
-        if (2 * backs <= sampleCount) continue;
+        for (uint32_t k = 0; k < sampleCount; ++k) {
+            const uint32_t link = links[base + size_t{k} * kChunk];
+            backs += link == shader::kLinkBack;
+            sky += link == shader::kLinkSky;
+        }
+        if (backs < kLeastBacks * sampleCount || 2 * backs + sky <= sampleCount) continue;
         patches.scene.patches[i].flags &= ~shader::kPatchSends;
         ++marked;
     }

@@ -34,8 +34,8 @@ struct PatchDesc {
 /// albedo as it is. Throws Error when no texel is covered.
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc);
 
-/// Marks patches as lying inside something (kPatchSends cleared): those more than half of whose links are
-/// kLinkBack. links: [chunk][sample][64]. Returns how many.
+/// Marks patches as lying inside something (kPatchSends cleared): those whose links meet more backs than
+/// fronts, two of five links at least. links: [chunk][sample][64]. Returns how many.
 uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount);
 
 } // namespace relume

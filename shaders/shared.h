@@ -290,6 +290,14 @@ struct LinkPush {
     uint sampleCount; // a multiple of kReplicates
     uint patchCount;
 };
+struct LinkDistancePush {
+    ADDRESS patches;
+    ADDRESS links;     // uint[chunkCount][sampleCount][64]
+    ADDRESS distances; // float[patchCount] [m]
+    uint firstChunk;
+    uint chunkCount;
+    uint sampleCount;
+};
 struct ComposePush {
     ADDRESS sums;
     ADDRESS direct; // 0: nothing
@@ -322,6 +330,7 @@ struct SmoothPush {
     ADDRESS directSums; // vec4[kReplicates][patchCount]; 0: none
     ADDRESS result;     // vec4[patchCount]: lighting, standard error
     ADDRESS chunkSums;  // ResolveSums[chunkCount]
+    ADDRESS distances;  // float[patchCount] [m], of what lights a patch
     uint chunkCount;
     uint patchCount;
     uint size;   // lightmap edge [texels]

@@ -102,7 +102,8 @@ public:
     ComputeTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
                   const std::string& name)
         : buffers_(device, scene, patches), name_(name), occlusion_(device, "occlusion_" + name),
-          closest_(device, "closest_" + name), segments_(device, "segments_" + name) {}
+          closest_(device, "closest_" + name, {device.info().software() ? 0u : 1u}),
+          segments_(device, "segments_" + name) {}
 
     const char* name() const override { return name_.c_str(); }
     bool onCpu() const override { return false; }

@@ -23,6 +23,11 @@ uint closestLink(Patch p, vec3 direction) {
 
 const uint kSamplesPerInvocation = 8u;
 
+uint linkOfSample(Patch p, uint key, uint index) {
+    if ((p.flags & kPatchSends) == 0u) return kLinkDark;
+    return closestLink(p, patchDirection(p, key, index));
+}
+
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {
 #ifdef TRACER_VOXEL
     if (!voxelsServeSamples(push.firstSample / kSamplesPerInvocation + sampleGroup)) return;
@@ -33,10 +38,7 @@ void traceLinks(uint chunk, uint sampleGroup, uint lane) {
     if (push.perTile != 0u) key = seedKey(loadPatch(push.patches, (push.firstChunk + chunk) * kChunk));
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
-        uint link = kLinkDark;
-        if ((p.flags & kPatchSends) != 0u) {
-            link = closestLink(p, patchDirection(p, key, push.firstSample + local));
-        }
-        Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] = link;
+        Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] =
+            linkOfSample(p, key, push.firstSample + local);
     }
 }

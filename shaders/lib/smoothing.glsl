@@ -1,11 +1,15 @@
 // One direction of the separable smoothing of indirect light within a chart. The includer's push constants hold patches,
-// patchChart, texelToPatch, size, sigma and reach.
+// patchChart, texelToPatch, distances, size, sigma and reach.
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Floats { float items[]; };
 
 const uint kMaxReach = 8u; // texels
+// Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly smoothed.
+const float kDistanceShare = 0.3;
 
 // The patch of the same chart so many texels away along `axis`, and how much it counts: by distance in the world, measured in
 // texels of the receiver, by how far it lies off its plane, and by its normal.
-float tapWeight(Patch centre, uint chart, ivec2 texel, out uint index) {
+float tapWeight(Patch centre, float sigma, uint chart, ivec2 texel, out uint index) {
     index = kNoPatch;
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.size)))) return 0.0;
     index = Words(push.texelToPatch).items[uint(texel.y) * push.size + uint(texel.x)];
@@ -19,7 +23,7 @@ float tapWeight(Patch centre, uint chart, ivec2 texel, out uint index) {
     float facing = max(dot(centre.shading, other.shading), 0.0);
     facing *= facing;
     facing *= facing;
-    return exp(-0.5 * distance2 / (push.sigma * push.sigma)) * facing * facing;
+    return exp(-0.5 * distance2 / (sigma * sigma)) * facing * facing;
 }
 
 // Weights of the taps from -reach to reach that make a local straight-line fit at the centre: at a chart's edge, where all
@@ -34,12 +38,15 @@ Taps smoothingTaps(uint own, ivec2 axis) {
     uint chart = Words(push.patchChart).items[own], texelIndex = centre.flags >> 8;
     ivec2 texel = ivec2(texelIndex % push.size, texelIndex / push.size);
     bool placed = Words(push.texelToPatch).items[texelIndex] == own; // else it stands for a whole thin chart
+    float distance = Floats(push.distances).items[own];
+    float sigma = min(push.sigma, kDistanceShare * distance / sqrt(max(centre.area, 1e-30)));
+    placed = placed && sigma > 0.1;
     Taps taps;
     float s0 = 0.0, s1 = 0.0, s2 = 0.0;
     int reach = int(push.reach);
     for (int t = -reach; t <= reach; ++t) {
         uint index = own;
-        float w = t == 0 ? 1.0 : placed ? tapWeight(centre, chart, texel + t * axis, index) : 0.0;
+        float w = t == 0 ? 1.0 : placed ? tapWeight(centre, sigma, chart, texel + t * axis, index) : 0.0;
         taps.index[t + reach] = w > 0.0 ? index : own;
         taps.weight[t + reach] = w;
         s0 += w;

@@ -64,21 +64,22 @@ std::vector<Struct> readStructs() {
 
 #define SIZE_OF(name)                                                                                        \
     { #name, sizeof(shader::name) }
-const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),     SIZE_OF(CvmPush),
-                                              SIZE_OF(Patch),         SIZE_OF(PatchEdges),
-                                              SIZE_OF(ChunkBounds),   SIZE_OF(HitTriangle),
-                                              SIZE_OF(AlphaTriangle), SIZE_OF(AlphaMaterial),
-                                              SIZE_OF(BvhNode),       SIZE_OF(BvhTriangle),
-                                              SIZE_OF(TraceGeometry), SIZE_OF(OcclusionPush),
-                                              SIZE_OF(ClosestPush),   SIZE_OF(TransposePush),
-                                              SIZE_OF(GatherPush),    SIZE_OF(ReducePush),
-                                              SIZE_OF(RadiancePush),  SIZE_OF(FinishPush),
-                                              SIZE_OF(CitPush),       SIZE_OF(CitMaterial),
-                                              SIZE_OF(SegmentPush),   SIZE_OF(EmitterPolygon),
-                                              SIZE_OF(EmitterNode),   SIZE_OF(LinkPush),
-                                              SIZE_OF(DirectPush),    SIZE_OF(EmitterSamplesPush),
-                                              SIZE_OF(ComposePush),   SIZE_OF(ChangePush),
-                                              SIZE_OF(ResolveSums),   SIZE_OF(SmoothPush)};
+const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),       SIZE_OF(CvmPush),
+                                              SIZE_OF(Patch),           SIZE_OF(PatchEdges),
+                                              SIZE_OF(ChunkBounds),     SIZE_OF(HitTriangle),
+                                              SIZE_OF(AlphaTriangle),   SIZE_OF(AlphaMaterial),
+                                              SIZE_OF(BvhNode),         SIZE_OF(BvhTriangle),
+                                              SIZE_OF(TraceGeometry),   SIZE_OF(OcclusionPush),
+                                              SIZE_OF(ClosestPush),     SIZE_OF(TransposePush),
+                                              SIZE_OF(GatherPush),      SIZE_OF(ReducePush),
+                                              SIZE_OF(RadiancePush),    SIZE_OF(FinishPush),
+                                              SIZE_OF(CitPush),         SIZE_OF(CitMaterial),
+                                              SIZE_OF(SegmentPush),     SIZE_OF(EmitterPolygon),
+                                              SIZE_OF(EmitterNode),     SIZE_OF(LinkPush),
+                                              SIZE_OF(DirectPush),      SIZE_OF(EmitterSamplesPush),
+                                              SIZE_OF(ComposePush),     SIZE_OF(ChangePush),
+                                              SIZE_OF(ResolveSums),     SIZE_OF(SmoothPush),
+                                              SIZE_OF(LinkDistancePush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.

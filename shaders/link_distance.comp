@@ -1,0 +1,24 @@
+// Harmonic mean of the distances along a round's links: how far away what lights a patch is, and so over what length its
+// indirect light may change [Ward et al. 1988]. One workgroup per chunk, one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { LinkDistancePush push; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Floats { float items[]; };
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (chunk >= push.chunkCount) return;
+    uint lane = gl_LocalInvocationID.x, index = (push.firstChunk + chunk) * kChunk + lane;
+    vec3 own = loadPatch(push.patches, index).position;
+    float sum = 0.0;
+    for (uint k = 0u; k < push.sampleCount; ++k) {
+        uint link = Words(push.links).items[(chunk * push.sampleCount + k) * kChunk + lane];
+        if (link >= kLinkFirstSpecial) continue; // nothing, or what sends no light
+        vec3 d = loadPatch(push.patches, link).position - own;
+        sum += inversesqrt(max(dot(d, d), 1e-30));
+    }
+    Floats(push.distances).items[index] = sum > 0.0 ? float(push.sampleCount) / sum : 1e30;
+}
