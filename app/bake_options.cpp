@@ -20,6 +20,17 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
+void addCheckpointOptions(CLI::App& command, BakeOptions& o) {
+    CLI::Option* checkpoint = command.add_option(
+        "--checkpoint", o.checkpoint, "Save to this file every so often, and on Ctrl-C, what --resume needs");
+    command.add_option("--checkpoint-every", o.checkpointEvery, "Seconds between two of these")
+        ->capture_default_str()
+        ->check(CLI::Range(0.05, 86400.0))
+        ->needs(checkpoint);
+    command.add_option("--resume", o.resume,
+                       "Go on from a checkpoint of the same bake: the result will be the same");
+}
+
 void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     const bool links = !isPairMethod(solver.method);
     if (o.samples > 0 && !links)
@@ -93,6 +104,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 45.0));
+    addCheckpointOptions(command, o);
     command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
     command.add_option("--scene-out", o.sceneOut,
                        "Write the scene with the lightmap UVs that were used, .glb");
@@ -128,6 +140,8 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
     if (!o.picture.empty() && !o.picture.ends_with(".png"))
         throw UsageError("--picture: '" + o.picture + "' does not end in .png");
+    if (!o.checkpoint.empty() && o.checkpoint == o.output)
+        throw UsageError("--checkpoint: '" + o.checkpoint + "' is the lightmap's own name");
     BakeRequest request;
     request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
     request.bake.size = o.size;

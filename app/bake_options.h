@@ -24,6 +24,8 @@ struct BakeOptions {
     double reflectivity = -1, distanceFactor = -1; // negative: not given
     double density = 0;
     double batchMs = 20;
+    std::string checkpoint, resume;
+    double checkpointEvery = 30; // [s]
     uint32_t dilate = 4;
     uint32_t samples = 0; // 0: not given
     bool noSmooth = false;

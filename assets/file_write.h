@@ -6,9 +6,28 @@
 
 namespace relume {
 
-/// Writes a file through a temporary one in the same folder, flushed to the disk and then renamed: afterwards
-/// `path` holds all bytes, or what it held before. A symbolic link is followed. Throws Error, leaving no
-/// temporary file.
+/// A file that is written piece by piece, unseen, and takes its name when it is whole: until then, and if
+/// anything fails, `path` holds what it held before. A symbolic link is followed. Where the file system can
+/// have files without a name, not even a killed process leaves one behind.
+class AtomicFile {
+public:
+    explicit AtomicFile(const std::string& path); // throws Error, as all of these
+    ~AtomicFile();                                // drops what was not committed
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    void write(std::string_view bytes);
+    /// Flushes to the disk and gives the file its name.
+    void commit();
+
+private:
+    void giveTemporaryName();
+
+    std::string path_, target_, folder_, temporary_; // temporary_ "": it has no name yet
+    int descriptor_ = -1;
+};
+
+/// The same in one go. Throws Error, leaving no temporary file.
 void writeFileAtomically(const std::string& path, std::string_view bytes);
 
 /// Throws Error where writing `path` is sure to fail: its folder is missing or unwritable, it is a folder

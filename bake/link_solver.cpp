@@ -75,6 +75,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
     const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
     progress_.cacheBytes = kept;
+    traced_.assign(buffers_.keptChunks, 0);
     progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / patches.chunkCount();
 }
 
@@ -108,6 +109,7 @@ void LinkSolver::begin(Stage stage) {
     state_.nextChunk = 0;
     state_.bounce = 0;
     if (stage == Stage::Links) {
+        std::fill(traced_.begin(), traced_.end(), uint8_t{0});
         beginBounce();
     } else {
         VkCommandBuffer cmd = commands_.begin();
@@ -211,10 +213,12 @@ void LinkSolver::beginBounce() {
 }
 
 void LinkSolver::linkBatch() {
-    // Chunks whose links this round has traced already, at its first bounce.
+    // Mostly links are there from the round's second bounce on; after a restore they are traced once more.
     const bool kept = state_.nextChunk < buffers_.keptChunks;
-    const bool trace = state_.bounce == 0 || !kept;
-    const uint32_t room = kept ? buffers_.keptChunks - state_.nextChunk : buffers_.batchChunks;
+    const auto known = traced_.begin() + std::min(state_.nextChunk, buffers_.keptChunks);
+    const bool trace = !kept || *known == 0;
+    const auto alike = static_cast<uint32_t>(std::find(known, traced_.end(), trace ? 1 : 0) - known);
+    const uint32_t room = kept ? alike : buffers_.batchChunks;
     const ChunkRange range =
         trace ? nextRange(traceRate_, std::min(room, buffers_.batchChunks)) : nextRange(gatherRate_, room);
     const uint64_t offset = kept ? uint64_t{range.first} * shape_.links * kChunk : 0; // [words]
@@ -255,6 +259,7 @@ void LinkSolver::linkBatch() {
     const auto first = senders_.begin() + range.first;
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * shape_.links;
     (trace ? progress_.rays : progress_.raysSaved) += count;
+    if (kept) std::fill_n(known, range.count, uint8_t{1});
     progress_.pairs += count;
     state_.nextChunk += range.count;
     if (state_.nextChunk >= input_.patches.chunkCount()) endBounce();
@@ -396,6 +401,33 @@ const std::vector<glm::vec4>& LinkSolver::light() {
         light_ =
             vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());
     return light_;
+}
+
+SolverState LinkSolver::state() {
+    ASSERT(!done_);
+    return makeState(state_);
+}
+
+std::vector<StatePart> LinkSolver::stateParts() {
+    std::vector<StatePart> parts;
+    for (const vk::Buffer* buffer :
+         {&input_.light.ligIn, &input_.light.ligOut, &buffers_.linkSums, &buffers_.directSums,
+          &buffers_.direct, &buffers_.distances, &buffers_.rays}) {
+        if (*buffer) parts.push_back(part(input_.device, *buffer));
+    }
+    return parts;
+}
+
+void LinkSolver::restore(const SolverState& state) {
+    state_ = takeState<State>(state);
+    done_ = false;
+    stale_ = true;
+    std::fill(traced_.begin(), traced_.end(), uint8_t{0});
+    if (state_.stage != Stage::Links) return;
+    VkCommandBuffer cmd = commands_.begin();
+    radiancePass_.record(cmd, input_.light, settings_.transport);
+    vk::barrier(cmd);
+    commands_.run();
 }
 
 std::vector<float> LinkSolver::errors() {

@@ -19,13 +19,16 @@ public:
     /// Direct and (smoothed) indirect light; w: standard error.
     const std::vector<glm::vec4>& light() override;
     std::vector<float> errors() override; // standard errors
+    SolverState state() override;
+    std::vector<StatePart> stateParts() override;
+    void restore(const SolverState& state) override;
 
     /// Directions per patch beyond which no error is worth the time.
     static constexpr uint32_t kMaxSamples = 65536;
 
 private:
     enum class Stage : uint32_t { Plan, Direct, Links };
-    /// Everything that decides what comes next.
+    /// Everything that decides what comes next, but the sums and the light.
     struct State {
         Stage stage = Stage::Plan;
         uint32_t directRounds = 0, linkRounds = 0; // finished
@@ -70,8 +73,9 @@ private:
     State state_;
     double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
     std::vector<uint32_t> senders_;                          // of each chunk: patches that take part
-    bool stale_ = true;                                      // light_ is behind the sums
-    std::vector<glm::vec4> light_;                           // empty: not read back yet
+    std::vector<uint8_t> traced_; // of each chunk whose links are kept: whether those of this round are there
+    bool stale_ = true;           // light_ is behind the sums
+    std::vector<glm::vec4> light_; // empty: not read back yet
 };
 
 } // namespace relume

@@ -111,6 +111,17 @@ void PairSolver::beginPass() {
     VkCommandBuffer cmd = commands_.begin();
     vkCmdFillBuffer(cmd, light_.ligOut.handle(), 0, VK_WHOLE_SIZE, 0);
     vkCmdFillBuffer(cmd, rays_.handle(), 0, VK_WHOLE_SIZE, 0);
+    vk::barrier(cmd);
+    commands_.run();
+    listSupers();
+    nextUnit_ = 0;
+    inPass_ = true;
+    progress_.passFraction = 0;
+}
+
+// What ligIn makes of the pass.
+void PairSolver::listSupers() {
+    VkCommandBuffer cmd = commands_.begin();
     radiancePass_.record(cmd, light_, settings_.transport);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
@@ -134,9 +145,6 @@ void PairSolver::beginPass() {
     }
     if (!supers_.empty())
         vk::upload(device_, pairs_.supers, supers_.data(), supers_.size() * sizeof(SuperBlock));
-    nextUnit_ = 0;
-    inPass_ = true;
-    progress_.passFraction = 0;
 }
 
 void PairSolver::traceBatch(uint32_t unitCount) {
@@ -179,6 +187,28 @@ void PairSolver::traceBatch(uint32_t unitCount) {
         const uint64_t pairs = patchesOf(supers_[s].row) * patchesOf(supers_[s].column);
         progress_.pairs += supers_[s].row == supers_[s].column ? pairs : 2 * pairs;
     }
+}
+
+// Bits of a super-block that is only partly traced are traced again.
+SolverState PairSolver::state() {
+    ASSERT(!done_);
+    return makeState(State{inPass_, nextUnit_ / kSuperBlocks * kSuperBlocks, lastChange_});
+}
+
+std::vector<StatePart> PairSolver::stateParts() {
+    return {part(device_, light_.ligIn), part(device_, light_.ligOut), part(device_, rays_)};
+}
+
+void PairSolver::restore(const SolverState& state) {
+    const State own = takeState<State>(state);
+    done_ = false;
+    inPass_ = own.inPass;
+    lastChange_ = own.lastChange;
+    last_ = vk::readBuffer<glm::vec4>(device_, light_.ligIn, patches_.scene.patches.size());
+    errors_.clear();
+    if (!inPass_) return;
+    listSupers();
+    nextUnit_ = own.nextUnit;
 }
 
 uint64_t PairSolver::raysSoFar() {

@@ -17,17 +17,26 @@ public:
     uint64_t raysSoFar() override; // asks the device
     const std::vector<glm::vec4>& light() override { return last_; }
     std::vector<float> errors() override { return errors_; }
+    SolverState state() override;
+    std::vector<StatePart> stateParts() override;
+    void restore(const SolverState& state) override;
 
     /// Throws Error, with the size that fits, when there are more pairs than can be numbered.
     static void checkPairs(const PatchSet& patches);
     static uint64_t bytes(uint32_t chunkCount, bool software);
 
 private:
+    struct State {
+        bool inPass = false;
+        uint32_t nextUnit = 0; // the first one of a super-block
+        double lastChange = 0;
+    };
     struct Portion {
         uint32_t units = 0;
         double busy = 0; // of these have a sender, about
     };
     void beginPass();
+    void listSupers();
     Portion cutPortion(double wanted, uint32_t most) const;
     void traceBatch(uint32_t unitCount);
     void endPass();

@@ -4,6 +4,7 @@
 #include "bake/pair_solver.h"
 
 #include <array>
+#include <cstring>
 
 namespace relume {
 namespace {
@@ -39,6 +40,26 @@ const char* methodName(Method method) {
         if (method == n.method) return n.name;
     }
     return "";
+}
+
+// What the caches hold is this process' own.
+void Solver::takeState(const SolverState& state, void* own, size_t size) {
+    if (state.own.size() != size) throw Error("this state is not of such a solver: bake from the start");
+    std::memcpy(own, state.own.data(), size);
+    const uint64_t cacheBytes = progress_.cacheBytes;
+    const double cachedShare = progress_.cachedShare;
+    static_cast<SolverCounters&>(progress_) = state.counters;
+    progress_.passSeconds = state.passSeconds;
+    progress_.cacheBytes = cacheBytes;
+    progress_.cachedShare = cachedShare;
+}
+
+StatePart Solver::part(const vk::Device& device, const vk::Buffer& buffer) {
+    return {buffer.size(),
+            [&](void* to, uint64_t offset, uint64_t size) { vk::download(device, buffer, to, size, offset); },
+            [&](const void* from, uint64_t offset, uint64_t size) {
+                vk::upload(device, buffer, from, size, offset);
+            }};
 }
 
 std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings) {

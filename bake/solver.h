@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "bake/passes.h"
@@ -67,7 +69,7 @@ struct SolverSettings {
 };
 
 /// Where a bake stands, and what it has cost.
-struct SolverProgress {
+struct SolverCounters {
     uint32_t passes = 0;     // finished; link methods: bounces of all rounds
     uint32_t samples = 0;    // link methods: directions per patch so far
     double passFraction = 0; // of the current pass
@@ -77,11 +79,29 @@ struct SolverProgress {
     uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered
     double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
     double seconds = 0;                         // inside step()
-    std::vector<double> passSeconds;            // the same, of each finished pass
     bool converged = false;  // error below the aim (else the number of passes or samples ended it)
     uint64_t cacheBytes = 0; // memory that bits or links are kept in
     double cachedShare = 0;  // of the pairs or links of a pass
     uint64_t raysSaved = 0;  // that a later pass found in the cache
+};
+struct SolverProgress : SolverCounters {
+    std::vector<double> passSeconds; // inside step(), of each finished pass
+};
+
+/// Where a solver stands between two steps, as plain data. With what stateParts() hold it is all that a
+/// solver needs to go on as if it had never stopped. Bits and links are not among it: they are traced again.
+struct SolverState {
+    SolverCounters counters;
+    std::vector<double> passSeconds;
+    std::vector<uint8_t> own; // the solver's own struct, byte by byte
+};
+
+/// One of the arrays that belong to a state. They may take gigabytes, so they are read and written piece by
+/// piece, where they are.
+struct StatePart {
+    uint64_t bytes = 0;
+    std::function<void(void* to, uint64_t offset, uint64_t size)> read;
+    std::function<void(const void* from, uint64_t offset, uint64_t size)> write;
 };
 
 /// Progressive radiosity, resumable: each step() does one batch. Neither batch sizes nor timing change a byte
@@ -103,9 +123,35 @@ public:
     /// cannot be told yet.
     virtual std::vector<float> errors() = 0;
 
+    /// Not once it is done().
+    virtual SolverState state() = 0;
+    /// In the solver's own order; as long as no step() is made.
+    virtual std::vector<StatePart> stateParts() = 0;
+    /// Goes on from a state of a solver with the same input and settings; batches and caches may differ. The
+    /// parts are to be written before. Throws Error when the state is not this kind of solver's.
+    virtual void restore(const SolverState& state) = 0;
+
 protected:
+    /// The state with a solver's own plain struct, and back.
+    template<typename Own>
+    SolverState makeState(const Own& own) const {
+        static_assert(std::is_trivially_copyable_v<Own>);
+        const auto* bytes = reinterpret_cast<const uint8_t*>(&own);
+        return {progress_, progress_.passSeconds, {bytes, bytes + sizeof(own)}};
+    }
+    template<typename Own>
+    Own takeState(const SolverState& state) {
+        Own own;
+        takeState(state, &own, sizeof(own));
+        return own;
+    }
+    static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
+
     bool done_ = false;
     SolverProgress progress_;
+
+private:
+    void takeState(const SolverState& state, void* own, size_t size);
 };
 
 /// What a solver works on; all must outlive it.

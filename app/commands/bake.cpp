@@ -1,4 +1,5 @@
-#include "app/bake_options.h"
+#include "app/bake_checkpoints.h"
+#include "app/bake_settings.h"
 #include "app/bake_statistics.h"
 #include "app/command.h"
 #include "app/interrupt.h"
@@ -50,12 +51,14 @@ void stopIfInterrupted() {
 }
 
 // Steps the solver to its end. Throws Error when the user interrupts.
-void solve(Solver& solver, const SolverSettings& settings) {
+void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& checkpoints) {
     ProgressLine line;
     while (!solver.done()) {
         solver.step();
-        stopIfInterrupted();
-        if (!solver.done() && line.due()) line.show(progressText(solver, settings));
+        if (solver.done()) break;
+        if (InterruptGuard::requested()) checkpoints.interrupt(solver);
+        checkpoints.afterStep(solver);
+        if (line.due()) line.show(progressText(solver, settings));
     }
     if (solver.progress().converged || settings.error == 0) return;
     if (!isPairMethod(settings.method) && settings.links.samples == 0) {
@@ -70,20 +73,16 @@ void solve(Solver& solver, const SolverSettings& settings) {
 
 void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& request,
                    const SolverProgress& progress) {
-    const VoxelSettings& voxels = request.bake.voxels;
     const size_t slash = o.scene.find_last_of('/');
     image.attributes["relume:version"] = RELUME_VERSION;
     image.attributes["relume:scene"] = slash == std::string::npos ? o.scene : o.scene.substr(slash + 1);
     image.attributes["relume:method"] = o.method;
     image.attributes["relume:quantity"] =
         request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
-    image.attributes["relume:settings"] = fmt::format(
-        "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
-        "preset={} voxels={} voxel-ratio={}",
-        o.size, request.bake.solver.passes, request.bake.solver.error,
-        request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor,
-        request.lightmap.rtrad ? 1 : o.dilate, request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0,
-        o.preset.empty() ? "none" : o.preset, voxels.ratio > 0 ? voxels.resolution : 0, voxels.ratio);
+    image.attributes["relume:settings"] =
+        describeSettings(request.bake) + fmt::format(" dilate={} sew={}",
+                                                     request.lightmap.rtrad ? 1 : request.lightmap.dilate,
+                                                     request.lightmap.sew ? 1 : 0);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }
@@ -111,6 +110,7 @@ void bake(BakeOptions o) {
     if (!o.sceneOut.empty()) checkFileWritable(o.sceneOut, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
+    BakeCheckpoints checkpoints(o);
 
     PreparedScene prepared = prepareScene(request.prepare);
     stopIfInterrupted();
@@ -123,7 +123,8 @@ void bake(BakeOptions o) {
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     spdlog::info("{} patches", baker.patches().count);
     warnIfDark(prepared.scene, baker.patches());
-    solve(baker.solver(), request.bake.solver);
+    checkpoints.begin(baker, prepared.scene, request.bake, device.info());
+    solve(baker.solver(), request.bake.solver, checkpoints);
     const auto writeStart = Clock::now();
     FloatImage image = baker.lightmap(request.lightmap);
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;

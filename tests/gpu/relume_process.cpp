@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -42,7 +43,9 @@ bool readMore(int fd, std::string& text) {
 } // namespace
 
 ProcessResult runProgram(const std::string& program, const std::vector<std::string>& arguments,
-                         const std::function<int(const std::string& err)>& onErr) {
+                         const std::function<int(const std::string& err)>& onErr, double killAfter) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
     std::array<int, 2> out{}, err{};
     if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(err.data(), O_CLOEXEC) != 0) throw Error("pipe failed");
     const pid_t child = fork();
@@ -56,7 +59,11 @@ ProcessResult runProgram(const std::string& program, const std::vector<std::stri
     while (outOpen || errOpen) {
         std::array<pollfd, 2> streams = {
             {{outOpen ? out[0] : -1, POLLIN, 0}, {errOpen ? err[0] : -1, POLLIN, 0}}};
-        poll(streams.data(), streams.size(), -1);
+        const double left = killAfter - std::chrono::duration<double>(Clock::now() - start).count();
+        const bool wait = killAfter <= 0 || left > 0;
+        if (!wait) kill(child, SIGKILL);
+        const int milliseconds = killAfter > 0 && wait ? static_cast<int>(1000.0 * left) + 1 : -1;
+        if (poll(streams.data(), streams.size(), milliseconds) == 0) continue;
         if (streams[0].revents != 0) outOpen = readMore(out[0], result.out);
         if (streams[1].revents == 0) continue;
         errOpen = readMore(err[0], result.err);
@@ -72,8 +79,8 @@ ProcessResult runProgram(const std::string& program, const std::vector<std::stri
 }
 
 ProcessResult runRelume(const std::vector<std::string>& arguments,
-                        const std::function<int(const std::string& err)>& onErr) {
-    return runProgram(RELUME_BINARY, arguments, onErr);
+                        const std::function<int(const std::string& err)>& onErr, double killAfter) {
+    return runProgram(RELUME_BINARY, arguments, onErr, killAfter);
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -12,12 +12,15 @@ struct ProcessResult {
     std::string out, err;
 };
 
-/// `onErr` sees all of stderr so far whenever more has come, and returns a signal to send, or 0.
+/// `onErr` sees all of stderr so far whenever more has come, and returns a signal to send, or 0. killAfter:
+/// the seconds after which SIGKILL ends it; 0: never.
 ProcessResult runRelume(const std::vector<std::string>& arguments,
-                        const std::function<int(const std::string& err)>& onErr = nullptr);
+                        const std::function<int(const std::string& err)>& onErr = nullptr,
+                        double killAfter = 0);
 /// The same for another program, by path.
 ProcessResult runProgram(const std::string& program, const std::vector<std::string>& arguments,
-                         const std::function<int(const std::string& err)>& onErr = nullptr);
+                         const std::function<int(const std::string& err)>& onErr = nullptr,
+                         double killAfter = 0);
 
 /// A new folder under the system's temporary one; removed with all that is in it.
 class TemporaryFolder {

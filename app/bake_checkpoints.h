@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "app/bake_options.h"
+#include "bake/checkpoint.h"
+
+namespace relume {
+
+/// What --checkpoint and --resume ask for; nothing if neither was given.
+class BakeCheckpoints {
+public:
+    /// Reads the one and sees whether the other can be written. Throws Error.
+    explicit BakeCheckpoints(const BakeOptions& options);
+
+    /// Before the first step: goes on from --resume's file. Throws Error when it belongs to another bake.
+    void begin(Baker& baker, const Scene& scene, const BakeSettings& settings, const vk::DeviceInfo& device);
+    /// Saves when it is time to. A failure is a warning: the bake itself is sound.
+    void afterStep(Solver& solver);
+    /// Saves, and throws the Error that ends an interrupted bake.
+    [[noreturn]] void interrupt(Solver& solver);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void save(Solver& solver);
+
+    std::string path_; // "": none is saved
+    std::string shaders_;
+    std::optional<Checkpoint> resumed_; // until begin()
+    CheckpointKey key_;
+    std::chrono::duration<double> every_;
+    Clock::time_point next_;
+};
+
+} // namespace relume

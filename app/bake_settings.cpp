@@ -1,0 +1,41 @@
+#include "app/bake_settings.h"
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+// Every struct is taken apart by name: one more setting does not compile until it was decided here whether it
+// changes a bake's bytes.
+
+std::string describe(const TransportSettings& settings) {
+    const auto& [reflectivity, distanceFactor, rtrad, allSend, reflectedOnly] = settings;
+    return fmt::format(" reflectivity={} distance-factor={} preset={}", reflectivity, distanceFactor,
+                       rtrad ? "rtrad" : "none");
+}
+
+std::string describe(Method method, const PairSettings& settings) {
+    const auto& [window, threshold, node, thresholdRamp] = settings;
+    if (method == Method::Adaptive)
+        return fmt::format(" threshold={} node={} threshold-ramp={}", threshold, node, thresholdRamp);
+    return method == Method::Pure ? "" : fmt::format(" window={}", window);
+}
+
+std::string describe(const LinkSettings& settings) {
+    const auto& [samples, smooth] = settings;
+    return fmt::format(" samples={} smooth={}", samples, smooth ? 1 : 0);
+}
+
+} // namespace
+
+std::string describeSettings(const BakeSettings& settings) {
+    const auto& [size, conservative, tracer, voxels, solver] = settings;
+    const auto& [resolution, ratio] = voxels;
+    const auto& [method, pairs, links, cache, transport, passes, error, batchMs] = solver;
+    return fmt::format("size={} passes={} error={} method={} conservative={} voxels={} voxel-ratio={}{}{}",
+                       size, passes, error, methodName(method), conservative ? 1 : 0,
+                       ratio > 0 ? resolution : 0, ratio, describe(transport),
+                       isPairMethod(method) ? describe(method, pairs) : describe(links));
+}
+
+} // namespace relume
