@@ -21,6 +21,12 @@ uint closestLink(Patch p, vec3 direction) {
 }
 #endif
 
+vec3 directionOf(Patch p, uint key, uint index) {
+    if (push.discCount == 0u) return patchDirection(p, key, index);
+    vec2 point = Vec2s(push.disc).items[discIndex(index, push.discCount)];
+    return aroundPatch(p, discDirection(point, push.discCount, discSeed(key, index, push.discCount)));
+}
+
 const uint kSamplesPerInvocation = 8u;
 
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {
@@ -29,13 +35,12 @@ void traceLinks(uint chunk, uint sampleGroup, uint lane) {
 #endif
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
-    uint key = seedKey(p);
-    if (push.perTile != 0u) key = seedKey(loadPatch(push.patches, (push.firstChunk + chunk) * kChunk));
+    uint key = rotationKey(p, loadPatch(push.patches, (push.firstChunk + chunk) * kChunk), push.rotation, push.size);
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
         uint link = kLinkDark;
         if ((p.flags & kPatchSends) != 0u) {
-            link = closestLink(p, patchDirection(p, key, push.firstSample + local));
+            link = closestLink(p, directionOf(p, key, push.firstSample + local));
         }
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] = link;
     }
