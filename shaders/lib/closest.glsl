@@ -23,8 +23,9 @@ uint closestLink(Patch p, vec3 direction) {
 
 vec3 directionOf(Patch p, uint key, uint index) {
     if (push.discCount == 0u) return patchDirection(p, key, index);
-    vec2 point = Vec2s(push.disc).items[discIndex(index, push.discCount)];
-    return aroundPatch(p, discDirection(point, push.discCount, discSeed(key, index, push.discCount)));
+    uint seed = discSeed(key, index, push.discCount);
+    vec2 point = Vec2s(push.disc).items[discPoint(index, push.discCount, seed)];
+    return aroundPatch(p, discDirection(point, push.discCount, seed));
 }
 
 const uint kSamplesPerInvocation = 8u;
