@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
     relume::addDevicesCommand(app);
     relume::addCompareCommand(app);
     relume::addBenchCommand(app);
+    relume::addSamplesCommand(app);
 
     try {
         app.parse(argc, argv);
