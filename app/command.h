@@ -13,5 +13,6 @@ void addSceneCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addBenchMethodsCommand(CLI::App& bench); // of `relume bench`
 
 } // namespace relume
