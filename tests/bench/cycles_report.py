@@ -1,8 +1,9 @@
 """Turns the results of cycles_compare.sh into tables (Markdown, standard output) and a plot (SVG).
 
-cycles_report.py RESULTS.tsv CORES PLOT.svg
+cycles_report.py RESULTS.tsv PLOT.svg
 
-CPU of relume's solver is its wall time times the cores, an upper bound; that of its whole process is user + system time.
+CPU is user + system time of all threads: of the bake itself (scene set-up and acceleration structures included, reading
+and writing files and starting the program excluded) and, for relume, of the whole process.
 """
 
 import csv
@@ -13,16 +14,15 @@ NAMES = {"cycles": "Cycles", "smooth": "relume hybrid", "plain": "relume hybrid 
 COLOURS = {"cycles": "#d55e00", "smooth": "#0072b2", "plain": "#009e73"}
 
 
-def read(path, cores):
+def read(path):
     """Rows by kind, by samples, each (samples, CPU seconds, process CPU seconds, error, error against Cycles)."""
     rows, agreement = {kind: [] for kind in NAMES}, None
     with open(path, encoding="utf-8") as file:
         for row in csv.DictReader(file, delimiter="\t"):
             if row["kind"] == "agreement":
-                agreement = float(row["error_relume"])
+                agreement = float(row["error_cycles"])
                 continue
-            process = float(row["process_cpu"])
-            cpu = float(row["solver_wall"]) * cores if row["solver_wall"] else process
+            cpu, process = float(row["bake_cpu"]), float(row["process_cpu"] or 0)
             errors = float(row["error_relume"]), float(row["error_cycles"])
             rows[row["kind"]].append((int(row["samples"]), cpu, process) + errors)
     for points in rows.values():
@@ -42,13 +42,13 @@ def cpu_for(points, error, column):
 
 
 def table(rows):
-    print("| | samples | CPU of the bake | CPU of the process | relRMSE | against Cycles |")
+    print("| | samples | CPU of the bake | CPU of the process | relRMSE against relume | against Cycles |")
     print("|---|---:|---:|---:|---:|---:|")
     for kind, points in rows.items():
         for samples, cpu, process, error, against in points:
             whole = "%.3g s" % process if kind != "cycles" else ""
-            last = "%.2f %%" % (100 * against) if against > 0 else "itself"
-            print("| %s | %d | %.3g s | %s | %.2f %% | %s |" % (NAMES[kind], samples, cpu, whole, 100 * error, last))
+            errors = 100 * error, 100 * against
+            print("| %s | %d | %.3g s | %s | %.2f %% | %.2f %% |" % ((NAMES[kind], samples, cpu, whole) + errors))
 
 
 def summary(rows):
@@ -121,12 +121,12 @@ def plot(rows, path):
         file.write("\n".join(out) + "\n")
 
 
-def main(results, cores, picture):
-    rows, agreement = read(results, int(cores))
+def main(results, picture):
+    rows, agreement = read(results)
     table(rows)
     summary(rows)
     if agreement is not None:
-        print("\nThe two references differ by %.2f %%." % (100 * agreement))
+        print("\nWithout their noise the two programs' maps differ by %.2f %% (relRMSE)." % (100 * agreement))
     plot(rows, picture)
 
 
