@@ -22,8 +22,8 @@ here=$(realpath "$(dirname "$0")")
 size=${SIZE:-256}
 bounces=24
 cycles_samples=${CYCLES_SAMPLES:-16,64,256,655,1024}
-relume_samples=${RELUME_SAMPLES:-8 16 32 64 128 256 512 1024}
-relume_reference=${RELUME_REFERENCE:-8192}
+relume_samples=${RELUME_SAMPLES:-16 32 64 128 256 512}
+relume_reference=${RELUME_REFERENCE:-2048}
 most=${cycles_samples##*,}
 if ! command -v blender >/dev/null; then
     echo "$0: there is no blender: apt-get install blender" >&2
@@ -63,7 +63,7 @@ error() { # of $1 against $2
     "$relume" -q compare "$1" "$2" --mask "$mask" --metric relrmse
 }
 calculate() { # $1: an expression of awk's
-    awk "BEGIN { v = $1; printf \"%.6g\\n\", v > 0 ? sqrt(v) : 0 }"
+    awk "BEGIN { v = $1; printf \"%.6g\\n\", (v > 0 ? sqrt(v) : 0) }"
 }
 reference=$out/reference.exr
 one=$out/cycles-$most.exr
