@@ -62,6 +62,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"gatherSeconds", p.gatherSeconds},
                        {"passSeconds", p.passSeconds},
                        {"seconds", seconds},
+                       {"bakeCpuSeconds", s.bakeCpuSeconds},
                        {"atlas", atlasJson(s.prepared)}};
     if (path == "-")
         std::cout << json.dump(2) << std::endl;

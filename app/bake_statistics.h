@@ -14,6 +14,7 @@ struct BakeStatistics {
     Baker& baker;
     const vk::DeviceInfo& device;
     const std::vector<PhaseTime>& phases;
+    double bakeCpuSeconds; // of all threads, from the lightmap's rasterization to the finished map
 };
 
 /// Writes them as JSON to `path`, or to standard output for "-". Temporary name, then rename. Throws Error.

@@ -14,5 +14,6 @@ void addDevicesCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addSamplesCommand(CLI::App& app);
+void addBenchMethodsCommand(CLI::App& bench); // of `relume bench`
 
 } // namespace relume

@@ -196,28 +196,6 @@ FloatImage readPng(const std::string& bytes) {
     return image;
 }
 
-std::string encodePng(const std::string& path, const FloatImage& image) {
-    std::string pixels(size_t(image.width) * image.height * 3, '\0');
-    for (size_t c = 0; c < 3; ++c) {
-        const std::string channel(1, "RGB"[c]);
-        const std::vector<float>* plane = image.find(channel);
-        if (!plane) throw Error(path + ": the image has no channel " + channel + ": write .exr instead");
-        for (size_t i = 0; i < plane->size(); ++i) {
-            const float v = (*plane)[i];
-            const double clamped = v > 0.0f ? std::min(1.0, double(v)) : 0.0; // NaN becomes 0
-            pixels[3 * i + c] =
-                char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
-        }
-    }
-    std::string bytes;
-    const auto append = [](void* context, void* data, int size) {
-        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
-    };
-    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), 3, pixels.data(), 0))
-        throw Error(path + ": cannot be encoded as PNG: write .exr instead");
-    return bytes;
-}
-
 } // namespace
 
 const std::vector<float>* FloatImage::find(const std::string& channel) const {
@@ -255,13 +233,35 @@ FloatImage readImage(const std::string& path) {
     }
 }
 
+std::string encodePng(const FloatImage& image, const std::string& name) {
+    std::string pixels(size_t(image.width) * image.height * 3, '\0');
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        const std::vector<float>* plane = image.find(channel);
+        if (!plane) throw Error(name + ": the image has no channel " + channel + ": write .exr instead");
+        for (size_t i = 0; i < plane->size(); ++i) {
+            const float v = (*plane)[i];
+            const double clamped = v > 0.0f ? std::min(1.0, double(v)) : 0.0; // NaN becomes 0
+            pixels[3 * i + c] =
+                char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
+        }
+    }
+    std::string bytes;
+    const auto append = [](void* context, void* data, int size) {
+        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
+    };
+    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), 3, pixels.data(), 0))
+        throw Error(name + ": cannot be encoded as PNG: write .exr instead");
+    return bytes;
+}
+
 void writeImage(const std::string& path, const FloatImage& image, ExrType type) {
     ASSERT(image.width > 0 && image.height > 0 && image.channels.size() == image.planes.size());
     for (const std::vector<float>& plane : image.planes)
         ASSERT(plane.size() == size_t(image.width) * image.height);
     std::string bytes;
     if (formatOf(path) == Format::Png) {
-        bytes = encodePng(path, image);
+        bytes = encodePng(image, path);
     } else {
         try {
             bytes = encodeExr(path, image, type);

@@ -35,6 +35,9 @@ FloatImage readImage(const std::string& path);
 /// images give equal bytes. Half cuts values beyond its range (65504) with a warning. Throws Error.
 void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
 
+/// The bytes that writeImage writes for a .png. Throws Error, naming the image `name`, without R, G and B.
+std::string encodePng(const FloatImage& image, const std::string& name);
+
 /// Throws Error where writing `path` is sure to fail (folder missing or unwritable, unknown ending, too
 /// little space for `bytes`): call before long work.
 void checkWritable(const std::string& path, uint64_t bytes = 0);

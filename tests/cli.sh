@@ -84,6 +84,13 @@ expectUsageError bake room.glb -o room.exr --voxel-ratio 257
 expectUsageError bake room.glb -o room.exr --method nosuchmethod
 expectUsageError bake room.glb -o room.exr --preset nosuchpreset
 expectUsageError bake room.glb -o room.exr --quantity nosuchquantity
+expectUsageError bench methods room.glb # no --html
+expectUsageError bench methods room.glb --html r.html --windows 3
+expectUsageError bench methods room.glb --html r.html --samples 0
+expectUsageError bench methods room.glb --html r.html --methods nosuchmethod
+expectUsageError bench methods room.glb --html r.html --sizes 64 --picture-size 128
+expectUsageError compare a.exr b.exr --metric nosuchmetric
+expectUsageError compare a.exr b.exr --diff diff.exr
 
 expectUsageError bake room.glb -o room.exr --method pure --directions lec
 expectUsageError bake room.glb -o room.exr --method pure --rotate tile
@@ -101,12 +108,15 @@ expectWorldError missing.glb bake missing.glb -o room.exr
 expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.glb bench trace missing.glb
+expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.exr compare missing.exr other.exr
 
 printf 'not a scene' >broken.glb
 expectWorldError broken.glb info broken.glb
 expectWorldError broken.glb bake broken.glb -o room.exr
 expectWorldError nosuchfolder bake broken.glb -o nosuchfolder/room.exr
+expectWorldError nosuchfolder bench methods broken.glb --html nosuchfolder/report.html
+expectWorldError nosuchfolder compare a.exr b.exr --diff nosuchfolder/diff.png
 expectWorldError nosuchfolder bake broken.glb -o room.exr --picture nosuchfolder/room.png
 
 # A run that fails leaves nothing behind.

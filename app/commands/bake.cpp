@@ -9,6 +9,7 @@
 #include "shaders/shader_library.h"
 
 #include <chrono>
+#include <ctime>
 #include <memory>
 
 namespace relume {
@@ -18,6 +19,11 @@ using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Of all threads, the drivers' too [s].
+double cpuSeconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 // Pass, percent, rays per second and the time left: of this pass when only the error can end the bake.
@@ -114,12 +120,14 @@ void bake(BakeOptions o) {
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     const double deviceSeconds = secondsSince(deviceStart);
 
+    const double cpuStart = cpuSeconds();
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     spdlog::info("{} patches", baker.patches().count);
     warnIfDark(prepared.scene, baker.patches());
     solve(baker.solver(), request.bake.solver);
     const auto writeStart = Clock::now();
     FloatImage image = baker.lightmap(request.lightmap);
+    const double bakeCpuSeconds = cpuSeconds() - cpuStart;
     const SolverProgress& progress = baker.solver().progress();
     addAttributes(image, o, request, progress);
     writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
@@ -144,9 +152,12 @@ void bake(BakeOptions o) {
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     phases.push_back({"solve", progress.seconds});
     phases.push_back({"write", secondsSince(writeStart)});
-    writeStatistics(
-        o.json,
-        {.options = o, .prepared = prepared, .baker = baker, .device = device.info(), .phases = phases});
+    writeStatistics(o.json, {.options = o,
+                             .prepared = prepared,
+                             .baker = baker,
+                             .device = device.info(),
+                             .phases = phases,
+                             .bakeCpuSeconds = bakeCpuSeconds});
 }
 
 } // namespace

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relume {
+
+struct PlotPoint {
+    double x = 0, y = 0;    // > 0 and finite, else the point is left out
+    std::string label = {}; // beside the point; may be empty
+    std::string hint = {};  // shown when the mouse rests on it
+};
+
+struct PlotSeries {
+    std::string name;
+    int colour = 0; // index of a colour; equal for what belongs together
+    int dash = 0;   // index of a pattern of strokes
+    std::vector<PlotPoint> points = {};
+};
+
+struct PlotDesc {
+    std::string title, xLabel, yLabel;
+    std::vector<PlotSeries> series = {};
+    std::vector<double> xTicks = {}; // none: decades
+};
+
+/// Text as HTML and SVG take it, in elements and quoted attributes. Bytes that are no UTF-8 or not allowed in
+/// XML become U+FFFD.
+std::string escapeMarkup(const std::string& text);
+
+/// An <svg> element with both axes logarithmic: a line and markers for each series, no legend. Colours come
+/// from plotStyle().
+std::string logLogPlot(const PlotDesc& desc);
+
+/// A small <svg> that shows a series' colour and dash, for legends.
+std::string plotSwatch(const PlotSeries& series);
+
+/// CSS of the plots, for light and dark pages.
+std::string plotStyle();
+
+} // namespace relume
