@@ -154,8 +154,11 @@ private:
     // Throws Error where the bake cannot be made or takes too long.
     Baked bake(const SolverSettings& solver, uint32_t size) {
         const auto start = Clock::now();
-        Baker baker(device_, prepared_.scene, prepared_.mesh,
-                    {.size = size, .tracer = desc_.tracer, .solver = solver});
+        BakeSettings settings;
+        settings.size = size;
+        settings.tracer = desc_.tracer;
+        settings.solver = solver;
+        Baker baker(device_, prepared_.scene, prepared_.mesh, settings);
         while (!baker.solver().done()) {
             baker.solver().step();
             if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");

@@ -32,7 +32,7 @@ protected:
 TEST_F(BenchMethods, WritesItsReport) {
     const std::string html = folder_.path("report.html"), json = folder_.path("report.json");
     const ProcessResult run =
-        runRelume({"bench", "methods", scene_, "--sizes", "64,32", "--methods", "static,pure", "--windows",
+        runRelume({"bench", "methods", scene_, "--sizes", "128,64", "--methods", "static,pure", "--windows",
                    "2", "--reference-samples", "64", "--html", html, "--json", json});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("window 2"), std::string::npos) << run.out;
@@ -40,7 +40,7 @@ TEST_F(BenchMethods, WritesItsReport) {
     ASSERT_EQ(report.at("runs").size(), 4u);
     for (size_t i = 0; i < 4; ++i) {
         const auto& entry = report.at("runs")[i];
-        EXPECT_EQ(entry.at("size"), i < 2 ? 32 : 64);
+        EXPECT_EQ(entry.at("size"), i < 2 ? 64 : 128);
         EXPECT_EQ(entry.at("method"), i % 2 == 0 ? "pure" : "static"); // what the others are compared with
         EXPECT_GT(entry.at("solveSeconds"), 0.0);
         EXPECT_GT(entry.at("totalSeconds"), entry.at("solveSeconds"));
