@@ -28,6 +28,12 @@ CONST uint kReplicates = 4u;
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
 
+// What patches side by side have in common of their directions: nothing; those in the same place of their 4 x 4 texels
+// all; a chunk's all.
+CONST uint kRotatePatch = 0u;
+CONST uint kRotateInterleaved = 1u;
+CONST uint kRotateTile = 2u;
+
 // What `closest` stores for a ray: a patch index below kLinkFirstSpecial, or
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
 CONST uint kLinkSky = 0xffffffffu;  // hit nothing
@@ -194,8 +200,10 @@ struct ClosestPush {
     uint chunkCount;
     uint firstSample;
     uint sampleCount;
-    uint size;    // lightmap edge [texels]
-    uint perTile; // 1: all patches of a chunk share their directions
+    uint size;      // lightmap edge [texels]
+    uint rotation;  // kRotate...
+    ADDRESS disc;   // vec2[discCount], even points of the unit disc
+    uint discCount; // 0: Sobol points
 };
 struct SegmentPush {
     TraceGeometry geometry;

@@ -327,7 +327,8 @@ void EmbreeScene::closest(const ClosestArrays& work) {
         const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
         const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
         ChunkRays rays;
-        rays.setPatches(patches, work.rotation == Rotation::Tile);
+        rays.setPatches(patches, static_cast<uint32_t>(work.rotation), impl.scene.size);
+        if (work.disc) rays.setDisc(work.disc, work.discCount);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
         impl.links(patches, rays, work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);
     });

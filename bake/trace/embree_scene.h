@@ -22,6 +22,8 @@ struct ClosestArrays {
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0;
     Rotation rotation = Rotation::Patch;
+    const glm::vec2* disc = nullptr;
+    uint32_t discCount = 0;
     uint32_t* links = nullptr;
 };
 

@@ -40,6 +40,8 @@ public:
                         .firstSample = work.firstSample,
                         .sampleCount = work.sampleCount,
                         .rotation = work.rotation,
+                        .disc = work.disc ? mappedAs<glm::vec2>(work.disc, work.discCount) : nullptr,
+                        .discCount = work.discCount,
                         .links = mappedAs<uint32_t>(work.links, links) + work.linksOffset});
     }
 

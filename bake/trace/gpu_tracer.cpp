@@ -70,7 +70,9 @@ public:
                 .firstSample = work.firstSample,
                 .sampleCount = work.sampleCount,
                 .size = size_,
-                .perTile = work.rotation == Rotation::Tile ? 1u : 0u};
+                .rotation = static_cast<uint32_t>(work.rotation),
+                .disc = work.disc ? work.disc->address() : 0,
+                .discCount = work.disc ? work.discCount : 0};
     }
 
     shader::SegmentPush push(const SegmentWork& work) const {

@@ -34,7 +34,13 @@ struct OcclusionWork {
     const vk::Buffer* rays = nullptr;
 };
 
-enum class Rotation : uint32_t { Patch, Tile };
+/// What neighbouring patches have in common of their directions: nothing; all, those in the same place of
+/// their 4 x 4 texels; all, those of one chunk.
+enum class Rotation : uint32_t {
+    Patch = shader::kRotatePatch,
+    Interleaved = shader::kRotateInterleaved,
+    Tile = shader::kRotateTile
+};
 
 /// Closest hits of cosine-distributed directions (shaders/lib/sampling.glsl) of some chunks: link of patch i
 /// of chunk c for sample k goes to links[linksOffset + ((c - firstChunk) * sampleCount + (k - firstSample)) *
@@ -43,6 +49,11 @@ struct ClosestWork {
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0; // sampleCount: a multiple of 8
     Rotation rotation = Rotation::Patch;
+    // glm::vec2[discCount] on the device (mapped where the tracer runs on the CPU): directions come from
+    // these points of the unit disc, each in the middle of its ring (evenRings), instead of the Sobol
+    // sequence.
+    const vk::Buffer* disc = nullptr;
+    uint32_t discCount = 0;
     const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64] and what lies before
     uint64_t linksOffset = 0;          // [links]
 };

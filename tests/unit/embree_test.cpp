@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bake/directions.h"
 #include "bake/trace/bvh_builder.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
@@ -235,13 +236,13 @@ TEST(Embree, partsOfTheWorkGiveTheSameBitsAndLeaveSkippedUnitsAlone) {
 TEST(Embree, linksAreThoseOfBruteForce) {
     const TraceScene scene = furnishedRoom();
     shader::AllTriangles all{scene};
-    for (const Rotation rotation : {Rotation::Patch, Rotation::Tile}) {
+    for (const Rotation rotation : {Rotation::Patch, Rotation::Interleaved, Rotation::Tile}) {
         const std::vector<uint32_t> links = traceLinks(scene, 2, rotation, 24);
         uint32_t wrong = 0, checked = 0;
         for (uint32_t i = 0; i < scene.patches.size(); i += 3) {
             const Patch& patch = scene.patches[i];
-            const uint32_t key =
-                shader::seedKey(rotation == Rotation::Patch ? patch : scene.patches[i / kChunk * kChunk]);
+            const uint32_t key = shader::rotationKey(patch, scene.patches[i / kChunk * kChunk],
+                                                     uint32_t(rotation), scene.size);
             const uint32_t k = i % 8;
             if (!(patch.flags & shader::kPatchSends)) continue;
             wrong += linkOf(links, i, k) != all.link(patch, shader::patchDirection(patch, key, 24 + k));
@@ -250,6 +251,36 @@ TEST(Embree, linksAreThoseOfBruteForce) {
         EXPECT_GT(checked, 1000u);
         EXPECT_LE(wrong, 2u); // a hit on a texel's border may fall to either side
     }
+}
+
+TEST(Embree, linksOfADiscAreThoseOfBruteForce) {
+    const TraceScene scene = furnishedRoom();
+    shader::AllTriangles all{scene};
+    constexpr uint32_t count = 5; // the second round through the set begins within the samples
+    std::vector<glm::vec2> disc;
+    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
+        disc.emplace_back(p);
+    std::vector<uint32_t> links(size_t(scene.patches.size()) * 8, 12345);
+    EmbreeScene embree(scene, 2);
+    embree.closest({.firstChunk = 0,
+                    .chunkCount = scene.chunkCount(),
+                    .firstSample = 16,
+                    .sampleCount = 8,
+                    .disc = disc.data(),
+                    .discCount = count,
+                    .links = links.data()});
+    uint32_t wrong = 0, checked = 0;
+    for (uint32_t i = 0; i < scene.patches.size(); i += 3) {
+        const Patch& patch = scene.patches[i];
+        if (!(patch.flags & shader::kPatchSends)) continue;
+        const uint32_t k = i % 8, index = 16 + k;
+        const glm::vec3 local = shader::discDirection(disc[shader::discIndex(index, count)], count,
+                                                      shader::discSeed(shader::seedKey(patch), index, count));
+        wrong += linkOf(links, i, k) != all.link(patch, shader::aroundPatch(patch, local));
+        ++checked;
+    }
+    EXPECT_GT(checked, 1000u);
+    EXPECT_LE(wrong, 2u);
 }
 
 // A floor below a lid: seen from above as lids come.
