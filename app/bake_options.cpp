@@ -17,6 +17,16 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
             "--samples", o.samples,
             "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
         ->check(CLI::Range(1u, LinkSolver::kMaxSamples));
+    command
+        .add_option("--directions", o.directions,
+                    "directional, hybrid: sobol (default), or lec, the thesis' largest-empty-circle sets")
+        ->check(CLI::IsMember({"sobol", "lec"}));
+    command
+        .add_option(
+            "--rotate", o.rotate,
+            "directional, hybrid: directions differ from patch to patch (default), interleaved in 4x4 "
+            "patches, or from tile to tile")
+        ->check(CLI::IsMember({"patch", "interleaved", "tile"}));
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -24,6 +34,10 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     const bool links = !isPairMethod(solver.method);
     if (o.samples > 0 && !links)
         throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
+    if (!o.directions.empty() && !links)
+        throw UsageError("--directions: only with --method directional or hybrid, others have none");
+    if (!o.rotate.empty() && !links)
+        throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
     if (o.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
     if (links && solver.transport.rtrad) {
@@ -32,6 +46,10 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     }
     solver.links.samples = o.samples;
     solver.links.smooth = !o.noSmooth;
+    solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
+    solver.links.rotation = o.rotate == "interleaved" ? Rotation::Interleaved
+                            : o.rotate == "tile"      ? Rotation::Tile
+                                                      : Rotation::Patch;
     // For these, passes are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }

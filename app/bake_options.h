@@ -14,7 +14,8 @@ namespace relume {
 /// What the user typed after `relume bake`.
 struct BakeOptions {
     std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;
-    std::string method; // "": hybrid, of the RTRad preset pure
+    std::string method;             // "": hybrid, of the RTRad preset pure
+    std::string directions, rotate; // "": not given
     std::string tracer = "auto", preset, quantity;
     uint32_t size = 512;
     uint32_t passes = 0; // 0: not given

@@ -1,5 +1,7 @@
 #include "bake/link_solver.h"
 
+#include "bake/directions.h"
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -65,6 +67,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     for (uint32_t i = 0; i < patches.count; ++i)
         senders_[i / kChunk] += (patches.scene.patches[i].flags & shader::kPatchSends) != 0;
 
+    if (settings.links.directions == DirectionSet::Lec) makeDisc();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct,
                                      &buffers_.rays, &input.light.ligIn, &input.light.ligOut}) {
@@ -76,6 +79,19 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
     progress_.cacheBytes = kept;
     progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / patches.chunkCount();
+}
+
+// Each replicate goes through the set once; where the error decides how many rounds there will be, once per
+// round: a set that is broken off is less even.
+void LinkSolver::makeDisc() {
+    const uint32_t rounds =
+        settings_.links.samples > 0 ? (settings_.links.samples + shape_.links - 1) / shape_.links : 1;
+    discCount_ = rounds * shape_.links / shader::kReplicates;
+    std::vector<glm::vec2> points;
+    points.reserve(discCount_);
+    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(discCount_)))
+        points.emplace_back(p);
+    disc_ = vk::makeBuffer(input_.device, points, "directions");
 }
 
 void LinkSolver::step() {
@@ -228,7 +244,9 @@ void LinkSolver::linkBatch() {
                                     .chunkCount = range.count,
                                     .firstSample = state_.linkRounds * shape_.links,
                                     .sampleCount = shape_.links,
-                                    .rotation = Rotation::Patch,
+                                    .rotation = settings_.links.rotation,
+                                    .disc = disc_ ? &disc_ : nullptr,
+                                    .discCount = discCount_,
                                     .links = &links,
                                     .linksOffset = offset});
     }

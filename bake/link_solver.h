@@ -40,6 +40,7 @@ private:
         uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
     };
 
+    void makeDisc();
     void plan();
     void begin(Stage stage);
     bool enoughRounds() const;
@@ -61,6 +62,8 @@ private:
     EmitterSet emitters_;
     RoundShape shape_;
     LinkBuffers buffers_;
+    vk::Buffer disc_; // vec2[discCount_] of DirectionSet::Lec
+    uint32_t discCount_ = 0;
     RadiancePass radiancePass_;
     DirectPass directPass_;
     LinkGatherPass gatherPass_;

@@ -37,8 +37,16 @@ struct PairSettings {
     double thresholdRamp = 1.0; // adaptive: factor on the threshold from pass to pass
 };
 
+/// Where link methods take their directions from.
+enum class DirectionSet {
+    Sobol, // the Owen-scrambled Sobol sequence
+    Lec    // the thesis' insertion into the largest empty circle (bake/directions.h)
+};
+
 /// Of directional and hybrid.
 struct LinkSettings {
+    DirectionSet directions = DirectionSet::Sobol;
+    Rotation rotation = Rotation::Patch;
     uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
     bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
 };

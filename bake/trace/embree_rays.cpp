@@ -35,11 +35,11 @@ struct SobolLanes {
     }
 };
 struct DiscLanes {
-    glm::vec2 point;
-    uint32_t count;
-    uint32_t turn; // added to the seeds
+    const glm::vec2* points;
+    uint32_t count, index;
     [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
-        const glm::vec3 d = shader::discDirection(point, count, seed + turn);
+        seed += shader::discTurn(index, count);
+        const glm::vec3 d = shader::discDirection(points[shader::discPoint(index, count, seed)], count, seed);
         cell = glm::vec2(0.4999f * d.x + 0.5f, 0.4999f * d.y + 0.5f); // below 1
         return d;
     }
@@ -114,10 +114,7 @@ void ChunkRays::fillDirections(uint32_t sample, uint32_t slot) {
     float* const out[] = {&x[slot], &y[slot], &z[slot]};
     const uint32_t* seed = f.seed[sample % shader::kReplicates].data();
     if (disc_)
-        fillDisc(
-            frames, seed,
-            {disc_[shader::discIndex(sample, discCount_)], discCount_, shader::discTurn(sample, discCount_)},
-            out, &cell_[slot]);
+        fillDisc(frames, seed, {disc_, discCount_, sample}, out, &cell_[slot]);
     else
         fillSobol(frames, seed, {shader::replicateIndex(sample)}, out, &cell_[slot]);
 }

@@ -22,8 +22,9 @@ uint closestLink(Patch p, vec3 direction) {
 #endif
 
 vec3 discSample(uint key, uint index) {
-    vec2 point = Vec2s(push.disc).items[discIndex(index, push.discCount)];
-    return discDirection(point, push.discCount, discSeed(key, index, push.discCount));
+    uint seed = discSeed(key, index, push.discCount);
+    vec2 point = Vec2s(push.disc).items[discPoint(index, push.discCount, seed)];
+    return discDirection(point, push.discCount, seed);
 }
 
 vec3 directionOf(Patch p, uint key, uint index) {

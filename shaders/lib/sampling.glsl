@@ -128,8 +128,12 @@ FUNCTION vec3 discDirection(vec2 point, uint count, uint seed) {
                 sqrt(1.0f - ring));
 }
 
-// Which point of a disc's set sample `index` takes. Each replicate goes through the set; every time that it begins again,
-// all is turned anew.
-FUNCTION uint discIndex(uint index, uint count) { return replicateIndex(index) % count; }
+// Each replicate goes through the set; every time that it begins again, all is turned anew.
 FUNCTION uint discTurn(uint index, uint count) { return replicateIndex(index) / count * 0x9e3779b9u; }
 FUNCTION uint discSeed(uint key, uint index, uint count) { return replicateSeed(key, index) + discTurn(index, count); }
+
+// Which point of a disc's set sample `index` takes. Patches begin anywhere in the set: each single sample may then have any
+// ring, and rounds of a few samples are unbiased by themselves, on which the products of their bounces depend.
+FUNCTION uint discPoint(uint index, uint count, uint seed) {
+    return (replicateIndex(index) % count + hash32(seed ^ 0x02e5be93u) % count) % count;
+}

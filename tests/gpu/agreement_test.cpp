@@ -204,7 +204,7 @@ TEST_P(Agreement, OfAllTracers) {
         const std::unique_ptr<Tracer> tracer = comparison.tracer(kind);
         pairs.push_back(comparison.pairs(*tracer));
         links.push_back(comparison.links(*tracer, Rotation::Patch, nullptr));
-        discLinks.push_back(comparison.links(*tracer, Rotation::Interleaved, &disc));
+        discLinks.push_back(comparison.links(*tracer, Rotation::Patch, &disc));
         rays = std::max(rays, pairs.back().rays);
     }
     uint64_t seen = 0;

@@ -70,6 +70,8 @@ struct BakeDesc {
     Method method = Method::Pure;
     uint32_t samples = 0; // link methods: directions per patch
     bool smooth = false;
+    DirectionSet directions = DirectionSet::Sobol;
+    Rotation rotation = Rotation::Patch;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
 };

@@ -274,8 +274,9 @@ TEST(Embree, linksOfADiscAreThoseOfBruteForce) {
         const Patch& patch = scene.patches[i];
         if (!(patch.flags & shader::kPatchSends)) continue;
         const uint32_t k = i % 8, index = 16 + k;
-        const glm::vec3 local = shader::discDirection(disc[shader::discIndex(index, count)], count,
-                                                      shader::discSeed(shader::seedKey(patch), index, count));
+        const uint32_t seed = shader::discSeed(shader::seedKey(patch), index, count);
+        const glm::vec3 local =
+            shader::discDirection(disc[shader::discPoint(index, count, seed)], count, seed);
         wrong += linkOf(links, i, k) != all.link(patch, shader::aroundPatch(patch, local));
         ++checked;
     }

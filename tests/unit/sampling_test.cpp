@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -133,6 +134,23 @@ TEST(Sampling, discDirectionsAreCosineDistributed) {
     }
     EXPECT_LT(worst, 0.01); // 64 random directions: 0.1
     EXPECT_NEAR(mean, 2.0 / 3, 1e-3);
+}
+
+// Any one sample may be any point of the set, and a replicate's samples are each point once.
+TEST(Sampling, discSetsBeginAnywhereAndAreUsedWhole) {
+    constexpr uint32_t count = 12;
+    std::array<uint32_t, count> firsts{};
+    for (uint32_t key = 0; key < 1200; ++key) {
+        std::set<uint32_t> round;
+        for (uint32_t index = 1; index < count * shader::kReplicates; index += shader::kReplicates) {
+            const uint32_t point = shader::discPoint(index, count, shader::discSeed(key, index, count));
+            if (index == 1) ++firsts[point];
+            round.insert(point);
+        }
+        EXPECT_EQ(round.size(), count);
+    }
+    for (uint32_t n : firsts)
+        EXPECT_NEAR(n, 100, 40);
 }
 
 TEST(Sampling, turnsAreUnitVectorsAllAround) {
