@@ -15,16 +15,16 @@ layout(constant_id = 0) const uint kSorted = 1;
 
 layout(local_size_x = 64) in;
 
-const uint kCellBits = 3u; // cells along an edge of the octahedral map of directions: 2^3
+const uint kCellBits = 3u; // cells along an edge of the unit square that directions come from: 2^3
 const uint kCells = 1u << (2u * kCellBits);
 shared uint cellEnd[kCells];
 shared uint order[kSamplesPerInvocation * kChunk];
 
-// Of the octahedral map, in Morton order, so that neighbouring cells mostly follow each other.
-uint cellOf(vec3 d) {
-    d /= abs(d.x) + abs(d.y) + abs(d.z);
-    vec2 u = d.z >= 0.0 ? d.xy : (1.0 - abs(d.yx)) * vec2(d.x >= 0.0 ? 1.0 : -1.0, d.y >= 0.0 ? 1.0 : -1.0);
-    uvec2 c = uvec2(clamp((0.5 + 0.5 * u) * float(1u << kCellBits), 0.0, float(1u << kCellBits) - 0.5));
+// In Morton order, so that neighbouring cells mostly follow each other.
+uint cellOf(uint key, uint index) {
+    vec2 u = push.discCount == 0u ? sobolPoint(replicateIndex(index), replicateSeed(key, index))
+                                  : 0.4999 * discSample(key, index).xy + 0.5;
+    uvec2 c = uvec2(u * float(1u << kCellBits));
     c = (c | (c << 2u)) & 0x13u;
     c = (c | (c << 1u)) & 0x15u;
     return c.x | (c.y << 1u);
@@ -42,13 +42,13 @@ void main() {
         return;
     }
     uint firstPatch = (push.firstChunk + chunk) * kChunk, firstLocal = gl_WorkGroupID.y * kSamplesPerInvocation;
-    uint firstSample = push.firstSample + firstLocal;
-    Patch own = loadPatch(push.patches, firstPatch + lane), first = loadPatch(push.patches, firstPatch);
-    uint key = rotationKey(own, first, push.rotation, push.size);
+    // Not by tile: the first patch has no say.
+    Patch own = loadPatch(push.patches, firstPatch + lane);
+    uint key = rotationKey(own, own, push.rotation, push.size);
     // A counting sort. What comes first within a cell is open, but every link has a place of its own.
     for (uint c = lane; c < kCells; c += kChunk) cellEnd[c] = 0u;
     barrier();
-    for (uint k = 0u; k < kSamplesPerInvocation; ++k) atomicAdd(cellEnd[cellOf(directionOf(own, key, firstSample + k))], 1u);
+    for (uint k = 0u; k < kSamplesPerInvocation; ++k) atomicAdd(cellEnd[cellOf(key, push.firstSample + firstLocal + k)], 1u);
     barrier();
     if (lane == 0u) {
         uint sum = 0u;
@@ -60,14 +60,14 @@ void main() {
     }
     barrier();
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
-        uint slot = atomicAdd(cellEnd[cellOf(directionOf(own, key, firstSample + k))], 1u);
+        uint slot = atomicAdd(cellEnd[cellOf(key, push.firstSample + firstLocal + k)], 1u);
         order[slot] = k * kChunk + lane;
     }
     barrier();
     for (uint t = 0u; t < kSamplesPerInvocation; ++t) {
         uint which = order[t * kChunk + lane], local = firstLocal + which / kChunk, other = which % kChunk;
         Patch p = loadPatch(push.patches, firstPatch + other);
-        uint link = linkOfSample(p, rotationKey(p, first, push.rotation, push.size), push.firstSample + local);
+        uint link = linkOfSample(p, rotationKey(p, p, push.rotation, push.size), push.firstSample + local);
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + other] = link;
     }
 }

@@ -104,6 +104,18 @@ expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
 expectStatus 0 samples 16
 [ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
 
+expectUsageError bake room.glb -o room.exr --method pure --directions lec
+expectUsageError bake room.glb -o room.exr --method pure --rotate tile
+expectUsageError bake room.glb -o room.exr --rotate sometimes
+expectUsageError samples
+expectUsageError samples 0
+expectUsageError samples 16 --set nosuchset
+expectUsageError samples 16 -o directions.txt
+expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
+
+expectStatus 0 samples 16
+[ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
+
 expectWorldError missing.glb bake missing.glb -o room.exr
 expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb

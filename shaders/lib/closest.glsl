@@ -21,11 +21,14 @@ uint closestLink(Patch p, vec3 direction) {
 }
 #endif
 
-vec3 directionOf(Patch p, uint key, uint index) {
-    if (push.discCount == 0u) return patchDirection(p, key, index);
+vec3 discSample(uint key, uint index) {
     uint seed = discSeed(key, index, push.discCount);
     vec2 point = Vec2s(push.disc).items[discPoint(index, push.discCount, seed)];
-    return aroundPatch(p, discDirection(point, push.discCount, seed));
+    return discDirection(point, push.discCount, seed);
+}
+
+vec3 directionOf(Patch p, uint key, uint index) {
+    return push.discCount == 0u ? patchDirection(p, key, index) : aroundPatch(p, discSample(key, index));
 }
 
 const uint kSamplesPerInvocation = 8u;
