@@ -72,6 +72,8 @@ struct BakeDesc {
     bool smooth = false;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
+    PairSettings pairs = {};
+    bool rtrad = false; // the preset
 };
 
 struct Baked {
