@@ -17,6 +17,11 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
             "--samples", o.samples,
             "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
         ->check(CLI::Range(1u, LinkSolver::kMaxSamples));
+    command
+        .add_option("--indirect-scale", o.indirectScale,
+                    "directional, hybrid: follow directions from one patch of so many by so many texels and "
+                    "interpolate: 1 (default), 2 or 4")
+        ->check(CLI::IsMember({1u, 2u, 4u}));
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -26,12 +31,16 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
         throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
     if (o.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
+    if (o.indirectScale > 0 && !links)
+        throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
+                         "indirect light apart");
     if (links && solver.transport.rtrad) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
     }
     solver.links.samples = o.samples;
     solver.links.smooth = !o.noSmooth;
+    solver.links.indirectScale = std::max(o.indirectScale, 1u);
     // For these, passes are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }

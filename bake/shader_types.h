@@ -18,6 +18,7 @@ using glm::uint;
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
+static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
-static_assert(sizeof(VoxelGrid) == 56 && sizeof(CvmPush) <= 128);
+static_assert(sizeof(VoxelGrid) == 64 && sizeof(CvmPush) <= 128);
 } // namespace relume::shader

@@ -323,9 +323,10 @@ void EmbreeScene::closest(const ClosestArrays& work) {
     const Impl& impl = *impl_;
     constexpr uint32_t kPiece = ChunkRays::kSamplesMax;
     const uint32_t pieces = (work.sampleCount + kPiece - 1) / kPiece;
+    const Patch* receivers = work.receivers ? work.receivers : impl.scene.patches.data();
     impl_->pool.run(work.chunkCount * pieces, [&](uint32_t k) {
         const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
-        const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
+        const Patch* patches = receivers + size_t(work.firstChunk + chunk) * kChunk;
         ChunkRays rays;
         rays.setPatches(patches, work.rotation == Rotation::Tile);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));

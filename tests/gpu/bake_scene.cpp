@@ -195,6 +195,7 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.method = desc.method;
     settings.solver.links.samples = desc.samples;
     settings.solver.links.smooth = desc.smooth;
+    settings.solver.links.indirectScale = desc.indirectScale;
     settings.solver.cache = desc.cache;
     return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
 }

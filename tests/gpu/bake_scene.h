@@ -70,6 +70,7 @@ struct BakeDesc {
     Method method = Method::Pure;
     uint32_t samples = 0; // link methods: directions per patch
     bool smooth = false;
+    uint32_t indirectScale = 1;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
 };
