@@ -27,6 +27,11 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
             "directional, hybrid: directions differ from patch to patch (default), interleaved in 4x4 "
             "patches, or from tile to tile")
         ->check(CLI::IsMember({"patch", "interleaved", "tile"}));
+    command
+        .add_option("--indirect-scale", o.indirectScale,
+                    "directional, hybrid: follow directions from one patch of so many by so many texels and "
+                    "interpolate: 1 (default), 2 or 4")
+        ->check(CLI::IsMember({1u, 2u, 4u}));
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -40,6 +45,9 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
         throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
     if (o.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
+    if (o.indirectScale > 0 && !links)
+        throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
+                         "indirect light apart");
     if (links && solver.transport.rtrad) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
@@ -50,6 +58,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     solver.links.rotation = o.rotate == "interleaved" ? Rotation::Interleaved
                             : o.rotate == "tile"      ? Rotation::Tile
                                                       : Rotation::Patch;
+    solver.links.indirectScale = std::max(o.indirectScale, 1u);
     // For these, passes are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }
@@ -76,9 +85,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->capture_default_str()
         ->check(CLI::Range(8u, Baker::kMaxSize));
     command
-        .add_option("--method", o.method,
-                    "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
-                    "adaptive")
+        .add_option(
+            "--method", o.method,
+            "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
+            "adaptive")
         ->check(CLI::IsMember(
             {"pure", "static", "montecarlo", "mipmapped", "adaptive", "directional", "hybrid"}));
     addPairOptions(command, o.pairs);

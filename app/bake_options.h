@@ -27,7 +27,8 @@ struct BakeOptions {
     double density = 0;
     double batchMs = 20;
     uint32_t dilate = 4;
-    uint32_t samples = 0; // 0: not given
+    uint32_t samples = 0;       // 0: not given
+    uint32_t indirectScale = 0; // 0: not given
     bool noSmooth = false;
     PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;

@@ -68,6 +68,20 @@ struct ChunkBounds {
     float size; // [m], the largest patch edge
 };
 
+// Receivers of a coarser grid that a patch's light is made of. Weight 0: none.
+struct CoarseTaps {
+    uint receiver0, receiver1, receiver2, receiver3;
+    vec4 weights;
+};
+
+// A receiver of the coarser grid and those before and after it in the chart: patches, `own` where there are not both; share:
+// of the one before in the light that both say is between them.
+struct CoarseNeighbours {
+    uint own;
+    uint left, right, below, above;
+    float shareX, shareY;
+};
+
 // EmitterPolygon::shape
 CONST uint kEmitterTriangle = 3u; // c3 repeats c2
 CONST uint kEmitterQuad = 4u;     // convex
@@ -174,6 +188,7 @@ struct VoxelGrid {
     ADDRESS ranks;   // uint[], per word of bits: set bits before it
     ADDRESS patches; // uint[kVoxelSides] per set voxel, by the side that the surface faces: a patch, kLinkDark or
                      // kNoPatch for none
+    ADDRESS scene;   // Patch[], what these are
     vec3 origin;     // [m]
     vec3 scale;      // [voxels / m]
     uint resolution; // voxels along each axis
@@ -211,7 +226,7 @@ struct OcclusionPush {
 };
 struct ClosestPush {
     TraceGeometry geometry;
-    ADDRESS patches;      // Patch[]
+    ADDRESS patches;      // Patch[]: the scene's, or receivers of a coarser grid
     ADDRESS links;        // uint[]
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
@@ -312,7 +327,7 @@ struct LinkPush {
     ADDRESS links;    // uint[chunkCount][sampleCount][64]
     ADDRESS radiance; // vec4[]
     ADDRESS direct;   // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut;   // vec4[]
+    ADDRESS ligOut;   // vec4[]; 0: not written
     ADDRESS sums;     // vec4[kReplicates][patchCount], added to; 0: not
     uint firstChunk;
     uint chunkCount;
@@ -322,10 +337,33 @@ struct LinkPush {
 struct LinkDistancePush {
     ADDRESS patches;
     ADDRESS links;     // uint[chunkCount][sampleCount][64]
-    ADDRESS distances; // float[patchCount] [m]
+    ADDRESS receivers; // Patch[] that the links start at: patches, or of a coarser grid
+    ADDRESS distances; // float[], per receiver [m]
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
+};
+struct InterpolatePush {
+    ADDRESS taps;   // CoarseTaps[]
+    ADDRESS coarse; // vec4[kReplicates][receiverCount], this bounce's sums over links
+    ADDRESS direct; // vec4[] added to ligOut; 0: nothing
+    ADDRESS ligOut; // vec4[]
+    ADDRESS sums;   // vec4[kReplicates][patchCount], added to; 0: not
+    ADDRESS coarseDistances; // float[receiverCount] [m]
+    ADDRESS distances;       // float[patchCount], written; 0: not
+    uint firstChunk;
+    uint chunkCount;
+    uint patchCount;
+    uint receiverCount;
+    float scale; // from the sum of all sums to the mean
+};
+struct CoarseErrorPush {
+    ADDRESS neighbours; // CoarseNeighbours[]
+    ADDRESS sums;       // vec4[kReplicates][patchCount]
+    ADDRESS chunkSums;  // vec4[chunkCount]
+    uint chunkCount;    // of receivers
+    uint patchCount;
+    float scale; // from a replicate's sum to its mean
 };
 struct ComposePush {
     ADDRESS sums;

@@ -82,6 +82,7 @@ expectUsageError bake room.glb -o room.exr --tracer voxel --voxel-ratio 2
 expectUsageError bake room.glb -o room.exr --voxels 64
 expectUsageError bake room.glb -o room.exr --voxel-ratio 257
 expectUsageError bake room.glb -o room.exr --method nosuchmethod
+expectUsageError bake room.glb -o room.exr --indirect-scale 3
 expectUsageError bake room.glb -o room.exr --preset nosuchpreset
 expectUsageError bake room.glb -o room.exr --quantity nosuchquantity
 expectUsageError bench methods room.glb # no --html

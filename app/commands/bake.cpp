@@ -58,7 +58,12 @@ void solve(Solver& solver, const SolverSettings& settings) {
         if (!solver.done() && line.due()) line.show(progressText(solver, settings));
     }
     if (solver.progress().converged || settings.error == 0) return;
-    if (!isPairMethod(settings.method) && settings.links.samples == 0) {
+    if (solver.progress().gridError > settings.error) {
+        spdlog::warn(
+            "the error is still {:.2g}, {:.2g} of it from --indirect-scale {}: choose a smaller one or "
+            "raise --error",
+            solver.progress().error, solver.progress().gridError, settings.links.indirectScale);
+    } else if (!isPairMethod(settings.method) && settings.links.samples == 0) {
         spdlog::warn("the error is still {:.2g} after {} directions per patch: raise --error",
                      solver.progress().error, solver.progress().samples);
     } else if (isPairMethod(settings.method) && settings.passes == 0) {
@@ -79,12 +84,12 @@ void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& r
         request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
     image.attributes["relume:settings"] = fmt::format(
         "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
-        "preset={} voxels={} voxel-ratio={}{}",
+        "preset={} voxels={} voxel-ratio={} indirect-scale={}{}",
         o.size, request.bake.solver.passes, request.bake.solver.error,
         request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor,
         request.lightmap.rtrad ? 1 : o.dilate, request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0,
         o.preset.empty() ? "none" : o.preset, voxels.ratio > 0 ? voxels.resolution : 0, voxels.ratio,
-        describePairSettings(request.bake.solver));
+        request.bake.solver.links.indirectScale, describePairSettings(request.bake.solver));
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }

@@ -364,9 +364,10 @@ void EmbreeScene::closest(const ClosestArrays& work) {
     const Impl& impl = *impl_;
     constexpr uint32_t kPiece = ChunkRays::kSamplesMax;
     const uint32_t pieces = (work.sampleCount + kPiece - 1) / kPiece;
+    const Patch* receivers = work.receivers ? work.receivers : impl.scene.patches.data();
     impl_->pool.run(work.chunkCount * pieces, [&](uint32_t k) {
         const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
-        const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
+        const Patch* patches = receivers + size_t(work.firstChunk + chunk) * kChunk;
         ChunkRays rays;
         rays.setPatches(patches, static_cast<uint32_t>(work.rotation), impl.scene.size);
         if (work.disc) rays.setDisc(work.disc, work.discCount);

@@ -21,6 +21,7 @@ struct OcclusionArrays {
     uint32_t* rays = nullptr; // may be left out
 };
 struct ClosestArrays {
+    const shader::Patch* receivers = nullptr; // null: the scene's patches
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0;
     Rotation rotation = Rotation::Patch;

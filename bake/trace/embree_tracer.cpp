@@ -36,7 +36,8 @@ public:
     void closest(VkCommandBuffer, const ClosestWork& work) override {
         const uint64_t links =
             work.linksOffset + uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
-        scene_.closest({.firstChunk = work.firstChunk,
+        scene_.closest({.receivers = work.receiversHost,
+                        .firstChunk = work.firstChunk,
                         .chunkCount = work.chunkCount,
                         .firstSample = work.firstSample,
                         .sampleCount = work.sampleCount,

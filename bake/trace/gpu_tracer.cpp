@@ -62,7 +62,7 @@ public:
     shader::ClosestPush push(const ClosestWork& work) const {
         ASSERT(work.sampleCount % kSamplesPerInvocation == 0);
         return {.geometry = geometry_,
-                .patches = patches_,
+                .patches = work.receivers ? work.receivers->address() : patches_,
                 .links = work.links->address() + work.linksOffset * sizeof(uint32_t),
                 .hitTriangles = hitTriangles_.address(),
                 .texelToPatch = texelToPatch_.address(),
@@ -165,7 +165,7 @@ class VoxelTracer final : public ComputeTracer {
 public:
     VoxelTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
                 const VoxelSettings& settings)
-        : ComputeTracer(device, scene, patches, "voxel"), map_(device, scene, settings) {
+        : ComputeTracer(device, scene, patches, "voxel"), map_(device, scene, settings, patches.address()) {
         buffers_.setAccel(map_.address(), 0);
     }
 

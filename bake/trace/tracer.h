@@ -56,6 +56,9 @@ enum class Rotation : uint32_t {
 /// of chunk c for sample k goes to links[linksOffset + ((c - firstChunk) * sampleCount + (k - firstSample)) *
 /// 64 + i].
 struct ClosestWork {
+    // Patch[] that stand in for the scene's patches, chunks counted in them; both or none.
+    const vk::Buffer* receivers = nullptr;        // on the device
+    const shader::Patch* receiversHost = nullptr; // the same, for tracers that run on the CPU
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t firstSample = 0, sampleCount = 0; // sampleCount: a multiple of 8
     Rotation rotation = Rotation::Patch;

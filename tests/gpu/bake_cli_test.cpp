@@ -247,6 +247,8 @@ TEST_F(BakeCommand, AContradictionIsAUsageError) {
                                 {"--samples", "0", "--method", "directional"},
                                 {"--no-smooth", "--method", "directional"},
                                 {"--samples", "64"},
+                                {"--indirect-scale", "2"},
+                                {"--indirect-scale", "3", "--method", "hybrid"},
                                 {"--picture", "x.jpg"},
                                 {"--batch-ms", "1000"}}) {
         Strings arguments = {"-o", out};

@@ -72,6 +72,7 @@ struct BakeDesc {
     bool smooth = false;
     DirectionSet directions = DirectionSet::Sobol;
     Rotation rotation = Rotation::Patch;
+    uint32_t indirectScale = 1;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
     PairSettings pairs = {};

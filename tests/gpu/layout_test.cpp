@@ -96,7 +96,11 @@ const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),
                                               SIZE_OF(SmoothPush),
                                               SIZE_OF(LinkDistancePush),
                                               SIZE_OF(SuperBlock),
-                                              SIZE_OF(Sender)};
+                                              SIZE_OF(Sender),
+                                              SIZE_OF(CoarseTaps),
+                                              SIZE_OF(InterpolatePush),
+                                              SIZE_OF(CoarseNeighbours),
+                                              SIZE_OF(CoarseErrorPush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
