@@ -17,6 +17,21 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
             "--samples", o.samples,
             "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
         ->check(CLI::Range(1u, LinkSolver::kMaxSamples));
+    command
+        .add_option("--directions", o.directions,
+                    "directional, hybrid: sobol (default), or lec, the thesis' largest-empty-circle sets")
+        ->check(CLI::IsMember({"sobol", "lec"}));
+    command
+        .add_option(
+            "--rotate", o.rotate,
+            "directional, hybrid: directions differ from patch to patch (default), interleaved in 4x4 "
+            "patches, or from tile to tile")
+        ->check(CLI::IsMember({"patch", "interleaved", "tile"}));
+    command
+        .add_option("--indirect-scale", o.indirectScale,
+                    "directional, hybrid: follow directions from one patch of so many by so many texels and "
+                    "interpolate: 1 (default), 2 or 4")
+        ->check(CLI::IsMember({1u, 2u, 4u}));
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -35,14 +50,26 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     const bool links = !isPairMethod(solver.method);
     if (o.samples > 0 && !links)
         throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
+    if (!o.directions.empty() && !links)
+        throw UsageError("--directions: only with --method directional or hybrid, others have none");
+    if (!o.rotate.empty() && !links)
+        throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
     if (o.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
+    if (o.indirectScale > 0 && !links)
+        throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
+                         "indirect light apart");
     if (links && solver.transport.rtrad) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
     }
     solver.links.samples = o.samples;
     solver.links.smooth = !o.noSmooth;
+    solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
+    solver.links.rotation = o.rotate == "interleaved" ? Rotation::Interleaved
+                            : o.rotate == "tile"      ? Rotation::Tile
+                                                      : Rotation::Patch;
+    solver.links.indirectScale = std::max(o.indirectScale, 1u);
     // For these, passes are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }
@@ -68,8 +95,14 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--size", o.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(CLI::Range(8u, Baker::kMaxSize));
-    command.add_option("--method", o.method, "How light is gathered: hybrid (default), directional or pure")
-        ->check(CLI::IsMember({"pure", "directional", "hybrid"}));
+    command
+        .add_option(
+            "--method", o.method,
+            "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
+            "adaptive")
+        ->check(CLI::IsMember(
+            {"pure", "static", "montecarlo", "mipmapped", "adaptive", "directional", "hybrid"}));
+    addPairOptions(command, o.pairs);
     command.add_option("--error-map", o.errorMap,
                        "Write each texel's standard error as an image, .exr or .png");
     command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
@@ -161,6 +194,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         solver.method = parseMethod(o.method);
     else
         solver.method = rtrad ? Method::Pure : Method::Hybrid;
+    resolvePairOptions(o.pairs, solver);
     resolveLinkOptions(o, solver);
     const bool radiance = rtrad || o.quantity == "radiance";
     request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,

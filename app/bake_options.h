@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/pair_options.h"
 #include "app/prepare.h"
 #include "bake/baker.h"
 
@@ -14,7 +15,8 @@ namespace relume {
 /// What the user typed after `relume bake`.
 struct BakeOptions {
     std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;
-    std::string method; // "": hybrid, of the RTRad preset pure
+    std::string method;             // "": hybrid, of the RTRad preset pure
+    std::string directions, rotate; // "": not given
     std::string tracer = "auto", preset, quantity;
     uint32_t size = 512;
     uint32_t passes = 0; // 0: not given
@@ -27,8 +29,10 @@ struct BakeOptions {
     std::string checkpoint, resume;
     double checkpointEvery = 30; // [s]
     uint32_t dilate = 4;
-    uint32_t samples = 0; // 0: not given
+    uint32_t samples = 0;       // 0: not given
+    uint32_t indirectScale = 0; // 0: not given
     bool noSmooth = false;
+    PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
 };
 

@@ -22,8 +22,12 @@ std::string describe(Method method, const PairSettings& settings) {
 }
 
 std::string describe(const LinkSettings& settings) {
-    const auto& [samples, smooth] = settings;
-    return fmt::format(" samples={} smooth={}", samples, smooth ? 1 : 0);
+    const auto& [directions, rotation, samples, smooth, indirectScale] = settings;
+    return fmt::format(" samples={} indirect-scale={} smooth={} directions={} rotate={}", samples,
+                       indirectScale, smooth ? 1 : 0, directions == DirectionSet::Lec ? "lec" : "sobol",
+                       rotation == Rotation::Interleaved ? "interleaved"
+                       : rotation == Rotation::Tile      ? "tile"
+                                                         : "patch");
 }
 
 } // namespace

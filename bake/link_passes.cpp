@@ -53,6 +53,13 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
       texelToPatch(vk::makeBuffer(device, patches.scene.texelToPatch, "texel to patch")) {
     const uint32_t chunks = patches.chunkCount();
     const uint64_t count = patches.scene.patches.size();
+    if (desc.coarse) {
+        receiverCount = static_cast<uint32_t>(desc.coarse->receivers.size());
+        receivers = vk::makeBuffer(device, desc.coarse->receivers, "receivers");
+        taps = vk::makeBuffer(device, desc.coarse->taps, "coarse taps");
+        neighbours = vk::makeBuffer(device, desc.coarse->neighbours, "coarse neighbours");
+        coarseSums = vk::Buffer(device, {.size = vec4s(kReplicates * receiverCount), .name = "coarse sums"});
+    }
     batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
     const uint64_t targetCount = uint64_t{desc.shape.targets()} * batchChunks * kChunk;
     if (desc.hybrid && targetCount > 0) {
@@ -65,7 +72,8 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
     }
     const uint64_t chunkBytes = uint64_t{desc.shape.links} * kChunk * sizeof(uint32_t);
-    keptChunks = static_cast<uint32_t>(std::min<uint64_t>(chunks, desc.linkBytes / chunkBytes));
+    const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
+    keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, desc.linkBytes / chunkBytes));
     links = vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
     linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
@@ -73,6 +81,9 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     if (desc.smooth) {
         rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
         distances = vk::Buffer(device, {.size = count * sizeof(float), .name = "link distances"});
+        if (desc.coarse)
+            coarseDistances =
+                vk::Buffer(device, {.size = receiverCount * sizeof(float), .name = "coarse distances"});
     }
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
     constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
@@ -88,7 +99,14 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
     const uint64_t perChunk = kChunk * (kAllEmitters * kLeastSamples * sizeof(glm::vec4) + 128);
     const uint64_t sums = kReplicates * (1 + (hybrid ? 1 : 0) + (hybrid && settings.links.smooth ? 1 : 0));
     const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
-    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t) + kept) + batch * perChunk;
+    // Charts a texel wide have so many receivers; those of compact ones are fewer.
+    const uint64_t scale = settings.links.indirectScale, receivers = count / scale;
+    const uint64_t coarse =
+        scale > 1
+            ? count * sizeof(shader::CoarseTaps) +
+                  receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
+            : 0;
+    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t)) + receivers * kept + coarse + batch * perChunk;
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -124,27 +142,52 @@ void DirectPass::recordGather(VkCommandBuffer cmd, const LightBuffers& light, co
 
 void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                             const Work& work) const {
+    const bool coarse = buffers.receiverCount > 0;
+    const VkDeviceAddress sums = coarse            ? buffers.coarseSums.address()
+                                 : work.accumulate ? buffers.linkSums.address()
+                                                   : 0;
     const shader::LinkPush push{.links = work.links,
                                 .radiance = light.radiance.address(),
-                                .direct = work.hybrid ? buffers.direct.address() : 0,
-                                .ligOut = light.ligOut.address(),
-                                .sums = work.accumulate ? buffers.linkSums.address() : 0,
+                                .direct = work.hybrid && !coarse ? buffers.direct.address() : 0,
+                                .ligOut = coarse ? 0 : light.ligOut.address(),
+                                .sums = sums,
                                 .firstChunk = work.range.first,
                                 .chunkCount = work.range.count,
                                 .sampleCount = work.samples,
-                                .patchCount = light.chunkCount * kChunk};
+                                .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk};
     dispatchChunks(gather_, cmd, push, work.range.count);
 }
 
 void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& light,
                                      const LinkBuffers& buffers, const Work& work) const {
-    const shader::LinkDistancePush push{.patches = light.patches.address(),
-                                        .links = work.links,
-                                        .distances = buffers.distances.address(),
-                                        .firstChunk = work.range.first,
-                                        .chunkCount = work.range.count,
-                                        .sampleCount = work.samples};
+    const bool coarse = buffers.receiverCount > 0;
+    const shader::LinkDistancePush push{
+        .patches = light.patches.address(),
+        .links = work.links,
+        .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
+        .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
+        .firstChunk = work.range.first,
+        .chunkCount = work.range.count,
+        .sampleCount = work.samples};
     dispatchChunks(distance_, cmd, push, work.range.count);
+}
+
+void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light,
+                                       const LinkBuffers& buffers, const Work& work) const {
+    const shader::InterpolatePush push{.taps = buffers.taps.address(),
+                                       .coarse = buffers.coarseSums.address(),
+                                       .direct = work.hybrid ? buffers.direct.address() : 0,
+                                       .ligOut = light.ligOut.address(),
+                                       .sums = work.accumulate ? buffers.linkSums.address() : 0,
+                                       .coarseDistances =
+                                           work.distances ? buffers.coarseDistances.address() : 0,
+                                       .distances = work.distances ? buffers.distances.address() : 0,
+                                       .firstChunk = work.range.first,
+                                       .chunkCount = work.range.count,
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .receiverCount = buffers.receiverCount,
+                                       .scale = 1.0f / static_cast<float>(work.samples)};
+    dispatchChunks(interpolate_, cmd, push, work.range.count);
 }
 
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -165,6 +208,19 @@ void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light,
                                   .sums = buffers.chunkSums.address(),
                                   .chunkCount = light.chunkCount};
     dispatchChunks(change_, cmd, push, light.chunkCount);
+}
+
+void ResolvePass::recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                               uint32_t samples) const {
+    const uint32_t chunks = buffers.receiverCount / kChunk;
+    const shader::CoarseErrorPush push{.neighbours = buffers.neighbours.address(),
+                                       .sums = buffers.linkSums.address(),
+                                       .chunkSums = buffers.chunkSums.address(),
+                                       .chunkCount = chunks,
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .scale =
+                                           static_cast<float>(kReplicates) / static_cast<float>(samples)};
+    dispatchChunks(coarse_, cmd, push, chunks);
 }
 
 void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

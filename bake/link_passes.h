@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bake/coarse_patches.h"
 #include "bake/emitters.h"
 #include "bake/light_buffers.h"
 #include "bake/solver.h"
@@ -33,12 +34,18 @@ struct LinkBuffers {
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
     uint32_t keptChunks = 0;
+    // Where links are followed from fewer patches than there are:
+    vk::Buffer receivers, taps, neighbours; // Patch, CoarseTaps, CoarseNeighbours
+    vk::Buffer coarseDistances;             // as distances, per receiver
+    vk::Buffer coarseSums;                  // vec4[kReplicates][receivers], of one bounce
+    uint32_t receiverCount = 0;             // padding included; 0: all patches are receivers
 
     struct Desc {
         const EmitterSet& emitters;
         RoundShape shape;
         bool hybrid = false;
         bool smooth = false;
+        const CoarsePatches* coarse = nullptr;
         uint64_t linkBytes = 0; // at most, for links that later bounces gather again
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
@@ -65,16 +72,20 @@ private:
     vk::ComputeProgram samples_, gather_;
 };
 
-/// Light over links: the mean of what the links' patches send, and of direct light, to ligOut.
+/// Light over links: the mean of what the links' patches send, and of direct light, to ligOut. Where only
+/// receivers of a coarser grid have links: first to coarseSums, cleared before, then by interpolation to
+/// ligOut.
 class LinkGatherPass {
 public:
     explicit LinkGatherPass(const vk::Device& device)
-        : gather_(device, "links"), distance_(device, "link_distance"), compose_(device, "compose") {}
+        : gather_(device, "links"), distance_(device, "link_distance"), interpolate_(device, "interpolate"),
+          compose_(device, "compose") {}
     struct Work {
         VkDeviceAddress links = 0; // of range.first on
         uint32_t samples = 0;      // per patch
         bool hybrid = false;       // direct light is added to ligOut
         bool accumulate = false;   // add to linkSums
+        bool distances = false;    // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
     };
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -82,21 +93,29 @@ public:
     /// Distances of these links' ends, for smoothing.
     void recordDistances(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                          const Work& work) const;
+    /// Of all links of a bounce; links and samples of the Work's ranges are over.
+    void recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                           const Work& work) const;
     /// ligIn = direct light and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        bool hybrid, uint32_t samples) const;
 
 private:
-    vk::ComputeProgram gather_, distance_, compose_;
+    vk::ComputeProgram gather_, distance_, interpolate_, compose_;
 };
 
 /// Sums over chunks: what a bounce changed, and the result with its errors.
 class ResolvePass {
 public:
     explicit ResolvePass(const vk::Device& device)
-        : change_(device, "change"), smooth_(device, "smooth"), resolve_(device, "resolve") {}
+        : change_(device, "change"), coarse_(device, "coarse_error"), smooth_(device, "smooth"),
+          resolve_(device, "resolve") {}
     /// Compares ligOut with ligIn: vec4 per chunk in chunkSums.
     void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
+    /// Compares receivers of a coarser grid with their neighbours: vec4 per chunk of theirs in chunkSums.
+    /// samples: links per receiver in linkSums.
+    void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                      uint32_t samples) const;
     struct Work {
         uint32_t size = 0;         // lightmap edge [texels]
         uint32_t samples = 0;      // links per patch in linkSums
@@ -108,7 +127,7 @@ public:
                 const Work& work) const;
 
 private:
-    vk::ComputeProgram change_, smooth_, resolve_;
+    vk::ComputeProgram change_, coarse_, smooth_, resolve_;
 };
 
 } // namespace relume

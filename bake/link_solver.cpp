@@ -1,5 +1,7 @@
 #include "bake/link_solver.h"
 
+#include "bake/directions.h"
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,6 +21,8 @@ double secondsSince(Clock::time_point start) {
 
 // The first batch of each kind, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstChunks = 16;
+// Chunks of one submit of interpolation: 0.26M patches take about 20 ms on two cores.
+constexpr uint32_t kInterpolatedChunks = 4096;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
 constexpr double kMaxGrowth = 4.0;
 // Of the error that is asked for, what the bounces of the first round may leave; later rounds go on with
@@ -27,6 +31,13 @@ constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
 // A segment towards a light costs about so much of a closest hit.
 constexpr double kSegmentCost = 0.3;
+// A receiver left out is missed over twice the gap, at its worst place. Square of what texels are off, over
+// the mean square of that: 1/32 where light is smooth, 1/4 across a step (at scale 2); 0.12 to 0.24 at scale
+// 2 and 0.27 to 0.51 at scale 4 in the Cornell rooms at 128 x 128, where boxes touch the floor.
+constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
+// Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
+// square.
+constexpr double kBesideGrid = 0.1;
 // The error is looked at again when so much of the rounds that it seems to need are done (variance falls as 1
 // / rounds or faster), and when their number has doubled.
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
@@ -51,20 +62,27 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                     : EmitterSet{}),
       shape_(chooseRoundShape(input.patches.count, static_cast<uint32_t>(emitters_.polygons.size()),
                               input.device.info().software())),
+      coarse_(settings.links.indirectScale > 1
+                  ? buildCoarsePatches(input.patches, settings.links.indirectScale)
+                  : CoarsePatches{}),
       buffers_(input.device, input.patches,
                {.emitters = emitters_,
                 .shape = shape_,
                 .hybrid = hybrid_,
                 .smooth = hybrid_ && settings.links.smooth,
+                .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
                 .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device),
       resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3) {
     settings_.transport.reflectedOnly = hybrid_;
     const PatchSet& patches = input.patches;
-    senders_.assign(patches.chunkCount(), 0);
-    for (uint32_t i = 0; i < patches.count; ++i)
-        senders_[i / kChunk] += (patches.scene.patches[i].flags & shader::kPatchSends) != 0;
+    const std::vector<shader::Patch>& receivers =
+        coarse_.count > 0 ? coarse_.receivers : patches.scene.patches;
+    senders_.assign(receivers.size() / kChunk, 0);
+    for (size_t i = 0; i < receivers.size(); ++i)
+        senders_[i / kChunk] += (receivers[i].flags & shader::kPatchSends) != 0;
 
+    if (settings.links.directions == DirectionSet::Lec) makeDisc();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct,
                                      &buffers_.rays, &input.light.ligIn, &input.light.ligOut}) {
@@ -76,18 +94,32 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
     progress_.cacheBytes = kept;
     traced_.assign(buffers_.keptChunks, 0);
-    progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / patches.chunkCount();
+    progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / static_cast<double>(senders_.size());
+}
+
+// Each replicate goes through the set once; where the error decides how many rounds there will be, once per
+// round: a set that is broken off is less even.
+void LinkSolver::makeDisc() {
+    const uint32_t rounds =
+        settings_.links.samples > 0 ? (settings_.links.samples + shape_.links - 1) / shape_.links : 1;
+    discCount_ = rounds * shape_.links / shader::kReplicates;
+    std::vector<glm::vec2> points;
+    points.reserve(discCount_);
+    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(discCount_)))
+        points.emplace_back(p);
+    disc_ = vk::makeBuffer(input_.device, points, "directions");
 }
 
 void LinkSolver::step() {
     if (done_) return;
     const auto start = Clock::now();
     if (state_.stage == Stage::Plan) plan();
+    const uint32_t chunks = chunksOfStage();
     if (state_.stage == Stage::Direct)
         directBatch();
     else if (state_.stage == Stage::Links)
         linkBatch();
-    progress_.passFraction = static_cast<double>(state_.nextChunk) / input_.patches.chunkCount();
+    progress_.passFraction = static_cast<double>(state_.nextChunk) / chunks;
     progress_.seconds += secondsSince(start);
 }
 
@@ -96,7 +128,7 @@ void LinkSolver::plan() {
     const uint32_t rounds = state_.directRounds + state_.linkRounds;
     // With a number of samples alone, errors decide nothing.
     if (settings_.error > 0 && rounds > 0 && rounds >= state_.nextCheck) check();
-    if (progress_.converged || enoughRounds()) {
+    if (progress_.converged || gridLimits_ || enoughRounds()) {
         if (stale_) resolve();
         done_ = true;
         return;
@@ -132,19 +164,26 @@ bool LinkSolver::wantsDirect() const {
     if (state_.directRounds == 0 || settings_.passes == 1) return true;
     if (state_.linkRounds == 0) return false;
     if (settings_.links.samples > 0) return state_.directRounds <= state_.linkRounds;
+    const double linkShare = static_cast<double>(senders_.size()) / input_.patches.chunkCount();
     // Variance falls as 1 / rounds at least; what one more takes away, for its cost.
     const auto gain = [](double variance, double then, double now, double cost) {
         return variance * then / (now * now * cost);
     };
     return gain(state_.directVariance, state_.directAtCheck, state_.directRounds,
                 kSegmentCost * shape_.targets()) >
-           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, shape_.links);
+           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, shape_.links * linkShare);
 }
 
 ChunkRange LinkSolver::nextRange(double chunksPerMs, uint32_t most) const {
     const double wanted = chunksPerMs > 0 ? chunksPerMs * settings_.batchMs : kFirstChunks;
-    const uint32_t left = input_.patches.chunkCount() - state_.nextChunk;
+    const uint32_t left = chunksOfStage() - state_.nextChunk;
     return {state_.nextChunk, std::min({left, most, static_cast<uint32_t>(std::max(1.0, wanted))})};
+}
+
+// Direct light is every patch's own; links may start at fewer.
+uint32_t LinkSolver::chunksOfStage() const {
+    return state_.stage == Stage::Links ? static_cast<uint32_t>(senders_.size())
+                                        : input_.patches.chunkCount();
 }
 
 void LinkSolver::directBatch() {
@@ -199,6 +238,7 @@ void LinkSolver::beginBounce() {
         vk::barrier(cmd);
     }
     radiancePass_.record(cmd, input_.light, settings_.transport);
+    if (buffers_.coarseSums) vkCmdFillBuffer(cmd, buffers_.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     commands_.run();
     state_.nextChunk = 0;
@@ -228,11 +268,15 @@ void LinkSolver::linkBatch() {
     timestamps_.reset(cmd);
     timestamps_.mark(cmd, 0);
     if (trace) {
-        input_.tracer.closest(cmd, {.firstChunk = range.first,
+        input_.tracer.closest(cmd, {.receivers = coarse_.count > 0 ? &buffers_.receivers : nullptr,
+                                    .receiversHost = coarse_.count > 0 ? coarse_.receivers.data() : nullptr,
+                                    .firstChunk = range.first,
                                     .chunkCount = range.count,
                                     .firstSample = state_.linkRounds * shape_.links,
                                     .sampleCount = shape_.links,
-                                    .rotation = Rotation::Patch,
+                                    .rotation = settings_.links.rotation,
+                                    .disc = disc_ ? &disc_ : nullptr,
+                                    .discCount = discCount_,
                                     .links = &links,
                                     .linksOffset = offset});
     }
@@ -262,10 +306,28 @@ void LinkSolver::linkBatch() {
     if (kept) std::fill_n(known, range.count, uint8_t{1});
     progress_.pairs += count;
     state_.nextChunk += range.count;
-    if (state_.nextChunk >= input_.patches.chunkCount()) endBounce();
+    if (state_.nextChunk >= chunksOfStage()) endBounce();
+}
+
+// From the receivers of the coarser grid to all patches.
+void LinkSolver::interpolate() {
+    const uint32_t chunks = input_.patches.chunkCount();
+    const bool distances = buffers_.distances && state_.linkRounds == 0 && state_.last;
+    for (uint32_t first = 0; first < chunks; first += kInterpolatedChunks) {
+        VkCommandBuffer cmd = commands_.begin();
+        gatherPass_.recordInterpolate(cmd, input_.light, buffers_,
+                                      {.samples = shape_.links,
+                                       .hybrid = hybrid_,
+                                       .accumulate = state_.last,
+                                       .distances = distances,
+                                       .range = {first, std::min(kInterpolatedChunks, chunks - first)}});
+        vk::barrier(cmd);
+        commands_.run();
+    }
 }
 
 void LinkSolver::endBounce() {
+    if (coarse_.count > 0) interpolate();
     ++progress_.passes;
     const bool settling = settings_.passes == 0 && state_.linkRounds == 0 && !state_.last;
     if (settling) measureChange();
@@ -321,6 +383,10 @@ void LinkSolver::check() {
     const double off = progress_.error / settings_.error;
     const double growth = std::min(kCheckGrowth, kCheckShare * off * off);
     state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(growth * rounds));
+    // No number of samples mends a grid that is too coarse.
+    const double grid2 = progress_.gridError * progress_.gridError;
+    gridLimits_ = progress_.gridError > settings_.error &&
+                  progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
 }
 
 void LinkSolver::resolve() {
@@ -338,13 +404,32 @@ void LinkSolver::resolve() {
     progress_.error = 0;
     if (sums.light > 0) {
         const double mean = sums.light / (3.0 * sums.count);
-        const double variance = (state_.directVariance + state_.indirectVariance) / (3.0 * sums.count);
+        state_.coarseVariance = coarseVariance(sums.count);
+        progress_.gridError = std::sqrt(state_.coarseVariance / (3.0 * sums.count)) / mean;
+        const double variance =
+            (state_.directVariance + state_.indirectVariance + state_.coarseVariance) / (3.0 * sums.count);
         const bool settled = hybrid_ && settings_.passes == 1;
         const double iteration = settled ? 0.0 : state_.iterationError;
         progress_.error = std::sqrt(variance / (mean * mean) + iteration * iteration);
     }
     stale_ = false;
     light_.clear();
+}
+
+// What interpolation leaves: a share of how far the receivers themselves are from what their neighbours say.
+double LinkSolver::coarseVariance(double patches) {
+    if (coarse_.count == 0 || state_.linkRounds == 0) return 0.0;
+    VkCommandBuffer cmd = commands_.begin();
+    resolvePass_.recordCoarse(cmd, input_.light, buffers_, state_.linkRounds * shape_.links);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    glm::dvec4 total(0.0);
+    for (const glm::vec4& sum : vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, senders_.size()))
+        total += glm::dvec4(sum);
+    const double rows = std::max(0.0, total.x) / std::max(1.0, total.y);
+    const double columns = std::max(0.0, total.z) / std::max(1.0, total.w);
+    return patches * (settings_.links.indirectScale == 2 ? kGapShare2 : kGapShare4) * (rows + columns);
 }
 
 shader::ResolveSums LinkSolver::resolveOnce() {
@@ -412,7 +497,7 @@ std::vector<StatePart> LinkSolver::stateParts() {
     std::vector<StatePart> parts;
     for (const vk::Buffer* buffer :
          {&input_.light.ligIn, &input_.light.ligOut, &buffers_.linkSums, &buffers_.directSums,
-          &buffers_.direct, &buffers_.distances, &buffers_.rays}) {
+          &buffers_.direct, &buffers_.distances, &buffers_.coarseSums, &buffers_.rays}) {
         if (*buffer) parts.push_back(part(input_.device, *buffer));
     }
     return parts;

@@ -38,11 +38,13 @@ private:
         bool last = false;      // this bounce is the round's last one: it counts
         double change = 0;      // RMS of the last bounce [cd/m^2]
         double ratio = 0;       // of the last two changes
-        double iterationError = 1, directVariance = 0, indirectVariance = 0;
+        double iterationError = 1, directVariance = 0, indirectVariance = 0,
+               coarseVariance = 0; // of the light, R, G and B of all patches together
         double sigma = 2.0; // of smoothing [texels]; what suits the noise is learnt from the result itself
         uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
     };
 
+    void makeDisc();
     void plan();
     void begin(Stage stage);
     bool enoughRounds() const;
@@ -50,11 +52,14 @@ private:
     void directBatch();
     void linkBatch();
     void beginBounce();
+    void interpolate();
     void endBounce();
+    uint32_t chunksOfStage() const;
     void measureChange();
     void check();
     void resolve();
     shader::ResolveSums resolveOnce();
+    double coarseVariance(double patches);
     void adaptSigma(const shader::ResolveSums& sums);
     ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
 
@@ -63,7 +68,10 @@ private:
     bool hybrid_;
     EmitterSet emitters_;
     RoundShape shape_;
+    CoarsePatches coarse_; // empty: links start at all patches
     LinkBuffers buffers_;
+    vk::Buffer disc_; // vec2[discCount_] of DirectionSet::Lec
+    uint32_t discCount_ = 0;
     RadiancePass radiancePass_;
     DirectPass directPass_;
     LinkGatherPass gatherPass_;
@@ -72,10 +80,11 @@ private:
     vk::Timestamps timestamps_;
     State state_;
     double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
-    std::vector<uint32_t> senders_;                          // of each chunk: patches that take part
+    std::vector<uint32_t> senders_; // of each chunk with links: patches that take part
+    bool gridLimits_ = false;       // more samples are of no use
+    bool stale_ = true;             // light_ is behind the sums
+    std::vector<glm::vec4> light_;  // empty: not read back yet
     std::vector<uint8_t> traced_; // of each chunk whose links are kept: whether those of this round are there
-    bool stale_ = true;           // light_ is behind the sums
-    std::vector<glm::vec4> light_; // empty: not read back yet
 };
 
 } // namespace relume

@@ -39,10 +39,21 @@ struct PairSettings {
     double thresholdRamp = 1.0; // adaptive: factor on the threshold from pass to pass
 };
 
+/// Where link methods take their directions from.
+enum class DirectionSet {
+    Sobol, // the Owen-scrambled Sobol sequence
+    Lec    // the thesis' insertion into the largest empty circle (bake/directions.h)
+};
+
 /// Of directional and hybrid.
 struct LinkSettings {
+    DirectionSet directions = DirectionSet::Sobol;
+    Rotation rotation = Rotation::Patch;
     uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
     bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
+    // 2, 4: links are followed from one patch of every so many by so many texels of a chart, and their light
+    // is interpolated between these.
+    uint32_t indirectScale = 1;
 };
 
 /// Memory that bits and links may take for later passes. Without a cache they trace the same rays again.
@@ -71,9 +82,10 @@ struct SolverSettings {
 /// Where a bake stands, and what it has cost.
 struct SolverCounters {
     uint32_t passes = 0;     // finished; link methods: bounces of all rounds
-    uint32_t samples = 0;    // link methods: directions per patch so far
+    uint32_t samples = 0;    // link methods: directions per patch (with a coarser grid: of that) so far
     double passFraction = 0; // of the current pass
     double error = 1.0;      // remaining error, relRMSE; 1 until it can be told
+    double gridError = 0;    // share of it that a coarser grid of directions leaves, however many samples
     uint64_t rays = 0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both
                        // ends), or directions and segments traced
     uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered

@@ -120,7 +120,8 @@ uint64_t VoxelMap::bytes(uint32_t resolution) {
     return (2 * wordCount(resolution) + layers * shader::kVoxelSides) * sizeof(uint32_t);
 }
 
-VoxelMap::VoxelMap(const vk::Device& device, const TraceScene& scene, const VoxelSettings& settings)
+VoxelMap::VoxelMap(const vk::Device& device, const TraceScene& scene, const VoxelSettings& settings,
+                   VkDeviceAddress patches)
     : grid_(makeGrid(scene, settings)) {
     ASSERT(settings.resolution >= kMinVoxels && settings.resolution <= kMaxVoxels);
     header_ = vk::Buffer(device, {.size = sizeof(grid_), .name = "voxel grid"});
@@ -139,6 +140,7 @@ VoxelMap::VoxelMap(const vk::Device& device, const TraceScene& scene, const Voxe
     fill(device, patches_, shader::kNoPatch);
     grid_.ranks = ranks_.address();
     grid_.patches = patches_.address();
+    grid_.scene = patches;
     vk::upload(device, header_, &grid_, sizeof(grid_));
     pass.draw(settings.resolution, true);
 }

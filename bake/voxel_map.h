@@ -21,8 +21,10 @@ constexpr uint32_t kMinVoxels = 32, kMaxVoxels = 512;
 /// those parts count that are solid somewhere in a column of voxels.
 class VoxelMap {
 public:
-    /// Throws Error when it does not fit the device's memory.
-    VoxelMap(const vk::Device& device, const TraceScene& scene, const VoxelSettings& settings);
+    /// patches: scene.patches on the device, for those who ask for links. Throws Error when it does not fit
+    /// the device's memory.
+    VoxelMap(const vk::Device& device, const TraceScene& scene, const VoxelSettings& settings,
+             VkDeviceAddress patches = 0);
 
     VkDeviceAddress address() const { return header_.address(); } // of a shader::VoxelGrid
     const shader::VoxelGrid& grid() const { return grid_; }

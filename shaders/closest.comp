@@ -22,27 +22,29 @@ shared uint order[kSamplesPerInvocation * kChunk];
 
 // In Morton order, so that neighbouring cells mostly follow each other.
 uint cellOf(uint key, uint index) {
-    uvec2 c = uvec2(sobolPoint(replicateIndex(index), replicateSeed(key, index)) * float(1u << kCellBits));
+    vec2 u = push.discCount == 0u ? sobolPoint(replicateIndex(index), replicateSeed(key, index))
+                                  : 0.4999 * discSample(key, index).xy + 0.5;
+    uvec2 c = uvec2(u * float(1u << kCellBits));
     c = (c | (c << 2u)) & 0x13u;
     c = (c | (c << 1u)) & 0x15u;
     return c.x | (c.y << 1u);
 }
-
-uint keyOfLane(uint first, uint lane) { return seedKey(loadPatch(push.patches, push.perTile != 0u ? first : first + lane)); }
 
 void main() {
     uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
 #ifdef TRACER_VOXEL
     const bool sorted = false; // a march through voxels takes about as long whichever way it goes
 #else
-    const bool sorted = kSorted != 0u && push.perTile == 0u;
+    const bool sorted = kSorted != 0u && push.rotation != kRotateTile;
 #endif
     if (!sorted) {
         traceLinks(chunk, gl_WorkGroupID.y, lane);
         return;
     }
     uint firstPatch = (push.firstChunk + chunk) * kChunk, firstLocal = gl_WorkGroupID.y * kSamplesPerInvocation;
-    uint key = keyOfLane(firstPatch, lane);
+    // Not by tile: the first patch has no say.
+    Patch own = loadPatch(push.patches, firstPatch + lane);
+    uint key = rotationKey(own, own, push.rotation, push.size);
     // A counting sort. What comes first within a cell is open, but every link has a place of its own.
     for (uint c = lane; c < kCells; c += kChunk) cellEnd[c] = 0u;
     barrier();
@@ -65,7 +67,7 @@ void main() {
     for (uint t = 0u; t < kSamplesPerInvocation; ++t) {
         uint which = order[t * kChunk + lane], local = firstLocal + which / kChunk, other = which % kChunk;
         Patch p = loadPatch(push.patches, firstPatch + other);
-        uint link = linkOfSample(p, seedKey(p), push.firstSample + local);
+        uint link = linkOfSample(p, rotationKey(p, p, push.rotation, push.size), push.firstSample + local);
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + other] = link;
     }
 }

@@ -12,7 +12,7 @@ void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
     if (chunk >= push.chunkCount) return;
     uint lane = gl_LocalInvocationID.x, index = (push.firstChunk + chunk) * kChunk + lane;
-    vec3 own = loadPatch(push.patches, index).position;
+    vec3 own = loadPatch(push.receivers, index).position;
     float sum = 0.0;
     for (uint k = 0u; k < push.sampleCount; ++k) {
         uint link = Words(push.links).items[(chunk * push.sampleCount + k) * kChunk + lane];

@@ -22,7 +22,7 @@ void main() {
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
     vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
-    Vec4s(push.ligOut).items[index] = vec4(direct + total / float(push.sampleCount), 1.0);
+    if (push.ligOut != 0ul) Vec4s(push.ligOut).items[index] = vec4(direct + total / float(push.sampleCount), 1.0);
     if (push.sums != 0ul) {
         Vec4s sums = Vec4s(push.sums);
         for (uint q = 0u; q < kReplicates; ++q) sums.items[q * push.patchCount + index].rgb += sum[q];

@@ -19,14 +19,22 @@ CONST uint kChunk = 64u;
 CONST uint kSuper = 16u;
 CONST uint kSuperBlocks = 256u;   // kSuper * kSuper
 CONST uint kBlockWords = 128u;    // 32-bit words of a block: 64 rows of 2
+CONST uint kSuperWords = 32768u;  // kSuperBlocks * kBlockWords: the bits of a super-block
 CONST uint kSuperPatches = 1024u; // kSuper * kChunk
-CONST uint kRayCounters = 4096u;  // rays are counted in slots by unit, to spread the atomics
+// Rays are counted in slots by unit, to spread the atomics: those whose bits are kept, then the others.
+CONST uint kRayCounters = 4096u;
 // Samples belong in turn to so many sequences that are scrambled independently: their spread is the error.
 CONST uint kReplicates = 4u;
 
 // Patch::flags, bits 0..7
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
+
+// What patches side by side have in common of their directions: nothing; those in the same place of their 4 x 4 texels
+// all; a chunk's all.
+CONST uint kRotatePatch = 0u;
+CONST uint kRotateInterleaved = 1u;
+CONST uint kRotateTile = 2u;
 
 // What `closest` stores for a ray: a patch index below kLinkFirstSpecial, or
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
@@ -58,6 +66,20 @@ struct ChunkBounds {
     vec3 lo;    // [m]
     vec3 hi;    // [m]
     float size; // [m], the largest patch edge
+};
+
+// Receivers of a coarser grid that a patch's light is made of. Weight 0: none.
+struct CoarseTaps {
+    uint receiver0, receiver1, receiver2, receiver3;
+    vec4 weights;
+};
+
+// A receiver of the coarser grid and those before and after it in the chart: patches, `own` where there are not both; share:
+// of the one before in the light that both say is between them.
+struct CoarseNeighbours {
+    uint own;
+    uint left, right, below, above;
+    float shareX, shareY;
 };
 
 // EmitterPolygon::shape
@@ -92,6 +114,22 @@ struct EmitterNode {
     float cosCone; // cosine of the cone's half angle; 1: all normals are the axis
     vec3 axis; // unit
     uint link;
+};
+
+// Blocks (row * 16 + r, column * 16 + c), r, c in 0..15: the pairs of 1024 receivers and 1024 senders.
+struct SuperBlock {
+    uint row;             // of receiving chunks
+    uint column;          // of sending chunks
+    ADDRESS bits;         // uint[kSuperWords]; RTRad's symmetric ones: as many more, traced from the other end
+    uvec4 known0, known1; // bit u % 32 of word u / 32: unit u has its bits already
+    uint counters;        // 0 or kRayCounters: the first of the words in which its rays are counted
+};
+
+// One sender of a list: a run of patches, one of which stands for all.
+struct Sender {
+    uint first; // of its patches in the list's members
+    uint count; // of patches to draw from; 0: padding
+    uint key;   // of its random numbers
 };
 
 // One triangle of the tracers' scene, in WorldMesh order.
@@ -150,6 +188,7 @@ struct VoxelGrid {
     ADDRESS ranks;   // uint[], per word of bits: set bits before it
     ADDRESS patches; // uint[kVoxelSides] per set voxel, by the side that the surface faces: a patch, kLinkDark or
                      // kNoPatch for none
+    ADDRESS scene;   // Patch[], what these are
     vec3 origin;     // [m]
     vec3 scale;      // [voxels / m]
     uint resolution; // voxels along each axis
@@ -168,24 +207,26 @@ struct TraceGeometry {
     uint opaqueCount;       // triangles before the first masked one
     uint triangleCount;
 };
+CONST uint kOcclusionRtrad = 1u;    // RTRad's ray intervals
+CONST uint kOcclusionReversed = 2u; // rays start at the column's patches, bits go behind the others
 struct OcclusionPush {
     TraceGeometry geometry;
-    ADDRESS patches;    // Patch[]
-    ADDRESS supers;     // uvec2[]: row, column
-    ADDRESS chunkSends; // uint[]
-    ADDRESS bits;       // uint[]
+    ADDRESS patches; // Patch[]
+    ADDRESS supers;  // SuperBlock[]
+    ADDRESS sends;   // uint[], of the columns' chunks
+    ADDRESS senders; // Sender[]; 0: columns are chunks of patches, as rows are
+    ADDRESS members; // uint[]
+    ADDRESS rays;    // uint[], rays traced are added
     uint firstUnit;
     uint unitCount;
-    uint bitsUnits;
-    uint chunkCount;
-    uint rtrad;    // 1: RTRad's ray intervals
-    uint groupsX;  // workgroups in x; y counts on
-    ADDRESS rays;  // uint[kRayCounters], rays traced are added
-    uint reversed; // 1: rays start at the column's patches
+    uint rowCount;    // chunks
+    uint columnCount; // chunks
+    uint flags;       // kOcclusion...
+    uint groupsX;     // workgroups in x; y counts on
 };
 struct ClosestPush {
     TraceGeometry geometry;
-    ADDRESS patches;      // Patch[]
+    ADDRESS patches;      // Patch[]: the scene's, or receivers of a coarser grid
     ADDRESS links;        // uint[]
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
@@ -194,8 +235,10 @@ struct ClosestPush {
     uint chunkCount;
     uint firstSample;
     uint sampleCount;
-    uint size;    // lightmap edge [texels]
-    uint perTile; // 1: all patches of a chunk share their directions
+    uint size;      // lightmap edge [texels]
+    uint rotation;  // kRotate...
+    ADDRESS disc;   // vec2[discCount], even points of the unit disc
+    uint discCount; // 0: Sobol points
 };
 struct SegmentPush {
     TraceGeometry geometry;
@@ -209,37 +252,38 @@ struct SegmentPush {
 };
 struct TransposePush {
     ADDRESS supers;
-    ADDRESS bits;
-    ADDRESS reversed;   // bits traced from the other end; the same as bits where both ends agree
-    ADDRESS transposed; // uint[], as reversed, rows and columns exchanged
-    uint firstSuper;
-    uint bitsUnits;
+    ADDRESS transposed; // uint[kSuperWords] per super-block, rows and columns exchanged
     uint chunkCount;
+    uint reversed; // 1: of the bits that were traced from the other end
 };
 struct GatherPush {
     ADDRESS supers;
-    ADDRESS chunkSends;
-    ADDRESS bits;
-    ADDRESS transposed;
-    ADDRESS patches;
-    ADDRESS edges;    // PatchEdges[]
-    ADDRESS bounds;   // ChunkBounds[]
-    ADDRESS radiance; // vec4[] of the senders
-    ADDRESS albedo;   // vec4[] of the receivers (RTRad's clamp only)
-    ADDRESS partial;  // vec4[superCount][2][kSuperPatches]
-    uint firstSuper;
-    uint bitsUnits;
-    uint chunkCount;
+    ADDRESS sends;         // uint[], of the senders' chunks
+    ADDRESS transposed;    // symmetric only
+    ADDRESS patches;       // Patch[], the receivers
+    ADDRESS bounds;        // ChunkBounds[] of the receivers
+    ADDRESS senderPatches; // Patch[]; drawn: those to draw from
+    ADDRESS senderEdges;   // PatchEdges[], likewise
+    ADDRESS senderBounds;  // ChunkBounds[]
+    ADDRESS radiance;      // vec4[] of senderPatches
+    ADDRESS senders;       // Sender[] (drawn only)
+    ADDRESS members;       // uint[] (drawn only)
+    ADDRESS albedo;        // vec4[] of the receivers (RTRad's clamp only)
+    ADDRESS partial;       // vec4[superCount][2][kSuperPatches]
+    uint rowCount;         // chunks
+    uint columnCount;      // chunks
     float reflectivity;
     float distanceFactor;
+    uint window; // RTRad: senders less than so many texels to the right and below are skipped
+    uint size;   // lightmap edge [texels]
 };
 struct ReducePush {
     ADDRESS supers;
     ADDRESS partial;
     ADDRESS ligOut; // vec4[]
-    uint firstSuper;
     uint superCount;
     uint patchCount;
+    uint symmetric; // 1: the columns' patches have partial sums too
 };
 struct RadiancePush {
     ADDRESS patches;
@@ -283,7 +327,7 @@ struct LinkPush {
     ADDRESS links;    // uint[chunkCount][sampleCount][64]
     ADDRESS radiance; // vec4[]
     ADDRESS direct;   // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut;   // vec4[]
+    ADDRESS ligOut;   // vec4[]; 0: not written
     ADDRESS sums;     // vec4[kReplicates][patchCount], added to; 0: not
     uint firstChunk;
     uint chunkCount;
@@ -293,10 +337,33 @@ struct LinkPush {
 struct LinkDistancePush {
     ADDRESS patches;
     ADDRESS links;     // uint[chunkCount][sampleCount][64]
-    ADDRESS distances; // float[patchCount] [m]
+    ADDRESS receivers; // Patch[] that the links start at: patches, or of a coarser grid
+    ADDRESS distances; // float[], per receiver [m]
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
+};
+struct InterpolatePush {
+    ADDRESS taps;   // CoarseTaps[]
+    ADDRESS coarse; // vec4[kReplicates][receiverCount], this bounce's sums over links
+    ADDRESS direct; // vec4[] added to ligOut; 0: nothing
+    ADDRESS ligOut; // vec4[]
+    ADDRESS sums;   // vec4[kReplicates][patchCount], added to; 0: not
+    ADDRESS coarseDistances; // float[receiverCount] [m]
+    ADDRESS distances;       // float[patchCount], written; 0: not
+    uint firstChunk;
+    uint chunkCount;
+    uint patchCount;
+    uint receiverCount;
+    float scale; // from the sum of all sums to the mean
+};
+struct CoarseErrorPush {
+    ADDRESS neighbours; // CoarseNeighbours[]
+    ADDRESS sums;       // vec4[kReplicates][patchCount]
+    ADDRESS chunkSums;  // vec4[chunkCount]
+    uint chunkCount;    // of receivers
+    uint patchCount;
+    float scale; // from a replicate's sum to its mean
 };
 struct ComposePush {
     ADDRESS sums;

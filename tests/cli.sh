@@ -54,7 +54,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake info unwrap scene devices compare bench)
+verbs=(bake info unwrap scene devices compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -82,6 +82,7 @@ expectUsageError bake room.glb -o room.exr --tracer voxel --voxel-ratio 2
 expectUsageError bake room.glb -o room.exr --voxels 64
 expectUsageError bake room.glb -o room.exr --voxel-ratio 257
 expectUsageError bake room.glb -o room.exr --method nosuchmethod
+expectUsageError bake room.glb -o room.exr --indirect-scale 3
 expectUsageError bake room.glb -o room.exr --preset nosuchpreset
 expectUsageError bake room.glb -o room.exr --quantity nosuchquantity
 expectUsageError bench methods room.glb # no --html
@@ -91,6 +92,30 @@ expectUsageError bench methods room.glb --html r.html --methods nosuchmethod
 expectUsageError bench methods room.glb --html r.html --sizes 64 --picture-size 128
 expectUsageError compare a.exr b.exr --metric nosuchmetric
 expectUsageError compare a.exr b.exr --diff diff.exr
+
+expectUsageError bake room.glb -o room.exr --method pure --directions lec
+expectUsageError bake room.glb -o room.exr --method pure --rotate tile
+expectUsageError bake room.glb -o room.exr --rotate sometimes
+expectUsageError samples
+expectUsageError samples 0
+expectUsageError samples 16 --set nosuchset
+expectUsageError samples 16 -o directions.txt
+expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
+
+expectStatus 0 samples 16
+[ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
+
+expectUsageError bake room.glb -o room.exr --method pure --directions lec
+expectUsageError bake room.glb -o room.exr --method pure --rotate tile
+expectUsageError bake room.glb -o room.exr --rotate sometimes
+expectUsageError samples
+expectUsageError samples 0
+expectUsageError samples 16 --set nosuchset
+expectUsageError samples 16 -o directions.txt
+expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
+
+expectStatus 0 samples 16
+[ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
 
 expectWorldError missing.glb bake missing.glb -o room.exr
 expectWorldError missing.glb info missing.glb

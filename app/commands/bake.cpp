@@ -61,7 +61,12 @@ void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& chec
         if (line.due()) line.show(progressText(solver, settings));
     }
     if (solver.progress().converged || settings.error == 0) return;
-    if (!isPairMethod(settings.method) && settings.links.samples == 0) {
+    if (solver.progress().gridError > settings.error) {
+        spdlog::warn(
+            "the error is still {:.2g}, {:.2g} of it from --indirect-scale {}: choose a smaller one or "
+            "raise --error",
+            solver.progress().error, solver.progress().gridError, settings.links.indirectScale);
+    } else if (!isPairMethod(settings.method) && settings.links.samples == 0) {
         spdlog::warn("the error is still {:.2g} after {} directions per patch: raise --error",
                      solver.progress().error, solver.progress().samples);
     } else if (isPairMethod(settings.method) && settings.passes == 0) {

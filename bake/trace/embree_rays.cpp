@@ -13,21 +13,45 @@ constexpr uint32_t kCells = 1u << (2 * kCellBits);
 
 } // namespace
 
-void ChunkRays::setPatches(const shader::Patch* patches, bool perTile) {
+void ChunkRays::setPatches(const shader::Patch* patches, uint32_t rotation, uint32_t size) {
     for (uint32_t i = 0; i < kChunk; ++i) {
         const shader::Patch& patch = patches[i];
         frames_.sx[i] = patch.shading.x, frames_.sy[i] = patch.shading.y, frames_.sz[i] = patch.shading.z;
         frames_.nx[i] = patch.normal.x, frames_.ny[i] = patch.normal.y, frames_.nz[i] = patch.normal.z;
-        const uint32_t key = shader::seedKey(patches[perTile ? 0 : i]);
+        const uint32_t key = shader::rotationKey(patch, patches[0], rotation, size);
         for (uint32_t r = 0; r < shader::kReplicates; ++r)
             frames_.seed[r][i] = shader::replicateSeed(key, r);
     }
 }
 
-// shader::patchDirection for one sample of all patches, in a form that compilers turn into vector code.
+namespace {
+
+// One sample for a patch's seed, before it is turned to its normal. `cell` gets a place in the unit square.
+struct SobolLanes {
+    uint32_t index;
+    [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
+        cell = shader::sobolPoint(index, seed);
+        return shader::cosineDirection(cell);
+    }
+};
+struct DiscLanes {
+    const glm::vec2* points;
+    uint32_t count, index;
+    [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
+        seed += shader::discTurn(index, count);
+        const glm::vec3 d = shader::discDirection(points[shader::discPoint(index, count, seed)], count, seed);
+        cell = glm::vec2(0.4999f * d.x + 0.5f, 0.4999f * d.y + 0.5f); // below 1
+        return d;
+    }
+};
+
+} // namespace
+
+// shader::aroundPatch for one sample of all patches, in a form that compilers turn into vector code.
 // Always inlined, to be compiled once for each instruction set.
+template<typename Lanes>
 [[gnu::always_inline]] static inline void fillLanes(const float* const* frames, const uint32_t* seed,
-                                                    uint32_t sample, float* const* out, uint32_t* cell) {
+                                                    Lanes lanes, float* const* out, uint32_t* cell) {
     const float* __restrict sx = frames[0];
     const float* __restrict sy = frames[1];
     const float* __restrict sz = frames[2];
@@ -38,8 +62,9 @@ void ChunkRays::setPatches(const shader::Patch* patches, bool perTile) {
     float* __restrict y = out[1];
     float* __restrict z = out[2];
     for (uint32_t i = 0; i < kChunk; ++i) {
-        const glm::vec2 u = shader::sobolPoint(sample, seed[i]);
-        const glm::vec3 d = shader::aroundNormal(glm::vec3(sx[i], sy[i], sz[i]), shader::cosineDirection(u));
+        glm::vec2 u;
+        const glm::vec3 local = lanes(seed[i], u);
+        const glm::vec3 d = shader::aroundNormal(glm::vec3(sx[i], sy[i], sz[i]), local);
         const float c = d.x * nx[i] + d.y * ny[i] + d.z * nz[i];
         const float mirror = c < 0.0f ? 2.0f * c : 0.0f;
         x[i] = d.x - mirror * nx[i];
@@ -54,42 +79,51 @@ void ChunkRays::setPatches(const shader::Patch* patches, bool perTile) {
     }
 }
 
-using FillLanes = void (*)(const float* const*, const uint32_t*, uint32_t, float* const*, uint32_t*);
+template<typename Lanes>
+using FillLanes = void (*)(const float* const*, const uint32_t*, Lanes, float* const*, uint32_t*);
 
-static void fillPlain(const float* const* frames, const uint32_t* seed, uint32_t sample, float* const* out,
+template<typename Lanes>
+static void fillPlain(const float* const* frames, const uint32_t* seed, Lanes lanes, float* const* out,
                       uint32_t* cell) {
-    fillLanes(frames, seed, sample, out, cell);
+    fillLanes(frames, seed, lanes, out, cell);
 }
 
 #if defined(__x86_64__)
+template<typename Lanes>
 __attribute__((target("avx2"))) static void fillAvx2(const float* const* frames, const uint32_t* seed,
-                                                     uint32_t sample, float* const* out, uint32_t* cell) {
-    fillLanes(frames, seed, sample, out, cell);
+                                                     Lanes lanes, float* const* out, uint32_t* cell) {
+    fillLanes(frames, seed, lanes, out, cell);
 }
-static FillLanes chooseFill() {
-    return __builtin_cpu_supports("avx2") ? fillAvx2 : fillPlain;
+template<typename Lanes>
+static FillLanes<Lanes> chooseFill() {
+    return __builtin_cpu_supports("avx2") ? fillAvx2<Lanes> : fillPlain<Lanes>;
 }
 #else
-static FillLanes chooseFill() {
-    return fillPlain;
+template<typename Lanes>
+static FillLanes<Lanes> chooseFill() {
+    return fillPlain<Lanes>;
 }
 #endif
 
-void fillDirections(ChunkRays& rays, uint32_t sample, uint32_t slot) {
-    static const FillLanes fill = chooseFill();
-    const ChunkRays::Frames& f = rays.frames_;
+void ChunkRays::fillDirections(uint32_t sample, uint32_t slot) {
+    static const FillLanes<SobolLanes> fillSobol = chooseFill<SobolLanes>();
+    static const FillLanes<DiscLanes> fillDisc = chooseFill<DiscLanes>();
+    const Frames& f = frames_;
     const float* const frames[] = {f.sx.data(), f.sy.data(), f.sz.data(),
                                    f.nx.data(), f.ny.data(), f.nz.data()};
-    float* const out[] = {&rays.x[slot], &rays.y[slot], &rays.z[slot]};
-    fill(frames, f.seed[sample % shader::kReplicates].data(), shader::replicateIndex(sample), out,
-         &rays.cell_[slot]);
+    float* const out[] = {&x[slot], &y[slot], &z[slot]};
+    const uint32_t* seed = f.seed[sample % shader::kReplicates].data();
+    if (disc_)
+        fillDisc(frames, seed, {disc_, discCount_, sample}, out, &cell_[slot]);
+    else
+        fillSobol(frames, seed, {shader::replicateIndex(sample)}, out, &cell_[slot]);
 }
 
 void ChunkRays::setSamples(uint32_t first, uint32_t count) {
     ASSERT(count <= kSamplesMax);
     count_ = count * kChunk;
     for (uint32_t k = 0; k < count; ++k)
-        fillDirections(*this, first + k, k * kChunk);
+        fillDirections(first + k, k * kChunk);
     sort();
 }
 

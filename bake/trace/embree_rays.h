@@ -16,9 +16,11 @@ public:
     template<typename T>
     using Rays = std::array<T, kRaysMax>;
 
-    /// patches: the chunk's 64. perTile: all of them take the first one's random numbers.
-    void setPatches(const shader::Patch* patches, bool perTile);
-    /// Directions by shader::patchDirection, to the last bit or two.
+    /// patches: the chunk's 64. rotation: shader::kRotate... size: lightmap edge [texels].
+    void setPatches(const shader::Patch* patches, uint32_t rotation, uint32_t size);
+    /// Takes the directions from these points of the disc (shader::discDirection); they stay the caller's.
+    void setDisc(const glm::vec2* points, uint32_t count) { disc_ = points, discCount_ = count; }
+    /// Directions by shader::patchDirection, or of the disc, to the last bit or two.
     void setSamples(uint32_t first, uint32_t count);
     /// The numbers of all rays, those that go the same way next to each other: what makes packets of them
     /// worth while.
@@ -29,7 +31,7 @@ public:
 
 private:
     using Lane = std::array<float, shader::kChunk>;
-    friend void fillDirections(ChunkRays& rays, uint32_t sample, uint32_t slot);
+    void fillDirections(uint32_t sample, uint32_t slot);
     void sort();
 
     struct alignas(64) Frames {
@@ -40,6 +42,8 @@ private:
     alignas(64) Rays<uint32_t> cell_; // of the unit square that the sample's point lies in
     Rays<uint16_t> order_;
     uint32_t count_ = 0;
+    const glm::vec2* disc_ = nullptr; // none: Sobol points
+    uint32_t discCount_ = 0;
 };
 
 } // namespace relume

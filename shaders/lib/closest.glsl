@@ -21,11 +21,21 @@ uint closestLink(Patch p, vec3 direction) {
 }
 #endif
 
+vec3 discSample(uint key, uint index) {
+    uint seed = discSeed(key, index, push.discCount);
+    vec2 point = Vec2s(push.disc).items[discPoint(index, push.discCount, seed)];
+    return discDirection(point, push.discCount, seed);
+}
+
+vec3 directionOf(Patch p, uint key, uint index) {
+    return push.discCount == 0u ? patchDirection(p, key, index) : aroundPatch(p, discSample(key, index));
+}
+
 const uint kSamplesPerInvocation = 8u;
 
 uint linkOfSample(Patch p, uint key, uint index) {
     if ((p.flags & kPatchSends) == 0u) return kLinkDark;
-    return closestLink(p, patchDirection(p, key, index));
+    return closestLink(p, directionOf(p, key, index));
 }
 
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {
@@ -34,8 +44,7 @@ void traceLinks(uint chunk, uint sampleGroup, uint lane) {
 #endif
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
-    uint key = seedKey(p);
-    if (push.perTile != 0u) key = seedKey(loadPatch(push.patches, (push.firstChunk + chunk) * kChunk));
+    uint key = rotationKey(p, loadPatch(push.patches, (push.firstChunk + chunk) * kChunk), push.rotation, push.size);
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] =

@@ -81,12 +81,59 @@ FUNCTION uint seedKey(Patch p) { return p.flags >> 8; }
 FUNCTION uint replicateSeed(uint key, uint sampleIndex) { return hash32(key * kReplicates + sampleIndex % kReplicates); }
 FUNCTION uint replicateIndex(uint sampleIndex) { return sampleIndex / kReplicates; }
 
-// Direction of sample `index` for patch p: density cos / pi around the shading normal. `key` seeds the scrambling: seedKey of
-// the patch itself, or of its chunk's first patch (Rotation::Tile). Below the geometric horizon it is mirrored up, so no
-// ray starts inside.
-FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
-    vec2 u = sobolPoint(replicateIndex(index), replicateSeed(key, index));
-    vec3 d = aroundNormal(p.shading, cosineDirection(u));
+// What seeds the random numbers of a patch: its texel, that texel's place in its 4 x 4, or the texel of its chunk's first
+// patch. size: lightmap edge [texels].
+FUNCTION uint rotationKey(Patch p, Patch firstOfChunk, uint rotation, uint size) {
+    uint texel = seedKey(p);
+    if (rotation == kRotateInterleaved) return texel / size % 4u * 4u + texel % size % 4u;
+    return rotation == kRotateTile ? seedKey(firstOfChunk) : texel;
+}
+
+// A direction around +z turned to the patch's shading normal. Below the geometric horizon it is mirrored up, so no ray
+// starts inside.
+FUNCTION vec3 aroundPatch(Patch p, vec3 local) {
+    vec3 d = aroundNormal(p.shading, local);
     float c = dot(d, p.normal);
     return c < 0.0f ? d - 2.0f * c * p.normal : d;
+}
+
+// Direction of sample `index` for patch p: density cos / pi around the shading normal. `key` seeds the scrambling:
+// rotationKey.
+FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
+    return aroundPatch(p, cosineDirection(sobolPoint(replicateIndex(index), replicateSeed(key, index))));
+}
+
+// Cosine and sine of bits / 2^32 of a full turn, by the same series as above.
+FUNCTION vec2 turnBy(uint bits) {
+    float a = (float(int((bits & 0x3fffffffu) >> 6)) * (1.0f / 16777216.0f) - 0.5f) * 1.57079633f;
+    float a2 = a * a;
+    float s = a * (1.0f + a2 * (-1.6666667e-1f + a2 * (8.3333333e-3f + a2 * (-1.9841270e-4f + a2 * 2.7557319e-6f))));
+    float c = 1.0f + a2 * (-0.5f + a2 * (4.1666667e-2f + a2 * (-1.3888889e-3f + a2 * 2.4801587e-5f)));
+    bool odd = (bits & 0x40000000u) != 0u, back = (bits & 0x80000000u) != 0u;
+    float x = odd ? -s : c, y = odd ? c : s;
+    return vec2(back ? -x : x, back ? -y : y);
+}
+
+// The point of a set of `count`, each in the middle of a ring of its own (bake/directions.h), as a direction around +z: the
+// set turned by a random angle and all points moved by one random share of their rings. So each is distributed like the
+// cosine, whatever the set, and the set as a whole stays as even as it is.
+FUNCTION vec3 discDirection(vec2 point, uint count, uint seed) {
+    uint bits = hash32(seed);
+    vec2 turn = turnBy(bits);
+    float r2 = point.x * point.x + point.y * point.y;
+    float share = float(int(hash32(bits ^ 0x68bc21ebu) >> 8)) * (1.0f / 16777216.0f);
+    float ring = clamp(r2 + (share - 0.5f) / float(int(count)), 0.0f, 1.0f);
+    float scale = sqrt(ring / r2);
+    return vec3(scale * (point.x * turn.x - point.y * turn.y), scale * (point.x * turn.y + point.y * turn.x),
+                sqrt(1.0f - ring));
+}
+
+// Each replicate goes through the set; every time that it begins again, all is turned anew.
+FUNCTION uint discTurn(uint index, uint count) { return replicateIndex(index) / count * 0x9e3779b9u; }
+FUNCTION uint discSeed(uint key, uint index, uint count) { return replicateSeed(key, index) + discTurn(index, count); }
+
+// Which point of a disc's set sample `index` takes. Patches begin anywhere in the set: each single sample may then have any
+// ring, and rounds of a few samples are unbiased by themselves, on which the products of their bounces depend.
+FUNCTION uint discPoint(uint index, uint count, uint seed) {
+    return (replicateIndex(index) % count + hash32(seed ^ 0x02e5be93u) % count) % count;
 }

@@ -45,7 +45,7 @@ uint facingPatch(ivec3 voxel, vec3 direction) {
             if (found == kNoPatch && ((side & 1u) == 0u ? -along : along) > 0.0) found = kLinkDark;
             continue;
         }
-        float facing = -dot(loadPatch(push.patches, link).normal, direction);
+        float facing = -dot(loadPatch(grid.scene, link).normal, direction);
         if (facing > most) {
             most = facing;
             found = link;
@@ -62,7 +62,7 @@ bool pointSeen(Patch p, vec3 target) {
     ivec3 voxel = ivec3(floor(b));
     uint there = voxelSet(voxel) ? facingPatch(voxel, normalize(b - a)) : kNoPatch;
     if (there < kLinkFirstSpecial) {
-        vec3 normal = loadPatch(push.patches, there).normal;
+        vec3 normal = loadPatch(grid.scene, there).normal;
         float clearB = planeClearance(normal);
         end += normal * clearB;
         start = liftedAbove(start, b, normal, clearB);

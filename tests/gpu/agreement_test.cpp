@@ -1,5 +1,6 @@
 // All tracers must see the same: the bits of every pair of patches, and where directions end.
 #include "assets/generate.h"
+#include "bake/directions.h"
 #include "bake/vk/commands.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
@@ -22,6 +23,7 @@ using shader::kSuperBlocks;
 constexpr uint32_t kUnitsPerSubmit = 128; // short submits on a software device too
 constexpr uint32_t kChunksPerSubmit = 4;
 constexpr uint32_t kLinkSamples = 8;
+constexpr uint32_t kDiscPoints = 2; // with four replicates the samples of a disc's set
 // Of the units of a scene so many are compared, spread evenly: about two million rays. Neighbouring pairs
 // that graze one edge would make a bad sample.
 constexpr uint32_t kUnits = 1024;
@@ -46,7 +48,7 @@ public:
         const uint32_t rows = (chunks_ + kSuper - 1) / kSuper;
         for (uint32_t row = 0; row < rows; ++row) {
             for (uint32_t column = row; column < rows; ++column)
-                supers_.push_back({row, column});
+                supers_.push_back({row, column, 0, {}, {}, 0});
         }
         std::vector<uint32_t> written; // the others are padding or seen from the other end
         for (uint32_t unit = 0; unit < supers_.size() * kSuperBlocks; ++unit) {
@@ -65,23 +67,29 @@ public:
     }
 
     Visibility pairs(Tracer& tracer) {
-        const vk::Buffer supers = vk::makeBuffer(testDevice(), supers_, "super-blocks");
         const vk::Buffer sends =
             vk::makeBuffer(testDevice(), std::vector<uint32_t>(chunks_, 1u), "chunk sends");
         const auto slots = static_cast<uint32_t>(supers_.size()) * kSuperBlocks;
         const vk::Buffer bits = vk::makeBuffer(
             testDevice(), std::vector<uint32_t>(size_t{slots} * kBlockWords, 0u), "visibility bits");
         const vk::Buffer rays =
-            vk::makeBuffer(testDevice(), std::vector<uint32_t>(shader::kRayCounters, 0u), "ray counters");
+            vk::makeBuffer(testDevice(), std::vector<uint32_t>(2 * shader::kRayCounters, 0u), "ray counters");
+        std::vector<uint32_t*> host;
+        for (size_t s = 0; s < supers_.size(); ++s) {
+            const size_t offset = s * shader::kSuperWords;
+            supers_[s].bits = bits.address() + offset * sizeof(uint32_t);
+            host.push_back(bits.mapped() ? static_cast<uint32_t*>(bits.mapped()) + offset : nullptr);
+        }
+        const vk::Buffer supers = vk::makeBuffer(testDevice(), supers_, "super-blocks");
         for (size_t first = 0; first < units_.size(); first += kUnitsPerSubmit) {
             VkCommandBuffer cmd = commands_.begin();
             for (size_t i = first; i < std::min(first + kUnitsPerSubmit, units_.size()); ++i) {
-                tracer.occlusion(cmd, {.supers = &supers,
-                                       .chunkSends = &sends,
+                tracer.occlusion(cmd, {.supers = supers_,
+                                       .superBuffer = &supers,
+                                       .bits = host,
                                        .firstUnit = units_[i],
                                        .unitCount = 1,
-                                       .bits = &bits,
-                                       .bitsUnits = slots,
+                                       .sends = &sends,
                                        .rays = &rays});
             }
             vk::hostBarrier(cmd);
@@ -92,8 +100,8 @@ public:
                 std::accumulate(counters.begin(), counters.end(), uint64_t{0})};
     }
 
-    /// Of all patches; as ClosestWork has them.
-    std::vector<uint32_t> links(Tracer& tracer) {
+    /// Of all patches; as ClosestWork has them. disc: vec2[kDiscPoints], nullptr: Sobol points.
+    std::vector<uint32_t> links(Tracer& tracer, Rotation rotation, const vk::Buffer* disc) {
         std::vector<uint32_t> all;
         const vk::Buffer buffer(
             testDevice(), {.size = VkDeviceSize{kChunksPerSubmit} * kLinkSamples * kChunk * sizeof(uint32_t),
@@ -106,7 +114,9 @@ public:
                                  .chunkCount = count,
                                  .firstSample = 0,
                                  .sampleCount = kLinkSamples,
-                                 .rotation = Rotation::Patch,
+                                 .rotation = rotation,
+                                 .disc = disc,
+                                 .discCount = kDiscPoints,
                                  .links = &buffer});
             vk::hostBarrier(cmd);
             commands_.run();
@@ -165,6 +175,27 @@ void PrintTo(const Case& c, std::ostream* out) {
 
 class Agreement : public testing::TestWithParam<Case> {};
 
+vk::Buffer testDisc() {
+    const std::vector<glm::dvec2> points = evenRings(largestEmptyCircleDisc(kDiscPoints));
+    vk::Buffer buffer(testDevice(),
+                      {.size = kDiscPoints * sizeof(glm::vec2), .memory = vk::Memory::Host, .name = "disc"});
+    for (uint32_t i = 0; i < kDiscPoints; ++i)
+        static_cast<glm::vec2*>(buffer.mapped())[i] = glm::vec2(points[i]);
+    return buffer;
+}
+
+void expectAlike(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b, const std::string& names) {
+    uint64_t unlike = 0, unlikeSky = 0;
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) {
+        unlike += a[i] != b[i];
+        unlikeSky += (a[i] == shader::kLinkSky) != (b[i] == shader::kLinkSky);
+    }
+    EXPECT_LE(double(unlike), kMaxLinkShare * double(a.size()))
+        << names << ": " << unlike << " of " << a.size();
+    EXPECT_LE(unlikeSky, 1u) << names;
+}
+
 } // namespace
 
 TEST_P(Agreement, OfAllTracers) {
@@ -172,12 +203,14 @@ TEST_P(Agreement, OfAllTracers) {
     Comparison comparison(scaled(generateScene(c.scene), c.scale), c.size);
     const std::vector<TracerKind> kinds = tracersOfTestDevice();
     std::vector<Visibility> pairs;
-    std::vector<std::vector<uint32_t>> links;
+    const vk::Buffer disc = testDisc();
+    std::vector<std::vector<uint32_t>> links, discLinks;
     uint64_t rays = 0; // a tracer may know some answers without a ray: the one that asks most counts
     for (TracerKind kind : kinds) {
         const std::unique_ptr<Tracer> tracer = comparison.tracer(kind);
         pairs.push_back(comparison.pairs(*tracer));
-        links.push_back(comparison.links(*tracer));
+        links.push_back(comparison.links(*tracer, Rotation::Patch, nullptr));
+        discLinks.push_back(comparison.links(*tracer, Rotation::Patch, &disc));
         rays = std::max(rays, pairs.back().rays);
     }
     uint64_t seen = 0;
@@ -194,15 +227,8 @@ TEST_P(Agreement, OfAllTracers) {
             const double expected = kMaxPairShare * double(rays);
             EXPECT_LE(double(unlike), expected + 3 * std::sqrt(expected)) // 3 sigma of so small a sample
                 << names << ": " << unlike << " of " << rays << " rays" << example.substr(0, 1000);
-            uint64_t unlikeLinks = 0, unlikeSky = 0;
-            ASSERT_EQ(links[a].size(), links[b].size());
-            for (size_t i = 0; i < links[a].size(); ++i) {
-                unlikeLinks += links[a][i] != links[b][i];
-                unlikeSky += (links[a][i] == shader::kLinkSky) != (links[b][i] == shader::kLinkSky);
-            }
-            EXPECT_LE(double(unlikeLinks), kMaxLinkShare * double(links[a].size()))
-                << names << ": " << unlikeLinks << " of " << links[a].size();
-            EXPECT_LE(unlikeSky, 1u) << names;
+            expectAlike(links[a], links[b], names);
+            expectAlike(discLinks[a], discLinks[b], names + " by a disc's points");
         }
     }
 }

@@ -195,7 +195,13 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.method = desc.method;
     settings.solver.links.samples = desc.samples;
     settings.solver.links.smooth = desc.smooth;
+    settings.solver.links.directions = desc.directions;
+    settings.solver.links.rotation = desc.rotation;
+    settings.solver.links.indirectScale = desc.indirectScale;
     settings.solver.cache = desc.cache;
+    settings.solver.pairs = desc.pairs;
+    settings.solver.transport.rtrad = desc.rtrad;
+    if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
     return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
 }
 

@@ -70,8 +70,13 @@ struct BakeDesc {
     Method method = Method::Pure;
     uint32_t samples = 0; // link methods: directions per patch
     bool smooth = false;
+    DirectionSet directions = DirectionSet::Sobol;
+    Rotation rotation = Rotation::Patch;
+    uint32_t indirectScale = 1;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
+    PairSettings pairs = {};
+    bool rtrad = false; // the preset
 };
 
 struct Baked {

@@ -64,29 +64,51 @@ std::vector<Struct> readStructs() {
 
 #define SIZE_OF(name)                                                                                        \
     { #name, sizeof(shader::name) }
-const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),       SIZE_OF(CvmPush),
-                                              SIZE_OF(Patch),           SIZE_OF(PatchEdges),
-                                              SIZE_OF(ChunkBounds),     SIZE_OF(HitTriangle),
-                                              SIZE_OF(AlphaTriangle),   SIZE_OF(AlphaMaterial),
-                                              SIZE_OF(BvhNode),         SIZE_OF(BvhTriangle),
-                                              SIZE_OF(TraceGeometry),   SIZE_OF(OcclusionPush),
-                                              SIZE_OF(ClosestPush),     SIZE_OF(TransposePush),
-                                              SIZE_OF(GatherPush),      SIZE_OF(ReducePush),
-                                              SIZE_OF(RadiancePush),    SIZE_OF(FinishPush),
-                                              SIZE_OF(CitPush),         SIZE_OF(CitMaterial),
-                                              SIZE_OF(SegmentPush),     SIZE_OF(EmitterPolygon),
-                                              SIZE_OF(EmitterNode),     SIZE_OF(LinkPush),
-                                              SIZE_OF(DirectPush),      SIZE_OF(EmitterSamplesPush),
-                                              SIZE_OF(ComposePush),     SIZE_OF(ChangePush),
-                                              SIZE_OF(ResolveSums),     SIZE_OF(SmoothPush),
-                                              SIZE_OF(LinkDistancePush)};
+const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),
+                                              SIZE_OF(CvmPush),
+                                              SIZE_OF(Patch),
+                                              SIZE_OF(PatchEdges),
+                                              SIZE_OF(ChunkBounds),
+                                              SIZE_OF(HitTriangle),
+                                              SIZE_OF(AlphaTriangle),
+                                              SIZE_OF(AlphaMaterial),
+                                              SIZE_OF(BvhNode),
+                                              SIZE_OF(BvhTriangle),
+                                              SIZE_OF(TraceGeometry),
+                                              SIZE_OF(OcclusionPush),
+                                              SIZE_OF(ClosestPush),
+                                              SIZE_OF(TransposePush),
+                                              SIZE_OF(GatherPush),
+                                              SIZE_OF(ReducePush),
+                                              SIZE_OF(RadiancePush),
+                                              SIZE_OF(FinishPush),
+                                              SIZE_OF(CitPush),
+                                              SIZE_OF(CitMaterial),
+                                              SIZE_OF(SegmentPush),
+                                              SIZE_OF(EmitterPolygon),
+                                              SIZE_OF(EmitterNode),
+                                              SIZE_OF(LinkPush),
+                                              SIZE_OF(DirectPush),
+                                              SIZE_OF(EmitterSamplesPush),
+                                              SIZE_OF(ComposePush),
+                                              SIZE_OF(ChangePush),
+                                              SIZE_OF(ResolveSums),
+                                              SIZE_OF(SmoothPush),
+                                              SIZE_OF(LinkDistancePush),
+                                              SIZE_OF(SuperBlock),
+                                              SIZE_OF(Sender),
+                                              SIZE_OF(CoarseTaps),
+                                              SIZE_OF(InterpolatePush),
+                                              SIZE_OF(CoarseNeighbours),
+                                              SIZE_OF(CoarseErrorPush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
 size_t appendWords(const std::vector<Struct>& structs, const Struct& entry, size_t offset,
                    std::vector<size_t>& words) {
-    static const std::map<std::string, size_t> sizes = {{"float", 1}, {"int", 1},  {"uint", 1},   {"vec2", 2},
-                                                        {"vec3", 3},  {"vec4", 4}, {"ADDRESS", 2}};
+    static const std::map<std::string, size_t> sizes = {{"float", 1}, {"int", 1},    {"uint", 1},
+                                                        {"vec2", 2},  {"vec3", 3},   {"vec4", 4},
+                                                        {"uvec4", 4}, {"ADDRESS", 2}};
     for (const Member& member : entry.members) {
         const auto size = sizes.find(member.type);
         if (size == sizes.end()) {
@@ -124,6 +146,7 @@ void put(float x) { put(floatBitsToUint(x)); }
 void put(vec2 v) { put(v.x); put(v.y); }
 void put(vec3 v) { put(v.xy); put(v.z); }
 void put(vec4 v) { put(v.xyz); put(v.w); }
+void put(uvec4 v) { put(v.x); put(v.y); put(v.z); put(v.w); }
 void put(uint64_t x) { put(uint(x & 0xffffffffUL)); put(uint(x >> 32)); }
 )";
     for (const Struct& entry : structs) {

@@ -41,6 +41,68 @@ double reflectedFlux(const Baked& baked) {
 
 } // namespace
 
+// A closed room with a difference in albedo and light, baked by each set and each rotation: all have the same
+// mean, and the thesis' sets are as good as the sequence.
+TEST(Directions, SetsAndRotationsAgree) {
+    SceneMaker maker(64);
+    std::array<int, 6> materials;
+    materials.fill(maker.material(0.5f));
+    materials[0] = maker.material(0.2f), materials[5] = maker.material(0.7f, 1.0f);
+    std::array<glm::uvec2, 6> texels;
+    texels.fill(glm::uvec2(16));
+    const auto walls = maker.box({0, 0, 0}, {2.0f * kX, 1.0f * kY, 1.0f * kZ}, materials, texels);
+    const auto bake = [&](DirectionSet set, Rotation rotation, uint32_t samples) {
+        return bakeScene(maker.scene(), {.size = maker.size(),
+                                         .passes = 4,
+                                         .method = Method::Directional,
+                                         .samples = samples,
+                                         .directions = set,
+                                         .rotation = rotation});
+    };
+    const Baked reference = bake(DirectionSet::Sobol, Rotation::Patch, 4096);
+    const auto errorOf = [&](const Baked& baked) { // relRMSE over all walls
+        double sum = 0, mean = 0;
+        for (const TexelRect& wall : walls) {
+            for (uint32_t i = 0; i < wall.width * wall.height; ++i) {
+                const uint32_t column = i % wall.width, row = i / wall.width;
+                const double right = texel(reference.lighting, wall, column, row);
+                const double d = texel(baked.lighting, wall, column, row) - right;
+                sum += d * d, mean += right;
+            }
+        }
+        const double count = 6 * 256;
+        return std::sqrt(sum / count) / (mean / count);
+    };
+    const double sobol = errorOf(bake(DirectionSet::Sobol, Rotation::Patch, 256));
+    for (const DirectionSet set : {DirectionSet::Sobol, DirectionSet::Lec}) {
+        for (const Rotation rotation : {Rotation::Patch, Rotation::Interleaved, Rotation::Tile}) {
+            const Baked baked = bake(set, rotation, 256);
+            EXPECT_LT(errorOf(baked), 2 * sobol) << int(set) << int(rotation);
+            // A wall has only four tiles, whose errors are each the same all over.
+            const double tolerance = rotation == Rotation::Patch ? 0.01 : 0.03;
+            for (const TexelRect& wall : walls) {
+                const double right = statistics(reference.lighting, wall).mean;
+                EXPECT_NEAR(statistics(baked.lighting, wall).mean, right, tolerance * right)
+                    << int(set) << int(rotation);
+            }
+        }
+    }
+}
+
+TEST(Directions, FurnaceWithTheThesisSets) {
+    SceneMaker maker(64);
+    const auto walls =
+        maker.box({3, 1, -2}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.5f, 1.0f), 20);
+    const Baked baked = bakeScene(maker.scene(), {.size = maker.size(),
+                                                  .passes = 0,
+                                                  .error = 0.002,
+                                                  .method = Method::Directional,
+                                                  .samples = 256,
+                                                  .directions = DirectionSet::Lec});
+    for (const TexelRect& wall : walls)
+        EXPECT_NEAR(statistics(baked.radiance, wall).mean, 2.0, 0.008);
+}
+
 class LinkMethods : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Both, LinkMethods, testing::Values(Method::Directional, Method::Hybrid),
                          [](const auto& info) { return std::string(methodName(info.param)); });

@@ -1,8 +1,10 @@
+#include <array>
 #include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "bake/directions.h"
 #include "bake/shader_types.h"
 
 namespace relume {
@@ -105,6 +107,75 @@ TEST(Sampling, patchDirectionStaysAboveTheGeometricHorizon) {
             EXPECT_EQ(mirrored, 0u);
         }
     }
+}
+
+// Whatever the set, each point's mean over all patches is that of the cosine's density; sets as a whole are
+// even for each patch.
+TEST(Sampling, discDirectionsAreCosineDistributed) {
+    const std::vector<glm::dvec2> set = evenRings(largestEmptyCircleDisc(64));
+    constexpr uint32_t patches = 4000;
+    for (const uint32_t k : {0u, 1u, 40u}) { // one point, its ring around the middle r^2 of it
+        double x = 0, r2 = 0;
+        for (uint32_t key = 0; key < patches; ++key) {
+            const glm::vec3 d = shader::discDirection(set[k], 64, shader::hash32(key));
+            EXPECT_NEAR(glm::length(d), 1.0f, 1e-6f);
+            x += d.x / patches, r2 += (1 - d.z * d.z) / patches;
+        }
+        EXPECT_NEAR(x, 0, 0.04);
+        EXPECT_NEAR(r2, glm::dot(set[k], set[k]), 2e-3);
+    }
+    double worst = 0, mean = 0;
+    for (uint32_t key = 0; key < 200; ++key) {
+        double z = 0;
+        for (const glm::dvec2& p : set)
+            z += shader::discDirection(p, 64, shader::hash32(key)).z / 64;
+        worst = std::max(worst, std::abs(z - 2.0 / 3));
+        mean += z / 200;
+    }
+    EXPECT_LT(worst, 0.01); // 64 random directions: 0.1
+    EXPECT_NEAR(mean, 2.0 / 3, 1e-3);
+}
+
+// Any one sample may be any point of the set, and a replicate's samples are each point once.
+TEST(Sampling, discSetsBeginAnywhereAndAreUsedWhole) {
+    constexpr uint32_t count = 12;
+    std::array<uint32_t, count> firsts{};
+    for (uint32_t key = 0; key < 1200; ++key) {
+        std::set<uint32_t> round;
+        for (uint32_t index = 1; index < count * shader::kReplicates; index += shader::kReplicates) {
+            const uint32_t point = shader::discPoint(index, count, shader::discSeed(key, index, count));
+            if (index == 1) ++firsts[point];
+            round.insert(point);
+        }
+        EXPECT_EQ(round.size(), count);
+    }
+    for (uint32_t n : firsts)
+        EXPECT_NEAR(n, 100, 40);
+}
+
+TEST(Sampling, turnsAreUnitVectorsAllAround) {
+    double x = 0, y = 0;
+    for (uint32_t i = 0; i < 64; ++i) {
+        const glm::vec2 t = shader::turnBy(i << 26);
+        EXPECT_NEAR(glm::length(t), 1.0f, 1e-6f);
+        const glm::vec2 next = shader::turnBy((i + 1) << 26);
+        EXPECT_NEAR(t.x * next.y - t.y * next.x, std::sin(6.2831853 / 64), 1e-6);
+        x += t.x, y += t.y;
+    }
+    EXPECT_NEAR(x, 0, 1e-5);
+    EXPECT_NEAR(y, 0, 1e-5);
+}
+
+TEST(Sampling, interleavedPatchesShareTheirKeys) {
+    Patch first{}, a{}, b{};
+    constexpr uint32_t size = 128;
+    first.flags = 5 << 8;
+    a.flags = (9 * size + 6) << 8; // row 9, column 6
+    b.flags = (13 * size + 2) << 8;
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
+    EXPECT_EQ(shader::rotationKey(b, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotatePatch, size), 9 * size + 6);
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateTile, size), 5u);
 }
 
 } // namespace
