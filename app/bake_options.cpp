@@ -66,8 +66,13 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--size", o.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(CLI::Range(8u, Baker::kMaxSize));
-    command.add_option("--method", o.method, "How light is gathered: hybrid (default), directional or pure")
-        ->check(CLI::IsMember({"pure", "directional", "hybrid"}));
+    command
+        .add_option("--method", o.method,
+                    "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
+                    "adaptive")
+        ->check(CLI::IsMember(
+            {"pure", "static", "montecarlo", "mipmapped", "adaptive", "directional", "hybrid"}));
+    addPairOptions(command, o.pairs);
     command.add_option("--error-map", o.errorMap,
                        "Write each texel's standard error as an image, .exr or .png");
     command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
@@ -156,6 +161,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         solver.method = parseMethod(o.method);
     else
         solver.method = rtrad ? Method::Pure : Method::Hybrid;
+    resolvePairOptions(o.pairs, solver);
     resolveLinkOptions(o, solver);
     const bool radiance = rtrad || o.quantity == "radiance";
     request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/pair_options.h"
 #include "app/prepare.h"
 #include "bake/baker.h"
 
@@ -28,6 +29,7 @@ struct BakeOptions {
     uint32_t samples = 0;       // 0: not given
     uint32_t indirectScale = 0; // 0: not given
     bool noSmooth = false;
+    PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
 };
 

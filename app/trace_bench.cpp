@@ -30,7 +30,7 @@ public:
     Bench(const vk::Device& device, Baker& baker, TracerKind kind, const TraceBenchDesc& desc)
         : device_(device), patches_(baker.patches()), light_(baker.light()), desc_(desc),
           tracer_(makeTracer(kind, device, patches_.scene, light_.patches)), commands_(device),
-          timestamps_(device, 3), radiancePass_(device), gatherPass_(device, false) {}
+          timestamps_(device, 3), radiancePass_(device), gatherPass_(device, SenderKind::Patches, false) {}
 
     void pairs(TraceRates& rates) {
         allocatePairs();
@@ -40,7 +40,7 @@ public:
         const auto start = Clock::now();
         while (secondsSince(start) < desc_.seconds || runs <= kWarmUp) {
             const uint32_t count =
-                std::min({batch, pairs_.capacity(), static_cast<uint32_t>(supers_.size()) - next});
+                std::min({batch, pairs_.capacity, static_cast<uint32_t>(supers_.size()) - next});
             vk::upload(device_, rays_, zero_.data(), zero_.size() * sizeof(uint32_t));
             const auto batchStart = Clock::now();
             const auto [traced, gathered] = pairBatch(next, count);
@@ -113,7 +113,7 @@ private:
         std::vector<SuperBlock> ordered;
         for (uint32_t row = 0; row < rows; ++row) {
             for (uint32_t column = row; column < rows; ++column)
-                ordered.push_back({row, column});
+                ordered.push_back({row, column, 0, {}, {}, 0});
         }
         const auto n = static_cast<uint32_t>(ordered.size());
         auto stride = std::max(1u, static_cast<uint32_t>(kGolden * n));
@@ -122,12 +122,12 @@ private:
         for (uint64_t i = 0; i < n; ++i)
             supers_.push_back(ordered[i * stride % n]);
 
-        pairs_ = PairBuffers(device_, n, false);
-        vk::upload(device_, pairs_.supers, supers_.data(), supers_.size() * sizeof(SuperBlock));
-        zero_.assign(shader::kRayCounters, 0u);
+        pairs_ = PairBuffers(device_, n, SenderKind::Patches);
+        ring_ = BitsRing(device_, pairs_.capacity, superBytes(false));
+        zero_.assign(size_t{2} * shader::kRayCounters, 0u);
         rays_ = vk::makeBuffer(device_, zero_, "ray counters");
         VkCommandBuffer cmd = commands_.begin();
-        radiancePass_.record(cmd, light_, {.allSend = true});
+        radiancePass_.record(cmd, light_, transport_);
         vk::barrier(cmd);
         vk::hostBarrier(cmd);
         commands_.run();
@@ -135,14 +135,19 @@ private:
 
     // Seconds of tracing and of gathering.
     std::pair<double, double> pairBatch(uint32_t first, uint32_t count) {
-        // Slots count from the first unit of the pass: batches stay within the buffer because they are waited
-        // for.
-        const OcclusionWork work{.supers = &pairs_.supers,
-                                 .chunkSends = &light_.chunkSends,
-                                 .firstUnit = first * kSuperBlocks,
+        const std::span<SuperBlock> supers(&supers_[first], count);
+        std::vector<uint32_t*> bits;
+        for (uint32_t slot = 0; slot < count; ++slot) {
+            supers[slot].bits = ring_.address(slot);
+            bits.push_back(ring_.host(slot));
+        }
+        vk::upload(device_, pairs_.supers, supers.data(), supers.size_bytes());
+        const OcclusionWork work{.supers = supers,
+                                 .superBuffer = &pairs_.supers,
+                                 .bits = bits,
+                                 .firstUnit = 0,
                                  .unitCount = count * kSuperBlocks,
-                                 .bits = &pairs_.bits,
-                                 .bitsUnits = pairs_.bitsUnits,
+                                 .sends = &light_.chunkSends,
                                  .rays = &rays_};
         VkCommandBuffer cmd = commands_.begin();
         timestamps_.reset(cmd);
@@ -152,7 +157,11 @@ private:
         const double cpu = secondsSince(start);
         vk::barrier(cmd);
         timestamps_.mark(cmd, 1);
-        gatherPass_.record(cmd, light_, pairs_, {first, count}, {.allSend = true});
+        gatherPass_.record(cmd, {.light = light_,
+                                 .pairs = pairs_,
+                                 .superCount = count,
+                                 .size = patches_.scene.size,
+                                 .transport = transport_});
         timestamps_.mark(cmd, 2);
         vk::hostBarrier(cmd);
         commands_.run();
@@ -190,6 +199,8 @@ private:
     std::vector<SuperBlock> supers_;
     std::vector<uint32_t> zero_;
     PairBuffers pairs_;
+    BitsRing ring_;
+    const TransportSettings transport_{.allSend = true};
     vk::Buffer rays_;
 };
 

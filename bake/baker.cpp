@@ -1,8 +1,8 @@
 #include "bake/baker.h"
 
 #include "assets/log.h"
-#include "bake/pair_solver.h"
 #include "bake/texture_group.h"
+#include "bake/vk/commands.h"
 
 #include <algorithm>
 #include <chrono>
@@ -33,28 +33,27 @@ bool usesVoxels(const BakeSettings& settings) {
     return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
 }
 
-void checkMemory(const vk::Device& device, const BakeSettings& settings, uint64_t triangles) {
+} // namespace
+
+std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
+                               uint64_t limit) {
     const uint32_t size = settings.size;
     const auto bytes = [&](uint32_t edge) {
         BakeSettings smaller = settings;
         smaller.size = edge;
-        return Baker::deviceBytes(smaller, triangles, device.info().software());
+        return deviceBytes(smaller, triangles, device.info().software());
     };
-    const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
     const uint64_t needed = bytes(size);
-    const uint32_t imageLimit = std::min(Baker::kMaxSize, device.limits().maxImageDimension2D);
-    if (needed <= limit && size <= imageLimit) return;
+    const uint32_t imageLimit = std::min(kMaxSize, device.limits().maxImageDimension2D);
+    if (needed <= limit && size <= imageLimit) return "";
     constexpr uint32_t kStep = 64;
     uint32_t fits = std::min(size, imageLimit) / kStep * kStep;
     while (fits > 0 && bytes(fits) > limit)
         fits -= kStep;
-    throw Error(
-        "--size " + std::to_string(size) + " needs " + std::to_string(needed >> 20) + " MiB on '" +
-        device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " +
-        (fits > 0 ? "--size " + std::to_string(fits) + " fits" : "no size fits, close other programs"));
+    return "--size " + std::to_string(size) + " needs " + std::to_string(needed >> 20) + " MiB on '" +
+           device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " +
+           (fits > 0 ? "--size " + std::to_string(fits) + " fits" : "no size fits, close other programs");
 }
-
-} // namespace
 
 uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software) {
     const uint64_t texels = uint64_t{settings.size} * settings.size;
@@ -75,7 +74,9 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bo
 
 Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings)
     : settings_(settings) {
-    checkMemory(device, settings, mesh.triangleCount());
+    const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
+    const std::string problem = sizeProblem(device, settings, mesh.triangleCount(), limit);
+    if (!problem.empty()) throw Error(problem);
     const bool rtrad = settings.solver.transport.rtrad;
     PhaseClock clock(phases_);
     {
@@ -85,7 +86,6 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
         clock.end("cit");
         patches_ = buildPatches(scene, std::move(mesh), group,
                                 {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
-        if (isPairMethod(settings.solver.method)) PairSolver::checkPairs(patches_);
     }
     if (patches_.clampedAlbedo > 0) {
         spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "

@@ -48,6 +48,10 @@ public:
     /// when there is nothing to tell yet.
     FloatImage errorMap() const;
 
+    /// What is wrong with the size where `limit` bytes may be taken, and which one fits; "" when it fits
+    /// itself.
+    static std::string sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
+                                   uint64_t limit);
     /// Device bytes a bake of this size takes when every texel is covered.
     static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
 

@@ -1,9 +1,10 @@
 #include "bake/pair_solver.h"
 
+#include "assets/log.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -12,77 +13,87 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using shader::kChunk;
-using shader::kSuper;
+using shader::kRayCounters;
 using shader::kSuperBlocks;
 
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The first batch of a bake, before anything is measured: surely below 50 ms.
+// Traced by the first batch of a bake, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstUnits = 16;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
 constexpr double kMaxGrowth = 4.0;
-
-uint32_t superRows(uint32_t chunkCount) {
-    return (chunkCount + kSuper - 1) / kSuper;
-}
+// Of the free device memory, that the visibility cache takes unless told otherwise.
+constexpr uint64_t kCacheShare = 3;
 
 } // namespace
 
-uint64_t PairSolver::bytes(uint32_t chunkCount, bool software) {
-    const uint64_t rows = superRows(chunkCount);
-    return PairBuffers::bytes(rows * (rows + 1) / 2, software);
-}
-
-void PairSolver::checkPairs(const PatchSet& patches) {
-    const uint64_t rows = superRows(patches.chunkCount());
-    constexpr uint64_t kMaxRows = 5791; // whose units can still be numbered by 32 bits
-    if (rows > kMaxRows) {
-        const double fits =
-            patches.scene.size * std::sqrt(static_cast<double>(kMaxRows) / static_cast<double>(rows));
-        throw Error("pure method: the pairs of " + std::to_string(patches.count) +
-                    " patches are too many: --size " + std::to_string(static_cast<uint32_t>(fits) / 64 * 64) +
-                    " fits");
-    }
+uint64_t PairSolver::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
+    const bool list = settings.method != Method::Pure;
+    const uint64_t supers =
+        PairPlan::superBlocks({.rows = chunkCount, .columns = chunkCount, .symmetric = !list});
+    const uint64_t patches = uint64_t{chunkCount} * kChunk;
+    const uint64_t window = settings.method == Method::Adaptive ? 1 : settings.pairs.window;
+    constexpr uint64_t kSender =
+        sizeof(shader::Patch) + sizeof(shader::PatchEdges) + sizeof(shader::Sender) + sizeof(glm::vec4);
+    const uint64_t senders = list ? patches / (window * window) * kSender + patches * sizeof(uint32_t) : 0;
+    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1); // the host's copy
 }
 
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
-      settings_(settings), radiancePass_(device_), gatherPass_(device_, settings.transport.rtrad),
-      finishPass_(device_), commands_(device_), timestamps_(device_, 3) {
-    checkPairs(patches_);
-    const uint64_t rows = superRows(patches_.chunkCount());
-    pairs_ = PairBuffers(device_, rows * (rows + 1) / 2, settings.transport.rtrad);
-    rays_ = vk::Buffer(device_, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
+      settings_(settings), senders_(input, settings),
+      bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
+      gatherPass_(device_, senders_.kind(), settings.transport.rtrad), finishPass_(device_),
+      commands_(device_), timestamps_(device_, 3) {
+    makeCache();
+    const PairPlan::Desc most{.rows = patches_.chunkCount(),
+                              .columns = senders_.maxColumns(),
+                              .symmetric = senders_.kind() == SenderKind::Patches};
+    buffers_ = PairBuffers(device_, PairPlan::superBlocks(most), senders_.kind());
+    rays_ = vk::Buffer(device_, {.size = 2 * kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 
     // RTRad starts from the emission itself, lighting from nothing.
-    last_.assign(patches_.scene.patches.size(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    state_.light.assign(patches_.scene.patches.size(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     if (settings.transport.rtrad) {
-        for (size_t i = 0; i < last_.size(); ++i)
-            last_[i] = glm::vec4(glm::vec3(patches_.emission[i]), 1.0f);
+        for (size_t i = 0; i < state_.light.size(); ++i)
+            state_.light[i] = glm::vec4(glm::vec3(patches_.emission[i]), 1.0f);
     }
-    vk::upload(device_, light_.ligIn, last_.data(), LightBuffers::lightBytes(patches_));
-    vk::upload(device_, light_.ligOut, last_.data(), LightBuffers::lightBytes(patches_));
+    state_.threshold = settings_.pairs.threshold;
+    vk::upload(device_, light_.ligIn, state_.light.data(), LightBuffers::lightBytes(patches_));
+    vk::upload(device_, light_.ligOut, state_.light.data(), LightBuffers::lightBytes(patches_));
+}
+
+void PairSolver::makeCache() {
+    using Kind = CacheSettings::Kind;
+    const CacheSettings& wanted = settings_.cache;
+    if (wanted.kind == Kind::None || wanted.kind == Kind::Links || settings_.passes == 1) return;
+    const uint64_t slot = superBytes(bothEnds_);
+    const uint64_t limit = wanted.bytes > 0 ? wanted.bytes : device_.freeMemory() / kCacheShare;
+    if (limit < slot) {
+        spdlog::warn(
+            "visibility cache: {} bytes do not hold one super-block ({} KiB): everything is traced in "
+            "every pass",
+            limit, slot >> 10);
+        return;
+    }
+    const PairPlan::Desc most{.rows = patches_.chunkCount(),
+                              .columns = senders_.maxColumns(),
+                              .symmetric = senders_.kind() == SenderKind::Patches};
+    cache_ = std::make_unique<BitsCache>(
+        device_, BitsCache::Desc{.slotBytes = slot, .slots = PairPlan::superBlocks(most), .maxBytes = limit});
 }
 
 void PairSolver::step() {
     if (done_) return;
     const auto start = Clock::now();
-    if (!inPass_) beginPass();
-    const auto unitCount = static_cast<uint32_t>(supers_.size()) * kSuperBlocks;
-    if (nextUnit_ < unitCount) {
-        const double wanted = unitsPerMs_ > 0 ? unitsPerMs_ * settings_.batchMs : kFirstUnits;
-        // Bits of a super-block that is only partly traced stay until the rest has come.
-        const uint32_t room = nextUnit_ / kSuperBlocks * kSuperBlocks + pairs_.bitsUnits - nextUnit_;
-        const Portion portion = cutPortion(wanted, std::min(room, unitCount - nextUnit_));
-        const auto batchStart = Clock::now();
-        traceBatch(portion.units);
-        const double rate = std::max(1.0, portion.busy) / std::max(1e-3, 1000.0 * secondsSince(batchStart));
-        unitsPerMs_ = unitsPerMs_ > 0 ? std::min(rate, kMaxGrowth * unitsPerMs_) : rate;
-        progress_.passFraction = static_cast<double>(nextUnit_) / unitCount;
-    }
-    const bool passEnds = nextUnit_ >= unitCount;
+    if (!state_.inPass) beginPass();
+    Batch batch = cutBatch();
+    if (!batch.supers.empty()) run(batch);
+    if (plan_.unitCount() > 0)
+        progress_.passFraction = static_cast<double>(unitsDone_) / static_cast<double>(plan_.unitCount());
+    const bool passEnds = passDone();
     if (passEnds) endPass();
     progress_.seconds += secondsSince(start);
     if (passEnds) {
@@ -90,21 +101,6 @@ void PairSolver::step() {
             std::accumulate(progress_.passSeconds.begin(), progress_.passSeconds.end(), 0.0);
         progress_.passSeconds.push_back(progress_.seconds - before);
     }
-}
-
-// So many units that about `wanted` of them have a sender: the others cost next to nothing.
-PairSolver::Portion PairSolver::cutPortion(double wanted, uint32_t most) const {
-    Portion portion;
-    while (portion.units < most && portion.busy < wanted) {
-        const uint32_t unit = nextUnit_ + portion.units, left = kSuperBlocks - unit % kSuperBlocks;
-        const double share = busyShare_[unit / kSuperBlocks];
-        const double missing = std::max(1.0, std::ceil((wanted - portion.busy) / share));
-        const uint32_t take =
-            std::min(most - portion.units, static_cast<uint32_t>(std::min<double>(left, missing)));
-        portion.units += take;
-        portion.busy += take * share;
-    }
-    return portion;
 }
 
 void PairSolver::beginPass() {
@@ -116,75 +112,160 @@ void PairSolver::beginPass() {
     vk::hostBarrier(cmd);
     commands_.run();
 
-    // Pairs of super-rows in which somebody sends, row by row.
-    const auto sends = vk::readBuffer<uint32_t>(device_, light_.chunkSends, patches_.chunkCount());
-    const uint32_t rows = superRows(patches_.chunkCount());
-    std::vector<uint32_t> sending(rows, 0); // chunks of each row
-    for (uint32_t chunk = 0; chunk < sends.size(); ++chunk)
-        sending[chunk / kSuper] += sends[chunk] != 0;
-    supers_.clear();
-    busyShare_.clear();
-    for (uint32_t row = 0; row < rows; ++row) {
-        for (uint32_t column = row; column < rows; ++column) {
-            if (sending[row] + sending[column] == 0) continue;
-            supers_.push_back({row, column});
-            const double silent = static_cast<double>(kSuper - sending[row]) * (kSuper - sending[column]);
-            busyShare_.push_back(static_cast<float>(1.0 - silent / kSuperBlocks));
-        }
-    }
-    if (!supers_.empty())
-        vk::upload(device_, pairs_.supers, supers_.data(), supers_.size() * sizeof(SuperBlock));
-    nextUnit_ = 0;
-    inPass_ = true;
+    senders_.prepare(state_.light, state_.threshold);
+    if (cache_) keptRays_ *= cache_->forgetColumns(senders_.changed());
+    plan_ = PairPlan({.rows = patches_.chunkCount(),
+                      .columns = senders_.columns(),
+                      .symmetric = senders_.kind() == SenderKind::Patches},
+                     senders_.sends());
+    state_.inPass = true;
+    state_.row = state_.column = state_.unit = 0;
+    state_.ringTurn = 0;
+    unitsDone_ = unitsKnown_ = 0;
     progress_.passFraction = 0;
 }
 
-void PairSolver::traceBatch(uint32_t unitCount) {
-    const uint32_t chunkCount = patches_.chunkCount();
-    const uint32_t firstSuper = nextUnit_ / kSuperBlocks, endSuper = (nextUnit_ + unitCount) / kSuperBlocks;
-    OcclusionWork work{.supers = &pairs_.supers,
-                       .chunkSends = &light_.chunkSends,
-                       .firstUnit = nextUnit_,
-                       .unitCount = unitCount,
-                       .bits = &pairs_.bits,
-                       .bitsUnits = pairs_.bitsUnits,
-                       .rays = &rays_};
+void PairSolver::nextSuper() {
+    state_.unit = 0;
+    if (++state_.column < plan_.superColumns()) return;
+    ++state_.row;
+    state_.column = plan_.firstColumn(state_.row);
+}
+
+// Super-blocks in which nobody sends are left out.
+PairSolver::Batch PairSolver::cutBatch() {
+    Batch batch;
+    batch.firstUnit = state_.unit;
+    while (!passDone() && batch.supers.size() < buffers_.capacity && batch.cost < settings_.batchMs) {
+        const UnitMask units = plan_.units(state_.row, state_.column);
+        if (units.count() == 0) {
+            nextSuper();
+            continue;
+        }
+        if (!addSuper(batch, units)) break;
+        // One is enough to learn what gathering costs.
+        if (msPerGathered_ == 0.0) break;
+    }
+    return batch;
+}
+
+// Adds the current super-block; false when only a part of it fits.
+bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
+    BitsCache::Entry* entry = cache_ ? cache_->find(state_.row, state_.column) : nullptr;
+    if (!entry && !ring_.bits) ring_ = BitsRing(device_, buffers_.capacity, superBytes(bothEnds_));
+    const UnitMask known = entry ? entry->known : UnitMask{};
+    const uint64_t slot = state_.ringTurn % buffers_.capacity;
+    batch.supers.push_back({.row = state_.row,
+                            .column = state_.column,
+                            .bits = entry ? entry->address : ring_.address(slot),
+                            .known0 = known.lo,
+                            .known1 = known.hi,
+                            .counters = entry ? 0 : kRayCounters});
+    batch.bits.push_back(entry ? entry->host : ring_.host(slot));
+    batch.entries.push_back(entry);
+    const UnitMask left = UnitMask::range(state_.unit, kSuperBlocks);
+    const UnitMask todo = units.without(known).within(left);
+    const uint32_t end = unitsThatFit(batch, todo);
+    const UnitMask traced = todo.within(UnitMask::range(0, end));
+    batch.traced.push_back(traced);
+    batch.tracedUnits += traced.count();
+    batch.cost += traced.count() * msPerTraced_;
+    batch.endUnit = static_cast<uint32_t>(batch.supers.size() - 1) * kSuperBlocks + end;
+    if (end < kSuperBlocks) {
+        state_.unit = end;
+        return false;
+    }
+    unitsDone_ += units.count();
+    unitsKnown_ += units.within(known).count();
+    batch.gatheredUnits += units.count();
+    batch.cost += units.count() * msPerGathered_;
+    batch.pairs += plan_.pairs(state_.row, state_.column);
+    ++batch.complete;
+    if (!entry) ++state_.ringTurn;
+    nextSuper();
+    return true;
+}
+
+// Up to which unit of the super-block just added the batch goes; always some further.
+uint32_t PairSolver::unitsThatFit(const Batch& batch, const UnitMask& todo) const {
+    const double room =
+        msPerTraced_ > 0 ? (settings_.batchMs - batch.cost) / msPerTraced_ : kFirstUnits - batch.tracedUnits;
+    auto fits = static_cast<uint32_t>(std::clamp(room, batch.tracedUnits > 0 ? 0.0 : 1.0, 256.0));
+    if (todo.count() <= fits) return kSuperBlocks;
+    uint32_t unit = state_.unit;
+    for (; fits > 0; ++unit)
+        if (todo.has(unit)) --fits;
+    return unit;
+}
+
+void PairSolver::run(Batch& batch) {
     const auto start = Clock::now();
     VkCommandBuffer cmd = commands_.begin();
+    vkCmdUpdateBuffer(cmd, buffers_.supers.handle(), 0, batch.supers.size() * sizeof(SuperBlock),
+                      batch.supers.data());
+    vk::barrier(cmd);
     timestamps_.reset(cmd);
     timestamps_.mark(cmd, 0);
-    tracer_.occlusion(cmd, work);
-    if (pairs_.reversed) {
-        work.bits = &pairs_.reversed;
-        work.reversed = true;
-        tracer_.occlusion(cmd, work);
-    }
+    if (batch.tracedUnits > 0) trace(cmd, batch);
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
-    if (endSuper > firstSuper) {
-        gatherPass_.record(cmd, light_, pairs_, {firstSuper, endSuper - firstSuper}, settings_.transport);
+    if (batch.complete > 0) {
+        gatherPass_.record(cmd, {.light = light_,
+                                 .pairs = buffers_,
+                                 .senders = senders_.buffers(),
+                                 .superCount = batch.complete,
+                                 .window = senders_.skippedWindow(),
+                                 .size = patches_.scene.size,
+                                 .transport = settings_.transport});
         vk::barrier(cmd);
     }
     timestamps_.mark(cmd, 2);
     vk::hostBarrier(cmd);
     commands_.run();
-    nextUnit_ += unitCount;
-    progress_.traceSeconds += tracer_.onCpu() ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
-    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
-    for (uint32_t s = firstSuper; s < endSuper; ++s) {
-        const auto patchesOf = [&](uint32_t row) {
-            return uint64_t{std::min(kSuper, chunkCount - row * kSuper)} * kChunk;
-        };
-        const uint64_t pairs = patchesOf(supers_[s].row) * patchesOf(supers_[s].column);
-        progress_.pairs += supers_[s].row == supers_[s].column ? pairs : 2 * pairs;
-    }
+    for (size_t s = 0; s < batch.supers.size(); ++s)
+        if (batch.entries[s]) batch.entries[s]->known = batch.entries[s]->known.with(batch.traced[s]);
+    const double traced = tracer_.onCpu() ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
+    const double gathered = 1e-3 * timestamps_.milliseconds(1, 2);
+    progress_.traceSeconds += batch.tracedUnits > 0 ? traced : 0.0;
+    progress_.gatherSeconds += gathered;
+    progress_.pairs += batch.pairs;
+    // What both do not account for goes with them: the submit itself.
+    const double wall = secondsSince(start), scale = wall / std::max(1e-9, traced + gathered);
+    learn(batch, 1000.0 * traced * scale, 1000.0 * gathered * scale);
+}
+
+void PairSolver::trace(VkCommandBuffer cmd, const Batch& batch) {
+    OcclusionWork work{.supers = batch.supers,
+                       .superBuffer = &buffers_.supers,
+                       .bits = batch.bits,
+                       .firstUnit = batch.firstUnit,
+                       .unitCount = batch.endUnit - batch.firstUnit,
+                       .sends = &senders_.sendsBuffer(),
+                       .senders = senders_.runs(),
+                       .rays = &rays_};
+    tracer_.occlusion(cmd, work);
+    if (!bothEnds_) return;
+    work.reversed = true;
+    tracer_.occlusion(cmd, work);
+}
+
+void PairSolver::learn(const Batch& batch, double traceMs, double gatherMs) {
+    const auto update = [](double& known, double measured) {
+        known = known > 0 ? std::max(measured, known / kMaxGrowth) : measured;
+    };
+    constexpr double kLeast = 1e-6; // [ms], so that 0 stays "unknown"
+    if (batch.tracedUnits > 0) update(msPerTraced_, std::max(kLeast, traceMs / batch.tracedUnits));
+    if (batch.gatheredUnits > 0) update(msPerGathered_, std::max(kLeast, gatherMs / batch.gatheredUnits));
+}
+
+uint64_t PairSolver::countedRays(uint32_t half) {
+    const auto counters = vk::readBuffer<uint32_t>(device_, rays_, kRayCounters, size_t{half} * kRayCounters);
+    return std::accumulate(counters.begin(), counters.end(), uint64_t{0});
 }
 
 uint64_t PairSolver::raysSoFar() {
-    if (!inPass_) return progress_.rays;
-    const auto counters = vk::readBuffer<uint32_t>(device_, rays_, shader::kRayCounters);
-    return std::accumulate(counters.begin(), counters.end(), progress_.rays);
+    return state_.inPass ? progress_.rays + countedRays(0) + countedRays(1) : progress_.rays;
 }
 
 void PairSolver::endPass() {
@@ -194,11 +275,17 @@ void PairSolver::endPass() {
     vk::hostBarrier(cmd);
     commands_.run();
     progress_.rays = raysSoFar();
-    ++progress_.passes;
+    if (unitsKnown_ > 0) progress_.raysSaved += static_cast<uint64_t>(keptRays_);
+    keptRays_ += static_cast<double>(countedRays(0));
+    progress_.cacheBytes = cache_ ? cache_->bytes() : 0;
+    progress_.cachedShare =
+        unitsDone_ > 0 ? static_cast<double>(unitsKnown_) / static_cast<double>(unitsDone_) : 0.0;
+    progress_.passes = ++state_.passes;
     progress_.passFraction = 0;
     measureChange(vk::readBuffer<glm::vec4>(device_, light_.ligOut, patches_.scene.patches.size()));
     std::swap(light_.ligIn, light_.ligOut);
-    inPass_ = false;
+    state_.threshold *= settings_.pairs.thresholdRamp;
+    state_.inPass = false;
 
     progress_.converged = settings_.error > 0 && progress_.passes >= 2 && progress_.error <= settings_.error;
     const bool allPasses = settings_.passes > 0 && progress_.passes >= settings_.passes;
@@ -213,25 +300,25 @@ void PairSolver::measureChange(const std::vector<glm::vec4>& now) {
     for (size_t i = 0; i < patches_.count; ++i) {
         const uint32_t flags = patches_.scene.patches[i].flags;
         if ((flags & shader::kPatchSends) == 0 || (flags & shader::kPatchBackSide) != 0) continue;
-        const glm::dvec3 change = glm::dvec3(now[i]) - glm::dvec3(last_[i]);
+        const glm::dvec3 change = glm::dvec3(now[i]) - glm::dvec3(state_.light[i]);
         squares += glm::dot(change, change);
         sum += double{now[i].r} + now[i].g + now[i].b;
         count += 3;
     }
-    const std::vector<glm::vec4> before = std::exchange(last_, now);
+    const std::vector<glm::vec4> before = std::exchange(state_.light, now);
     const double change = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
     const double mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
     if (change == 0.0 || mean <= 0.0) {
         progress_.error = 0.0;
-    } else if (lastChange_ > 0.0) {
-        const double q = change / lastChange_;
+    } else if (state_.lastChange > 0.0) {
+        const double q = change / state_.lastChange;
         progress_.error = q < 1.0 ? change * q / (1.0 - q) / mean : 1.0;
         const auto left = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
         errors_.resize(now.size());
         for (size_t i = 0; i < now.size(); ++i)
             errors_[i] = left * glm::length(glm::vec3(now[i] - before[i])) / std::sqrt(3.0f);
     }
-    lastChange_ = change;
+    state_.lastChange = change;
 }
 
 } // namespace relume

@@ -1,13 +1,29 @@
 #pragma once
 
+#include "bake/bits_cache.h"
+#include "bake/pair_plan.h"
+#include "bake/pair_senders.h"
 #include "bake/solver.h"
 #include "bake/vk/commands.h"
 
 namespace relume {
 
+/// Where a pair method stands; with ligOut all that a bake needs to go on at a super-block's border.
+struct PairState {
+    uint32_t passes = 0;          // finished
+    bool inPass = false;          // then:
+    uint32_t row = 0, column = 0; // the next super-block
+    uint32_t unit = 0;            // of it, the next one to be traced; 0 at its border
+    uint64_t ringTurn = 0;        // super-blocks of the pass that were not kept
+    double lastChange = 0;        // RMS [cd/m^2] of the last pass
+    double threshold = 0;         // of the quad-tree in this pass
+    std::vector<glm::vec4> light; // ligIn: of the last finished pass
+};
+
 /// The pair methods. A pass gathers every patch's light from all senders and adds one bounce; ligIn and
-/// ligOut swap between passes. Visibility of a pair is traced once per pass and serves both ends. Sums run
-/// over super-blocks of 1024 x 1024 pairs in a fixed order.
+/// ligOut swap between passes. Where the patches themselves send, visibility of a pair is traced once and
+/// serves both ends. Bits may be kept for later passes. Sums run over super-blocks of 1024 x 1024 pairs in a
+/// fixed order.
 class PairSolver final : public Solver {
 public:
     /// Throws Error.
@@ -15,43 +31,59 @@ public:
 
     void step() override;
     uint64_t raysSoFar() override; // asks the device
-    const std::vector<glm::vec4>& light() override { return last_; }
+    const std::vector<glm::vec4>& light() override { return state_.light; }
     std::vector<float> errors() override { return errors_; }
 
-    /// Throws Error, with the size that fits, when there are more pairs than can be numbered.
-    static void checkPairs(const PatchSet& patches);
-    static uint64_t bytes(uint32_t chunkCount, bool software);
+    static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 
 private:
-    struct Portion {
-        uint32_t units = 0;
-        double busy = 0; // of these have a sender, about
+    /// Consecutive super-blocks: the first may be traced in part already, the last may stay in part.
+    struct Batch {
+        std::vector<SuperBlock> supers;
+        std::vector<uint32_t*> bits;
+        std::vector<BitsCache::Entry*> entries; // null: not kept
+        std::vector<UnitMask> traced;
+        uint32_t firstUnit = 0, endUnit = 0; // of the first and, plus 256 each, of the last super-block
+        uint32_t complete = 0;               // super-blocks to gather
+        double tracedUnits = 0, gatheredUnits = 0;
+        uint64_t pairs = 0;
+        double cost = 0; // expected [ms]
     };
+    void makeCache();
     void beginPass();
-    Portion cutPortion(double wanted, uint32_t most) const;
-    void traceBatch(uint32_t unitCount);
+    Batch cutBatch();
+    bool addSuper(Batch& batch, const UnitMask& units);
+    uint32_t unitsThatFit(const Batch& batch, const UnitMask& todo) const;
+    void nextSuper();
+    void run(Batch& batch);
+    void trace(VkCommandBuffer cmd, const Batch& batch);
+    void learn(const Batch& batch, double traceMs, double gatherMs);
     void endPass();
     void measureChange(const std::vector<glm::vec4>& now);
+    bool passDone() const { return state_.row >= plan_.superRows(); }
+    uint64_t countedRays(uint32_t half);
 
     const vk::Device& device_;
     const PatchSet& patches_;
     LightBuffers& light_;
     Tracer& tracer_;
     SolverSettings settings_;
+    PairSenders senders_;
+    bool bothEnds_; // RTRad's pairs of patches are traced from either end
     RadiancePass radiancePass_;
     GatherPass gatherPass_;
     FinishPass finishPass_;
     vk::Commands commands_;
     vk::Timestamps timestamps_;
-    PairBuffers pairs_;
+    PairBuffers buffers_;
+    BitsRing ring_; // made when it is needed
+    std::unique_ptr<BitsCache> cache_;
     vk::Buffer rays_;
-    std::vector<SuperBlock> supers_; // of the current pass
-    std::vector<float> busyShare_;   // of each one: units in which somebody sends, > 0
-    bool inPass_ = false;
-    uint32_t nextUnit_ = 0; // of supers_, in units
-    double unitsPerMs_ = 0; // with senders, measured; 0: nothing yet
-    double lastChange_ = 0; // RMS [cd/m^2] of the last pass
-    std::vector<glm::vec4> last_;
+    PairPlan plan_;
+    PairState state_;
+    double msPerTraced_ = 0, msPerGathered_ = 0; // unit, measured; 0: nothing yet
+    uint64_t unitsDone_ = 0, unitsKnown_ = 0;    // of the current pass; of these bits that were kept
+    double keptRays_ = 0;                        // that the bits in the cache took
     std::vector<float> errors_; // of each patch, by what the last pass changed
 };
 

@@ -7,8 +7,6 @@
 namespace relume {
 namespace {
 
-constexpr VkDeviceSize kBitsBytes =
-    VkDeviceSize{shader::kSuperBlocks} * shader::kBlockWords * sizeof(uint32_t);
 constexpr VkDeviceSize kPartialBytes = VkDeviceSize{2} * shader::kSuperPatches * sizeof(glm::vec4);
 
 // Super-blocks whose bits fit at once: 64 MiB and their transposes on a GPU, enough to fill it for 20 ms; a
@@ -28,20 +26,28 @@ void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, cons
 
 } // namespace
 
-PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, bool rtrad) {
+PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, SenderKind kind) {
     // One more than there are: a batch may end within a super-block and begin within another.
     const uint64_t slots = std::min(superCapacity(device.info().software()), superCount + 1);
-    bitsUnits = static_cast<uint32_t>(slots) * shader::kSuperBlocks;
-    supers = vk::Buffer(device, {.size = superCount * sizeof(SuperBlock), .name = "super-blocks"});
-    bits = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits"});
-    if (rtrad)
-        reversed = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits, reversed"});
-    transposed = vk::Buffer(device, {.size = slots * kBitsBytes, .name = "visibility bits, transposed"});
+    capacity = static_cast<uint32_t>(slots);
+    supers = vk::Buffer(device, {.size = slots * sizeof(SuperBlock), .name = "super-blocks"});
+    if (kind == SenderKind::Patches)
+        transposed =
+            vk::Buffer(device, {.size = slots * superBytes(false), .name = "visibility bits, transposed"});
     partial = vk::Buffer(device, {.size = slots * kPartialBytes, .name = "partial sums"});
 }
 
 uint64_t PairBuffers::bytes(uint64_t superCount, bool software) {
-    return superCount * sizeof(SuperBlock) + superCapacity(software) * (3 * kBitsBytes + kPartialBytes);
+    return std::min(superCapacity(software), superCount + 1) *
+           (sizeof(SuperBlock) + superBytes(false) + superBytes(true) + kPartialBytes);
+}
+
+BitsRing::BitsRing(const vk::Device& device, uint32_t slots, uint64_t bytes)
+    : bits(device, {.size = slots * bytes, .name = "visibility bits"}), slotBytes(bytes) {}
+
+uint32_t* BitsRing::host(uint64_t slot) const {
+    return bits.mapped() ? static_cast<uint32_t*>(bits.mapped()) + slot * slotBytes / sizeof(uint32_t)
+                         : nullptr;
 }
 
 void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
@@ -60,48 +66,56 @@ void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
     dispatchChunks(program_, cmd, push, light.chunkCount);
 }
 
-// Staging senders in shared memory pays on GPUs (1.5x) and costs 3x on a software device.
-GatherPass::GatherPass(const vk::Device& device, bool rtrad)
-    : transpose_(device, "transpose"),
-      gather_(device, "gather", {device.info().software() ? 0u : 1u, rtrad ? 1u : 0u}),
+GatherPass::GatherPass(const vk::Device& device, SenderKind kind, bool rtrad)
+    : kind_(kind), transpose_(device, "transpose"),
+      gather_(device, device.info().software() ? "gather_software" : "gather",
+              {rtrad ? 1u : 0u, static_cast<uint32_t>(kind)}),
       reduce_(device, "reduce") {}
 
-void GatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const PairBuffers& pairs,
-                        const SuperRange& range, const TransportSettings& settings) const {
-    const shader::TransposePush transpose{.supers = pairs.supers.address(),
-                                          .bits = pairs.bits.address(),
-                                          .reversed =
-                                              (pairs.reversed ? pairs.reversed : pairs.bits).address(),
-                                          .transposed = pairs.transposed.address(),
-                                          .firstSuper = range.first,
-                                          .bitsUnits = pairs.bitsUnits,
-                                          .chunkCount = light.chunkCount};
-    transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, range.count);
+shader::GatherPush GatherPass::push(const Desc& desc) const {
+    const LightBuffers& light = desc.light;
+    const SenderBuffers* list = desc.senders;
+    const bool own = kind_ != SenderKind::List; // senders are patches
+    return {.supers = desc.pairs.supers.address(),
+            .sends = (list ? list->sends : light.chunkSends).address(),
+            .transposed = list ? 0 : desc.pairs.transposed.address(),
+            .patches = light.patches.address(),
+            .bounds = light.bounds.address(),
+            .senderPatches = (own ? light.patches : list->patches).address(),
+            .senderEdges = (own ? light.edges : list->edges).address(),
+            .senderBounds = (list ? list->bounds : light.bounds).address(),
+            .radiance = (own ? light.radiance : list->radiance).address(),
+            .senders = list ? list->senders.address() : 0,
+            .members = list ? list->members.address() : 0,
+            .albedo = light.albedo.address(),
+            .partial = desc.pairs.partial.address(),
+            .rowCount = light.chunkCount,
+            .columnCount = list ? list->chunkCount : light.chunkCount,
+            .reflectivity = desc.transport.reflectivity,
+            .distanceFactor = desc.transport.distanceFactor,
+            .window = desc.window,
+            .size = desc.size};
+}
+
+void GatherPass::record(VkCommandBuffer cmd, const Desc& desc) const {
+    const bool symmetric = kind_ == SenderKind::Patches;
+    if (symmetric) {
+        const shader::TransposePush transpose{.supers = desc.pairs.supers.address(),
+                                              .transposed = desc.pairs.transposed.address(),
+                                              .chunkCount = desc.light.chunkCount,
+                                              .reversed = desc.transport.rtrad ? 1u : 0u};
+        transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, desc.superCount);
+        vk::barrier(cmd);
+    }
+    gather_.dispatch(cmd, push(desc), (symmetric ? 2 : 1) * shader::kSuper, desc.superCount);
     vk::barrier(cmd);
-    const shader::GatherPush gather{.supers = pairs.supers.address(),
-                                    .chunkSends = light.chunkSends.address(),
-                                    .bits = pairs.bits.address(),
-                                    .transposed = pairs.transposed.address(),
-                                    .patches = light.patches.address(),
-                                    .edges = light.edges.address(),
-                                    .bounds = light.bounds.address(),
-                                    .radiance = light.radiance.address(),
-                                    .albedo = light.albedo.address(),
-                                    .partial = pairs.partial.address(),
-                                    .firstSuper = range.first,
-                                    .bitsUnits = pairs.bitsUnits,
-                                    .chunkCount = light.chunkCount,
-                                    .reflectivity = settings.reflectivity,
-                                    .distanceFactor = settings.distanceFactor};
-    gather_.dispatch(cmd, gather, 2 * shader::kSuper, range.count);
-    vk::barrier(cmd);
-    const shader::ReducePush reduce{.supers = pairs.supers.address(),
-                                    .partial = pairs.partial.address(),
-                                    .ligOut = light.ligOut.address(),
-                                    .firstSuper = range.first,
-                                    .superCount = range.count,
-                                    .patchCount = light.chunkCount * shader::kChunk};
-    dispatchChunks(reduce_, cmd, reduce, light.chunkCount);
+    const shader::ReducePush reduce{.supers = desc.pairs.supers.address(),
+                                    .partial = desc.pairs.partial.address(),
+                                    .ligOut = desc.light.ligOut.address(),
+                                    .superCount = desc.superCount,
+                                    .patchCount = desc.light.chunkCount * shader::kChunk,
+                                    .symmetric = symmetric ? 1u : 0u};
+    dispatchChunks(reduce_, cmd, reduce, desc.light.chunkCount);
 }
 
 void FinishPass::record(VkCommandBuffer cmd, const LightBuffers& light, bool rtrad) const {

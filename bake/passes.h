@@ -15,26 +15,50 @@ struct TransportSettings {
     bool reflectedOnly = false;  // what patches send is without their emission, which is sampled by itself
 };
 
-/// Buffers of one batch of super-blocks. Slot of a unit: unit % bitsUnits (see OcclusionWork).
-struct PairBuffers {
-    vk::Buffer supers;     // SuperBlock, the pass's list
-    vk::Buffer bits;       // kBlockWords words per unit
-    vk::Buffer reversed;   // the same, traced from the other end; empty where both ends agree (always but in
-                           // the preset)
-    vk::Buffer transposed; // seen from the other side
-    vk::Buffer partial;    // vec4[2 * kSuperPatches] per super-block of the batch
-    uint32_t bitsUnits = 0;
-
-    PairBuffers() = default;
-    /// For a list of superCount super-blocks and as many per batch as pay on the device.
-    PairBuffers(const vk::Device& device, uint64_t superCount, bool rtrad);
-    uint32_t capacity() const { return bitsUnits / shader::kSuperBlocks; } // super-blocks per batch
-    static uint64_t bytes(uint64_t superCount, bool software);             // at most
+/// What senders the pairs are made with.
+enum class SenderKind : uint32_t {
+    Patches, // the patches themselves; each pair is traced once and serves both ends
+    List,    // a sender list
+    Drawn,   // a list, a patch of each sender drawn by each chunk of receivers
 };
 
-/// Consecutive super-blocks of the list.
-struct SuperRange {
-    uint32_t first = 0, count = 0;
+/// Buffers of one batch of super-blocks.
+struct PairBuffers {
+    vk::Buffer supers;     // SuperBlock, the batch's table
+    vk::Buffer transposed; // bits seen from the other side; patches as senders only
+    vk::Buffer partial;    // vec4[2 * kSuperPatches] per super-block
+    uint32_t capacity = 0; // super-blocks per batch
+
+    PairBuffers() = default;
+    /// For superCount super-blocks and as many per batch as pay on the device.
+    PairBuffers(const vk::Device& device, uint64_t superCount, SenderKind kind);
+    static uint64_t bytes(uint64_t superCount, bool software); // at most, with BitsRing's
+};
+
+/// Bits that are kept until they are gathered: super-blocks take turns.
+struct BitsRing {
+    vk::Buffer bits;
+    uint64_t slotBytes = 0;
+
+    BitsRing() = default;
+    BitsRing(const vk::Device& device, uint32_t slots, uint64_t slotBytes);
+    VkDeviceAddress address(uint64_t slot) const { return bits.address() + slot * slotBytes; }
+    uint32_t* host(uint64_t slot) const; // nullptr where the host cannot see it
+};
+
+/// Bits of a super-block [bytes]; bothEnds: with those traced from the other end.
+constexpr uint64_t superBytes(bool bothEnds) {
+    return uint64_t{shader::kSuperWords} * sizeof(uint32_t) * (bothEnds ? 2 : 1);
+}
+
+/// The senders of a list, and what they send, as the gather reads them.
+struct SenderBuffers {
+    vk::Buffer senders,
+        members; // shader::Sender, uint32_t; for tracers senders are one patch each unless drawn
+    vk::Buffer patches, edges, bounds;
+    vk::Buffer radiance; // vec4 per sender
+    vk::Buffer sends;    // uint32_t per chunk
+    uint32_t chunkCount = 0;
 };
 
 /// Forms what each patch sends and notes which chunks send at all. Reads ligIn.
@@ -47,16 +71,26 @@ private:
     vk::ComputeProgram program_;
 };
 
-/// RTL, second half: transposes the bits of some super-blocks, gathers both sides and adds the sums
-/// to ligOut in the list's order. Reads bits, patches and radiance. Barriers between its three
-/// dispatches are its own, those around it the caller's.
+/// RTL, second half: gathers some super-blocks and adds the sums to ligOut in the table's order. Reads bits,
+/// patches and radiance. Barriers between its dispatches are its own, those around it the caller's.
 class GatherPass {
 public:
-    GatherPass(const vk::Device& device, bool rtrad);
-    void record(VkCommandBuffer cmd, const LightBuffers& light, const PairBuffers& pairs,
-                const SuperRange& range, const TransportSettings& settings) const;
+    GatherPass(const vk::Device& device, SenderKind kind, bool rtrad);
+    struct Desc {
+        const LightBuffers& light;
+        const PairBuffers& pairs;
+        const SenderBuffers* senders = nullptr; // where there is a list
+        uint32_t superCount = 0;                // of the table
+        uint32_t window = 1;                    // RTRad: senders within it are skipped [texels]
+        uint32_t size = 0;                      // lightmap edge [texels]
+        const TransportSettings& transport;
+    };
+    void record(VkCommandBuffer cmd, const Desc& desc) const;
 
 private:
+    shader::GatherPush push(const Desc& desc) const;
+
+    SenderKind kind_;
     vk::ComputeProgram transpose_, gather_, reduce_;
 };
 

@@ -14,8 +14,11 @@ using glm::uint;
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/emitters.glsl"
+#include "shaders/lib/units.glsl"
 
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
+static_assert(sizeof(SuperBlock) == 56 && sizeof(Sender) == 12);
+static_assert(sizeof(OcclusionPush) <= 128 && sizeof(GatherPush) <= 128); // what every device takes
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
 static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);

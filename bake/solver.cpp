@@ -52,7 +52,7 @@ std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSetting
 
 uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
     if (!isPairMethod(settings.method)) return LinkBuffers::bytes(chunkCount, software, settings);
-    return PairSolver::bytes(chunkCount, software);
+    return PairSolver::bytes(chunkCount, software, settings);
 }
 
 } // namespace relume

@@ -1,22 +1,24 @@
-// RTL, second half: the light that the patches of one super-row receive from those of another, one partial sum per
+// RTL, second half: the light that the patches of one super-row receive from the senders of another, one partial sum per
 // super-block, side and receiver. One workgroup per (super-block, side, receiving chunk), one invocation per receiver.
 // Senders are taken chunk by chunk in ascending order: the order of the sum never depends on how work was cut.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef SOFTWARE
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 #include "lib/preamble.glsl"
 #include "lib/form_factor.glsl"
+#include "lib/supers.glsl"
+#include "lib/senders.glsl"
 layout(push_constant, scalar) uniform Push { GatherPush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EdgeList { PatchEdges items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BoundsList { ChunkBounds items[]; };
 
-layout(constant_id = 0) const uint kShared = 1; // 1: senders staged in shared memory (GPUs); 0: not (software devices)
-layout(constant_id = 1) const uint kRtrad = 0;  // 1: RTRad's form factor and its clamp of every addend
+layout(constant_id = 0) const uint kRtrad = 0;   // 1: RTRad's form factor and its clamp of every addend
+layout(constant_id = 1) const uint kSenders = 0; // 0: the patches themselves, both ways; 1: a list; 2: drawn from a list
+const uint kSymmetric = 0u, kDrawn = 2u;
 
 layout(local_size_x = 64) in;
-
-shared vec4 sharedPosition[kChunk]; // w: area
-shared vec4 sharedNormal[kChunk];
-shared vec4 sharedRadiance[kChunk];
 
 const float kPi = 3.14159265358979;
 // Pairs nearer than this many patch sizes (sqrt of the area) take the exact form factor: beyond, the disc form is
@@ -24,122 +26,157 @@ const float kPi = 3.14159265358979;
 const float kClose = 4.0;
 const float kRtradClamp = 0.05;
 
-struct Sender {
+struct Source {
     vec3 position;
     float area;
     vec3 normal;
-    vec4 radiance;
+    uint texel;
+    vec4 radiance; // of all patches that it stands for
+    uint index;    // of its edges
 };
 
-Sender loadSender(uint chunk, uint j) {
-    Sender s;
-    if (kShared != 0u) {
-        s.position = sharedPosition[j].xyz;
-        s.area = sharedPosition[j].w;
-        s.normal = sharedNormal[j].xyz;
-        s.radiance = sharedRadiance[j];
-    } else {
-        Rows rows = Rows(push.patches);
-        uint index = (chunk * kChunk + j);
-        vec4 a = uintBitsToFloat(rows.items[index * 3u]), b = uintBitsToFloat(rows.items[index * 3u + 1u]);
-        s.position = a.xyz;
-        s.normal = b.xyz;
-        s.area = b.w;
-        s.radiance = Vec4s(push.radiance).items[index];
+Source loadSource(uint index, uint rowKey) {
+    Source s;
+    s.index = index;
+    float count = 1.0;
+    if (kSenders == kDrawn) {
+        s.index = drawnMember(push.senders, push.members, index, rowKey);
+        count = float(SenderRuns(push.senders).items[index].count);
+        if (s.index == kNoPatch) return Source(vec3(0.0), 0.0, vec3(0.0), 0u, vec4(0.0), 0u);
     }
+    Rows rows = Rows(push.senderPatches);
+    vec4 a = uintBitsToFloat(rows.items[s.index * 3u]), b = uintBitsToFloat(rows.items[s.index * 3u + 1u]);
+    s.position = a.xyz;
+    s.normal = b.xyz;
+    s.area = b.w;
+    s.texel = kRtrad != 0u ? rows.items[s.index * 3u + 2u].w >> 8u : 0u;
+    s.radiance = count * Vec4s(push.radiance).items[s.index];
     return s;
-}
-
-void stageSenders(uint chunk) {
-    if (kShared != 0u) {
-        uint lane = gl_LocalInvocationID.x;
-        Patch p = loadPatch(push.patches, chunk * kChunk + lane);
-        vec4 radiance = Vec4s(push.radiance).items[chunk * kChunk + lane];
-        barrier();
-        sharedPosition[lane] = vec4(p.position, p.area);
-        sharedNormal[lane] = vec4(p.normal, 0.0);
-        sharedRadiance[lane] = radiance;
-        barrier();
-    }
 }
 
 // Disc form A cos cos / (pi r^2 + A) with unnormalised cosines; the bit says that both are positive, but the receiver's
 // shading normal may disagree with its geometric one.
-float farFactor(Patch receiver, Sender s) {
+float farFactor(Patch receiver, Source s) {
     vec3 d = s.position - receiver.position;
     float r2 = dot(d, d);
     float cosines = max(dot(d, receiver.shading), 0.0) * -dot(d, s.normal);
     return cosines * s.area / (r2 * (kPi * r2 + s.area));
 }
 
-float closeFactor(Patch receiver, Sender s, uint index) {
+float closeFactor(Patch receiver, Source s) {
     vec3 d = s.position - receiver.position;
     if (dot(d, d) > kClose * kClose * s.area) return farFactor(receiver, s);
-    PatchEdges e = EdgeList(push.edges).items[index];
+    PatchEdges e = EdgeList(push.senderEdges).items[s.index];
     return parallelogramFormFactor(receiver.position, receiver.shading, s.position, e.du, e.dv, s.normal);
 }
 
-// RTRad: rgb and the weight in a count as one vector, shortened to 0.05.
-vec4 rtradAddend(Patch receiver, vec3 albedo, Sender s) {
-    float f = rtradFormFactor(receiver.position, receiver.shading, s.position, s.normal, s.area, push.distanceFactor);
-    vec4 addend = s.radiance.a * s.radiance * vec4(albedo, 1.0) * (push.reflectivity * f);
-    float size = length(addend);
-    return size > kRtradClamp ? addend * (kRtradClamp / size) : addend;
+// RTRad leaves out samples that lie within a window to the right of and below the receiver.
+bool inOwnWindow(Patch receiver, Source s) {
+    uint texel = receiver.flags >> 8u;
+    uvec2 d = uvec2(s.texel % push.size, s.texel / push.size) - uvec2(texel % push.size, texel / push.size);
+    return d.x < push.window && d.y < push.window; // what lies to the left or above wraps around
 }
 
-bool chunksClose(uint a, uint b) {
-    ChunkBounds p = BoundsList(push.bounds).items[a], q = BoundsList(push.bounds).items[b];
+// RTRad: rgb and the weight in a count as one vector, shortened to 0.05.
+vec4 rtradAddend(Patch receiver, vec3 albedo, Source s) {
+    float f = rtradFormFactor(receiver.position, receiver.shading, s.position, s.normal, s.area, push.distanceFactor);
+    vec4 addend = s.radiance * vec4(albedo, 1.0) * (push.reflectivity * f);
+    float size = length(addend);
+    if (size > kRtradClamp) addend *= kRtradClamp / size;
+    return inOwnWindow(receiver, s) ? vec4(0.0) : addend;
+}
+
+bool chunksClose(uint receivers, uint senders) {
+    ChunkBounds p = BoundsList(push.bounds).items[receivers], q = BoundsList(push.senderBounds).items[senders];
     vec3 gap = max(max(q.lo - p.hi, p.lo - q.hi), vec3(0.0));
     return dot(gap, gap) <= kClose * kClose * q.size * q.size;
 }
 
-bool seen(uvec2 mask, uint j) { return (((j < 32u ? mask.x : mask.y) >> (j & 31u)) & 1u) != 0u; }
+#ifdef SOFTWARE
+// Senders straight from memory, by an index that is the same for all lanes: one load serves them all. Those that none of
+// the lanes sees are left out. (Staged in shared memory they would cost 3 times as much.)
+vec4 gatherWord(uint first, uint mine, Patch receiver, vec3 albedo, uint rowKey, bool close) {
+    vec4 sum = vec4(0.0);
+    uint any = subgroupOr(mine);
+    // Two loops, one of them empty: a loop that ends at once is cheap, a branch inside one is not.
+    uint closeOnes = close || kRtrad != 0u ? any : 0u, farOnes = any & ~closeOnes;
+    while (closeOnes != 0u) {
+        int j = findLSB(closeOnes);
+        closeOnes &= closeOnes - 1u;
+        if (((mine >> j) & 1u) == 0u) continue;
+        Source s = loadSource(first + uint(j), rowKey);
+        if (kRtrad != 0u) sum += rtradAddend(receiver, albedo, s);
+        else sum.rgb += s.radiance.rgb * closeFactor(receiver, s);
+    }
+    while (farOnes != 0u) {
+        int j = findLSB(farOnes);
+        farOnes &= farOnes - 1u;
+        Source s = loadSource(first + uint(j), rowKey);
+        float f = farFactor(receiver, s);
+        sum.rgb += s.radiance.rgb * (((mine >> j) & 1u) != 0u ? f : 0.0);
+    }
+    return sum;
+}
+
+vec4 gatherChunk(uint chunk, uvec2 mask, Patch receiver, vec3 albedo, uint rowKey, bool close) {
+    vec4 sum = gatherWord(chunk * kChunk, mask.x, receiver, albedo, rowKey, close);
+    return sum + gatherWord(chunk * kChunk + 32u, mask.y, receiver, albedo, rowKey, close);
+}
+#else
+shared Source staged[kChunk];
+
+// Each lane loads one sender for all.
+vec4 gatherChunk(uint chunk, uvec2 mask, Patch receiver, vec3 albedo, uint rowKey, bool close) {
+    uint lane = gl_LocalInvocationID.x;
+    Source own = loadSource(chunk * kChunk + lane, rowKey);
+    barrier();
+    staged[lane] = own;
+    barrier();
+    vec4 sum = vec4(0.0);
+    uint count = (mask.x | mask.y) != 0u ? kChunk : 0u;
+    uint closeCount = close || kRtrad != 0u ? count : 0u, farCount = count - closeCount;
+    for (uint j = 0u; j < closeCount; ++j) {
+        if ((((j < 32u ? mask.x : mask.y) >> (j & 31u)) & 1u) == 0u) continue;
+        Source s = staged[j];
+        if (kRtrad != 0u) sum += rtradAddend(receiver, albedo, s);
+        else sum.rgb += s.radiance.rgb * closeFactor(receiver, s);
+    }
+    for (uint j = 0u; j < farCount; ++j) {
+        Source s = staged[j];
+        float f = farFactor(receiver, s);
+        sum.rgb += s.radiance.rgb * ((((j < 32u ? mask.x : mask.y) >> (j & 31u)) & 1u) != 0u ? f : 0.0);
+    }
+    return sum;
+}
+#endif
+
+// Where the bits of a unit stand for this side's receivers: as traced, or transposed.
+uvec2 loadMask(SuperBlock super, uint r, uint c, bool direct) {
+    uint word = (direct ? r * kSuper + c : c * kSuper + r) * kBlockWords + gl_LocalInvocationID.x * 2u;
+    if (!direct) word += gl_WorkGroupID.y * kSuperWords;
+    Words bits = direct ? Words(super.bits) : Words(push.transposed);
+    return uvec2(bits.items[word], bits.items[word + 1u]);
+}
 
 void main() {
     uint lane = gl_LocalInvocationID.x;
-    uint super = push.firstSuper + gl_WorkGroupID.y;
+    SuperBlock super = loadSuper(push.supers, gl_WorkGroupID.y);
     uint side = gl_WorkGroupID.x / kSuper, r = gl_WorkGroupID.x % kSuper;
-    uvec2 pair = UVec2s(push.supers).items[super];
-    uint receiverSuper = side == 0u ? pair.x : pair.y, senderSuper = side == 0u ? pair.y : pair.x;
+    uint receiverSuper = side == 0u ? super.row : super.column, senderSuper = side == 0u ? super.column : super.row;
     uint receiverChunk = receiverSuper * kSuper + r;
-    if (receiverChunk >= push.chunkCount || (side == 1u && pair.x == pair.y)) return;
+    if (receiverChunk >= push.rowCount || (side == 1u && super.row == super.column)) return;
 
     Patch receiver = loadPatch(push.patches, receiverChunk * kChunk + lane);
+    uint rowKey = kSenders == kDrawn ? chunkKey(push.patches, receiverChunk) : 0u;
     vec3 albedo = vec3(0.0);
     if (kRtrad != 0u) albedo = Vec4s(push.albedo).items[receiverChunk * kChunk + lane].rgb;
     vec4 sum = vec4(0.0);
     for (uint c = 0u; c < kSuper; ++c) {
         uint chunk = senderSuper * kSuper + c;
-        if (chunk >= push.chunkCount) break;
-        if (Words(push.chunkSends).items[chunk] == 0u) continue;
-        stageSenders(chunk);
-        bool direct = receiverChunk < chunk;
-        uint local = direct ? r * kSuper + c : c * kSuper + r;
-        uint unit = super * kSuperBlocks + local;
-        uint word = (unit % push.bitsUnits) * kBlockWords + lane * 2u;
-        Words bits = direct ? Words(push.bits) : Words(push.transposed);
-        uvec2 mask = uvec2(bits.items[word], bits.items[word + 1u]);
-        if (kRtrad != 0u) {
-            uint count = (mask.x | mask.y) != 0u ? kChunk : 0u;
-            for (uint j = 0u; j < count; ++j) {
-                if (seen(mask, j)) sum += rtradAddend(receiver, albedo, loadSender(chunk, j));
-            }
-            continue;
-        }
-        // Two loops, one of them empty: a loop that ends at once is cheap on every device, a branch inside one is not.
-        bool close = chunksClose(receiverChunk, chunk);
-        uint count = (mask.x | mask.y) != 0u ? kChunk : 0u;
-        uint closeCount = close ? count : 0u, farCount = close ? 0u : count;
-        for (uint j = 0u; j < closeCount; ++j) {
-            if (!seen(mask, j)) continue;
-            Sender s = loadSender(chunk, j);
-            sum.rgb += s.radiance.rgb * closeFactor(receiver, s, chunk * kChunk + j);
-        }
-        for (uint j = 0u; j < farCount; ++j) {
-            Sender s = loadSender(chunk, j);
-            float f = farFactor(receiver, s);
-            sum.rgb += s.radiance.rgb * (seen(mask, j) ? f : 0.0);
-        }
+        if (chunk >= push.columnCount) break;
+        if (Words(push.sends).items[chunk] == 0u) continue;
+        uvec2 mask = loadMask(super, r, c, kSenders != kSymmetric || receiverChunk < chunk);
+        sum += gatherChunk(chunk, mask, receiver, albedo, rowKey, chunksClose(receiverChunk, chunk));
     }
     Vec4s(push.partial).items[(gl_WorkGroupID.y * 2u + side) * kSuperPatches + r * kChunk + lane] = sum;
 }

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
+#include "lib/supers.glsl"
 layout(push_constant, scalar) uniform Push { ReducePush push; };
 
 layout(local_size_x = 64) in;
@@ -14,9 +15,9 @@ void main() {
     Vec4s partial = Vec4s(push.partial), ligOut = Vec4s(push.ligOut);
     vec4 sum = ligOut.items[index];
     for (uint s = 0u; s < push.superCount; ++s) {
-        uvec2 pair = UVec2s(push.supers).items[push.firstSuper + s];
-        if (pair.x == super) sum += partial.items[s * 2u * kSuperPatches + local];
-        else if (pair.y == super) sum += partial.items[(s * 2u + 1u) * kSuperPatches + local];
+        uint row = SuperBlocks(push.supers).items[s].row, column = SuperBlocks(push.supers).items[s].column;
+        if (row == super) sum += partial.items[s * 2u * kSuperPatches + local];
+        else if (push.symmetric != 0u && column == super) sum += partial.items[(s * 2u + 1u) * kSuperPatches + local];
     }
     ligOut.items[index] = sum;
 }

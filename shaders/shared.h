@@ -19,8 +19,10 @@ CONST uint kChunk = 64u;
 CONST uint kSuper = 16u;
 CONST uint kSuperBlocks = 256u;   // kSuper * kSuper
 CONST uint kBlockWords = 128u;    // 32-bit words of a block: 64 rows of 2
+CONST uint kSuperWords = 32768u;  // kSuperBlocks * kBlockWords: the bits of a super-block
 CONST uint kSuperPatches = 1024u; // kSuper * kChunk
-CONST uint kRayCounters = 4096u;  // rays are counted in slots by unit, to spread the atomics
+// Rays are counted in slots by unit, to spread the atomics: those whose bits are kept, then the others.
+CONST uint kRayCounters = 4096u;
 // Samples belong in turn to so many sequences that are scrambled independently: their spread is the error.
 CONST uint kReplicates = 4u;
 
@@ -108,6 +110,22 @@ struct EmitterNode {
     uint link;
 };
 
+// Blocks (row * 16 + r, column * 16 + c), r, c in 0..15: the pairs of 1024 receivers and 1024 senders.
+struct SuperBlock {
+    uint row;             // of receiving chunks
+    uint column;          // of sending chunks
+    ADDRESS bits;         // uint[kSuperWords]; RTRad's symmetric ones: as many more, traced from the other end
+    uvec4 known0, known1; // bit u % 32 of word u / 32: unit u has its bits already
+    uint counters;        // 0 or kRayCounters: the first of the words in which its rays are counted
+};
+
+// One sender of a list: a run of patches, one of which stands for all.
+struct Sender {
+    uint first; // of its patches in the list's members
+    uint count; // of patches to draw from; 0: padding
+    uint key;   // of its random numbers
+};
+
 // One triangle of the tracers' scene, in WorldMesh order.
 struct HitTriangle {
     vec2 uv0, uv1, uv2;  // lightmap UVs
@@ -183,20 +201,22 @@ struct TraceGeometry {
     uint opaqueCount;       // triangles before the first masked one
     uint triangleCount;
 };
+CONST uint kOcclusionRtrad = 1u;    // RTRad's ray intervals
+CONST uint kOcclusionReversed = 2u; // rays start at the column's patches, bits go behind the others
 struct OcclusionPush {
     TraceGeometry geometry;
-    ADDRESS patches;    // Patch[]
-    ADDRESS supers;     // uvec2[]: row, column
-    ADDRESS chunkSends; // uint[]
-    ADDRESS bits;       // uint[]
+    ADDRESS patches; // Patch[]
+    ADDRESS supers;  // SuperBlock[]
+    ADDRESS sends;   // uint[], of the columns' chunks
+    ADDRESS senders; // Sender[]; 0: columns are chunks of patches, as rows are
+    ADDRESS members; // uint[]
+    ADDRESS rays;    // uint[], rays traced are added
     uint firstUnit;
     uint unitCount;
-    uint bitsUnits;
-    uint chunkCount;
-    uint rtrad;    // 1: RTRad's ray intervals
-    uint groupsX;  // workgroups in x; y counts on
-    ADDRESS rays;  // uint[kRayCounters], rays traced are added
-    uint reversed; // 1: rays start at the column's patches
+    uint rowCount;    // chunks
+    uint columnCount; // chunks
+    uint flags;       // kOcclusion...
+    uint groupsX;     // workgroups in x; y counts on
 };
 struct ClosestPush {
     TraceGeometry geometry;
@@ -224,37 +244,38 @@ struct SegmentPush {
 };
 struct TransposePush {
     ADDRESS supers;
-    ADDRESS bits;
-    ADDRESS reversed;   // bits traced from the other end; the same as bits where both ends agree
-    ADDRESS transposed; // uint[], as reversed, rows and columns exchanged
-    uint firstSuper;
-    uint bitsUnits;
+    ADDRESS transposed; // uint[kSuperWords] per super-block, rows and columns exchanged
     uint chunkCount;
+    uint reversed; // 1: of the bits that were traced from the other end
 };
 struct GatherPush {
     ADDRESS supers;
-    ADDRESS chunkSends;
-    ADDRESS bits;
-    ADDRESS transposed;
-    ADDRESS patches;
-    ADDRESS edges;    // PatchEdges[]
-    ADDRESS bounds;   // ChunkBounds[]
-    ADDRESS radiance; // vec4[] of the senders
-    ADDRESS albedo;   // vec4[] of the receivers (RTRad's clamp only)
-    ADDRESS partial;  // vec4[superCount][2][kSuperPatches]
-    uint firstSuper;
-    uint bitsUnits;
-    uint chunkCount;
+    ADDRESS sends;         // uint[], of the senders' chunks
+    ADDRESS transposed;    // symmetric only
+    ADDRESS patches;       // Patch[], the receivers
+    ADDRESS bounds;        // ChunkBounds[] of the receivers
+    ADDRESS senderPatches; // Patch[]; drawn: those to draw from
+    ADDRESS senderEdges;   // PatchEdges[], likewise
+    ADDRESS senderBounds;  // ChunkBounds[]
+    ADDRESS radiance;      // vec4[] of senderPatches
+    ADDRESS senders;       // Sender[] (drawn only)
+    ADDRESS members;       // uint[] (drawn only)
+    ADDRESS albedo;        // vec4[] of the receivers (RTRad's clamp only)
+    ADDRESS partial;       // vec4[superCount][2][kSuperPatches]
+    uint rowCount;         // chunks
+    uint columnCount;      // chunks
     float reflectivity;
     float distanceFactor;
+    uint window; // RTRad: senders less than so many texels to the right and below are skipped
+    uint size;   // lightmap edge [texels]
 };
 struct ReducePush {
     ADDRESS supers;
     ADDRESS partial;
     ADDRESS ligOut; // vec4[]
-    uint firstSuper;
     uint superCount;
     uint patchCount;
+    uint symmetric; // 1: the columns' patches have partial sums too
 };
 struct RadiancePush {
     ADDRESS patches;

@@ -84,12 +84,12 @@ void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& r
         request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
     image.attributes["relume:settings"] = fmt::format(
         "size={} passes={} error={} reflectivity={} distance-factor={} dilate={} sew={} conservative={} "
-        "preset={} voxels={} voxel-ratio={} indirect-scale={}",
+        "preset={} voxels={} voxel-ratio={} indirect-scale={}{}",
         o.size, request.bake.solver.passes, request.bake.solver.error,
         request.bake.solver.transport.reflectivity, request.bake.solver.transport.distanceFactor,
         request.lightmap.rtrad ? 1 : o.dilate, request.lightmap.sew ? 1 : 0, o.conservative ? 1 : 0,
         o.preset.empty() ? "none" : o.preset, voxels.ratio > 0 ? voxels.resolution : 0, voxels.ratio,
-        request.bake.solver.links.indirectScale);
+        request.bake.solver.links.indirectScale, describePairSettings(request.bake.solver));
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }

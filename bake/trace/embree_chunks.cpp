@@ -65,25 +65,29 @@ bool belowPlane(const PatchChunk& a, const PatchChunk& b) {
 
 } // namespace
 
+PatchChunk buildChunk(const Patch* patches, bool rtrad) {
+    PatchChunk chunk;
+    const float infinity = std::numeric_limits<float>::infinity();
+    chunk.sends = 0;
+    chunk.lo = glm::vec3(infinity);
+    chunk.hi = glm::vec3(-infinity);
+    chunk.plane = glm::vec3(0);
+    chunk.margin = infinity;
+    for (uint32_t j = 0; j < kChunk; ++j)
+        addPatch(chunk, j, patches[j], rtrad);
+    boundEnds(chunk);
+    chunk.height = infinity;
+    for (uint32_t j = 0; j < kChunk; ++j)
+        if (chunk.sends >> j & 1)
+            chunk.height = std::min(chunk.height, glm::dot(patches[j].position, chunk.plane));
+    return chunk;
+}
+
 std::vector<PatchChunk> buildChunks(const std::vector<Patch>& patches, bool rtrad) {
-    std::vector<PatchChunk> chunks(patches.size() / kChunk);
-    for (size_t c = 0; c < chunks.size(); ++c) {
-        PatchChunk& chunk = chunks[c];
-        const float infinity = std::numeric_limits<float>::infinity();
-        chunk.sends = 0;
-        chunk.lo = glm::vec3(infinity);
-        chunk.hi = glm::vec3(-infinity);
-        chunk.plane = glm::vec3(0);
-        chunk.margin = infinity;
-        for (uint32_t j = 0; j < kChunk; ++j)
-            addPatch(chunk, j, patches[c * kChunk + j], rtrad);
-        boundEnds(chunk);
-        chunk.height = infinity;
-        for (uint32_t j = 0; j < kChunk; ++j)
-            if (chunk.sends >> j & 1)
-                chunk.height =
-                    std::min(chunk.height, glm::dot(patches[c * kChunk + j].position, chunk.plane));
-    }
+    std::vector<PatchChunk> chunks;
+    chunks.reserve(patches.size() / kChunk);
+    for (size_t first = 0; first < patches.size(); first += kChunk)
+        chunks.push_back(buildChunk(&patches[first], rtrad));
     return chunks;
 }
 

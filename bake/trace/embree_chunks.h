@@ -34,6 +34,8 @@ constexpr std::array<uint64_t, 4> kQuarter = {0x000000000f0f0f0full, 0x00000000f
                                               0x0f0f0f0f00000000ull, 0xf0f0f0f000000000ull};
 
 std::vector<PatchChunk> buildChunks(const std::vector<shader::Patch>& patches, bool rtrad);
+/// Of any 64 patches.
+PatchChunk buildChunk(const shader::Patch* patches, bool rtrad);
 
 /// False only if no patch of a faces one of b (shader::pairFaces); cheap, may be true all the same.
 bool chunksMayFace(const PatchChunk& a, const PatchChunk& b);

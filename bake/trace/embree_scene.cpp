@@ -91,7 +91,15 @@ void keepSolid(const RTCFilterFunctionNArguments* args) {
 struct EmbreeScene::Impl {
     Impl(const TraceScene& traceScene, uint32_t threads);
     void attach(uint32_t first, uint32_t last, bool masked);
-    uint32_t block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const;
+    struct Block {
+        const PatchChunk& a;   // receivers
+        const PatchChunk& b;   // senders
+        bool diagonal = false; // the same chunk: of each pair the one in which a's patch comes first
+        bool reversed = false; // RTRad's rays start at b
+        std::array<uint64_t, kChunk> turned{}; // bit j of word i: the ray starts at b's patch j
+    };
+    uint32_t trace(const Block& block, uint32_t* bits) const;
+    uint32_t listBlock(const OcclusionArrays& work, uint32_t row, uint32_t column, uint32_t* bits) const;
     void dropOpenPairs(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, kChunk>& rows) const;
     void links(const Patch* patches, ChunkRays& directions, uint32_t* out) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
@@ -227,11 +235,11 @@ void EmbreeScene::Impl::dropOpenPairs(const PatchChunk& a, const PatchChunk& b,
 }
 
 // Returns the number of facing pairs.
-uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, uint32_t* bits) const {
-    const PatchChunk &a = chunks[row], &b = chunks[column];
+uint32_t EmbreeScene::Impl::trace(const Block& block, uint32_t* bits) const {
+    const PatchChunk &a = block.a, &b = block.b;
     std::array<uint64_t, kChunk> visible{};
     if (chunksMayFace(a, b)) facingRows(a, b, visible);
-    if (row == column)
+    if (block.diagonal)
         for (uint32_t i = 0; i < kChunk; ++i)
             visible[i] &= ~(uint64_t(2) << i) + 1;
     const uint32_t pairs = countBits(visible, ~uint64_t(0), ~uint64_t(0));
@@ -246,9 +254,11 @@ uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, 
         visible[i] &= ~hidden;
         for (uint64_t rest = asked[i] & ~hidden; rest != 0; rest &= rest - 1) {
             const uint32_t j = uint32_t(std::countr_zero(rest));
-            shader::Segment segment{origin, glm::vec3(b.ex[j], b.ey[j], b.ez[j]) - origin, 0.0f, 1.0f};
+            const glm::vec3 end(b.ex[j], b.ey[j], b.ez[j]);
+            const bool turned = scene.rtrad ? block.reversed : (block.turned[i] >> j & 1) != 0;
+            shader::Segment segment = turned ? shader::Segment{end, origin - end, 0.0f, 1.0f}
+                                             : shader::Segment{origin, end - origin, 0.0f, 1.0f};
             if (scene.rtrad) {
-                if (reversed) segment = {origin + segment.direction, -segment.direction, 0.0f, 1.0f};
                 const float distance = glm::length(segment.direction);
                 segment = {segment.origin, segment.direction / distance, 0.001f, distance - 0.002f};
                 if (segment.tMax <= segment.tMin) continue;
@@ -261,19 +271,50 @@ uint32_t EmbreeScene::Impl::block(uint32_t row, uint32_t column, bool reversed, 
     return pairs;
 }
 
+// A chunk of patches before a chunk of a sender list.
+uint32_t EmbreeScene::Impl::listBlock(const OcclusionArrays& work, uint32_t row, uint32_t column,
+                                      uint32_t* bits) const {
+    std::array<Patch, kChunk> patches{};
+    const uint32_t rowKey = scene.patches[size_t{row} * kChunk].flags >> 8;
+    std::array<uint32_t, kChunk> index;
+    for (uint32_t j = 0; j < kChunk; ++j) {
+        const shader::Sender& sender = work.senders[size_t{column} * kChunk + j];
+        index[j] =
+            sender.count == 0 ? kNone : work.members[sender.first + shader::drawMember(sender, rowKey)];
+        if (index[j] != kNone) patches[j] = scene.patches[index[j]];
+    }
+    const PatchChunk senders = buildChunk(patches.data(), scene.rtrad);
+    Block block{.a = chunks[row], .b = senders};
+    // The lower index first, whichever end asks.
+    for (uint32_t j = 0; j < kChunk; ++j)
+        for (uint32_t i = 0; i < kChunk; ++i)
+            block.turned[i] |= uint64_t{index[j] < row * kChunk + i} << j;
+    return trace(block, bits);
+}
+
 void EmbreeScene::occlusion(const OcclusionArrays& work) {
     const Impl& impl = *impl_;
-    const uint32_t chunkCount = impl.scene.chunkCount();
+    const bool list = !work.senders.empty();
+    const uint32_t rows = impl.scene.chunkCount();
+    const uint32_t columns = list ? uint32_t(work.senders.size() / kChunk) : rows;
     impl_->pool.run(work.unitCount, [&](uint32_t k) {
-        const uint32_t unit = work.firstUnit + k;
-        const SuperBlock super = work.supers[unit / shader::kSuperBlocks];
-        const uint32_t row = super.row * shader::kSuper + unit % shader::kSuperBlocks / shader::kSuper;
-        const uint32_t column = super.column * shader::kSuper + unit % shader::kSuper;
-        if (row >= chunkCount || column >= chunkCount || row > column) return;
-        if (work.chunkSends[row] == 0 && work.chunkSends[column] == 0) return;
-        const uint32_t rays = impl.block(row, column, work.reversed,
-                                         work.bits + size_t(unit % work.bitsUnits) * shader::kBlockWords);
-        if (work.rays && rays > 0) std::atomic_ref(work.rays[unit % shader::kRayCounters]) += rays;
+        const uint32_t unit = work.firstUnit + k, local = unit % shader::kSuperBlocks;
+        const SuperBlock& super = work.supers[unit / shader::kSuperBlocks];
+        const uint32_t row = super.row * shader::kSuper + local / shader::kSuper;
+        const uint32_t column = super.column * shader::kSuper + local % shader::kSuper;
+        if (row >= rows || column >= columns || (!list && row > column)) return;
+        if (work.sends[column] == 0 && (list || work.sends[row] == 0)) return;
+        if (shader::unitKnown(super, local)) return;
+        uint32_t* bits = work.bits[unit / shader::kSuperBlocks] + size_t{local} * shader::kBlockWords +
+                         (work.reversed ? shader::kSuperWords : 0);
+        const uint32_t rays = list ? impl.listBlock(work, row, column, bits)
+                                   : impl.trace({.a = impl.chunks[row],
+                                                 .b = impl.chunks[column],
+                                                 .diagonal = row == column,
+                                                 .reversed = work.reversed},
+                                                bits);
+        const uint32_t slot = super.counters + unit % shader::kRayCounters;
+        if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
     });
 }
 

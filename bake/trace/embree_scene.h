@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "bake/trace/trace_scene.h"
 #include "bake/trace/tracer.h"
@@ -10,11 +11,12 @@ namespace relume {
 
 /// OcclusionWork and ClosestWork (tracer.h) on plain memory.
 struct OcclusionArrays {
-    const SuperBlock* supers = nullptr;
-    const uint32_t* chunkSends = nullptr;
+    std::span<const SuperBlock> supers = {};
+    std::span<uint32_t* const> bits = {}; // of each super-block
     uint32_t firstUnit = 0, unitCount = 0;
-    uint32_t* bits = nullptr;
-    uint32_t bitsUnits = 0;
+    const uint32_t* sends = nullptr;              // per column chunk
+    std::span<const shader::Sender> senders = {}; // empty: columns are chunks of patches
+    std::span<const uint32_t> members = {};
     bool reversed = false;
     uint32_t* rays = nullptr; // may be left out
 };

@@ -19,17 +19,18 @@ public:
     bool onCpu() const override { return true; }
 
     void occlusion(VkCommandBuffer, const OcclusionWork& work) override {
-        const uint64_t units = uint64_t(work.firstUnit) + work.unitCount;
-        const uint64_t supers = (units + shader::kSuperBlocks - 1) / shader::kSuperBlocks;
-        scene_.occlusion(
-            {.supers = mappedAs<SuperBlock>(work.supers, supers),
-             .chunkSends = mappedAs<uint32_t>(work.chunkSends, chunkCount_),
-             .firstUnit = work.firstUnit,
-             .unitCount = work.unitCount,
-             .bits = mappedAs<uint32_t>(work.bits, uint64_t(work.bitsUnits) * shader::kBlockWords),
-             .bitsUnits = work.bitsUnits,
-             .reversed = work.reversed,
-             .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
+        const SenderRuns list = work.senders ? *work.senders : SenderRuns{};
+        const uint64_t columns = work.senders ? list.senders.size() / shader::kChunk : chunkCount_;
+        const uint64_t counters = uint64_t{2} * shader::kRayCounters;
+        scene_.occlusion({.supers = work.supers,
+                          .bits = work.bits,
+                          .firstUnit = work.firstUnit,
+                          .unitCount = work.unitCount,
+                          .sends = mappedAs<uint32_t>(work.sends, columns),
+                          .senders = list.senders,
+                          .members = list.members,
+                          .reversed = work.reversed,
+                          .rays = work.rays ? mappedAs<uint32_t>(work.rays, counters) : nullptr});
     }
 
     void closest(VkCommandBuffer, const ClosestWork& work) override {

@@ -28,7 +28,7 @@ public:
           alphaMaterials_(vk::makeBuffer(device, scene.alphaMaterials, "alpha materials")),
           alphaTexels_(vk::makeBuffer(device, wholeWords(scene.alphaTexels), "alpha texels")),
           patches_(patches.address()), size_(scene.size), chunkCount_(scene.chunkCount()),
-          rtrad_(scene.rtrad ? 1u : 0u) {
+          rtrad_(scene.rtrad) {
         geometry_ = {.accel = 0,
                      .triangles = 0,
                      .alphaTriangles = alphaTriangles_.address(),
@@ -43,19 +43,21 @@ public:
     }
 
     shader::OcclusionPush push(const OcclusionWork& work, uint32_t groupsX) const {
+        const SenderRuns* list = work.senders;
         return {.geometry = geometry_,
                 .patches = patches_,
-                .supers = work.supers->address(),
-                .chunkSends = work.chunkSends->address(),
-                .bits = work.bits->address(),
+                .supers = work.superBuffer->address(),
+                .sends = work.sends->address(),
+                .senders = list ? list->senderBuffer->address() : 0,
+                .members = list ? list->memberBuffer->address() : 0,
+                .rays = work.rays->address(),
                 .firstUnit = work.firstUnit,
                 .unitCount = work.unitCount,
-                .bitsUnits = work.bitsUnits,
-                .chunkCount = chunkCount_,
-                .rtrad = rtrad_,
-                .groupsX = groupsX,
-                .rays = work.rays->address(),
-                .reversed = work.reversed ? 1u : 0u};
+                .rowCount = chunkCount_,
+                .columnCount = list ? static_cast<uint32_t>(list->senders.size() / kChunk) : chunkCount_,
+                .flags =
+                    (rtrad_ ? shader::kOcclusionRtrad : 0) | (work.reversed ? shader::kOcclusionReversed : 0),
+                .groupsX = groupsX};
     }
     shader::ClosestPush push(const ClosestWork& work) const {
         ASSERT(work.sampleCount % kSamplesPerInvocation == 0);
@@ -92,7 +94,8 @@ private:
 
     vk::Buffer hitTriangles_, texelToPatch_, patchChart_, alphaTriangles_, alphaMaterials_, alphaTexels_;
     VkDeviceAddress patches_ = 0;
-    uint32_t size_ = 0, chunkCount_ = 0, rtrad_ = 0;
+    uint32_t size_ = 0, chunkCount_ = 0;
+    bool rtrad_ = false;
     shader::TraceGeometry geometry_{};
 };
 

@@ -10,7 +10,7 @@ public:
     MixedTracer(const vk::Device& device, std::unique_ptr<Tracer> exact, std::unique_ptr<Tracer> voxels)
         : exact_(std::move(exact)), voxels_(std::move(voxels)),
           name_(std::string(exact_->name()) + "+" + voxels_->name()),
-          marched_(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "marched rays"}) {}
+          marched_(device, {.size = 2 * shader::kRayCounters * sizeof(uint32_t), .name = "marched rays"}) {}
 
     const char* name() const override { return name_.c_str(); }
     bool onCpu() const override { return exact_->onCpu(); }

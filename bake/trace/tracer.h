@@ -10,27 +10,37 @@
 
 namespace relume {
 
-/// A pair of super-rows of chunks, row <= column: blocks (row * 16 + r, column * 16 + c), r, c in 0..15.
-struct SuperBlock {
-    uint32_t row = 0, column = 0;
+using SuperBlock = shader::SuperBlock;
+
+/// Senders other than the patches themselves, as tracers read them: on the host and on the device.
+struct SenderRuns {
+    std::span<const shader::Sender> senders = {}; // padded to whole chunks
+    std::span<const uint32_t> members = {};       // patch indices
+    const vk::Buffer* senderBuffer = nullptr;
+    const vk::Buffer* memberBuffer = nullptr;
 };
 
-/// Part of the pairs of a list of super-blocks. Unit u is block (r, c) = ((u % 256) / 16, u % 16) of
-/// super-block supers[u / 256]; units whose chunks do not exist or whose row chunk lies behind the column
-/// chunk are skipped, as are units in which neither chunk sends (chunkSends 0). Unit u's bits go to bits[(u %
-/// bitsUnits) * kBlockWords]: bit j % 32 of word i * 2 + j / 32 is set when patch i of the row chunk and
-/// patch j of the column chunk face and see each other. In a diagonal block (both chunks the same) only i < j
-/// is set.
+/// Pairs of rows of receivers and columns of senders: units firstUnit .. firstUnit + unitCount - 1 of a table
+/// of super-blocks. Unit u is block (r, c) = (u % 256 / 16, u % 16) of supers[u / 256], row chunk row * 16 +
+/// r, column chunk column * 16 + c. Its bits are the kBlockWords words from u % 256 * kBlockWords of the
+/// super-block's: bit j % 32 of word i * 2 + j / 32 is set when patch i of the row chunk and sender j of the
+/// column chunk face and see each other. Columns are chunks of patches as rows are; then pairs are asked
+/// once, i < j, so units behind the diagonal are skipped, and in a block with itself only i < j is set. Or
+/// they are chunks of a sender list; then sender j is the patch shader::drawMember picks before the row
+/// chunk. Skipped are as well units whose chunks do not exist, those already known, and those of which no
+/// column chunk (without a list: neither chunk) sends.
 struct OcclusionWork {
-    const vk::Buffer* supers =
-        nullptr; // SuperBlock[], mapped where the tracer runs on the CPU; so are the others
-    const vk::Buffer* chunkSends = nullptr; // uint32_t per chunk
+    std::span<const SuperBlock> supers = {};
+    const vk::Buffer* superBuffer = nullptr; // the same on the device
+    std::span<uint32_t* const> bits;         // where their bits are on the host, for tracers on the CPU
     uint32_t firstUnit = 0, unitCount = 0;
-    const vk::Buffer* bits = nullptr; // at least bitsUnits * kBlockWords words
-    uint32_t bitsUnits = 0;
-    bool reversed = false; // rays start at the column's patches: only RTRad's intervals tell the ends apart
-    // uint32_t[kRayCounters]: unit u adds its facing pairs to slot u % kRayCounters, a ray each; with embree
-    // some of these are settled for a whole block by an empty shaft.
+    const vk::Buffer* sends = nullptr; // uint32_t per column chunk, mapped where the tracer runs on the CPU
+    const SenderRuns* senders = nullptr;
+    // Without a list: rays start at the column's patches, bits go kSuperWords further: only RTRad's intervals
+    // tell the ends apart.
+    bool reversed = false;
+    // uint32_t[]: unit u adds its facing pairs to word SuperBlock::counters + u % kRayCounters, a ray each;
+    // with embree some of these are settled for a whole block by an empty shaft.
     const vk::Buffer* rays = nullptr;
 };
 

@@ -46,7 +46,7 @@ public:
         const uint32_t rows = (chunks_ + kSuper - 1) / kSuper;
         for (uint32_t row = 0; row < rows; ++row) {
             for (uint32_t column = row; column < rows; ++column)
-                supers_.push_back({row, column});
+                supers_.push_back({row, column, 0, {}, {}, 0});
         }
         std::vector<uint32_t> written; // the others are padding or seen from the other end
         for (uint32_t unit = 0; unit < supers_.size() * kSuperBlocks; ++unit) {
@@ -65,23 +65,29 @@ public:
     }
 
     Visibility pairs(Tracer& tracer) {
-        const vk::Buffer supers = vk::makeBuffer(testDevice(), supers_, "super-blocks");
         const vk::Buffer sends =
             vk::makeBuffer(testDevice(), std::vector<uint32_t>(chunks_, 1u), "chunk sends");
         const auto slots = static_cast<uint32_t>(supers_.size()) * kSuperBlocks;
         const vk::Buffer bits = vk::makeBuffer(
             testDevice(), std::vector<uint32_t>(size_t{slots} * kBlockWords, 0u), "visibility bits");
         const vk::Buffer rays =
-            vk::makeBuffer(testDevice(), std::vector<uint32_t>(shader::kRayCounters, 0u), "ray counters");
+            vk::makeBuffer(testDevice(), std::vector<uint32_t>(2 * shader::kRayCounters, 0u), "ray counters");
+        std::vector<uint32_t*> host;
+        for (size_t s = 0; s < supers_.size(); ++s) {
+            const size_t offset = s * shader::kSuperWords;
+            supers_[s].bits = bits.address() + offset * sizeof(uint32_t);
+            host.push_back(bits.mapped() ? static_cast<uint32_t*>(bits.mapped()) + offset : nullptr);
+        }
+        const vk::Buffer supers = vk::makeBuffer(testDevice(), supers_, "super-blocks");
         for (size_t first = 0; first < units_.size(); first += kUnitsPerSubmit) {
             VkCommandBuffer cmd = commands_.begin();
             for (size_t i = first; i < std::min(first + kUnitsPerSubmit, units_.size()); ++i) {
-                tracer.occlusion(cmd, {.supers = &supers,
-                                       .chunkSends = &sends,
+                tracer.occlusion(cmd, {.supers = supers_,
+                                       .superBuffer = &supers,
+                                       .bits = host,
                                        .firstUnit = units_[i],
                                        .unitCount = 1,
-                                       .bits = &bits,
-                                       .bitsUnits = slots,
+                                       .sends = &sends,
                                        .rays = &rays});
             }
             vk::hostBarrier(cmd);

@@ -281,26 +281,6 @@ TEST_F(BakeCommand, ASceneWithoutLightmapUvsNamesTheMend) {
     EXPECT_EQ(bake({"-o", path("map.exr"), "--unwrap", "--passes", "1"}).status, 0);
 }
 
-// So large a lightmap, covered to the last texel, has more patches than the pure method can pair, whatever
-// the memory.
-TEST_F(BakeCommand, ASizeThatDoesNotFitIsRefusedWithOneThatDoes) {
-    SceneMaker maker(64);
-    maker.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.material(0.5f, 1.0f), glm::uvec2(64));
-    saveGlb(maker.scene(), scene_);
-    constexpr int kSize = 3072;
-    const ProcessResult r = runRelume(
-        {"bake", scene_, "-o", path("map.exr"), "--method", "pure", "--size", std::to_string(kSize)});
-    EXPECT_EQ(r.status, 1) << r.err;
-    EXPECT_FALSE(contains(r.err, "wrote")) << r.err;
-    const size_t end = r.err.rfind(" fits");
-    ASSERT_NE(end, std::string::npos) << r.err;
-    const size_t begin = r.err.rfind(' ', end - 1);
-    const int fits = std::atoi(r.err.substr(begin, end - begin).c_str());
-    EXPECT_GE(fits, 64) << r.err;
-    EXPECT_LT(fits, kSize) << r.err;
-    expectFiles({});
-}
-
 // RTRad's own picture, through the command line and the reference's own tool.
 TEST(BakeReference, PresetOnTheCommandLineMatchesRtradsPicture) {
     const std::string shared = RELUME_SHARED_DIR, tool = shared + "/tools/rtrad_dfpr.py",

@@ -34,7 +34,7 @@ public:
         std::vector<uint32_t> written;
         for (uint32_t row = 0; row < rows; ++row)
             for (uint32_t column = row; column < rows; ++column)
-                supers_.push_back({row, column});
+                supers_.push_back({row, column, 0, {}, {}, 0});
         for (uint32_t unit = 0; unit < supers_.size() * kSuperBlocks; ++unit) {
             const auto [row, column] = chunksOf(unit);
             if (column < chunks_ && row <= column) written.push_back(unit);
@@ -52,26 +52,29 @@ public:
 
     /// Of the kept units, one after the other.
     std::vector<uint32_t> pairs(Tracer& tracer) {
-        const vk::Buffer supers = vk::makeBuffer(testDevice(), supers_, "super-blocks");
         const vk::Buffer sends =
             vk::makeBuffer(testDevice(), std::vector<uint32_t>(chunks_, 1u), "chunk sends");
         const vk::Buffer rays =
-            vk::makeBuffer(testDevice(), std::vector<uint32_t>(shader::kRayCounters, 0u), "ray counters");
+            vk::makeBuffer(testDevice(), std::vector<uint32_t>(2 * shader::kRayCounters, 0u), "ray counters");
         const vk::Buffer bits(testDevice(),
-                              {.size = kBlockWords * 4, .memory = vk::Memory::Host, .name = "bits"});
+                              {.size = superBytes(false), .memory = vk::Memory::Host, .name = "bits"});
         std::vector<uint32_t> all;
         for (uint32_t unit : units_) {
+            std::vector<SuperBlock> table = {supers_[unit / kSuperBlocks]};
+            table[0].bits = bits.address();
+            const vk::Buffer supers = vk::makeBuffer(testDevice(), table, "super-blocks");
+            const std::vector<uint32_t*> host = {static_cast<uint32_t*>(bits.mapped())};
             VkCommandBuffer cmd = commands_.begin();
-            tracer.occlusion(cmd, {.supers = &supers,
-                                   .chunkSends = &sends,
-                                   .firstUnit = unit,
+            tracer.occlusion(cmd, {.supers = table,
+                                   .superBuffer = &supers,
+                                   .bits = host,
+                                   .firstUnit = unit % kSuperBlocks,
                                    .unitCount = 1,
-                                   .bits = &bits,
-                                   .bitsUnits = 1,
+                                   .sends = &sends,
                                    .rays = &rays});
             vk::hostBarrier(cmd);
             commands_.run();
-            const auto* words = static_cast<const uint32_t*>(bits.mapped());
+            const uint32_t* words = host[0] + unit % kSuperBlocks * kBlockWords;
             all.insert(all.end(), words, words + kBlockWords);
         }
         return all;

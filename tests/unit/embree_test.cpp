@@ -94,7 +94,13 @@ struct Bits {
     std::vector<uint32_t> rays = std::vector<uint32_t>(shader::kRayCounters, 0);
 
     uint32_t units() const { return uint32_t(supers.size()) * shader::kSuperBlocks; }
-    // i < j, patch indices
+    std::vector<uint32_t*> addresses() {
+        std::vector<uint32_t*> result;
+        for (size_t s = 0; s < supers.size(); ++s)
+            result.push_back(&words[s * shader::kSuperWords]);
+        return result;
+    }
+    // i < j, patch indices; or patch and sender
     bool at(uint32_t i, uint32_t j) const {
         const uint32_t row = i / kChunk, column = j / kChunk;
         const SuperBlock wanted{row / shader::kSuper, column / shader::kSuper};
@@ -113,15 +119,15 @@ Bits traceBits(const TraceScene& scene, uint32_t threads) {
     const uint32_t rows = (scene.chunkCount() + shader::kSuper - 1) / shader::kSuper;
     for (uint32_t row = 0; row < rows; ++row)
         for (uint32_t column = row; column < rows; ++column)
-            bits.supers.push_back({row, column});
+            bits.supers.push_back({row, column, 0, {}, {}, 0});
     bits.words.assign(size_t(bits.units()) * kBlockWords, 0);
     const std::vector<uint32_t> sends(scene.chunkCount(), kChunk);
-    embree.occlusion({.supers = bits.supers.data(),
-                      .chunkSends = sends.data(),
+    const std::vector<uint32_t*> addresses = bits.addresses();
+    embree.occlusion({.supers = bits.supers,
+                      .bits = addresses,
                       .firstUnit = 0,
                       .unitCount = bits.units(),
-                      .bits = bits.words.data(),
-                      .bitsUnits = bits.units(),
+                      .sends = sends.data(),
                       .rays = bits.rays.data()});
     return bits;
 }
@@ -212,24 +218,75 @@ TEST(Embree, partsOfTheWorkGiveTheSameBitsAndLeaveSkippedUnitsAlone) {
     EmbreeScene embree(scene, 2);
     std::vector<uint32_t> sends(scene.chunkCount(), 0);
     sends[3] = 1;
-    constexpr uint32_t kUnits = 40, kMark = 0xabcdabcdu;
-    for (uint32_t first = 0; first + kUnits <= whole.units(); first += kUnits) {
-        std::vector<uint32_t> words(kUnits * kBlockWords, kMark);
-        embree.occlusion({.supers = whole.supers.data(),
-                          .chunkSends = sends.data(),
+    constexpr uint32_t kUnits = 40, kMark = 0xabcdabcdu, kKnown = 7; // a unit of every super-block
+    Bits parts = whole;
+    parts.words.assign(whole.words.size(), kMark);
+    for (SuperBlock& super : parts.supers)
+        super.known0.x = 1u << kKnown;
+    const std::vector<uint32_t*> addresses = parts.addresses();
+    for (uint32_t first = 0; first < whole.units(); first += kUnits) {
+        embree.occlusion({.supers = parts.supers,
+                          .bits = addresses,
                           .firstUnit = first,
-                          .unitCount = kUnits,
-                          .bits = words.data(),
-                          .bitsUnits = kUnits});
-        for (uint32_t unit = first; unit < first + kUnits; ++unit) {
-            const SuperBlock super = whole.supers[unit / 256];
-            const uint32_t row = super.row * 16 + unit % 256 / 16, column = super.column * 16 + unit % 16;
-            const bool traced = row <= column && column < scene.chunkCount() && (sends[row] || sends[column]);
-            for (uint32_t k = 0; k < kBlockWords; ++k)
-                ASSERT_EQ(words[unit % kUnits * kBlockWords + k],
-                          traced ? whole.words[unit * kBlockWords + k] : kMark);
+                          .unitCount = std::min(kUnits, whole.units() - first),
+                          .sends = sends.data()});
+    }
+    for (uint32_t unit = 0; unit < whole.units(); ++unit) {
+        const SuperBlock& super = whole.supers[unit / 256];
+        const uint32_t row = super.row * 16 + unit % 256 / 16, column = super.column * 16 + unit % 16;
+        const bool traced = row <= column && column < scene.chunkCount() && (sends[row] || sends[column]) &&
+                            unit % 256 != kKnown;
+        for (uint32_t k = 0; k < kBlockWords; ++k)
+            ASSERT_EQ(parts.words[unit * kBlockWords + k],
+                      traced ? whole.words[unit * kBlockWords + k] : kMark);
+    }
+}
+
+// Against the bits of all pairs, for senders drawn from runs of patches.
+TEST(Embree, listsGiveTheBitsOfTheDrawnPatches) {
+    const TraceScene scene = furnishedRoom();
+    const Bits whole = traceBits(scene, 2);
+    std::vector<shader::Sender> senders;
+    std::vector<uint32_t> members;
+    for (uint32_t i = 0; i + 5 < scene.patches.size(); i += 9) {
+        const uint32_t count = 1 + senders.size() % 5;
+        senders.push_back({uint32_t(members.size()), count, i});
+        for (uint32_t m = 0; m < count; ++m)
+            members.push_back(i + m);
+    }
+    while (senders.size() % kChunk != 0)
+        senders.push_back({0, 0, 0});
+    const auto columns = uint32_t(senders.size() / kChunk);
+    Bits bits;
+    for (uint32_t row = 0; row * shader::kSuper < scene.chunkCount(); ++row)
+        for (uint32_t column = 0; column * shader::kSuper < columns; ++column)
+            bits.supers.push_back({row, column, 0, {}, {}, 0});
+    bits.words.assign(size_t(bits.units()) * kBlockWords, 0);
+    const std::vector<uint32_t> sends(columns, 1);
+    const std::vector<uint32_t*> addresses = bits.addresses();
+    EmbreeScene(scene, 2).occlusion({.supers = bits.supers,
+                                     .bits = addresses,
+                                     .firstUnit = 0,
+                                     .unitCount = bits.units(),
+                                     .sends = sends.data(),
+                                     .senders = senders,
+                                     .members = members});
+    uint32_t seen = 0, others = 0;
+    for (uint32_t i = 0; i < scene.patches.size(); i += 3) {
+        const uint32_t key = scene.patches[i / kChunk * kChunk].flags >> 8;
+        for (uint32_t j = 0; j < senders.size(); ++j) {
+            if (senders[j].count == 0) {
+                ASSERT_FALSE(bits.at(i, j));
+                continue;
+            }
+            const uint32_t draw = shader::drawMember(senders[j], key), m = members[senders[j].first + draw];
+            ASSERT_LT(draw, senders[j].count);
+            ASSERT_EQ(bits.at(i, j), i != m && whole.at(std::min(i, m), std::max(i, m))) << i << " " << m;
+            seen += bits.at(i, j), others += draw > 0;
         }
     }
+    EXPECT_GT(seen, 10000u);
+    EXPECT_GT(others, 10000u);
 }
 
 TEST(Embree, linksAreThoseOfBruteForce) {

@@ -1,0 +1,141 @@
+#include "app/pair_options.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kMaxWindow = 32, kMinNode = 2, kMaxNode = 64; // [texels]
+constexpr uint32_t kDefaultWindow = 2;
+constexpr double kMaxThreshold = 1e6;
+
+bool hasWindow(Method method) {
+    return method == Method::Static || method == Method::MonteCarlo || method == Method::Mipmapped;
+}
+
+uint32_t powerOfTwo(const char* option, int64_t value, uint32_t least, uint32_t most) {
+    if (value >= least && value <= most && std::has_single_bit(static_cast<uint64_t>(value)))
+        return static_cast<uint32_t>(value);
+    throw UsageError(fmt::format("{} {}: choose a power of two from {} to {}", option, value, least, most));
+}
+
+// "512M": bytes, with K, M, G or T for powers of 1024.
+uint64_t parseMemory(const std::string& text) {
+    const auto wrong = [&] {
+        return UsageError("--cache-memory " + text + ": give a size above 0 like 512M or 2G");
+    };
+    size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        throw wrong();
+    }
+    std::string unit = text.substr(used);
+    std::transform(unit.begin(), unit.end(), unit.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    if (unit.ends_with("IB"))
+        unit.resize(unit.size() - 2);
+    else if (unit.size() > 1 && unit.ends_with("B"))
+        unit.pop_back();
+    constexpr std::array<const char*, 5> kUnits = {"", "K", "M", "G", "T"};
+    const auto found = std::find(kUnits.begin(), kUnits.end(), unit == "B" ? "" : unit);
+    if (found == kUnits.end()) throw wrong();
+    const double bytes = std::ldexp(value, 10 * static_cast<int>(found - kUnits.begin()));
+    constexpr double kMost = 1e18;
+    if (!(bytes >= 1.0 && bytes <= kMost)) throw wrong();
+    return static_cast<uint64_t>(bytes);
+}
+
+CacheSettings::Kind parseCache(const std::string& name, Method method) {
+    if (name == "none") return CacheSettings::Kind::None;
+    if (name == "auto") return CacheSettings::Kind::Auto;
+    if (name == "bits" && !isPairMethod(method))
+        throw UsageError(
+            fmt::format("--cache bits: --method {} keeps links: use links or auto", methodName(method)));
+    if (name == "links" && isPairMethod(method))
+        throw UsageError(
+            fmt::format("--cache links: --method {} keeps bits: use bits or auto", methodName(method)));
+    return name == "bits" ? CacheSettings::Kind::Bits : CacheSettings::Kind::Links;
+}
+
+} // namespace
+
+void addPairOptions(CLI::App& command, PairOptions& o) {
+    command.add_option(
+        "--window", o.window,
+        "Methods static, montecarlo, mipmapped: texels along a window (default 2): 1 2 4 8 16 32");
+    command
+        .add_option("--threshold", o.threshold,
+                    "Method adaptive: difference up to which nodes are merged, relative to the mean light "
+                    "(default 0.05; preset rtrad: absolute)")
+        ->each([&o](const std::string&) { o.thresholdGiven = true; });
+    command.add_option("--node", o.node,
+                       "Method adaptive: texels along the largest node (default 8): 2 4 8 16 32 64");
+    command
+        .add_option("--threshold-ramp", o.thresholdRamp,
+                    "Method adaptive: factor on the threshold from pass to pass (default 1)")
+        ->each([&o](const std::string&) { o.rampGiven = true; });
+    command
+        .add_option(
+            "--cache", o.cache,
+            "Keep for later passes what rays found: bits (pair methods), links (directional, hybrid), "
+            "none or auto")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"auto", "none", "bits", "links"}));
+    command.add_option("--cache-memory", o.cacheMemory,
+                       "At most so much, as 512M or 2G (default: a third of the free device memory)");
+}
+
+void resolvePairOptions(const PairOptions& o, SolverSettings& settings) {
+    const char* method = methodName(settings.method);
+    if (o.window != -1 && !hasWindow(settings.method))
+        throw UsageError(
+            fmt::format("--window: --method {} has none; static, montecarlo and mipmapped have", method));
+    const bool adaptive = settings.method == Method::Adaptive;
+    if (!adaptive && (o.node != -1 || o.thresholdGiven || o.rampGiven))
+        throw UsageError(fmt::format("{}: only with --method adaptive, not {}",
+                                     o.node != -1       ? "--node"
+                                     : o.thresholdGiven ? "--threshold"
+                                                        : "--threshold-ramp",
+                                     method));
+    settings.pairs.window = o.window != -1               ? powerOfTwo("--window", o.window, 1, kMaxWindow)
+                            : hasWindow(settings.method) ? kDefaultWindow
+                                                         : 1;
+    if (o.node != -1) settings.pairs.node = powerOfTwo("--node", o.node, kMinNode, kMaxNode);
+    if (o.thresholdGiven) {
+        if (!(o.threshold >= 0 && o.threshold <= kMaxThreshold))
+            throw UsageError(fmt::format("--threshold {}: give a number from 0 on", o.threshold));
+        settings.pairs.threshold = o.threshold;
+    }
+    if (o.rampGiven) {
+        constexpr double kMostRamp = 10;
+        if (!(o.thresholdRamp > 0 && o.thresholdRamp <= kMostRamp))
+            throw UsageError(fmt::format("--threshold-ramp {}: give a factor above 0, at most {}",
+                                         o.thresholdRamp, kMostRamp));
+        settings.pairs.thresholdRamp = o.thresholdRamp;
+    }
+    settings.cache.kind = parseCache(o.cache, settings.method);
+    if (!o.cacheMemory.empty()) {
+        if (settings.cache.kind == CacheSettings::Kind::None)
+            throw UsageError("--cache-memory: --cache none keeps nothing");
+        settings.cache.bytes = parseMemory(o.cacheMemory);
+    }
+}
+
+std::string describePairSettings(const SolverSettings& settings) {
+    if (hasWindow(settings.method)) return fmt::format(" window={}", settings.pairs.window);
+    if (settings.method != Method::Adaptive) return "";
+    return fmt::format(" threshold={} node={} threshold-ramp={}", settings.pairs.threshold,
+                       settings.pairs.node, settings.pairs.thresholdRamp);
+}
+
+} // namespace relume

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bake/solver.h"
+
+namespace CLI {
+class App;
+}
+
+namespace relume {
+
+/// What the user typed for the pair methods and the caches.
+struct PairOptions {
+    int64_t window = -1, node = -1; // -1: not given
+    double threshold = -1, thresholdRamp = -1;
+    bool thresholdGiven = false, rampGiven = false;
+    std::string cache = "auto", cacheMemory;
+};
+
+void addPairOptions(CLI::App& command, PairOptions& options);
+
+/// Throws UsageError for values that are wrong or that the method has no use for.
+void resolvePairOptions(const PairOptions& options, SolverSettings& settings);
+
+/// Name and value of those that the method uses, as "name=value" with a blank before each.
+std::string describePairSettings(const SolverSettings& settings);
+
+} // namespace relume
