@@ -154,6 +154,7 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
     BitsCache::Entry* entry = cache_ ? cache_->find(state_.row, state_.column) : nullptr;
     if (!entry && !ring_.bits) ring_ = BitsRing(device_, buffers_.capacity, superBytes(bothEnds_));
     const UnitMask known = entry ? entry->known : UnitMask{};
+    if (state_.unit == 0) superKnown_ = units.within(known).count();
     const uint64_t slot = state_.ringTurn % buffers_.capacity;
     batch.supers.push_back({.row = state_.row,
                             .column = state_.column,
@@ -176,7 +177,7 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
         return false;
     }
     unitsDone_ += units.count();
-    unitsKnown_ += units.within(known).count();
+    unitsKnown_ += superKnown_;
     batch.gatheredUnits += units.count();
     batch.cost += units.count() * msPerGathered_;
     batch.pairs += plan_.pairs(state_.row, state_.column);

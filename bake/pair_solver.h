@@ -83,8 +83,9 @@ private:
     PairState state_;
     double msPerTraced_ = 0, msPerGathered_ = 0; // unit, measured; 0: nothing yet
     uint64_t unitsDone_ = 0, unitsKnown_ = 0;    // of the current pass; of these bits that were kept
+    uint32_t superKnown_ = 0;                    // units of the current super-block, before this pass
     double keptRays_ = 0;                        // that the bits in the cache took
-    std::vector<float> errors_; // of each patch, by what the last pass changed
+    std::vector<float> errors_;                  // of each patch, by what the last pass changed
 };
 
 } // namespace relume

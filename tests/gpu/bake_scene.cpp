@@ -197,6 +197,9 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.links.smooth = desc.smooth;
     settings.solver.links.indirectScale = desc.indirectScale;
     settings.solver.cache = desc.cache;
+    settings.solver.pairs = desc.pairs;
+    settings.solver.transport.rtrad = desc.rtrad;
+    if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
     return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
 }
 

@@ -73,6 +73,8 @@ struct BakeDesc {
     uint32_t indirectScale = 1;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
+    PairSettings pairs = {};
+    bool rtrad = false; // the preset
 };
 
 struct Baked {

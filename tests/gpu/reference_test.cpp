@@ -20,13 +20,16 @@ namespace {
 const std::string kScene = RELUME_SHARED_DIR "/scenes/rtrad/CornellLucy.glb";
 const std::string kPictures = RELUME_SHARED_DIR "/references/rtrad/";
 
-FloatImage bakePreset(uint32_t size, TracerKind tracer, const VoxelSettings& voxels = {}) {
+FloatImage bakePreset(uint32_t size, TracerKind tracer, const VoxelSettings& voxels = {},
+                      Method method = Method::Pure, uint32_t window = 1) {
     PreparedScene prepared = prepareScene({.path = kScene, .size = size});
     BakeSettings settings;
     settings.size = size;
     settings.tracer = tracer;
     settings.voxels = voxels;
     settings.solver.transport = {.reflectivity = 0.9f, .rtrad = true};
+    settings.solver.method = method;
+    settings.solver.pairs.window = window;
     settings.solver.passes = 2;
     settings.solver.error = 0;
     Baker baker(testDevice(), prepared.scene, std::move(prepared.mesh), settings);
@@ -106,6 +109,19 @@ TEST(Reference, voxelRatioMixesMarchesAndRays) {
     EXPECT_LT(distance(mixed, voxels), distance(rays, voxels));
     if (!tracerProblem(TracerKind::Embree, testDevice().info()).empty()) return;
     EXPECT_LE(distance(mixed, bakePreset(kSize, TracerKind::Embree, mixture)), 0.0002);
+}
+
+// Of the adaptive picture the bake is too long for a test: by hand,
+//   relume bake CornellLucy.glb --preset rtrad --method adaptive --passes 2 --size 512 -o MAP.exr
+//   tools/rtrad_dfpr.py MAP.exr 512_T05.png --nearest
+TEST(Reference, monteCarloPresetMatchesRtradsPictures) {
+    if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
+    std::string why;
+    const TracerKind tracer = chooseTracer(testDevice().info(), why);
+    EXPECT_LE(dfprAgainst(bakePreset(128, tracer, {}, Method::MonteCarlo, 2), kPictures + "128_2x2.png"),
+              0.001);
+    EXPECT_LE(dfprAgainst(bakePreset(256, tracer, {}, Method::MonteCarlo, 4), kPictures + "256_4x4.png"),
+              0.001);
 }
 
 // Every other tracer gives the same map, so it matches the picture too.
