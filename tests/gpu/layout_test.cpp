@@ -100,7 +100,9 @@ const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),
                                               SIZE_OF(CoarseTaps),
                                               SIZE_OF(InterpolatePush),
                                               SIZE_OF(CoarseNeighbours),
-                                              SIZE_OF(CoarseErrorPush)};
+                                              SIZE_OF(CoarseErrorPush),
+                                              SIZE_OF(SuperBlock),
+                                              SIZE_OF(Sender)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
