@@ -3,10 +3,8 @@
 #include "bake/directions.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace relume {
@@ -31,23 +29,6 @@ constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
 // A segment towards a light costs about so much of a closest hit.
 constexpr double kSegmentCost = 0.3;
-// A receiver left out is missed over twice the gap, at its worst place. Square of what texels are off, over
-// the mean square of that: 1/32 where light is smooth, 1/4 across a step (at scale 2); 0.12 to 0.24 at scale
-// 2 and 0.27 to 0.51 at scale 4 in the Cornell rooms at 128 x 128, where boxes touch the floor.
-constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
-// Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
-// square.
-constexpr double kBesideGrid = 0.1;
-// The error is looked at again when so much of the rounds that it seems to need are done (variance falls as 1
-// / rounds or faster), and when their number has doubled.
-constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
-// Smoothing is as wide as its error is small: widths that are tried [texels], and how often the model is
-// asked again with what the new width showed.
-constexpr double kSigmaStep = 0.1, kMostSigma = 4.0;
-constexpr uint32_t kSigmaTries = 3;
-// A width within this factor of the best one is left alone: the error hardly depends on it there.
-constexpr double kSigmaSlack = 1.25;
-
 double updatedRate(double rate, double chunks, double seconds) {
     const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
     return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
@@ -373,121 +354,6 @@ void LinkSolver::measureChange() {
     state_.change = change;
 }
 
-// The error that is left, from what the replicates say and the iteration; kept in progress().
-void LinkSolver::check() {
-    const uint32_t rounds = state_.directRounds + state_.linkRounds;
-    state_.nextCheck = rounds + 1;
-    if (state_.linkRounds == 0 && !(hybrid_ && settings_.passes == 1)) return; // no bounces yet
-    resolve();
-    progress_.converged = progress_.error <= settings_.error;
-    const double off = progress_.error / settings_.error;
-    const double growth = std::min(kCheckGrowth, kCheckShare * off * off);
-    state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(growth * rounds));
-    // No number of samples mends a grid that is too coarse.
-    const double grid2 = progress_.gridError * progress_.gridError;
-    gridLimits_ = progress_.gridError > settings_.error &&
-                  progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
-}
-
-void LinkSolver::resolve() {
-    shader::ResolveSums sums = resolveOnce();
-    for (uint32_t tries = 1; tries < kSigmaTries && buffers_.rows; ++tries) {
-        const double before = state_.sigma;
-        adaptSigma(sums);
-        if (state_.sigma == before) break;
-        sums = resolveOnce();
-    }
-    state_.directVariance = sums.direct;
-    state_.indirectVariance = sums.indirect + std::max(0.0f, sums.bias);
-    state_.directAtCheck = state_.directRounds;
-    state_.linksAtCheck = state_.linkRounds;
-    progress_.error = 0;
-    if (sums.light > 0) {
-        const double mean = sums.light / (3.0 * sums.count);
-        state_.coarseVariance = coarseVariance(sums.count);
-        progress_.gridError = std::sqrt(state_.coarseVariance / (3.0 * sums.count)) / mean;
-        const double variance =
-            (state_.directVariance + state_.indirectVariance + state_.coarseVariance) / (3.0 * sums.count);
-        const bool settled = hybrid_ && settings_.passes == 1;
-        const double iteration = settled ? 0.0 : state_.iterationError;
-        progress_.error = std::sqrt(variance / (mean * mean) + iteration * iteration);
-    }
-    stale_ = false;
-    light_.clear();
-}
-
-// What interpolation leaves: a share of how far the receivers themselves are from what their neighbours say.
-double LinkSolver::coarseVariance(double patches) {
-    if (coarse_.count == 0 || state_.linkRounds == 0) return 0.0;
-    VkCommandBuffer cmd = commands_.begin();
-    resolvePass_.recordCoarse(cmd, input_.light, buffers_, state_.linkRounds * shape_.links);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    glm::dvec4 total(0.0);
-    for (const glm::vec4& sum : vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, senders_.size()))
-        total += glm::dvec4(sum);
-    const double rows = std::max(0.0, total.x) / std::max(1.0, total.y);
-    const double columns = std::max(0.0, total.z) / std::max(1.0, total.w);
-    return patches * (settings_.links.indirectScale == 2 ? kGapShare2 : kGapShare4) * (rows + columns);
-}
-
-shader::ResolveSums LinkSolver::resolveOnce() {
-    VkCommandBuffer cmd = commands_.begin();
-    resolvePass_.record(cmd, input_.light, buffers_,
-                        {.size = input_.patches.scene.size,
-                         .samples = state_.linkRounds * shape_.links,
-                         .directRounds = state_.directRounds,
-                         .sigma = static_cast<float>(state_.sigma)});
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    const auto chunks =
-        vk::readBuffer<shader::ResolveSums>(input_.device, buffers_.chunkSums, input_.patches.chunkCount());
-    std::array<double, 6> total{};
-    for (const shader::ResolveSums& s : chunks) {
-        const std::array<float, 6> terms = {s.light, s.direct, s.indirect, s.raw, s.bias, s.count};
-        for (size_t k = 0; k < total.size(); ++k)
-            total[k] += terms[k];
-    }
-    const auto f = [&](size_t k) { return static_cast<float>(total[k]); };
-    return {f(0), f(1), f(2), f(3), f(4), f(5)};
-}
-
-// Of a smooth function the mean over a width sigma is off by sigma^2 times its curvature, and independent
-// noise falls with the area, 1 / (1 + a sigma^2): the squares of both, as measured at one width, tell the
-// best one.
-void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
-    const double s2 = state_.sigma * state_.sigma;
-    if (!(sums.raw > 0.0f)) {
-        state_.sigma = 0;
-        return;
-    }
-    // Where nothing was smoothed only the ideal Gaussian's share is known, and no bias: try a narrow one.
-    constexpr double kGaussian = 4.0 * std::numbers::pi;
-    const double a =
-        s2 > 0 && sums.indirect > 0.0f ? std::max(0.0, sums.raw / sums.indirect - 1.0) / s2 : kGaussian;
-    const double b = s2 > 0 ? std::max(0.0f, sums.bias) / (s2 * s2) : sums.raw;
-    const auto error = [&](double sigma) {
-        const double t2 = sigma * sigma;
-        return sums.raw / (1.0 + a * t2) + b * t2 * t2;
-    };
-    double best = 0;
-    for (double sigma = kSigmaStep; sigma <= kMostSigma; sigma += kSigmaStep) {
-        if (error(sigma) < error(best)) best = sigma;
-    }
-    const bool close = best < kSigmaSlack * state_.sigma && state_.sigma < kSigmaSlack * best;
-    if (!close) state_.sigma = best;
-}
-
-const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.directRounds + state_.linkRounds > 0) resolve();
-    if (light_.empty())
-        light_ =
-            vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());
-    return light_;
-}
-
 SolverState LinkSolver::state() {
     ASSERT(!done_);
     return makeState(state_);
@@ -513,13 +379,6 @@ void LinkSolver::restore(const SolverState& state) {
     radiancePass_.record(cmd, input_.light, settings_.transport);
     vk::barrier(cmd);
     commands_.run();
-}
-
-std::vector<float> LinkSolver::errors() {
-    std::vector<float> result;
-    for (const glm::vec4& v : light())
-        result.push_back(v.w);
-    return result;
 }
 
 } // namespace relume

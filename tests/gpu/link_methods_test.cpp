@@ -105,7 +105,7 @@ TEST(Directions, FurnaceWithTheThesisSets) {
 
 class LinkMethods : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(Both, LinkMethods, testing::Values(Method::Directional, Method::Hybrid),
-                         [](const auto& info) { return std::string(methodName(info.param)); });
+                         [](const auto& which) { return std::string(methodName(which.param)); });
 
 TEST_P(LinkMethods, FurnaceEndsAtTheSeriesLimit) {
     for (const float albedo : {0.25f, 0.8f}) {
