@@ -180,7 +180,8 @@ TEST(VoxelMap, holesOfMaskedTrianglesStayEmpty) {
     TraceScene scene = sceneOf({{a, b, c}, {a, c, d}});
     scene.mesh.opaqueCount = 0;
     scene.alphaTriangles = {{{0, 0}, {1, 0}, {1, 1}, 1, 1, 1, 0}, {{0, 0}, {1, 1}, {0, 1}, 1, 1, 1, 0}};
-    scene.alphaMaterials = {{.factor = 1, .cutoff = 0.5f, .texels = 0, .width = 2, .height = 1}};
+    scene.alphaMaterials = {
+        {.factor = 1, .cutoff = 0.5f, .texels = 0, .width = 2, .height = 1, .wrapS = 0, .wrapT = 0}};
     scene.alphaTexels = {255, 0};
     const Voxels voxels(scene, 40);
     for (int x = 0; x < 40; ++x) {

@@ -104,9 +104,8 @@ struct Bits {
     // i < j, patch indices; or patch and sender
     bool at(uint32_t i, uint32_t j) const {
         const uint32_t row = i / kChunk, column = j / kChunk;
-        const SuperBlock wanted{row / shader::kSuper, column / shader::kSuper};
         const auto super = std::find_if(supers.begin(), supers.end(), [&](const SuperBlock& s) {
-            return s.row == wanted.row && s.column == wanted.column;
+            return s.row == row / shader::kSuper && s.column == column / shader::kSuper;
         });
         const size_t unit = size_t(super - supers.begin()) * shader::kSuperBlocks +
                             row % shader::kSuper * shader::kSuper + column % shader::kSuper;
