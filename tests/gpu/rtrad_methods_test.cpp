@@ -207,7 +207,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(RtradMethods, FollowRtradsFormulas) {
     const Case& c = GetParam();
-    const Scene scene = generateScene("cornell_geom");
+    // The stride misses the small lamp of the one, as RTRad's does, and finds the long ones of the other.
+    const Scene scene = generateScene(c.method == Method::Static ? "cornell_layers" : "cornell_geom");
     const auto baker = makeBaker(
         scene, {.size = kSize, .passes = kPasses, .method = c.method, .pairs = c.pairs, .rtrad = true});
     while (!baker->solver().done())
@@ -226,7 +227,9 @@ TEST_P(RtradMethods, FollowRtradsFormulas) {
             bounced += exact < 0.9 ? exact : 0.0;
         }
     }
-    EXPECT_GT(bounced, 1.0); // something arrived
+    // Something arrived; a stride of 8 meets no lamp at all at this size, and all must then stay dark.
+    const bool meetsNoLamp = c.method == Method::Static && c.pairs.window == 8;
+    EXPECT_EQ(bounced > 1.0, !meetsNoLamp) << bounced;
     // Texel centres lie on edges at this size: a few rays are a matter of the last bit.
     const double count = 3.0 * baker->patches().count;
     EXPECT_LT(std::sqrt(squares / count) / (sum / count), 2e-3);
