@@ -169,9 +169,9 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
     batch.bits.push_back(entry ? entry->host : ring_.host(slot));
     batch.entries.push_back(entry);
     const UnitMask left = UnitMask::range(state_.unit, kSuperBlocks);
-    const UnitMask todo = units.without(known).within(left);
-    const uint32_t end = unitsThatFit(batch, todo);
-    const UnitMask traced = todo.within(UnitMask::range(0, end));
+    const UnitMask missing = units.without(known).within(left);
+    const uint32_t end = unitsThatFit(batch, missing);
+    const UnitMask traced = missing.within(UnitMask::range(0, end));
     batch.traced.push_back(traced);
     batch.tracedUnits += traced.count();
     batch.cost += traced.count() * msPerTraced_;
@@ -192,14 +192,14 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
 }
 
 // Up to which unit of the super-block just added the batch goes; always some further.
-uint32_t PairSolver::unitsThatFit(const Batch& batch, const UnitMask& todo) const {
+uint32_t PairSolver::unitsThatFit(const Batch& batch, const UnitMask& missing) const {
     const double room =
         msPerTraced_ > 0 ? (settings_.batchMs - batch.cost) / msPerTraced_ : kFirstUnits - batch.tracedUnits;
     auto fits = static_cast<uint32_t>(std::clamp(room, batch.tracedUnits > 0 ? 0.0 : 1.0, 256.0));
-    if (todo.count() <= fits) return kSuperBlocks;
+    if (missing.count() <= fits) return kSuperBlocks;
     uint32_t unit = state_.unit;
     for (; fits > 0; ++unit)
-        if (todo.has(unit)) --fits;
+        if (missing.has(unit)) --fits;
     return unit;
 }
 

@@ -56,7 +56,7 @@ private:
     void listSupers();
     Batch cutBatch();
     bool addSuper(Batch& batch, const UnitMask& units);
-    uint32_t unitsThatFit(const Batch& batch, const UnitMask& todo) const;
+    uint32_t unitsThatFit(const Batch& batch, const UnitMask& missing) const;
     void nextSuper();
     void run(Batch& batch);
     void trace(VkCommandBuffer cmd, const Batch& batch);

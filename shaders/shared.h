@@ -30,8 +30,8 @@ CONST uint kReplicates = 4u;
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
 
-// What patches side by side have in common of their directions: nothing; those in the same place of their 4 x 4 texels
-// all; a chunk's all.
+// What patches side by side have in common of their directions: nothing; those in the same place of their 4 x
+// 4 texels all; a chunk's all.
 CONST uint kRotatePatch = 0u;
 CONST uint kRotateInterleaved = 1u;
 CONST uint kRotateTile = 2u;
@@ -74,8 +74,8 @@ struct CoarseTaps {
     vec4 weights;
 };
 
-// A receiver of the coarser grid and those before and after it in the chart: patches, `own` where there are not both; share:
-// of the one before in the light that both say is between them.
+// A receiver of the coarser grid and those before and after it in the chart: patches, `own` where there are
+// not both; share: of the one before in the light that both say is between them.
 struct CoarseNeighbours {
     uint own;
     uint left, right, below, above;
@@ -89,7 +89,7 @@ CONST uint kEmitterParallelogram = 5u;
 
 // A plane convex light of one radiance, counter-clockwise seen from its front, where it shines.
 struct EmitterPolygon {
-    vec3 c0; // [m]
+    vec3 c0;    // [m]
     float area; // [m^2]
     vec3 c1;
     float offset; // [m], along the normal: where rays to it end
@@ -108,19 +108,19 @@ CONST uint kEmitterDepth = 48u; // inner nodes on the longest way down, at most
 
 // A node of the tree over the emitters; 0 is the root. Every normal below it is within the cone.
 struct EmitterNode {
-    vec3 lo; // [m]
-    float power; // area times mean of the radiance's components, as a share of all emitters'
-    vec3 hi; // [m]
+    vec3 lo;       // [m]
+    float power;   // area times mean of the radiance's components, as a share of all emitters'
+    vec3 hi;       // [m]
     float cosCone; // cosine of the cone's half angle; 1: all normals are the axis
-    vec3 axis; // unit
+    vec3 axis;     // unit
     uint link;
 };
 
 // Blocks (row * 16 + r, column * 16 + c), r, c in 0..15: the pairs of 1024 receivers and 1024 senders.
 struct SuperBlock {
-    uint row;             // of receiving chunks
-    uint column;          // of sending chunks
-    ADDRESS bits;         // uint[kSuperWords]; RTRad's symmetric ones: as many more, traced from the other end
+    uint row;     // of receiving chunks
+    uint column;  // of sending chunks
+    ADDRESS bits; // uint[kSuperWords]; RTRad's symmetric ones: as many more, traced from the other end
     uvec4 known0, known1; // bit u % 32 of word u / 32: unit u has its bits already
     uint counters;        // 0 or kRayCounters: the first of the words in which its rays are counted
 };
@@ -186,8 +186,8 @@ CONST uint kVoxelSides = 6u;
 struct VoxelGrid {
     ADDRESS bits;    // uint[], 1 bit per voxel, x runs fastest, then y: set where a triangle touches it
     ADDRESS ranks;   // uint[], per word of bits: set bits before it
-    ADDRESS patches; // uint[kVoxelSides] per set voxel, by the side that the surface faces: a patch, kLinkDark or
-                     // kNoPatch for none
+    ADDRESS patches; // uint[kVoxelSides] per set voxel, by the side that the surface faces: a patch,
+                     // kLinkDark or kNoPatch for none
     ADDRESS scene;   // Patch[], what these are
     vec3 origin;     // [m]
     vec3 scale;      // [voxels / m]
@@ -344,11 +344,11 @@ struct LinkDistancePush {
     uint sampleCount;
 };
 struct InterpolatePush {
-    ADDRESS taps;   // CoarseTaps[]
-    ADDRESS coarse; // vec4[kReplicates][receiverCount], this bounce's sums over links
-    ADDRESS direct; // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut; // vec4[]
-    ADDRESS sums;   // vec4[kReplicates][patchCount], added to; 0: not
+    ADDRESS taps;            // CoarseTaps[]
+    ADDRESS coarse;          // vec4[kReplicates][receiverCount], this bounce's sums over links
+    ADDRESS direct;          // vec4[] added to ligOut; 0: nothing
+    ADDRESS ligOut;          // vec4[]
+    ADDRESS sums;            // vec4[kReplicates][patchCount], added to; 0: not
     ADDRESS coarseDistances; // float[receiverCount] [m]
     ADDRESS distances;       // float[patchCount], written; 0: not
     uint firstChunk;
@@ -400,9 +400,9 @@ struct SmoothPush {
     ADDRESS distances;  // float[patchCount] [m], of what lights a patch
     uint chunkCount;
     uint patchCount;
-    uint size;   // lightmap edge [texels]
-    uint reach;  // [texels], 0: no smoothing
-    float sigma; // [texels]
+    uint size;                // lightmap edge [texels]
+    uint reach;               // [texels], 0: no smoothing
+    float sigma;              // [texels]
     float scale, directScale; // from a replicate's sum to its mean
 };
 struct FinishPush {
