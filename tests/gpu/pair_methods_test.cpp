@@ -1,42 +1,17 @@
 // Undersampling and adaptive subdivision against the pure method and closed forms; the visibility cache.
 #include "assets/generate.h"
+#include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 namespace relume {
 namespace {
 
 constexpr uint64_t kSlot = superBytes(false); // what the cache needs for one super-block
-
-bool sameBytes(const FloatImage& a, const FloatImage& b) {
-    if (a.planes.size() != b.planes.size()) return false;
-    for (size_t k = 0; k < a.planes.size(); ++k) {
-        if (a.planes[k].size() != b.planes[k].size()) return false;
-        if (std::memcmp(a.planes[k].data(), b.planes[k].data(), a.planes[k].size() * sizeof(float)) != 0)
-            return false;
-    }
-    return true;
-}
-
-/// Area times reflected light [cd] of all patches that are shown.
-double reflectedFlux(const Baked& baked) {
-    double flux = 0;
-    const std::vector<uint32_t>& map = baked.patches.scene.texelToPatch;
-    for (size_t texel = 0; texel < map.size(); ++texel) {
-        if (map[texel] == shader::kNoPatch) continue;
-        double light = 0;
-        for (size_t k = 0; k < 3; ++k)
-            light += double{baked.patches.albedo[map[texel]][static_cast<int>(k)]} *
-                     baked.lighting.planes[k][texel];
-        flux += baked.patches.scene.patches[map[texel]].area * light / 3;
-    }
-    return flux;
-}
 
 struct Case {
     const char* name;

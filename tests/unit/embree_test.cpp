@@ -1,7 +1,6 @@
 #include "bake/trace/embree_scene.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <random>
 
@@ -11,8 +10,6 @@
 #include "bake/trace/bvh_builder.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
-#include "bake/trace/embree_pool.h"
-#include "bake/trace/embree_shaft.h"
 #include "trace_world.h"
 
 namespace relume {
@@ -447,32 +444,6 @@ TEST(EmbreeChunks, facingIsThatOfTheShaders) {
     EXPECT_GT(skipped, 6u * 64u / 2); // at least most pairs within a wall
 }
 
-// Two squares of 1 m face each other 2 m apart; a small one stands between them or beside.
-bool openPast(glm::vec3 obstacle, bool masked = false) {
-    TraceWorld world;
-    world.add([](float u, float v) { return glm::vec3(u, 0, -v); }, 1);
-    world.add([](float u, float v) { return glm::vec3(u, 2, v - 1); }, 1);
-    world.add([=](float u, float v) { return obstacle + glm::vec3(0.1f * u, 0, -0.1f * v); }, 1,
-              {.masked = masked});
-    const TraceScene scene = world.build();
-    const std::vector<PatchChunk> chunks = buildChunks(scene.patches, false);
-    EndBox floor = chunks[0].ends, lid = chunks[8].ends;
-    for (uint32_t c = 1; c < 8; ++c) {
-        floor = {glm::min(floor.lo, chunks[c].ends.lo), glm::max(floor.hi, chunks[c].ends.hi)};
-        lid = {glm::min(lid.lo, chunks[8 + c].ends.lo), glm::max(lid.hi, chunks[8 + c].ends.hi)};
-    }
-    return Shaft(chunks[0], floor, chunks[8], lid).isOpen(buildBvh(scene.mesh));
-}
-
-TEST(EmbreeShaft, isOpenUnlessSomethingReachesIn) {
-    EXPECT_TRUE(openPast({0.5f, 5, -0.5f})); // behind the lid
-    EXPECT_TRUE(openPast({1.1f, 1, -0.5f})); // beside
-    EXPECT_FALSE(openPast({0.5f, 1, -0.5f}));
-    EXPECT_FALSE(openPast({0.95f, 1, -0.5f})); // half in
-    EXPECT_FALSE(openPast({0.5f, 1, -0.5f}, true));
-    EXPECT_FALSE(openPast({0.5f, 1e-3f, -0.5f})); // close above the floor's patches
-}
-
 TEST(EmbreeBlockers, stopOnlyWhatTheirTrianglesStop) {
     const TraceScene scene = furnishedRoom();
     const std::vector<PatchChunk> chunks = buildChunks(scene.patches, false);
@@ -504,19 +475,6 @@ TEST(EmbreeBlockers, stopOnlyWhatTheirTrianglesStop) {
     EXPECT_GT(hits, 300u);
     EXPECT_GT(found, hits * 9 / 10);
     EXPECT_EQ(wrong, 0u);
-}
-
-TEST(WorkerPool, doesEverythingOnceHoweverOftenItIsUsed) {
-    for (uint32_t threads : {1u, 2u, 7u}) {
-        WorkerPool pool(threads);
-        EXPECT_EQ(pool.size(), threads);
-        for (uint32_t count : {0u, 1u, 2u, 1000u, 3u}) {
-            std::vector<std::atomic<uint32_t>> done(count);
-            pool.run(count, [&](uint32_t i) { ++done[i]; });
-            for (const auto& times : done)
-                EXPECT_EQ(times, 1u);
-        }
-    }
 }
 
 } // namespace
