@@ -157,9 +157,15 @@ private:
         const double cpu = secondsSince(start);
         vk::barrier(cmd);
         timestamps_.mark(cmd, 1);
+        if (gatherPass_.onCpu()) {
+            vk::hostBarrier(cmd);
+            commands_.run();
+            cmd = commands_.begin();
+        }
         gatherPass_.record(cmd, {.light = light_,
                                  .pairs = pairs_,
-                                 .superCount = count,
+                                 .supers = supers,
+                                 .bits = bits,
                                  .size = patches_.scene.size,
                                  .transport = transport_});
         timestamps_.mark(cmd, 2);

@@ -1,5 +1,6 @@
 #include "bake/link_passes.h"
 
+#include "bake/host_gather.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -140,13 +141,31 @@ void DirectPass::recordGather(VkCommandBuffer cmd, const LightBuffers& light, co
     gather_.dispatch(cmd, push, range.count);
 }
 
+void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers,
+                                 const Work& work) const {
+    const bool coarse = buffers.receiverCount > 0;
+    glm::vec4* sums = coarse            ? buffers.coarseSums.as<glm::vec4>()
+                      : work.accumulate ? buffers.linkSums.as<glm::vec4>()
+                                        : nullptr;
+    gatherLinks(*pool_, {.links = work.links->as<uint32_t>() + work.linksOffset,
+                         .radiance = light.radiance.as<glm::vec4>(),
+                         .direct = work.hybrid && !coarse ? buffers.direct.as<glm::vec4>() : nullptr,
+                         .ligOut = coarse ? nullptr : light.ligOut.as<glm::vec4>(),
+                         .sums = sums,
+                         .firstChunk = work.range.first,
+                         .chunkCount = work.range.count,
+                         .samples = work.samples,
+                         .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk});
+}
+
 void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                             const Work& work) const {
+    if (pool_) return gatherOnCpu(light, buffers, work);
     const bool coarse = buffers.receiverCount > 0;
     const VkDeviceAddress sums = coarse            ? buffers.coarseSums.address()
                                  : work.accumulate ? buffers.linkSums.address()
                                                    : 0;
-    const shader::LinkPush push{.links = work.links,
+    const shader::LinkPush push{.links = work.address(),
                                 .radiance = light.radiance.address(),
                                 .direct = work.hybrid && !coarse ? buffers.direct.address() : 0,
                                 .ligOut = coarse ? 0 : light.ligOut.address(),
@@ -163,7 +182,7 @@ void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& li
     const bool coarse = buffers.receiverCount > 0;
     const shader::LinkDistancePush push{
         .patches = light.patches.address(),
-        .links = work.links,
+        .links = work.address(),
         .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
         .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
         .firstChunk = work.range.first,

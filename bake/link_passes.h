@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "bake/coarse_patches.h"
 #include "bake/emitters.h"
 #include "bake/light_buffers.h"
 #include "bake/solver.h"
 #include "bake/vk/program.h"
+#include "bake/worker_pool.h"
 
 namespace relume {
 
@@ -74,20 +77,26 @@ private:
 
 /// Light over links: the mean of what the links' patches send, and of direct light, to ligOut. Where only
 /// receivers of a coarser grid have links: first to coarseSums, cleared before, then by interpolation to
-/// ligOut.
+/// ligOut. On a software device host_gather.h gathers.
 class LinkGatherPass {
 public:
     explicit LinkGatherPass(const vk::Device& device)
-        : gather_(device, "links"), distance_(device, "link_distance"), interpolate_(device, "interpolate"),
+        : pool_(device.info().software() ? std::make_unique<WorkerPool>(0) : nullptr),
+          gather_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "links")),
+          distance_(device, "link_distance"), interpolate_(device, "interpolate"),
           compose_(device, "compose") {}
     struct Work {
-        VkDeviceAddress links = 0; // of range.first on
-        uint32_t samples = 0;      // per patch
-        bool hybrid = false;       // direct light is added to ligOut
-        bool accumulate = false;   // add to linkSums
-        bool distances = false;    // of recordInterpolate: those of recordDistances are spread, too
+        const vk::Buffer* links = nullptr;
+        uint64_t linksOffset = 0; // of range.first [links]
+        uint32_t samples = 0;     // per patch
+        bool hybrid = false;      // direct light is added to ligOut
+        bool accumulate = false;  // add to linkSums
+        bool distances = false;   // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
+        VkDeviceAddress address() const { return links->address() + linksOffset * sizeof(uint32_t); }
     };
+    /// Whether record gathers at once, on the host: what it reads must be there by then.
+    bool onCpu() const { return pool_ != nullptr; }
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
     /// Distances of these links' ends, for smoothing.
@@ -101,6 +110,9 @@ public:
                        bool hybrid, uint32_t samples) const;
 
 private:
+    void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
+
+    std::unique_ptr<WorkerPool> pool_;
     vk::ComputeProgram gather_, distance_, interpolate_, compose_;
 };
 

@@ -264,7 +264,13 @@ void LinkSolver::linkBatch() {
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
-    const LinkGatherPass::Work work{.links = links.address() + offset * sizeof(uint32_t),
+    if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
+        vk::hostBarrier(cmd);
+        commands_.run();
+        cmd = commands_.begin();
+    }
+    const LinkGatherPass::Work work{.links = &links,
+                                    .linksOffset = offset,
                                     .samples = shape_.links,
                                     .hybrid = hybrid_,
                                     .accumulate = state_.last,

@@ -216,10 +216,16 @@ void PairSolver::run(Batch& batch) {
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
     if (batch.complete > 0) {
+        if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
+            vk::hostBarrier(cmd);
+            commands_.run();
+            cmd = commands_.begin();
+        }
         gatherPass_.record(cmd, {.light = light_,
                                  .pairs = buffers_,
                                  .senders = senders_.buffers(),
-                                 .superCount = batch.complete,
+                                 .supers = std::span(batch.supers).first(batch.complete),
+                                 .bits = std::span(batch.bits).first(batch.complete),
                                  .window = senders_.skippedWindow(),
                                  .size = patches_.scene.size,
                                  .transport = settings_.transport});

@@ -1,5 +1,6 @@
 #include "bake/passes.h"
 
+#include "bake/host_gather.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -67,10 +68,13 @@ void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
 }
 
 GatherPass::GatherPass(const vk::Device& device, SenderKind kind, bool rtrad)
-    : kind_(kind), transpose_(device, "transpose"),
-      gather_(device, device.info().software() ? "gather_software" : "gather",
-              {rtrad ? 1u : 0u, static_cast<uint32_t>(kind)}),
-      reduce_(device, "reduce") {}
+    : kind_(kind), pool_(device.info().software() && !rtrad ? std::make_unique<WorkerPool>(0) : nullptr),
+      reduce_(device, "reduce") {
+    if (pool_) return;
+    transpose_ = vk::ComputeProgram(device, "transpose");
+    gather_ = vk::ComputeProgram(device, device.info().software() ? "gather_software" : "gather",
+                                 {rtrad ? 1u : 0u, static_cast<uint32_t>(kind)});
+}
 
 shader::GatherPush GatherPass::push(const Desc& desc) const {
     const LightBuffers& light = desc.light;
@@ -97,22 +101,48 @@ shader::GatherPush GatherPass::push(const Desc& desc) const {
             .size = desc.size};
 }
 
+void GatherPass::gatherOnCpu(const Desc& desc) const {
+    const LightBuffers& light = desc.light;
+    const SenderBuffers* list = desc.senders;
+    const bool own = kind_ != SenderKind::List, drawn = kind_ == SenderKind::Drawn;
+    gatherPairs(*pool_, {.supers = desc.supers,
+                         .bits = desc.bits,
+                         .patches = light.patches.as<shader::Patch>(),
+                         .bounds = light.bounds.as<shader::ChunkBounds>(),
+                         .sends = (list ? list->sends : light.chunkSends).as<uint32_t>(),
+                         .senderPatches = (own ? light.patches : list->patches).as<shader::Patch>(),
+                         .senderEdges = (own ? light.edges : list->edges).as<shader::PatchEdges>(),
+                         .senderBounds = (list ? list->bounds : light.bounds).as<shader::ChunkBounds>(),
+                         .radiance = (own ? light.radiance : list->radiance).as<glm::vec4>(),
+                         .senders = drawn ? list->senders.as<shader::Sender>() : nullptr,
+                         .members = drawn ? list->members.as<uint32_t>() : nullptr,
+                         .symmetric = kind_ == SenderKind::Patches,
+                         .rowCount = light.chunkCount,
+                         .columnCount = list ? list->chunkCount : light.chunkCount,
+                         .partial = desc.pairs.partial.as<glm::vec4>()});
+}
+
 void GatherPass::record(VkCommandBuffer cmd, const Desc& desc) const {
     const bool symmetric = kind_ == SenderKind::Patches;
-    if (symmetric) {
+    const auto superCount = static_cast<uint32_t>(desc.supers.size());
+    if (pool_) {
+        gatherOnCpu(desc);
+    } else if (symmetric) {
         const shader::TransposePush transpose{.supers = desc.pairs.supers.address(),
                                               .transposed = desc.pairs.transposed.address(),
                                               .chunkCount = desc.light.chunkCount,
                                               .reversed = desc.transport.rtrad ? 1u : 0u};
-        transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, desc.superCount);
+        transpose_.dispatch(cmd, transpose, shader::kSuperBlocks, superCount);
         vk::barrier(cmd);
     }
-    gather_.dispatch(cmd, push(desc), (symmetric ? 2 : 1) * shader::kSuper, desc.superCount);
-    vk::barrier(cmd);
+    if (!pool_) {
+        gather_.dispatch(cmd, push(desc), (symmetric ? 2 : 1) * shader::kSuper, superCount);
+        vk::barrier(cmd);
+    }
     const shader::ReducePush reduce{.supers = desc.pairs.supers.address(),
                                     .partial = desc.pairs.partial.address(),
                                     .ligOut = desc.light.ligOut.address(),
-                                    .superCount = desc.superCount,
+                                    .superCount = superCount,
                                     .patchCount = desc.light.chunkCount * shader::kChunk,
                                     .symmetric = symmetric ? 1u : 0u};
     dispatchChunks(reduce_, cmd, reduce, desc.light.chunkCount);

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <memory>
+
 #include "bake/light_buffers.h"
 #include "bake/trace/tracer.h"
 #include "bake/vk/program.h"
+#include "bake/worker_pool.h"
 
 namespace relume {
 
@@ -72,7 +75,8 @@ private:
 };
 
 /// RTL, second half: gathers some super-blocks and adds the sums to ligOut in the table's order. Reads bits,
-/// patches and radiance. Barriers between its dispatches are its own, those around it the caller's.
+/// patches and radiance. Barriers between its dispatches are its own, those around it the caller's. On a
+/// software device all but the RTRad preset is gathered by host_gather.h.
 class GatherPass {
 public:
     GatherPass(const vk::Device& device, SenderKind kind, bool rtrad);
@@ -80,17 +84,22 @@ public:
         const LightBuffers& light;
         const PairBuffers& pairs;
         const SenderBuffers* senders = nullptr; // where there is a list
-        uint32_t superCount = 0;                // of the table
+        std::span<const SuperBlock> supers;     // the table, as pairs.supers begins with
+        std::span<uint32_t* const> bits;        // tracer.h, OcclusionWork
         uint32_t window = 1;                    // RTRad: senders within it are skipped [texels]
         uint32_t size = 0;                      // lightmap edge [texels]
         const TransportSettings& transport;
     };
+    /// Whether record gathers at once, on the host: what it reads must be there by then.
+    bool onCpu() const { return pool_ != nullptr; }
     void record(VkCommandBuffer cmd, const Desc& desc) const;
 
 private:
     shader::GatherPush push(const Desc& desc) const;
+    void gatherOnCpu(const Desc& desc) const;
 
     SenderKind kind_;
+    std::unique_ptr<WorkerPool> pool_;
     vk::ComputeProgram transpose_, gather_, reduce_;
 };
 

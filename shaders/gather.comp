@@ -21,9 +21,6 @@ const uint kSymmetric = 0u, kDrawn = 2u;
 layout(local_size_x = 64) in;
 
 const float kPi = 3.14159265358979;
-// Pairs nearer than this many patch sizes (sqrt of the area) take the exact form factor: beyond, the disc form is
-// within 2 % of it whatever the angle.
-const float kClose = 4.0;
 const float kRtradClamp = 0.05;
 
 struct Source {
@@ -65,7 +62,7 @@ float farFactor(Patch receiver, Source s) {
 
 float closeFactor(Patch receiver, Source s) {
     vec3 d = s.position - receiver.position;
-    if (dot(d, d) > kClose * kClose * s.area) return farFactor(receiver, s);
+    if (dot(d, d) > kClosePair * kClosePair * s.area) return farFactor(receiver, s);
     PatchEdges e = EdgeList(push.senderEdges).items[s.index];
     return parallelogramFormFactor(receiver.position, receiver.shading, s.position, e.du, e.dv, s.normal);
 }
@@ -89,7 +86,7 @@ vec4 rtradAddend(Patch receiver, vec3 albedo, Source s) {
 bool chunksClose(uint receivers, uint senders) {
     ChunkBounds p = BoundsList(push.bounds).items[receivers], q = BoundsList(push.senderBounds).items[senders];
     vec3 gap = max(max(q.lo - p.hi, p.lo - q.hi), vec3(0.0));
-    return dot(gap, gap) <= kClose * kClose * q.size * q.size;
+    return dot(gap, gap) <= kClosePair * kClosePair * q.size * q.size;
 }
 
 #ifdef SOFTWARE

@@ -61,6 +61,8 @@ template<typename Lanes>
     float* __restrict x = out[0];
     float* __restrict y = out[1];
     float* __restrict z = out[2];
+    // Inlined, __restrict is forgotten; run-time checks of all these pairs would be more than compilers take.
+#pragma GCC ivdep
     for (uint32_t i = 0; i < kChunk; ++i) {
         glm::vec2 u;
         const glm::vec3 local = lanes(seed[i], u);

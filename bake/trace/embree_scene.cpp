@@ -13,7 +13,7 @@
 #include "bake/trace/embree_api.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
-#include "bake/trace/embree_pool.h"
+#include "bake/worker_pool.h"
 #include "bake/trace/embree_rays.h"
 #include "bake/trace/embree_shaft.h"
 

@@ -33,6 +33,11 @@ public:
     VkDeviceSize size() const { return size_; }
     VkDeviceAddress address() const { return address_; }
     void* mapped() const { return mapped_; } // nullptr where the CPU cannot see it
+    template<typename T>
+    T* as() const { // its contents, of a buffer that the CPU sees
+        ASSERT(mapped_);
+        return static_cast<T*>(mapped_);
+    }
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:

@@ -1,4 +1,4 @@
-#include "bake/trace/embree_pool.h"
+#include "bake/worker_pool.h"
 
 #include <atomic>
 
