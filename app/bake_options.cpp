@@ -134,6 +134,8 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
     command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
         ->check(CLI::PositiveNumber);
+    command.add_flag("--device-gather", o.deviceGather,
+                     "Gather by the device's shaders also where it is the CPU, whose own loops are faster");
     command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 45.0));
@@ -183,6 +185,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     request.bake.voxels = resolveVoxels(o);
     SolverSettings& solver = request.bake.solver;
     solver.transport.rtrad = rtrad;
+    solver.transport.deviceGather = o.deviceGather;
     solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity
                                                        : rtrad             ? kRtradReflectivity
                                                                            : 1.0);

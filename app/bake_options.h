@@ -34,6 +34,7 @@ struct BakeOptions {
     bool noSmooth = false;
     PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
+    bool deviceGather = false;
 };
 
 void addBakeOptions(CLI::App& command, BakeOptions& options);

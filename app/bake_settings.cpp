@@ -9,9 +9,9 @@ namespace {
 // changes a bake's bytes.
 
 std::string describe(const TransportSettings& settings) {
-    const auto& [reflectivity, distanceFactor, rtrad, allSend, reflectedOnly] = settings;
-    return fmt::format(" reflectivity={} distance-factor={} preset={}", reflectivity, distanceFactor,
-                       rtrad ? "rtrad" : "none");
+    const auto& [reflectivity, distanceFactor, rtrad, allSend, deviceGather, reflectedOnly] = settings;
+    return fmt::format(" reflectivity={} distance-factor={} preset={} device-gather={}", reflectivity,
+                       distanceFactor, rtrad ? "rtrad" : "none", deviceGather ? 1 : 0);
 }
 
 std::string describe(Method method, const PairSettings& settings) {

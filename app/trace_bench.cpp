@@ -30,7 +30,8 @@ public:
     Bench(const vk::Device& device, Baker& baker, TracerKind kind, const TraceBenchDesc& desc)
         : device_(device), patches_(baker.patches()), light_(baker.light()), desc_(desc),
           tracer_(makeTracer(kind, device, patches_.scene, light_.patches)), commands_(device),
-          timestamps_(device, 3), radiancePass_(device), gatherPass_(device, SenderKind::Patches, false) {}
+          timestamps_(device, 3), radiancePass_(device),
+          gatherPass_(device, SenderKind::Patches, transport_) {}
 
     void pairs(TraceRates& rates) {
         allocatePairs();
@@ -197,6 +198,7 @@ private:
     const PatchSet& patches_;
     LightBuffers& light_;
     const TraceBenchDesc desc_;
+    const TransportSettings transport_{.allSend = true};
     std::unique_ptr<Tracer> tracer_;
     vk::Commands commands_;
     vk::Timestamps timestamps_;
@@ -206,7 +208,6 @@ private:
     std::vector<uint32_t> zero_;
     PairBuffers pairs_;
     BitsRing ring_;
-    const TransportSettings transport_{.allSend = true};
     vk::Buffer rays_;
 };
 

@@ -107,7 +107,9 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
             ? count * sizeof(shader::CoarseTaps) +
                   receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
             : 0;
-    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t)) + receivers * kept + coarse + batch * perChunk;
+    const uint64_t packed = software ? 0 : sizeof(glm::uvec2);
+    return count * (vec4s(sums + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
+           batch * perChunk;
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -158,6 +160,15 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                          .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk});
 }
 
+void LinkGatherPass::recordPack(VkCommandBuffer cmd, const LightBuffers& light,
+                                const LinkBuffers& buffers) const {
+    if (pool_) return;
+    const auto count = static_cast<uint32_t>(buffers.packed.size() / sizeof(glm::uvec2));
+    const shader::PackPush push{
+        .radiance = light.radiance.address(), .packed = buffers.packed.address(), .count = count};
+    dispatchChunks(pack_, cmd, push, (count + kChunk - 1) / kChunk);
+}
+
 void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                             const Work& work) const {
     if (pool_) return gatherOnCpu(light, buffers, work);
@@ -166,7 +177,7 @@ void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, cons
                                  : work.accumulate ? buffers.linkSums.address()
                                                    : 0;
     const shader::LinkPush push{.links = work.address(),
-                                .radiance = light.radiance.address(),
+                                .packed = buffers.packed.address(),
                                 .direct = work.hybrid && !coarse ? buffers.direct.address() : 0,
                                 .ligOut = coarse ? 0 : light.ligOut.address(),
                                 .sums = sums,

@@ -29,6 +29,7 @@ struct LinkBuffers {
     vk::Buffer targets, picks, bits; // of one batch of direct light
     vk::Buffer links;                // uint[chunk][links of a round][64], of the first keptChunks chunks
     vk::Buffer linksStaging;         // of one batch beyond these
+    vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
     vk::Buffer distances;     // float per patch [m], where there is smoothing
@@ -80,8 +81,10 @@ private:
 /// ligOut. On a software device host_gather.h gathers.
 class LinkGatherPass {
 public:
-    explicit LinkGatherPass(const vk::Device& device)
-        : pool_(device.info().software() ? std::make_unique<WorkerPool>(0) : nullptr),
+    LinkGatherPass(const vk::Device& device, const TransportSettings& settings)
+        : pool_(device.info().software() && !settings.deviceGather ? std::make_unique<WorkerPool>(0)
+                                                                   : nullptr),
+          pack_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "pack")),
           gather_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "links")),
           distance_(device, "link_distance"), interpolate_(device, "interpolate"),
           compose_(device, "compose") {}
@@ -97,6 +100,8 @@ public:
     };
     /// Whether record gathers at once, on the host: what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
+    /// Makes packed of the light's radiance.
+    void recordPack(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
     /// Distances of these links' ends, for smoothing.
@@ -113,7 +118,7 @@ private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
 
     std::unique_ptr<WorkerPool> pool_;
-    vk::ComputeProgram gather_, distance_, interpolate_, compose_;
+    vk::ComputeProgram pack_, gather_, distance_, interpolate_, compose_;
 };
 
 /// Sums over chunks: what a bounce changed, and the result with its errors.

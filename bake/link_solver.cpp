@@ -53,10 +53,14 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                 .smooth = hybrid_ && settings.links.smooth,
                 .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
                 .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
-      radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device),
+      radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device, settings.transport),
       resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3) {
     settings_.transport.reflectedOnly = hybrid_;
     const PatchSet& patches = input.patches;
+    if (!gatherPass_.onCpu())
+        buffers_.packed = vk::Buffer(
+            input.device, {.size = input.light.radiance.size() / sizeof(glm::vec4) * sizeof(glm::uvec2),
+                           .name = "packed radiance"});
     const std::vector<shader::Patch>& receivers =
         coarse_.count > 0 ? coarse_.receivers : patches.scene.patches;
     senders_.assign(receivers.size() / kChunk, 0);
@@ -210,6 +214,13 @@ void LinkSolver::directBatch() {
     state_.stage = Stage::Plan;
 }
 
+// What links read.
+void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
+    radiancePass_.record(cmd, input_.light, settings_.transport);
+    vk::barrier(cmd);
+    gatherPass_.recordPack(cmd, input_.light, buffers_);
+}
+
 void LinkSolver::beginBounce() {
     const bool counted = settings_.passes > 0;
     VkCommandBuffer cmd = commands_.begin();
@@ -218,7 +229,7 @@ void LinkSolver::beginBounce() {
         gatherPass_.recordCompose(cmd, input_.light, buffers_, hybrid_, samples);
         vk::barrier(cmd);
     }
-    radiancePass_.record(cmd, input_.light, settings_.transport);
+    recordRadiance(cmd);
     if (buffers_.coarseSums) vkCmdFillBuffer(cmd, buffers_.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     commands_.run();
@@ -382,7 +393,7 @@ void LinkSolver::restore(const SolverState& state) {
     std::fill(traced_.begin(), traced_.end(), uint8_t{0});
     if (state_.stage != Stage::Links) return;
     VkCommandBuffer cmd = commands_.begin();
-    radiancePass_.record(cmd, input_.light, settings_.transport);
+    recordRadiance(cmd);
     vk::barrier(cmd);
     commands_.run();
 }

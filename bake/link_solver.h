@@ -51,6 +51,7 @@ private:
     bool wantsDirect() const;
     void directBatch();
     void linkBatch();
+    void recordRadiance(VkCommandBuffer cmd);
     void beginBounce();
     void interpolate();
     void endBounce();

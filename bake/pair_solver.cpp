@@ -45,7 +45,7 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
       settings_(settings), senders_(input, settings),
       bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
-      gatherPass_(device_, senders_.kind(), settings.transport.rtrad), finishPass_(device_),
+      gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_),
       commands_(device_), timestamps_(device_, 3) {
     makeCache();
     const PairPlan::Desc most{.rows = patches_.chunkCount(),

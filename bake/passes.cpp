@@ -67,13 +67,15 @@ void RadiancePass::record(VkCommandBuffer cmd, const LightBuffers& light,
     dispatchChunks(program_, cmd, push, light.chunkCount);
 }
 
-GatherPass::GatherPass(const vk::Device& device, SenderKind kind, bool rtrad)
-    : kind_(kind), pool_(device.info().software() && !rtrad ? std::make_unique<WorkerPool>(0) : nullptr),
+GatherPass::GatherPass(const vk::Device& device, SenderKind kind, const TransportSettings& settings)
+    : kind_(kind), pool_(device.info().software() && !settings.deviceGather && !settings.rtrad
+                             ? std::make_unique<WorkerPool>(0)
+                             : nullptr),
       reduce_(device, "reduce") {
     if (pool_) return;
     transpose_ = vk::ComputeProgram(device, "transpose");
     gather_ = vk::ComputeProgram(device, device.info().software() ? "gather_software" : "gather",
-                                 {rtrad ? 1u : 0u, static_cast<uint32_t>(kind)});
+                                 {settings.rtrad ? 1u : 0u, static_cast<uint32_t>(kind)});
 }
 
 shader::GatherPush GatherPass::push(const Desc& desc) const {

@@ -15,6 +15,7 @@ struct TransportSettings {
     float distanceFactor = 1.0f; // RTRad preset only
     bool rtrad = false;          // RTRad's form factor, clamps and light skip
     bool allSend = false;        // dark chunks count as senders too: a pass of full length
+    bool deviceGather = false;   // by the device's shaders also where its memory is the CPU's (host_gather.h)
     bool reflectedOnly = false;  // what patches send is without their emission, which is sampled by itself
 };
 
@@ -79,7 +80,7 @@ private:
 /// software device all but the RTRad preset is gathered by host_gather.h.
 class GatherPass {
 public:
-    GatherPass(const vk::Device& device, SenderKind kind, bool rtrad);
+    GatherPass(const vk::Device& device, SenderKind kind, const TransportSettings& settings);
     struct Desc {
         const LightBuffers& light;
         const PairBuffers& pairs;

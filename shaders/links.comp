@@ -3,11 +3,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
+#include "lib/packed_light.glsl"
 layout(push_constant, scalar) uniform Push { LinkPush push; };
 
 layout(local_size_x = 64) in;
 
-vec3 sent(uint link) { return link < kLinkFirstSpecial ? Vec4s(push.radiance).items[link].rgb : vec3(0.0); }
+vec3 sent(uint link) {
+    return link < kLinkFirstSpecial ? unpackLight(UVec2s(push.packed).items[link]) : vec3(0.0);
+}
 
 void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;

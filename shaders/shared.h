@@ -325,7 +325,7 @@ struct DirectPush {
 };
 struct LinkPush {
     ADDRESS links;    // uint[chunkCount][sampleCount][64]
-    ADDRESS radiance; // vec4[]
+    ADDRESS packed;   // uvec2[], radiance by packLight
     ADDRESS direct;   // vec4[] added to ligOut; 0: nothing
     ADDRESS ligOut;   // vec4[]; 0: not written
     ADDRESS sums;     // vec4[kReplicates][patchCount], added to; 0: not
@@ -333,6 +333,11 @@ struct LinkPush {
     uint chunkCount;
     uint sampleCount; // a multiple of kReplicates
     uint patchCount;
+};
+struct PackPush {
+    ADDRESS radiance; // vec4[count]
+    ADDRESS packed;   // uvec2[count]
+    uint count;
 };
 struct LinkDistancePush {
     ADDRESS patches;

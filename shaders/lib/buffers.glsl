@@ -3,7 +3,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Ro
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec3s { vec3 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vec2s { vec2 items[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer UVec2s { uvec2 items[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer UVec2s { uvec2 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Words { uint items[]; };
 
 Patch loadPatch(ADDRESS patches, uint index) {

@@ -77,6 +77,7 @@ struct BakeDesc {
     VoxelSettings voxels = {};
     PairSettings pairs = {};
     bool rtrad = false; // the preset
+    bool deviceGather = false;
 };
 
 struct Baked {

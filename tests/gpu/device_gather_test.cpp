@@ -1,0 +1,48 @@
+// A software device gathers on the host; its shaders, which other devices run, must come to the same.
+#include "assets/generate.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/gpu/gpu_environment.h"
+
+#include <gtest/gtest.h>
+
+namespace relume {
+namespace {
+
+struct Case {
+    const char* name;
+    BakeDesc desc;
+    double error; // relRMSE: rounding, of links also that of light in 8 bytes
+};
+void PrintTo(const Case& c, std::ostream* out) {
+    *out << c.name;
+}
+
+class DeviceGather : public testing::TestWithParam<Case> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    All, DeviceGather,
+    testing::Values(
+        Case{"pure", {.passes = 2}, 1e-6},
+        Case{"montecarlo", {.passes = 2, .method = Method::MonteCarlo, .pairs = {.window = 4}}, 1e-6},
+        Case{"mipmapped", {.passes = 2, .method = Method::Mipmapped, .pairs = {.window = 2}}, 1e-6},
+        Case{"hybrid", {.passes = 3, .method = Method::Hybrid, .samples = 32}, 2e-5},
+        Case{"directional",
+             {.passes = 3, .method = Method::Directional, .samples = 32, .indirectScale = 2},
+             2e-5}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+} // namespace
+
+TEST_P(DeviceGather, ComesToWhatTheHostGathers) {
+    if (!testDevice().info().software()) GTEST_SKIP() << "the device gathers anyway";
+    const Scene scene = generateScene("cornell_geom");
+    BakeDesc desc = GetParam().desc;
+    desc.size = 64;
+    const Baked host = bakeScene(scene, desc);
+    desc.deviceGather = true;
+    const Baked device = bakeScene(scene, desc);
+    EXPECT_EQ(host.progress.rays, device.progress.rays);
+    EXPECT_LT(relativeError(host.lighting, device.lighting), GetParam().error);
+}
+
+} // namespace relume
