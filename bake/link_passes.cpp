@@ -1,5 +1,6 @@
 #include "bake/link_passes.h"
 
+#include "bake/footprint.h"
 #include "bake/host_gather.h"
 #include "bake/vk/commands.h"
 
@@ -107,7 +108,9 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
             ? count * sizeof(shader::CoarseTaps) +
                   receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
             : 0;
-    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t)) + receivers * kept + coarse + batch * perChunk;
+    const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
+    return count * (vec4s(sums + 2) + 3 * sizeof(uint32_t)) + receivers * kept + coarse + footprint +
+           batch * perChunk;
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -184,10 +187,12 @@ void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& li
         .patches = light.patches.address(),
         .links = work.address(),
         .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
+        .nodes = work.nodes,
         .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
         .firstChunk = work.range.first,
         .chunkCount = work.range.count,
-        .sampleCount = work.samples};
+        .sampleCount = work.samples,
+        .patchCount = light.chunkCount * kChunk};
     dispatchChunks(distance_, cmd, push, work.range.count);
 }
 
