@@ -3,6 +3,8 @@
 #include "bake/vk/commands.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 namespace relume {
 namespace {
@@ -18,6 +20,24 @@ void dispatchGroups(const vk::ComputeProgram& program, VkCommandBuffer cmd, cons
     program.dispatch(cmd, push, x, (groups + x - 1) / x);
 }
 
+// Way up from each patch and node, with all that the next step needs in one load. No area is as large as what
+// is not there.
+std::vector<glm::uvec2> stepsOf(const PatchPyramid& pyramid) {
+    const auto patchCount = static_cast<uint32_t>(pyramid.parents.size());
+    const auto step = [&](uint32_t parent) {
+        const float size = parent == shader::kNoPatch ? std::numeric_limits<float>::infinity()
+                                                      : pyramid.nodes[parent - patchCount].size;
+        return glm::uvec2(parent, std::bit_cast<uint32_t>(size));
+    };
+    std::vector<glm::uvec2> steps;
+    steps.reserve(pyramid.parents.size() + pyramid.nodes.size());
+    for (const uint32_t parent : pyramid.parents)
+        steps.push_back(step(parent));
+    for (const shader::PyramidNode& node : pyramid.nodes)
+        steps.push_back(step(node.parent));
+    return steps;
+}
+
 } // namespace
 
 Footprints::Footprints(const vk::Device& device, const PatchSet& patches)
@@ -27,7 +47,7 @@ Footprints::Footprints(const vk::Device& device, const PatchSet& patches)
     nodeCount_ = static_cast<uint32_t>(pyramid.nodes.size());
     levelEnds_ = std::move(pyramid.levelEnds);
     nodes_ = vk::makeBuffer(device, pyramid.nodes, "patch pyramid");
-    parents_ = vk::makeBuffer(device, pyramid.parents, "parents of patches");
+    steps_ = vk::makeBuffer(device, stepsOf(pyramid), "steps of the pyramid");
 }
 
 vk::Buffer Footprints::makeRadiance(const vk::Device& device) const {
@@ -36,7 +56,7 @@ vk::Buffer Footprints::makeRadiance(const vk::Device& device) const {
 
 // Every node has two children or more, so there are fewer of them than patches; in compact charts a third.
 uint64_t Footprints::bytes(uint64_t patchCount) {
-    return patchCount * (sizeof(shader::PyramidNode) + sizeof(glm::vec4) + sizeof(uint32_t));
+    return patchCount * (sizeof(shader::PyramidNode) + sizeof(glm::vec4) + 2 * sizeof(glm::uvec2));
 }
 
 void Footprints::recordLevels(VkCommandBuffer cmd, const vk::Buffer& radiance) const {
@@ -56,14 +76,12 @@ void Footprints::recordLevels(VkCommandBuffer cmd, const vk::Buffer& radiance) c
 void Footprints::recordLinks(VkCommandBuffer cmd, VkDeviceAddress patches, const Work& work) const {
     const shader::FootprintPush push{.patches = patches,
                                      .receivers = work.receivers,
-                                     .nodes = nodes_.address(),
-                                     .parents = parents_.address(),
+                                     .steps = steps_.address(),
                                      .links = work.links,
                                      .firstChunk = work.firstChunk,
                                      .chunkCount = work.chunkCount,
                                      .sampleCount = work.sampleCount,
-                                     .samples = work.samples,
-                                     .patchCount = patchCount_};
+                                     .samples = work.samples};
     dispatchGroups(footprint_, cmd, push, work.chunkCount);
 }
 

@@ -36,7 +36,7 @@ public:
 private:
     uint32_t patchCount_ = 0, nodeCount_ = 0;
     std::vector<uint32_t> levelEnds_;
-    vk::Buffer nodes_, parents_;
+    vk::Buffer nodes_, steps_;
     vk::ComputeProgram pyramid_, footprint_;
 };
 

@@ -14,17 +14,13 @@ void main() {
     uint lane = gl_LocalInvocationID.x;
     vec3 own = loadPatch(push.receivers, (push.firstChunk + chunk) * kChunk + lane).position;
     Words links = Words(push.links);
-    PyramidNodes nodes = PyramidNodes(push.nodes);
+    UVec2s steps = UVec2s(push.steps);
     for (uint k = 0u; k < push.sampleCount; ++k) {
         uint at = (chunk * push.sampleCount + k) * kChunk + lane;
         uint link = links.items[at];
         if (link >= kLinkFirstSpecial) continue;
         float area = footprintArea(own, loadPatch(push.patches, link).position, push.samples);
-        uint node = Words(push.parents).items[link];
-        while (node != kNoPatch && nodes.items[node - push.patchCount].size <= area) {
-            link = node;
-            node = nodes.items[node - push.patchCount].parent;
-        }
+        for (uvec2 next = steps.items[link]; uintBitsToFloat(next.y) <= area; next = steps.items[link]) link = next.x;
         links.items[at] = link;
     }
 }

@@ -365,14 +365,12 @@ struct PyramidPush {
 struct FootprintPush {
     ADDRESS patches;
     ADDRESS receivers; // Patch[] that the links start at
-    ADDRESS nodes;     // PyramidNode[]
-    ADDRESS parents;   // uint[patchCount], of patches
+    ADDRESS steps;     // uvec2[]: of each patch and node its parent and the bits of that one's size
     ADDRESS links;     // uint[chunkCount][sampleCount][64], patches become nodes
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
     uint samples; // of each receiver that the result is of
-    uint patchCount;
 };
 struct InterpolatePush {
     ADDRESS taps;            // CoarseTaps[]
