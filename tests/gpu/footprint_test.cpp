@@ -139,7 +139,7 @@ TEST(FootprintError, IsLessWithFewDirections) {
                              {"cornell_small", generateScene("cornell_small"), Method::Hybrid, 0.99},
                              {"cornell_geom", generateScene("cornell_geom"), Method::Hybrid, 0.99}};
     for (const Scenes& s : scenes) {
-        BakeDesc desc{.size = 128, .passes = 3, .method = s.method, .samples = 4096};
+        BakeDesc desc{.size = 128, .passes = 3, .method = s.method, .samples = 1024};
         const Baked reference = bakeScene(s.scene, desc);
         desc.samples = 16;
         const double without = relativeError(bakeScene(s.scene, desc).lighting, reference.lighting);
