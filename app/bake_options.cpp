@@ -32,6 +32,9 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
                     "directional, hybrid: follow directions from one patch of so many by so many texels and "
                     "interpolate: 1 (default), 2 or 4")
         ->check(CLI::IsMember({1u, 2u, 4u}));
+    command.add_flag("--footprint", o.footprint,
+                     "directional, hybrid: read the mean light over what each direction stands for, within a "
+                     "chart: less noise from few directions, but biased, which --error does not tell");
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -59,6 +62,8 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (o.indirectScale > 0 && !links)
         throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
                          "indirect light apart");
+    if (o.footprint && !links)
+        throw UsageError("--footprint: only with --method directional or hybrid, others have no directions");
     if (links && solver.transport.rtrad) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
@@ -70,6 +75,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
                             : o.rotate == "tile"      ? Rotation::Tile
                                                       : Rotation::Patch;
     solver.links.indirectScale = std::max(o.indirectScale, 1u);
+    solver.links.footprint = o.footprint;
     // For these, passes are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }

@@ -22,9 +22,10 @@ std::string describe(Method method, const PairSettings& settings) {
 }
 
 std::string describe(const LinkSettings& settings) {
-    const auto& [directions, rotation, samples, smooth, indirectScale] = settings;
-    return fmt::format(" samples={} indirect-scale={} smooth={} directions={} rotate={}", samples,
-                       indirectScale, smooth ? 1 : 0, directions == DirectionSet::Lec ? "lec" : "sobol",
+    const auto& [directions, rotation, samples, smooth, indirectScale, footprint] = settings;
+    return fmt::format(" samples={} indirect-scale={} smooth={} footprint={} directions={} rotate={}",
+                       samples, indirectScale, smooth ? 1 : 0, footprint ? 1 : 0,
+                       directions == DirectionSet::Lec ? "lec" : "sobol",
                        rotation == Rotation::Interleaved ? "interleaved"
                        : rotation == Rotation::Tile      ? "tile"
                                                          : "patch");

@@ -51,6 +51,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"passes", p.passes},
                        {"samples", p.samples},
                        {"indirectScale", std::max(s.options.indirectScale, 1u)},
+                       {"footprint", s.options.footprint},
                        {"error", p.error},
                        {"gridError", p.gridError},
                        {"converged", p.converged},

@@ -1,5 +1,6 @@
 #include "bake/link_passes.h"
 
+#include "bake/footprint.h"
 #include "bake/host_gather.h"
 #include "bake/vk/commands.h"
 
@@ -108,7 +109,8 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
                   receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
             : 0;
     const uint64_t packed = software ? 0 : sizeof(glm::uvec2);
-    return count * (vec4s(sums + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
+    const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
+    return count * (vec4s(sums + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse + footprint +
            batch * perChunk;
 }
 
@@ -195,10 +197,12 @@ void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& li
         .patches = light.patches.address(),
         .links = work.address(),
         .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
+        .nodes = work.nodes,
         .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
         .firstChunk = work.range.first,
         .chunkCount = work.range.count,
-        .sampleCount = work.samples};
+        .sampleCount = work.samples,
+        .patchCount = light.chunkCount * kChunk};
     dispatchChunks(distance_, cmd, push, work.range.count);
 }
 

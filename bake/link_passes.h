@@ -90,11 +90,12 @@ public:
           compose_(device, "compose") {}
     struct Work {
         const vk::Buffer* links = nullptr;
-        uint64_t linksOffset = 0; // of range.first [links]
-        uint32_t samples = 0;     // per patch
-        bool hybrid = false;      // direct light is added to ligOut
-        bool accumulate = false;  // add to linkSums
-        bool distances = false;   // of recordInterpolate: those of recordDistances are spread, too
+        uint64_t linksOffset = 0;  // of range.first [links]
+        VkDeviceAddress nodes = 0; // PyramidNode[], of recordDistances: links may be nodes
+        uint32_t samples = 0;      // per patch
+        bool hybrid = false;       // direct light is added to ligOut
+        bool accumulate = false;   // add to linkSums
+        bool distances = false;    // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
         VkDeviceAddress address() const { return links->address() + linksOffset * sizeof(uint32_t); }
     };

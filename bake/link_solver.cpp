@@ -57,6 +57,10 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
       resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3) {
     settings_.transport.reflectedOnly = hybrid_;
     const PatchSet& patches = input.patches;
+    if (settings.links.footprint) {
+        footprints_.emplace(input.device, patches);
+        input.light.radiance = footprints_->makeRadiance(input.device);
+    }
     if (!gatherPass_.onCpu())
         buffers_.packed = vk::Buffer(
             input.device, {.size = input.light.radiance.size() / sizeof(glm::vec4) * sizeof(glm::uvec2),
@@ -85,8 +89,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
 // Each replicate goes through the set once; where the error decides how many rounds there will be, once per
 // round: a set that is broken off is less even.
 void LinkSolver::makeDisc() {
-    const uint32_t rounds =
-        settings_.links.samples > 0 ? (settings_.links.samples + shape_.links - 1) / shape_.links : 1;
+    const uint32_t rounds = settings_.links.samples > 0 ? roundsWanted() : 1;
     discCount_ = rounds * shape_.links / shader::kReplicates;
     std::vector<glm::vec2> points;
     points.reserve(discCount_);
@@ -136,9 +139,20 @@ void LinkSolver::begin(Stage stage) {
     }
 }
 
-bool LinkSolver::enoughRounds() const {
+uint32_t LinkSolver::roundsWanted() const {
     const uint32_t limit = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
-    const uint32_t wanted = (limit + shape_.links - 1) / shape_.links;
+    return (limit + shape_.links - 1) / shape_.links;
+}
+
+// Each direction stands for its share of the whole result. Where the error decides how many there will be,
+// for that of what is there so far: the mean over rounds of something that falls as 1 / rounds falls to
+// nothing, too.
+uint32_t LinkSolver::footprintSamples() const {
+    return shape_.links * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
+}
+
+bool LinkSolver::enoughRounds() const {
+    const uint32_t wanted = roundsWanted();
     const bool linksDone = state_.linkRounds >= wanted || (hybrid_ && settings_.passes == 1);
     const bool directDone = shape_.picks == 0 || !hybrid_ || state_.directRounds >= wanted;
     return linksDone && directDone;
@@ -214,9 +228,13 @@ void LinkSolver::directBatch() {
     state_.stage = Stage::Plan;
 }
 
-// What links read.
+// What links read: of patches and, where they have footprints, of nodes.
 void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
     radiancePass_.record(cmd, input_.light, settings_.transport);
+    if (footprints_) {
+        vk::barrier(cmd);
+        footprints_->recordLevels(cmd, input_.light.radiance);
+    }
     vk::barrier(cmd);
     gatherPass_.recordPack(cmd, input_.light, buffers_);
 }
@@ -275,6 +293,17 @@ void LinkSolver::linkBatch() {
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps_.mark(cmd, 1);
+    if (trace && footprints_) {
+        const vk::Buffer& receivers = coarse_.count > 0 ? buffers_.receivers : input_.light.patches;
+        footprints_->recordLinks(cmd, input_.light.patches.address(),
+                                 {.receivers = receivers.address(),
+                                  .links = links.address() + offset * sizeof(uint32_t),
+                                  .firstChunk = range.first,
+                                  .chunkCount = range.count,
+                                  .sampleCount = shape_.links,
+                                  .samples = footprintSamples()});
+        vk::barrier(cmd);
+    }
     if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
         vk::hostBarrier(cmd);
         commands_.run();
@@ -282,6 +311,7 @@ void LinkSolver::linkBatch() {
     }
     const LinkGatherPass::Work work{.links = &links,
                                     .linksOffset = offset,
+                                    .nodes = footprints_ ? footprints_->nodes() : 0,
                                     .samples = shape_.links,
                                     .hybrid = hybrid_,
                                     .accumulate = state_.last,

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "bake/footprint.h"
 #include "bake/link_passes.h"
 #include "bake/vk/commands.h"
+
+#include <optional>
 
 namespace relume {
 
@@ -47,6 +50,8 @@ private:
     void makeDisc();
     void plan();
     void begin(Stage stage);
+    uint32_t roundsWanted() const;
+    uint32_t footprintSamples() const;
     bool enoughRounds() const;
     bool wantsDirect() const;
     void directBatch();
@@ -71,6 +76,7 @@ private:
     RoundShape shape_;
     CoarsePatches coarse_; // empty: links start at all patches
     LinkBuffers buffers_;
+    std::optional<Footprints> footprints_;
     vk::Buffer disc_; // vec2[discCount_] of DirectionSet::Lec
     uint32_t discCount_ = 0;
     RadiancePass radiancePass_;

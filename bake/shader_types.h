@@ -14,6 +14,7 @@ using glm::uint;
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/emitters.glsl"
+#include "shaders/lib/footprint.glsl"
 #include "shaders/lib/units.glsl"
 #include "shaders/lib/packed_light.glsl"
 
@@ -23,6 +24,7 @@ static_assert(sizeof(OcclusionPush) <= 128 && sizeof(GatherPush) <= 128); // wha
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
 static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);
+static_assert(sizeof(PyramidNode) == 52);
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
 static_assert(sizeof(VoxelGrid) == 64 && sizeof(CvmPush) <= 128);
 } // namespace relume::shader

@@ -54,6 +54,8 @@ struct LinkSettings {
     // 2, 4: links are followed from one patch of every so many by so many texels of a chart, and their light
     // is interpolated between these.
     uint32_t indirectScale = 1;
+    // Links read the mean light over the part of a chart that their direction stands for (bake/footprint.h).
+    bool footprint = false;
 };
 
 /// Memory that bits and links may take for later passes. Without a cache they trace the same rays again.

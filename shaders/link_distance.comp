@@ -17,7 +17,9 @@ void main() {
     for (uint k = 0u; k < push.sampleCount; ++k) {
         uint link = Words(push.links).items[(chunk * push.sampleCount + k) * kChunk + lane];
         if (link >= kLinkFirstSpecial) continue; // nothing, or what sends no light
-        vec3 d = loadPatch(push.patches, link).position - own;
+        vec3 end = link < push.patchCount ? loadPatch(push.patches, link).position
+                                          : PyramidNodes(push.nodes).items[link - push.patchCount].position;
+        vec3 d = end - own;
         sum += inversesqrt(max(dot(d, d), 1e-30));
     }
     Floats(push.distances).items[index] = sum > 0.0 ? float(push.sampleCount) / sum : 1e30;

@@ -82,6 +82,16 @@ struct CoarseNeighbours {
     float shareX, shareY;
 };
 
+// Patches of one chart side by side in the lightmap, as one sender of links. Indices of what it is made of,
+// and of what it is part of: patches, behind them nodes, as in the radiance buffer.
+struct PyramidNode {
+    vec3 position;  // [m], mean over its area
+    float size;     // [m^2], its area; of what is stretched or scattered the square as wide as it is
+    uvec4 children; // the first one again where there are fewer
+    vec4 shares;    // of its area; sum 1
+    uint parent;    // kNoPatch: none
+};
+
 // EmitterPolygon::shape
 CONST uint kEmitterTriangle = 3u; // c3 repeats c2
 CONST uint kEmitterQuad = 4u;     // convex
@@ -343,10 +353,29 @@ struct LinkDistancePush {
     ADDRESS patches;
     ADDRESS links;     // uint[chunkCount][sampleCount][64]
     ADDRESS receivers; // Patch[] that the links start at: patches, or of a coarser grid
+    ADDRESS nodes;     // PyramidNode[], what links from patchCount on mean
     ADDRESS distances; // float[], per receiver [m]
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
+    uint patchCount;
+};
+struct PyramidPush {
+    ADDRESS nodes;    // PyramidNode[]
+    ADDRESS radiance; // vec4[]: read below, written at patchCount + node
+    uint firstNode;
+    uint nodeCount;
+    uint patchCount;
+};
+struct FootprintPush {
+    ADDRESS patches;
+    ADDRESS receivers; // Patch[] that the links start at
+    ADDRESS steps;     // uvec2[]: of each patch and node its parent and the bits of that one's size
+    ADDRESS links;     // uint[chunkCount][sampleCount][64], patches become nodes
+    uint firstChunk;
+    uint chunkCount;
+    uint sampleCount;
+    uint samples; // of each receiver that the result is of
 };
 struct InterpolatePush {
     ADDRESS taps;            // CoarseTaps[]

@@ -95,6 +95,7 @@ expectUsageError compare a.exr b.exr --diff diff.exr
 
 expectUsageError bake room.glb -o room.exr --method pure --directions lec
 expectUsageError bake room.glb -o room.exr --method pure --rotate tile
+expectUsageError bake room.glb -o room.exr --method mipmapped --footprint
 expectUsageError bake room.glb -o room.exr --rotate sometimes
 expectUsageError samples
 expectUsageError samples 0

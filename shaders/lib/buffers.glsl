@@ -5,6 +5,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vec2s { vec2 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer UVec2s { uvec2 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Words { uint items[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PyramidNodes { PyramidNode items[]; };
 
 Patch loadPatch(ADDRESS patches, uint index) {
     Rows rows = Rows(patches);

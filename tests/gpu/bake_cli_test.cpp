@@ -248,6 +248,8 @@ TEST_F(BakeCommand, AContradictionIsAUsageError) {
                                 {"--no-smooth", "--method", "directional"},
                                 {"--samples", "64"},
                                 {"--indirect-scale", "2"},
+                                {"--footprint"},
+                                {"--footprint", "--method", "static"},
                                 {"--indirect-scale", "3", "--method", "hybrid"},
                                 {"--picture", "x.jpg"},
                                 {"--batch-ms", "1000"}}) {

@@ -198,6 +198,7 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.links.directions = desc.directions;
     settings.solver.links.rotation = desc.rotation;
     settings.solver.links.indirectScale = desc.indirectScale;
+    settings.solver.links.footprint = desc.footprint;
     settings.solver.cache = desc.cache;
     settings.solver.pairs = desc.pairs;
     settings.solver.transport.rtrad = desc.rtrad;

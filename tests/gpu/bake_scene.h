@@ -73,6 +73,7 @@ struct BakeDesc {
     DirectionSet directions = DirectionSet::Sobol;
     Rotation rotation = Rotation::Patch;
     uint32_t indirectScale = 1;
+    bool footprint = false;
     CacheSettings cache = {};
     VoxelSettings voxels = {};
     PairSettings pairs = {};

@@ -92,6 +92,13 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"hybrid", {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
         Case{"hybridSamples", {.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 64}},
         Case{"hybridPasses", {.size = 48, .passes = 4, .method = Method::Hybrid, .samples = 48}},
+        Case{"footprint",
+             {.size = 48,
+              .passes = 0,
+              .error = 0.03,
+              .method = Method::Hybrid,
+              .smooth = true,
+              .footprint = true}},
         Case{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
         Case{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
         Case{"pureError", {.size = 32, .passes = 0, .error = 0.05, .method = Method::Pure}}),
@@ -211,6 +218,7 @@ TEST_F(ResumedCommand, AFileOfSomethingElseIsRefusedInOneLine) {
     refused(scene_, same, "is no checkpoint");
     refused(checkpoint_, {"--samples", "256"}, "samples=128 there, samples=256 here");
     refused(checkpoint_, {"--samples", "128", "--no-smooth"}, "smooth=1 there, smooth=0 here");
+    refused(checkpoint_, {"--samples", "128", "--footprint"}, "footprint=0 there, footprint=1 here");
     refused(checkpoint_, {"--samples", "128", "--reflectivity", "0.5"}, "reflectivity=1 there");
     refused(checkpoint_, {"--samples", "128", "--method", "directional"}, "method=hybrid there");
     refused(checkpoint_, {"--samples", "128", "--tracer", "bvh"}, "tracer=");

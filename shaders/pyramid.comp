@@ -1,0 +1,20 @@
+// What the nodes of one level send: the mean over their children's areas. One invocation per node.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { PyramidPush push; };
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    uint local = group * 64u + gl_LocalInvocationID.x;
+    if (local >= push.nodeCount) return;
+    uint node = push.firstNode + local;
+    Vec4s radiance = Vec4s(push.radiance);
+    uvec4 children = PyramidNodes(push.nodes).items[node].children;
+    vec4 shares = PyramidNodes(push.nodes).items[node].shares;
+    vec4 mean = vec4(0.0);
+    for (uint c = 0u; c < 4u; ++c) mean += shares[c] * radiance.items[children[c]];
+    radiance.items[push.patchCount + node] = mean;
+}
