@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/bake_options.h"
+#include "assets/clock.h"
 #include "bake/checkpoint.h"
 
 namespace relume {
@@ -22,7 +23,6 @@ public:
     [[noreturn]] void interrupt(Solver& solver);
 
 private:
-    using Clock = std::chrono::steady_clock;
     void save(Solver& solver);
 
     std::string path_; // "": none is saved

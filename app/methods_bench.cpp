@@ -3,20 +3,18 @@
 #include "app/heat_map.h"
 #include "app/interrupt.h"
 #include "app/prepare.h"
+#include "assets/clock.h"
 #include "assets/error.h"
 #include "assets/log.h"
 #include "bake/flip.h"
 #include "bake/metrics.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <optional>
 
 namespace relume {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Programs are compiled when they first run: a small bake of each method goes before what is measured.
 constexpr uint32_t kWarmUpSize = 32;
@@ -168,7 +166,7 @@ private:
         Baked baked;
         baked.map = baker.lightmap({});
         baked.tracer = baker.tracer().name();
-        baked.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        baked.seconds = secondsSince(start);
         baked.progress = baker.solver().progress();
         baked.patches = baker.patches().count;
         return baked;

@@ -1,22 +1,17 @@
 #include "app/prepare.h"
 
+#include "assets/clock.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
 #include "assets/unwrap.h"
 
-#include <chrono>
-
 namespace relume {
 
 PreparedScene prepareScene(const PrepareDesc& desc) {
-    using Clock = std::chrono::steady_clock;
-    const auto seconds = [](Clock::time_point from) {
-        return std::chrono::duration<double>(Clock::now() - from).count();
-    };
     PreparedScene result;
     const auto start = Clock::now();
     result.scene = loadGltf(desc.path);
-    result.loadSeconds = seconds(start);
+    result.loadSeconds = secondsSince(start);
     for (const std::string& warning : result.scene.warnings)
         spdlog::warn("{}", warning);
 
@@ -33,7 +28,7 @@ PreparedScene prepareScene(const PrepareDesc& desc) {
     result.mesh = flatten(result.scene, result.atlas);
     for (size_t i = before; i < result.scene.warnings.size(); ++i)
         spdlog::warn("{}", result.scene.warnings[i]);
-    result.atlasSeconds = seconds(atlasStart);
+    result.atlasSeconds = secondsSince(atlasStart);
     return result;
 }
 

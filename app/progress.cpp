@@ -1,5 +1,6 @@
 #include "app/progress.h"
 
+#include "assets/clock.h"
 #include "assets/log.h"
 
 #include <cstdio>
@@ -10,7 +11,6 @@
 namespace relume {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kTerminalPeriod{100}, kSparsePeriod{5000};
 
 } // namespace

@@ -1,24 +1,19 @@
 #include "app/trace_bench.h"
 
+#include "assets/clock.h"
 #include "bake/passes.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 namespace relume {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using shader::kChunk;
 using shader::kSuper;
 using shader::kSuperBlocks;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr uint32_t kLinkSamples = 64;
 constexpr double kGolden = 0.618;

@@ -1,21 +1,16 @@
 #include "bake/link_solver.h"
 
+#include "assets/clock.h"
 #include "bake/directions.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 namespace relume {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using shader::kChunk;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // The first batch of each kind, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstChunks = 16;

@@ -1,9 +1,9 @@
 #include "bake/pair_solver.h"
 
+#include "assets/clock.h"
 #include "assets/log.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -11,14 +11,9 @@
 namespace relume {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using shader::kChunk;
 using shader::kRayCounters;
 using shader::kSuperBlocks;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Traced by the first batch of a bake, before anything is measured: surely below 50 ms.
 constexpr uint32_t kFirstUnits = 16;
@@ -45,8 +40,8 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
       settings_(settings), senders_(input, settings),
       bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
-      gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_),
-      commands_(device_), timestamps_(device_, 3) {
+      gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_), commands_(device_),
+      timestamps_(device_, 3) {
     makeCache();
     const PairPlan::Desc most{.rows = patches_.chunkCount(),
                               .columns = senders_.maxColumns(),

@@ -1,12 +1,12 @@
 #include "bake/voxel_map.h"
 
+#include "assets/clock.h"
 #include "assets/error.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 
 namespace relume {
 namespace {
@@ -88,7 +88,6 @@ public:
 
     /// Sets bits, or stores the patches of set voxels.
     void draw(uint32_t resolution, bool patches) {
-        using Clock = std::chrono::steady_clock;
         push_.patches = patches ? 1u : 0u;
         uint32_t batch = kFirstBatch;
         for (uint32_t first = 0; first < push_.geometry.triangleCount;) {
@@ -100,7 +99,7 @@ public:
             vk::barrier(cmd);
             vk::hostBarrier(cmd);
             commands_.run();
-            const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+            const double ms = 1000.0 * secondsSince(start);
             const double wanted = count * kBatchMs / std::max(ms, 1e-3);
             batch = static_cast<uint32_t>(std::clamp(wanted, 1.0, 4.0 * count));
             first += count;

@@ -4,23 +4,17 @@
 #include "app/command.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "assets/clock.h"
 #include "assets/gltf.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
 #include "shaders/shader_library.h"
 
-#include <chrono>
 #include <ctime>
 #include <memory>
 
 namespace relume {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Of all threads, the drivers' too [s].
 double cpuSeconds() {
