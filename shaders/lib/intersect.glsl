@@ -46,11 +46,11 @@ FUNCTION BvhRay bvhRay(vec3 origin, vec3 direction) {
     return ray;
 }
 
-// The part of [tMin, tMax] inside the box of this centre and half extent: empty when x > y. 0 <= tMin. Never misses a box
-// that the ray touches: the far end is moved out by more than the products' rounding; that of the sums is in the extents,
-// which the builder widens. Multiply-adds instead of sorting both planes, and bits compared as integers, three at a time:
-// GPUs do the former twice as fast as a minimum. Integers order floats as long as one of two is not negative, and no
-// range is lost where more are: tMin is among the ends to the left, and a negative one to the right is behind the ray.
+// The part of [tMin, tMax] inside the box of this centre and half extent: empty when x > y. Neither tMin nor tMax is below
+// 0, nor -0. Never misses a box that the ray touches: the far end is moved out by more than the products' rounding; that of
+// the sums is in the extents, which the builder widens. Multiply-adds instead of sorting both planes, and bits compared as
+// integers, three at a time: GPUs do the former twice as fast as a minimum. Integers order floats unless both are negative,
+// which loses nothing here: tMin is one of the ends to the left, and a negative one to the right is behind the ray.
 FUNCTION vec2 boxRange(vec3 centre, vec3 extent, BvhRay ray, float tMin, float tMax) {
     vec3 middle = MUL_ADD(centre, ray.inverse, ray.shift);
     ivec3 enter = floatBitsToInt(MUL_ADD(-extent, ray.reach, middle));
@@ -99,7 +99,7 @@ FUNCTION TriangleHit intersectTriangle(BvhTriangle triangle, BvhRay ray, float t
     float t = dot(triangle.p0 - ray.origin, normal) / dot(ray.direction, normal);
     if (!(t >= tMin && t <= tMax)) return result;
     result.hit = true;
-    result.t = t;
+    result.t = intBitsToFloat(max(floatBitsToInt(t), 0)); // 0 for -0, whose bits would mislead boxRange
     result.b1 = v / sum;
     result.b2 = w / sum;
     return result;

@@ -13,9 +13,13 @@ namespace {
 
 // The shaders' traversal on the CPU.
 struct BvhWalk {
-    const Bvh* bvh;
+    const Bvh* bvh = nullptr;
     std::function<bool(uint, float, float)> solid = [](uint, float, float) { return true; };
-    BvhNode bvhNode(uint index) { return bvh->nodes.at(index); }
+    uint visits = 0;
+    BvhNode bvhNode(uint index) {
+        ++visits;
+        return bvh->nodes.at(index);
+    }
     BvhTriangle bvhTriangle(uint index) { return bvh->triangles.at(index); }
     bool solidHit(uint id, float b1, float b2) { return solid(id, b1, b2); }
 #include "shaders/lib/intersect.glsl"
@@ -263,6 +267,30 @@ TEST(Bvh, theStackHoldsTheDeepestTree) {
     expectAgreement(walk, {0, 0, -60}, {0, 0, 1}, "from the last");
     expectAgreement(walk, {0, 0, 1}, {0, 0, -1}, "from the first");
     EXPECT_EQ(walk.bvhClosestHit({0, 0, -60}, {0, 0, 1}, 0, 1e30f).triangle, 0u);
+}
+
+// A ray from the very plane of what it hits ends there, at 0 or -0: it does not go through all that lies
+// behind it.
+TEST(Bvh, raysThatEndWhereTheyBeginSeeLittleOfTheTree) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    std::vector<glm::vec3> corners = {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 p = point();
+        corners.insert(corners.end(), {p, p + 0.03f * point(), p + 0.03f * point()});
+    }
+    const WorldMesh mesh = meshOf(corners);
+    const Bvh bvh = buildBvh(mesh);
+    BvhWalk walk{&bvh};
+    for (int i = 0; i < 200; ++i) {
+        walk.visits = 0;
+        const glm::vec3 origin(unit(random), unit(random), 0);
+        const auto found = walk.bvhClosestHit(origin, {0.1f, 0.2f, i % 2 == 0 ? 1 : -1}, 0, 1e30f);
+        EXPECT_EQ(found.triangle, 0u);
+        EXPECT_EQ(found.t, 0.0f);
+        EXPECT_LT(walk.visits, 200u);
+    }
 }
 
 // From inside a closed room every ray hits something, wherever it goes: here straight at vertices and edges.
