@@ -25,6 +25,6 @@ static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
 static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);
 static_assert(sizeof(PyramidNode) == 52);
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 48);
+static_assert(sizeof(BvhNode) == 48 && sizeof(BvhTriangle) == 48);
 static_assert(sizeof(VoxelGrid) == 64 && sizeof(CvmPush) <= 128);
 } // namespace relume::shader

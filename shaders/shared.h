@@ -167,17 +167,17 @@ struct AlphaMaterial {
 
 // Inner nodes on the longest way down, at most: the stack of a traversal.
 CONST uint kBvhDepth = 48u;
-// Our own binary BVH. Both children's boxes in one node of 64 bytes. child >= 0: inner node; < 0: leaf,
-// ~child holds first triangle << 3 | count (1..7).
+// Our own binary BVH. Both children's boxes in one node of 48 bytes: their centres [m] and half of their
+// extents [m], for which the upper half of a float is enough: child 0's in the upper 16 bits, child 1's in
+// the lower ones, both rounded up. child >= 0: inner node; < 0: leaf, ~child holds first triangle << 3 |
+// count (1..7).
 struct BvhNode {
-    vec3 lo0;
+    vec3 centre0;
     int child0;
-    vec3 hi0;
+    vec3 centre1;
     int child1;
-    vec3 lo1;
-    uint unused0;
-    vec3 hi1;
-    uint unused1;
+    uvec3 extents;
+    uint unused;
 };
 // Corners of a triangle for the watertight test, 48 bytes; the id is the index in WorldMesh order, bit 31:
 // alpha-masked.

@@ -15,9 +15,15 @@ struct Bvh {
     uint32_t depth = 0;                         // inner nodes on the longest way down, <= shader::kBvhDepth
 };
 
+struct BvhBox {
+    glm::vec3 lo, hi; // [m]
+};
+/// The box of a node's child 0 or 1: a little larger than what the child holds.
+BvhBox childBox(const shader::BvhNode& node, int child);
+
 /// Binary tree over all triangles by the surface area heuristic, at most 4 triangles to a leaf; masked ones
 /// carry bit 31 in their id. The same mesh gives the same tree on any machine. At least one triangle, fewer
-/// than 2^28.
+/// than 2^26 (the shaders count bytes in 32 bits).
 Bvh buildBvh(const WorldMesh& mesh);
 
 /// Expected cost of a ray through the root's box: nodes visited plus triangles tested, by the surface area

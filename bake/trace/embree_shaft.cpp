@@ -105,7 +105,8 @@ bool Shaft::isOpen(const Bvh& bvh) const {
         } else {
             if (++visits > kVisitsMax) return false;
             const shader::BvhNode& node = bvh.nodes[size_t(current)];
-            const bool in0 = !missesBox(node.lo0, node.hi0), in1 = !missesBox(node.lo1, node.hi1);
+            const BvhBox box0 = childBox(node, 0), box1 = childBox(node, 1);
+            const bool in0 = !missesBox(box0.lo, box0.hi), in1 = !missesBox(box1.lo, box1.hi);
             if (in0 && in1) stack[top++] = node.child1;
             if (in0 || in1) {
                 current = in0 ? node.child0 : node.child1;

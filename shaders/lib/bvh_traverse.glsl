@@ -13,6 +13,15 @@ struct BvhHit {
 const uint kBvhMasked = 0x80000000u; // bit of BvhTriangle::id
 
 const uint kNoBlocker = 0xffffffffu;
+const int kStackEnd = 0x7fffffff; // below all that is on the stack: neither node nor leaf
+
+// Child 0's are read with child 1's bits below: a little larger.
+FUNCTION vec2 enterChild0(BvhNode node, BvhRay ray, float tMin, float tMax) {
+    return boxRange(node.centre0, uintBitsToFloat(node.extents), ray, tMin, tMax);
+}
+FUNCTION vec2 enterChild1(BvhNode node, BvhRay ray, float tMin, float tMax) {
+    return boxRange(node.centre1, uintBitsToFloat(node.extents << 16u), ray, tMin, tMax);
+}
 
 // True if anything solid lies within [tMin, tMax], 0 <= tMin. `blocker` is the triangle that stopped this invocation's last
 // blocked ray, in the builder's order (kNoBlocker at first): rays to neighbouring patches are mostly stopped by the same
@@ -20,23 +29,23 @@ const uint kNoBlocker = 0xffffffffu;
 FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax, INOUT(uint) blocker) {
     BvhRay ray = bvhRay(origin, direction);
     if (blocker != kNoBlocker && intersectTriangle(bvhTriangle(blocker), ray, tMin, tMax).hit) return true;
-    int stack[kBvhDepth];
-    uint top = 0u;
+    int stack[kBvhDepth + 1u];
+    stack[0] = kStackEnd;
+    uint top = 1u;
     int current = 0;
     for (;;) {
-        while (current >= 0) {
+        while (uint(current) < uint(kStackEnd)) {
             BvhNode node = bvhNode(uint(current));
-            vec2 r0 = boxRange(node.lo0, node.hi0, ray, tMin, tMax);
-            vec2 r1 = boxRange(node.lo1, node.hi1, ray, tMin, tMax);
+            vec2 r0 = enterChild0(node, ray, tMin, tMax), r1 = enterChild1(node, ray, tMin, tMax);
             bool in0 = r0.x <= r0.y, in1 = r1.x <= r1.y;
             if (!in0 && !in1) {
-                if (top == 0u) return false;
                 current = stack[--top];
                 continue;
             }
             if (in0 && in1) stack[top++] = node.child1;
             current = in0 ? node.child0 : node.child1;
         }
+        if (current == kStackEnd) return false;
         uint leaf = uint(~current);
         uint end = (leaf >> 3) + (leaf & 7u);
         for (uint i = leaf >> 3; i < end; ++i) {
@@ -49,12 +58,31 @@ FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax, INO
             }
             if (solidHit(triangle.id & ~kBvhMasked, h.b1, h.b2)) return true;
         }
-        if (top == 0u) return false;
         current = stack[--top];
     }
 }
 
-// The nearest solid hit within [tMin, tMax], 0 <= tMin.
+// `best`, or what is nearer among a leaf's triangles.
+FUNCTION BvhHit nearerInLeaf(uint leaf, BvhRay ray, float tMin, BvhHit best) {
+    uint end = (leaf >> 3) + (leaf & 7u);
+    for (uint i = leaf >> 3; i < end; ++i) {
+        BvhTriangle triangle = bvhTriangle(i);
+        TriangleHit h = intersectTriangle(triangle, ray, tMin, best.t);
+        if (!h.hit) continue;
+        uint id = triangle.id & ~kBvhMasked;
+        // Two triangles at one distance: the lower index, whatever the tree's order.
+        if (h.t == best.t && id > best.triangle) continue;
+        if ((triangle.id & kBvhMasked) != 0u && !solidHit(id, h.b1, h.b2)) continue;
+        best.triangle = id;
+        best.t = h.t;
+        best.b1 = h.b1;
+        best.b2 = h.b2;
+    }
+    return best;
+}
+
+// The nearest solid hit within [tMin, tMax], 0 <= tMin. The first leaf that a ray comes to is held back while it goes on to
+// the next one, so that a GPU's lanes test triangles together [Aila and Laine 2009]. Any-hit rays would go on in vain.
 FUNCTION BvhHit bvhClosestHit(vec3 origin, vec3 direction, float tMin, float tMax) {
     BvhRay ray = bvhRay(origin, direction);
     BvhHit best;
@@ -62,40 +90,33 @@ FUNCTION BvhHit bvhClosestHit(vec3 origin, vec3 direction, float tMin, float tMa
     best.t = tMax;
     best.b1 = 0.0f;
     best.b2 = 0.0f;
-    int stack[kBvhDepth];
-    uint top = 0u;
+    int stack[kBvhDepth + 1u];
+    stack[0] = kStackEnd;
+    uint top = 1u;
     int current = 0;
-    for (;;) {
-        while (current >= 0) {
+    while (current != kStackEnd) {
+        int held = 0; // a leaf, if below 0
+        while (uint(current) < uint(kStackEnd)) {
             BvhNode node = bvhNode(uint(current));
-            vec2 r0 = boxRange(node.lo0, node.hi0, ray, tMin, best.t);
-            vec2 r1 = boxRange(node.lo1, node.hi1, ray, tMin, best.t);
+            vec2 r0 = enterChild0(node, ray, tMin, best.t), r1 = enterChild1(node, ray, tMin, best.t);
             bool in0 = r0.x <= r0.y, in1 = r1.x <= r1.y;
             if (!in0 && !in1) {
-                if (top == 0u) return best;
                 current = stack[--top];
-                continue;
+            } else {
+                bool first = in0 && (!in1 || r0.x <= r1.x);
+                if (in0 && in1) stack[top++] = first ? node.child1 : node.child0;
+                current = first ? node.child0 : node.child1;
             }
-            bool first = in0 && (!in1 || r0.x <= r1.x);
-            if (in0 && in1) stack[top++] = first ? node.child1 : node.child0;
-            current = first ? node.child0 : node.child1;
+            if (current < 0 && held >= 0) {
+                held = current;
+                current = stack[--top];
+            }
         }
-        uint leaf = uint(~current);
-        uint end = (leaf >> 3) + (leaf & 7u);
-        for (uint i = leaf >> 3; i < end; ++i) {
-            BvhTriangle triangle = bvhTriangle(i);
-            TriangleHit h = intersectTriangle(triangle, ray, tMin, best.t);
-            if (!h.hit) continue;
-            uint id = triangle.id & ~kBvhMasked;
-            // Two triangles at one distance: the lower index, whatever the tree's order.
-            if (h.t == best.t && id > best.triangle) continue;
-            if ((triangle.id & kBvhMasked) != 0u && !solidHit(id, h.b1, h.b2)) continue;
-            best.triangle = id;
-            best.t = h.t;
-            best.b1 = h.b1;
-            best.b2 = h.b2;
+        while (held < 0) {
+            best = nearerInLeaf(uint(~held), ray, tMin, best);
+            held = current;
+            if (current < 0) current = stack[--top];
         }
-        if (top == 0u) return best;
-        current = stack[--top];
     }
+    return best;
 }

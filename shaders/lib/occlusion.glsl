@@ -48,10 +48,10 @@ void traceWord(uint unit, uint word, uint lane) {
         atomicAdd(Words(push.rays).items[slot], uint(bitCount(facing)));
     }
     uint seen = 0u;
-    while (facing != 0u) {
-        int j = findLSB(facing);
-        facing &= facing - 1u;
-        uint sender = columnPatch(first + uint(j), rowKey);
+    // Sender by sender, though some lanes then wait: neighbours' rays to one sender take the same way.
+    for (uint j = 0u; j < 32u; ++j) {
+        if ((facing >> j & 1u) == 0u) continue;
+        uint sender = columnPatch(first + j, rowKey);
         Patch b = loadPatch(push.patches, sender);
         // The lower index first, whichever end asks; RTRad's rays start at the receiver.
         bool turned = rtrad ? reversed : sender < receiver;

@@ -13,9 +13,13 @@ namespace {
 
 // The shaders' traversal on the CPU.
 struct BvhWalk {
-    const Bvh* bvh;
+    const Bvh* bvh = nullptr;
     std::function<bool(uint, float, float)> solid = [](uint, float, float) { return true; };
-    BvhNode bvhNode(uint index) { return bvh->nodes.at(index); }
+    uint visits = 0;
+    BvhNode bvhNode(uint index) {
+        ++visits;
+        return bvh->nodes.at(index);
+    }
     BvhTriangle bvhTriangle(uint index) { return bvh->triangles.at(index); }
     bool solidHit(uint id, float b1, float b2) { return solid(id, b1, b2); }
 #include "shaders/lib/intersect.glsl"
@@ -58,15 +62,15 @@ TraceScene roomWithSphere(uint32_t cells) {
     return world.build();
 }
 
-// Walks the whole tree; counts how often each triangle is met and checks that boxes hold what is below.
+// Walks the whole tree; counts how often each triangle is met and checks that all boxes above hold it.
 void checkSubtree(const Bvh& bvh, int child, glm::vec3 lo, glm::vec3 hi, std::vector<int>& met) {
     if (child >= 0) {
         const BvhNode& node = bvh.nodes.at(size_t(child));
-        for (const auto& [l, h, c] :
-             {std::tuple(node.lo0, node.hi0, node.child0), std::tuple(node.lo1, node.hi1, node.child1)}) {
-            EXPECT_TRUE(glm::all(glm::greaterThanEqual(l, lo)) && glm::all(glm::lessThanEqual(h, hi)));
-            EXPECT_TRUE(c < 0 || c > child) << "not depth first";
-            checkSubtree(bvh, c, l, h, met);
+        for (int side = 0; side < 2; ++side) {
+            const BvhBox box = childBox(node, side);
+            const int below = side == 0 ? node.child0 : node.child1;
+            EXPECT_TRUE(below < 0 || below > child) << "not depth first";
+            checkSubtree(bvh, below, glm::max(lo, box.lo), glm::min(hi, box.hi), met);
         }
         return;
     }
@@ -174,6 +178,119 @@ TEST(Bvh, findsWhatBruteForceFinds) {
         ASSERT_LT(glm::length(origin + found.t * direction - on), 1e-4f) << i;
     }
     EXPECT_GT(hits, 2000u);
+}
+
+// Both walks against brute force, for one ray and the one the other way.
+void expectAgreement(BvhWalk& walk, glm::vec3 origin, glm::vec3 direction, const std::string& what) {
+    for (const glm::vec3 d : {direction, -direction}) {
+        const auto expected = walk.bruteForce(origin, d, 0, 1e30f);
+        const auto found = walk.bvhClosestHit(origin, d, 0, 1e30f);
+        uint32_t blocker = walk.kNoBlocker;
+        ASSERT_EQ(found.triangle, expected.triangle) << what;
+        ASSERT_EQ(found.t, expected.t) << what;
+        ASSERT_EQ(walk.bvhAnyHit(origin, d, 0, 1e30f, blocker), expected.triangle != shader::kNoPatch)
+            << what;
+    }
+}
+
+// From corners, edges and faces of boxes, along the axes, along the faces and to other boxes' corners.
+TEST(Bvh, findsWhatBruteForceFindsFromItsBoxes) {
+    const TraceScene scene = roomWithSphere(12);
+    const Bvh bvh = buildBvh(scene.mesh);
+    BvhWalk walk{&bvh};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0, 1);
+    const auto pointOf = [&](bool corner) {
+        const BvhBox box = childBox(bvh.nodes[random() % bvh.nodes.size()], int(random() % 2));
+        glm::vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = glm::mix(box.lo[axis], box.hi[axis], corner ? float(random() % 2) : unit(random));
+        const int face = int(random() % 3);
+        p[face] = random() % 2 == 0 ? box.lo[face] : box.hi[face];
+        return p;
+    };
+    for (int i = 0; i < 3000; ++i) {
+        const glm::vec3 origin = pointOf(i % 2 == 0);
+        glm::vec3 direction = pointOf(i % 4 < 2) - origin;
+        if (i % 3 == 0) direction[int(random() % 3)] = i % 2 == 0 ? 0.0f : -0.0f;
+        if (i % 5 == 0) direction = glm::vec3(i % 15 == 0, i % 15 == 5, i % 15 == 10);
+        if (glm::length(direction) > 0) expectAgreement(walk, origin, direction, std::to_string(i));
+    }
+}
+
+// Triangles without area, as points, lines and double corners, among others: they stop nothing and hide
+// nothing.
+TEST(Bvh, degenerateTrianglesAreHarmless) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0, 1);
+    const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 400; ++i) {
+        const glm::vec3 p = point(), q = p + 0.2f * point(), r = p + 0.2f * point();
+        if (i % 4 == 0) corners.insert(corners.end(), {p, p, p});
+        if (i % 4 == 1) corners.insert(corners.end(), {p, q, q});
+        if (i % 4 == 2) corners.insert(corners.end(), {p, 0.5f * (p + q), q});
+        if (i % 4 == 3) corners.insert(corners.end(), {p, q, r});
+    }
+    const WorldMesh mesh = meshOf(corners);
+    const Bvh bvh = buildBvh(mesh);
+    checkTree(mesh, bvh);
+    BvhWalk walk{&bvh};
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 aim = i % 2 == 0 ? point() : corners[random() % corners.size()];
+        const glm::vec3 origin = point();
+        expectAgreement(walk, origin, aim - origin, std::to_string(i));
+    }
+    const WorldMesh points = meshOf(std::vector<glm::vec3>(30, glm::vec3(1)));
+    const Bvh flat = buildBvh(points); // all boxes without area
+    checkTree(points, flat);
+    BvhWalk through{&flat};
+    EXPECT_EQ(through.bvhClosestHit(glm::vec3(0), glm::vec3(1), 0, 1e30f).triangle, shader::kNoPatch);
+}
+
+// A tree as deep as is allowed, with something on the stack at every level: nodes in a row whose boxes hold
+// the ray.
+TEST(Bvh, theStackHoldsTheDeepestTree) {
+    Bvh bvh;
+    bvh.depth = shader::kBvhDepth;
+    for (uint32_t i = 0; i <= bvh.depth; ++i) // the last one is the nearest
+        bvh.triangles.push_back(
+            {{-9, -9, -float(i)}, bvh.depth - i, {9, -9, -float(i)}, 0, {0, 9, -float(i)}, 0});
+    for (uint32_t i = 0; i < bvh.depth; ++i) {
+        BvhNode node{};
+        node.extents = glm::uvec3(0x42c842c8u); // 100 m
+        node.child1 = ~int(i << 3 | 1u);
+        node.child0 = i + 1 < bvh.depth ? int(i + 1) : ~int((i + 1) << 3 | 1u);
+        bvh.nodes.push_back(node);
+    }
+    BvhWalk walk{&bvh};
+    expectAgreement(walk, {0, 0, -60}, {0, 0, 1}, "from the last");
+    expectAgreement(walk, {0, 0, 1}, {0, 0, -1}, "from the first");
+    EXPECT_EQ(walk.bvhClosestHit({0, 0, -60}, {0, 0, 1}, 0, 1e30f).triangle, 0u);
+}
+
+// A ray from the very plane of what it hits ends there, at 0 or -0: it does not go through all that lies
+// behind it.
+TEST(Bvh, raysThatEndWhereTheyBeginSeeLittleOfTheTree) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto point = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    std::vector<glm::vec3> corners = {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}};
+    for (int i = 0; i < 4000; ++i) {
+        const glm::vec3 p = point();
+        corners.insert(corners.end(), {p, p + 0.03f * point(), p + 0.03f * point()});
+    }
+    const WorldMesh mesh = meshOf(corners);
+    const Bvh bvh = buildBvh(mesh);
+    BvhWalk walk{&bvh};
+    for (int i = 0; i < 200; ++i) {
+        walk.visits = 0;
+        const glm::vec3 origin(unit(random), unit(random), 0);
+        const auto found = walk.bvhClosestHit(origin, {0.1f, 0.2f, i % 2 == 0 ? 1 : -1}, 0, 1e30f);
+        EXPECT_EQ(found.triangle, 0u);
+        EXPECT_EQ(found.t, 0.0f);
+        EXPECT_LT(walk.visits, 200u);
+    }
 }
 
 // From inside a closed room every ray hits something, wherever it goes: here straight at vertices and edges.
