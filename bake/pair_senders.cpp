@@ -94,6 +94,10 @@ void PairSenders::prepare(const std::vector<glm::vec4>& light, double threshold)
         changed_.assign(sends_.size(), false);
         return;
     }
+    if (kind_ == SenderKind::Drawn) {
+        changed_.assign(list_.chunkCount(), false);
+        return listSending(vk::readBuffer<uint32_t>(device_, light_.chunkSends, patches_.chunkCount()));
+    }
     const std::vector<glm::vec4> radiance = patchRadiance(patches_, light, transport_);
     if (adaptive_) {
         setList(quadTreeSenders(
@@ -107,21 +111,27 @@ void PairSenders::prepare(const std::vector<glm::vec4>& light, double threshold)
 
 void PairSenders::sendRadiance(const std::vector<glm::vec4>& radiance) {
     sends_.assign(list_.chunkCount(), 0);
-    if (kind_ == SenderKind::Drawn) {
-        for (uint32_t i = 0; i < list_.count; ++i) {
-            const shader::Sender& s = list_.senders[i];
-            const auto first = list_.members.begin() + s.first;
-            if (sends_[i / kChunk] == 0 &&
-                std::any_of(first, first + s.count, [&](uint32_t m) { return isLit(radiance[m]); }))
-                sends_[i / kChunk] = 1;
-        }
-    } else {
-        const std::vector<glm::vec4> sent =
-            senderRadiance(patches_, list_, radiance, lightKind_, pairs_.window);
-        for (size_t i = 0; i < sent.size(); ++i)
-            if (isLit(sent[i])) sends_[i / kChunk] = 1;
-        vk::upload(device_, buffers_.radiance, sent.data(), sent.size() * sizeof(glm::vec4));
+    const std::vector<glm::vec4> sent = senderRadiance(patches_, list_, radiance, lightKind_, pairs_.window);
+    for (size_t i = 0; i < sent.size(); ++i)
+        if (isLit(sent[i])) sends_[i / kChunk] = 1;
+    vk::upload(device_, buffers_.radiance, sent.data(), sent.size() * sizeof(glm::vec4));
+    uploadSends();
+}
+
+// Those that may draw from a chunk of patches that sends.
+void PairSenders::listSending(const std::vector<uint32_t>& chunkSends) {
+    sends_.assign(list_.chunkCount(), 0);
+    for (uint32_t i = 0; i < list_.count; ++i) {
+        if (sends_[i / kChunk] != 0) continue;
+        const shader::Sender& s = list_.senders[i];
+        const auto first = list_.members.begin() + s.first;
+        if (std::any_of(first, first + s.count, [&](uint32_t m) { return chunkSends[m / kChunk] != 0; }))
+            sends_[i / kChunk] = 1;
     }
+    uploadSends();
+}
+
+void PairSenders::uploadSends() {
     if (transport_.allSend) std::fill(sends_.begin(), sends_.end(), 1u);
     vk::upload(device_, buffers_.sends, sends_.data(), sends_.size() * sizeof(uint32_t));
 }

@@ -16,7 +16,7 @@ public:
     uint32_t columns() const;
     uint32_t maxColumns() const;
     /// For a pass that starts from this light; lists that follow the light are made anew. threshold: of the
-    /// quad-tree. Reads chunkSends of the device where the patches themselves send.
+    /// quad-tree. Reads chunkSends of the device where the patches themselves send or are drawn.
     void prepare(const std::vector<glm::vec4>& light, double threshold);
     /// Per column: whether anything in it sends.
     const std::vector<uint32_t>& sends() const { return sends_; }
@@ -30,6 +30,8 @@ public:
 
 private:
     void setList(SenderList list);
+    void listSending(const std::vector<uint32_t>& chunkSends);
+    void uploadSends();
     void sendRadiance(const std::vector<glm::vec4>& radiance);
 
     const vk::Device& device_;

@@ -21,6 +21,8 @@ constexpr uint32_t kFirstUnits = 16;
 constexpr double kMaxGrowth = 4.0;
 // Of the free device memory, that the visibility cache takes unless told otherwise.
 constexpr uint64_t kCacheShare = 3;
+// Patches whose change one thread sums up at a time.
+constexpr uint32_t kMeasured = 1u << 16;
 
 } // namespace
 
@@ -55,6 +57,7 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
         for (size_t i = 0; i < last_.size(); ++i)
             last_[i] = glm::vec4(glm::vec3(patches_.emission[i]), 1.0f);
     }
+    before_ = last_;
     state_.threshold = settings_.pairs.threshold;
     vk::upload(device_, light_.ligIn, last_.data(), LightBuffers::lightBytes(patches_));
     vk::upload(device_, light_.ligOut, last_.data(), LightBuffers::lightBytes(patches_));
@@ -288,7 +291,9 @@ void PairSolver::endPass() {
         unitsDone_ > 0 ? static_cast<double>(unitsKnown_) / static_cast<double>(unitsDone_) : 0.0;
     progress_.passes = ++state_.passes;
     progress_.passFraction = 0;
-    measureChange(vk::readBuffer<glm::vec4>(device_, light_.ligOut, patches_.scene.patches.size()));
+    std::swap(last_, before_);
+    vk::download(device_, light_.ligOut, last_.data(), last_.size() * sizeof(glm::vec4));
+    measureChange();
     std::swap(light_.ligIn, light_.ligOut);
     state_.threshold *= settings_.pairs.thresholdRamp;
     state_.inPass = false;
@@ -300,31 +305,47 @@ void PairSolver::endPass() {
 
 // The remaining error of a geometric series: change * q / (1 - q), q being the ratio of the last two changes,
 // relative to the mean (conventions.md, Errors).
-void PairSolver::measureChange(const std::vector<glm::vec4>& now) {
-    double squares = 0, sum = 0;
-    uint64_t count = 0;
-    for (size_t i = 0; i < patches_.count; ++i) {
-        const uint32_t flags = patches_.scene.patches[i].flags;
-        if ((flags & shader::kPatchSends) == 0 || (flags & shader::kPatchBackSide) != 0) continue;
-        const glm::dvec3 change = glm::dvec3(now[i]) - glm::dvec3(last_[i]);
-        squares += glm::dot(change, change);
-        sum += double{now[i].r} + now[i].g + now[i].b;
-        count += 3;
+void PairSolver::measureChange() {
+    const auto pieces = static_cast<uint32_t>((patches_.count + kMeasured - 1) / kMeasured);
+    std::vector<ChangeSums> parts(pieces);
+    pool_.run(pieces, [&](uint32_t k) { parts[k] = changeOf(k * kMeasured); });
+    ChangeSums all;
+    for (const ChangeSums& part : parts) {
+        all.squares += part.squares;
+        all.light += part.light;
+        all.count += part.count;
     }
-    const std::vector<glm::vec4> before = std::exchange(last_, now);
-    const double change = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
-    const double mean = count > 0 ? sum / static_cast<double>(count) : 0.0;
+    const double change = all.count > 0 ? std::sqrt(all.squares / static_cast<double>(all.count)) : 0.0;
+    const double mean = all.count > 0 ? all.light / static_cast<double>(all.count) : 0.0;
     if (change == 0.0 || mean <= 0.0) {
         progress_.error = 0.0;
     } else if (state_.lastChange > 0.0) {
         const double q = change / state_.lastChange;
         progress_.error = q < 1.0 ? change * q / (1.0 - q) / mean : 1.0;
-        const auto left = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
-        errors_.resize(now.size());
-        for (size_t i = 0; i < now.size(); ++i)
-            errors_[i] = left * glm::length(glm::vec3(now[i] - before[i])) / std::sqrt(3.0f);
+        left_ = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
     }
     state_.lastChange = change;
+}
+
+// Of the patches from `first` on.
+PairSolver::ChangeSums PairSolver::changeOf(uint32_t first) const {
+    ChangeSums sums;
+    for (uint32_t i = first; i < std::min(first + kMeasured, patches_.count); ++i) {
+        const uint32_t flags = patches_.scene.patches[i].flags;
+        if ((flags & shader::kPatchSends) == 0 || (flags & shader::kPatchBackSide) != 0) continue;
+        const glm::dvec3 change = glm::dvec3(last_[i]) - glm::dvec3(before_[i]);
+        sums.squares += glm::dot(change, change);
+        sums.light += double{last_[i].r} + last_[i].g + last_[i].b;
+        sums.count += 3;
+    }
+    return sums;
+}
+
+std::vector<float> PairSolver::errors() {
+    std::vector<float> errors(left_ >= 0 ? last_.size() : 0);
+    for (size_t i = 0; i < errors.size(); ++i)
+        errors[i] = left_ * glm::length(glm::vec3(last_[i] - before_[i])) / std::sqrt(3.0f);
+    return errors;
 }
 
 SolverState PairSolver::state() {
@@ -342,7 +363,8 @@ void PairSolver::restore(const SolverState& state) {
     state_ = takeState<PairState>(state);
     done_ = false;
     last_ = vk::readBuffer<glm::vec4>(device_, light_.ligIn, patches_.scene.patches.size());
-    errors_.clear();
+    before_ = last_;
+    left_ = -1;
     if (!state_.inPass) return;
     VkCommandBuffer cmd = commands_.begin();
     radiancePass_.record(cmd, light_, settings_.transport);

@@ -31,7 +31,7 @@ public:
     void step() override;
     uint64_t raysSoFar() override; // asks the device
     const std::vector<glm::vec4>& light() override { return last_; }
-    std::vector<float> errors() override { return errors_; }
+    std::vector<float> errors() override; // by what the last pass changed
     SolverState state() override;
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
@@ -62,7 +62,12 @@ private:
     void trace(VkCommandBuffer cmd, const Batch& batch);
     void learn(const Batch& batch, double traceMs, double gatherMs);
     void endPass();
-    void measureChange(const std::vector<glm::vec4>& now);
+    struct ChangeSums {
+        double squares = 0, light = 0; // R, G and B of all patches together
+        uint64_t count = 0;
+    };
+    void measureChange();
+    ChangeSums changeOf(uint32_t first) const;
     bool passDone() const { return state_.row >= plan_.superRows(); }
     uint64_t countedRays(uint32_t half);
 
@@ -89,7 +94,9 @@ private:
     uint32_t superKnown_ = 0;                    // units of the current super-block, before this pass
     double keptRays_ = 0;                        // that the bits in the cache took
     std::vector<glm::vec4> last_;                // ligIn: light of the last finished pass
-    std::vector<float> errors_;                  // of each patch, by what the last pass changed
+    std::vector<glm::vec4> before_;              // of the one before it
+    float left_ = -1; // share of the last change that is still to come; negative: not known yet
+    WorkerPool pool_{0};
 };
 
 } // namespace relume
