@@ -101,6 +101,9 @@ INSTANTIATE_TEST_SUITE_P(
               .footprint = true}},
         Case{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
         Case{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
+        Case{"montecarlo", {.size = 64, .passes = 3, .method = Method::MonteCarlo, .pairs = {.window = 2}}},
+        Case{"mipmapped", {.size = 64, .passes = 3, .method = Method::Mipmapped, .pairs = {.window = 2}}},
+        Case{"adaptive", {.size = 64, .passes = 3, .method = Method::Adaptive, .pairs = {.threshold = 0.02}}},
         Case{"pureError", {.size = 32, .passes = 0, .error = 0.05, .method = Method::Pure}}),
     [](const auto& test) { return std::string(test.param.name); });
 
