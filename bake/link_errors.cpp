@@ -135,8 +135,14 @@ void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
     if (!close) state_.sigma = best;
 }
 
+// Within a round only some patches have its samples. What a look teaches about widths and variances must not
+// decide what comes next: looking changes no byte.
 const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.directRounds + state_.linkRounds > 0) resolve();
+    if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0) {
+        const State before = state_;
+        resolve();
+        state_ = before;
+    }
     if (light_.empty())
         light_ =
             vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());

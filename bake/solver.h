@@ -131,7 +131,8 @@ public:
     const SolverProgress& progress() const { return progress_; }
     /// progress().rays and those of the current pass; may ask the device.
     virtual uint64_t raysSoFar() { return progress_.rays; }
-    /// Light of the last finished pass for display and output, one vec4 per patch.
+    /// Light of the last finished pass (link methods: round) for display and output, one vec4 per patch.
+    /// Looking at it in between changes no byte of the result.
     virtual const std::vector<glm::vec4>& light() = 0;
     /// How far each patch's light may still be off, one number per patch in light()'s unit; empty when that
     /// cannot be told yet.

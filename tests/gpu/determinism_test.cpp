@@ -45,6 +45,29 @@ void expectSameBytes(const FloatImage& a, const FloatImage& b) {
 
 class Determinism : public testing::TestWithParam<TracerKind> {};
 
+// What a viewer does after every batch.
+TEST(Determinism, LookingAtTheLightChangesNoByte) {
+    const Scene scene = generateScene("cornell_geom");
+    for (const BakeDesc& desc :
+         {BakeDesc{.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true},
+          BakeDesc{.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 64, .smooth = true},
+          BakeDesc{.size = 48, .passes = 3}}) {
+        const Baked unseen = bakeScene(scene, desc);
+        const std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+        uint32_t changes = 0;
+        std::vector<glm::vec4> shown;
+        while (!baker->solver().done()) {
+            baker->solver().step();
+            const std::vector<glm::vec4>& light = baker->solver().light();
+            if (light != shown) ++changes;
+            shown = light;
+        }
+        EXPECT_GT(changes, 2u); // it converges before one's eyes
+        expectSameBytes(baker->lightmap({.quantity = Quantity::Lighting, .sew = false}), unseen.lighting);
+        EXPECT_EQ(baker->solver().progress().error, unseen.progress.error);
+    }
+}
+
 TEST_P(Determinism, TwoRunsAndSmallBatchesGiveTheSameBytes) {
     const std::vector<TracerKind> kinds = tracersOfTestDevice();
     if (std::find(kinds.begin(), kinds.end(), GetParam()) == kinds.end())
