@@ -334,11 +334,11 @@ struct DirectPush {
     float scale; // from the sum of all sums to the mean
 };
 struct LinkPush {
-    ADDRESS links;    // uint[chunkCount][sampleCount][64]
-    ADDRESS packed;   // uvec2[], radiance by packLight
-    ADDRESS direct;   // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut;   // vec4[]; 0: not written
-    ADDRESS sums;     // vec4[kReplicates][patchCount], added to; 0: not
+    ADDRESS links;  // uint[chunkCount][sampleCount][64]
+    ADDRESS packed; // uvec2[], radiance by packLight
+    ADDRESS direct; // vec4[] added to ligOut; 0: nothing
+    ADDRESS ligOut; // vec4[]; 0: not written
+    ADDRESS sums;   // vec4[kReplicates][patchCount], added to; 0: not
     uint firstChunk;
     uint chunkCount;
     uint sampleCount; // a multiple of kReplicates
