@@ -11,15 +11,19 @@
 set -euo pipefail
 
 packages=(
-    cmake ninja-build ccache g++              # the build
+    cmake ninja-build ccache g++ pkgconf      # the build
     libvulkan-dev libvulkan-volk-dev          # Vulkan headers, loader, volk
     glslang-dev glslang-tools                 # GLSL to SPIR-V, at build time and at run time
     libembree-dev libtbb-dev                  # CPU ray tracing; its CMake files name TBB
     libglm-dev libtinygltf-dev libopenexr-dev libstb-dev
+    libepoxy-dev libegl-dev libgl-dev         # OpenGL: the pictures; EGL makes them without a display
+    libglfw3-dev libimgui-dev                 # the viewer's window and panels
     libcli11-dev libspdlog-dev nlohmann-json3-dev
     libgtest-dev libbenchmark-dev vulkan-validationlayers
+    xvfb xdotool                              # the tests of the window, on a machine without a display
 )
-mesa=mesa-vulkan-drivers
+# The software devices of Vulkan and OpenGL. Both of one version: the viewer shares images between them.
+mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0)
 testedMesa=25 # on Debian 12 an older one is brought up to date; elsewhere the stock one is taken
 
 case "${1:-}" in
@@ -38,7 +42,7 @@ case "$system" in
         {
             echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
             echo "Install these (Debian's names) by hand, then build as the README says:"
-            echo "  ${packages[*]} and a Vulkan 1.2 driver (tested: Mesa $testedMesa)"
+            echo "  ${packages[*]} and drivers of Vulkan 1.2 and OpenGL 4.5 (tested: Mesa $testedMesa)"
         } >&2
         exit 1
         ;;
@@ -55,13 +59,15 @@ for package in "${packages[@]}"; do
     isInstalled "$package" || missing+=("$package")
 done
 needsMesa=false
-mesaVersion=$(installedVersion $mesa)
-if [ -z "$mesaVersion" ]; then
-    needsMesa=true
-elif [ "$system" = "debian 12" ] && [ -z "${RELUME_KEEP_MESA:-}" ] &&
-    dpkg --compare-versions "$mesaVersion" lt "$testedMesa"; then
-    needsMesa=true
-fi
+for package in "${mesa[@]}"; do
+    mesaVersion=$(installedVersion "$package")
+    if [ -z "$mesaVersion" ]; then
+        needsMesa=true
+    elif [ "$system" = "debian 12" ] && [ -z "${RELUME_KEEP_MESA:-}" ] &&
+        dpkg --compare-versions "$mesaVersion" lt "$testedMesa"; then
+        needsMesa=true
+    fi
+done
 
 if [ ${#missing[@]} -eq 0 ] && [ $needsMesa = false ]; then
     echo "setup: everything is installed"
@@ -110,7 +116,7 @@ addBackports() {
 
 wanted=("${missing[@]}")
 if [ $needsMesa = true ]; then
-    wanted+=($mesa)
+    wanted+=("${mesa[@]}")
 fi
 echo "setup: installing ${wanted[*]}"
 if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
@@ -119,13 +125,13 @@ fi
 aptGet update -q
 
 if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
-    if ! apt-cache madison $mesa | grep -q bpo12; then
+    if ! apt-cache madison "${mesa[0]}" | grep -q bpo12; then
         echo "setup: the mirror has no bookworm-backports: put one that has it into $backports" >&2
         exit 1
     fi
-    install -t bookworm-backports $mesa
+    install -t bookworm-backports "${mesa[@]}"
 elif [ $needsMesa = true ]; then
-    install $mesa
+    install "${mesa[@]}"
 fi
 if [ ${#missing[@]} -gt 0 ]; then
     install "${missing[@]}"

@@ -13,4 +13,12 @@ struct EmbeddedShader {
 /// The programs of programs.txt, compiled when Relume was built.
 std::span<const EmbeddedShader> embeddedShaders();
 
+struct EmbeddedText {
+    const char* path; // in shaders/
+    const char* text; // GLSL
+};
+
+/// The sources that OpenGL compiles at run time, and what they include.
+std::span<const EmbeddedText> embeddedTexts();
+
 } // namespace relume

@@ -51,13 +51,17 @@ std::vector<Program> readPrograms(const std::string& path) {
     return programs;
 }
 
+std::string readText(const std::string& path, const std::string& user) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(path + ": cannot be read: " + user);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 std::vector<uint32_t> compileFrom(const std::string& path, const std::string& name) {
     for (const Program& program : readPrograms(path)) {
         if (program.name != name) continue;
         const std::string source = (std::filesystem::path(path) / program.file).string();
-        std::ifstream file(source, std::ios::binary);
-        if (!file) throw Error(source + ": cannot be read: shader '" + name + "' needs it");
-        const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+        const std::string text = readText(source, "shader '" + name + "' needs it");
         return compileShader(
             {.name = source, .text = text, .definitions = program.definitions, .includeFolder = path});
     }
@@ -74,6 +78,16 @@ std::vector<uint32_t> shaderCode(const std::string& name) {
         if (name == shader.name) return {shader.code.begin(), shader.code.end()};
     throw Error("shader '" + name +
                 "' is not part of this executable: list it in shaders/programs.txt and build again");
+}
+
+std::string shaderText(const std::string& path) {
+    const std::string root = currentFolder();
+    if (!root.empty()) return readText((std::filesystem::path(root) / path).string(), "pictures need it");
+    for (const EmbeddedText& text : embeddedTexts())
+        if (path == text.path) return text.text;
+    throw Error("shader source '" + path +
+                "' is not part of this executable: only shaders/gl and what CMake lists "
+                "beside it are");
 }
 
 std::vector<std::string> shaderNames() {

@@ -15,6 +15,10 @@ std::vector<uint32_t> shaderCode(const std::string& name);
 /// The names that shaderCode knows.
 std::vector<std::string> shaderNames();
 
+/// The text of a source by its path in shaders/ ("gl/scene.frag", "lib/tone.glsl"): those that OpenGL
+/// compiles, at run time. Comes from the executable or from setShaderFolder's folder. Throws Error.
+std::string shaderText(const std::string& path);
+
 /// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the
 /// embedded code. Throws Error when the folder does not hold them.
 void setShaderFolder(const std::string& folder);

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <limits>
+
+#include <glm/glm.hpp>
+
+namespace relume {
+
+/// An axis-aligned box; empty until something is added.
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()};
+    glm::vec3 high{std::numeric_limits<float>::lowest()};
+
+    void add(const glm::vec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    void add(const Box& other) {
+        low = glm::min(low, other.low);
+        high = glm::max(high, other.high);
+    }
+    bool empty() const { return low.x > high.x; }
+    glm::vec3 centre() const { return 0.5f * (low + high); }
+    glm::vec3 size() const { return high - low; }
+    float diagonal() const { return glm::length(size()); }
+    /// Of the eight, x changing fastest.
+    glm::vec3 corner(int index) const {
+        return {(index & 1) != 0 ? high.x : low.x, (index & 2) != 0 ? high.y : low.y,
+                (index & 4) != 0 ? high.z : low.z};
+    }
+};
+
+} // namespace relume

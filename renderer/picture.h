@@ -1,0 +1,12 @@
+#pragma once
+
+#include "assets/float_image.h"
+#include "renderer/gl/framebuffer.h"
+
+namespace relume {
+
+/// A finished picture (GL_RGBA8, sRGB encoded) as an image of linear R, G and B, its upper row first: written
+/// as PNG it is the same again.
+FloatImage readPicture(const gl::Framebuffer& framebuffer);
+
+} // namespace relume

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "assets/world_mesh.h"
+#include "renderer/box.h"
+
+namespace relume {
+
+/// What shaders/gl/scene.vert reads, in its order.
+struct SceneVertex {
+    glm::vec3 position; // [m], world space
+    glm::vec3 normal;   // unit
+    glm::vec2 baseUv, emissionUv, metallicUv, lightmapUv;
+    glm::vec4 color;
+    uint32_t instance = 0;
+    uint32_t mapped = 0; // 1: lightmapUv is one
+};
+
+/// Triangles of one material and instance, drawn at once.
+struct SceneDraw {
+    uint32_t firstIndex = 0, indexCount = 0;
+    uint32_t material = 0; // into Scene::materials; materials.size() is the default
+    bool doubleSided = false;
+    Box bounds;
+};
+
+/// A scene's triangles in the order in which they are drawn; equal corners share a vertex.
+struct SceneGeometry {
+    std::vector<SceneVertex> vertices;
+    std::vector<uint32_t> indices;
+    std::vector<SceneDraw> draws; // single-sided ones first, those of a material side by side
+    Box bounds;
+    // Square root of lightmap area over surface area, the median over the surface [1/m]: times the lightmap's
+    // edge in texels it is the texels per metre. 0 without lightmap UVs.
+    float medianDensity = 0;
+};
+
+SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh);
+
+/// The bounds of all triangles.
+Box boundsOf(const WorldMesh& mesh);
+
+} // namespace relume

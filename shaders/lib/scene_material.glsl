@@ -1,0 +1,30 @@
+// What C++ and the OpenGL shaders of a scene share. Legal as GLSL and as C++ (namespace relume::shader).
+
+// What is drawn of a scene.
+CONST uint kViewLit = 0u;       // emission + albedo x lighting
+CONST uint kViewLighting = 1u;  // the lightmap
+CONST uint kViewAlbedo = 2u;
+CONST uint kViewEmission = 3u;
+CONST uint kViewNormal = 4u;    // shading normal, world space
+CONST uint kViewMaterial = 5u;  // a colour for each
+CONST uint kViewInstance = 6u;
+CONST uint kViewChecker = 7u;   // lightmap texels as a checker, tiles of 8 x 8 tinted
+CONST uint kViewDensity = 8u;   // lightmap texels per metre against the scene's median
+CONST uint kViewCoverage = 9u;  // of the lightmap: patches, filled texels, empty ones
+CONST uint kViewCount = 10u;
+
+CONST uint kFilterNearest = 0u;
+CONST uint kFilterBilinear = 1u;
+CONST uint kFilterBicubic = 2u;
+
+// std430: vectors of four only.
+struct SceneMaterial {
+    vec4 baseColor;  // linear
+    vec4 emission;   // rgb [cd/m^2]; a: alpha below it is cut out, 0 for none
+    vec4 metallic;   // x metallic, y roughness
+};
+
+// The share of light that comes back from a surface: a rough metal sends some on, as the baker has it.
+FUNCTION vec3 diffuseAlbedo(vec3 baseColor, float metallic, float roughness) {
+    return baseColor * (1.0f - metallic + 0.5f * metallic * roughness * roughness);
+}
