@@ -94,13 +94,7 @@ void addVoxelOptions(CLI::App& command, BakeOptions& o) {
 
 } // namespace
 
-void addBakeOptions(CLI::App& command, BakeOptions& o) {
-    command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
-    command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
-    command.add_option("--picture", o.picture, "Write the lightmap to this .png as well");
-    command.add_option("--size", o.size, "Lightmap edge in texels")
-        ->capture_default_str()
-        ->check(CLI::Range(8u, Baker::kMaxSize));
+void addSolverOptions(CLI::App& command, BakeOptions& o) {
     command
         .add_option(
             "--method", o.method,
@@ -109,8 +103,6 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->check(CLI::IsMember(
             {"pure", "static", "montecarlo", "mipmapped", "adaptive", "directional", "hybrid"}));
     addPairOptions(command, o.pairs);
-    command.add_option("--error-map", o.errorMap,
-                       "Write each texel's standard error as an image, .exr or .png");
     command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
         ->check(CLI::Range(1u, Solver::kMaxPasses));
     command
@@ -121,22 +113,13 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or voxel")->capture_default_str();
     addVoxelOptions(command, o);
     command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
-    command
-        .add_option("--quantity", o.quantity,
-                    "lighting: irradiance / pi; radiance: emission + albedo * lighting")
-        ->check(CLI::IsMember({"lighting", "radiance"}));
-    command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
-        ->check(CLI::IsMember({"rtrad"}));
     command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
         ->check(CLI::Range(0.0, 10.0));
-    command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
-        ->check(CLI::Range(0.0, 2.0));
     command.add_option("--dilate", o.dilate, "Rings of texels filled around charts")
         ->capture_default_str()
         ->check(CLI::Range(0u, 64u));
     command.add_flag("--no-sew", o.noSew, "Leave the texels around charts empty");
     command.add_flag("--conservative", o.conservative, "Every texel that a triangle touches becomes a patch");
-    command.add_flag("--half", o.half, "Write 16-bit floats");
     command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
     command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
         ->check(CLI::PositiveNumber);
@@ -145,15 +128,40 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 45.0));
-    addCheckpointOptions(command, o);
-    command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
-    command.add_option("--scene-out", o.sceneOut,
-                       "Write the scene with the lightmap UVs that were used, .glb");
     command
         .add_option("--shaders", o.shaders,
                     "Compile the shaders from this folder instead of the built-in ones")
         ->check(CLI::ExistingDirectory);
     command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
+}
+
+void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
+    command.add_option(name, o.size, "Lightmap edge in texels")
+        ->capture_default_str()
+        ->check(CLI::Range(8u, Baker::kMaxSize));
+}
+
+void addBakeOptions(CLI::App& command, BakeOptions& o) {
+    command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
+    command.add_option("--picture", o.picture, "Write the lightmap to this .png as well");
+    addSizeOption(command, "--size", o);
+    addSolverOptions(command, o);
+    command.add_option("--error-map", o.errorMap,
+                       "Write each texel's standard error as an image, .exr or .png");
+    command
+        .add_option("--quantity", o.quantity,
+                    "lighting: irradiance / pi; radiance: emission + albedo * lighting")
+        ->check(CLI::IsMember({"lighting", "radiance"}));
+    command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
+        ->check(CLI::IsMember({"rtrad"}));
+    command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
+        ->check(CLI::Range(0.0, 2.0));
+    command.add_flag("--half", o.half, "Write 16-bit floats");
+    addCheckpointOptions(command, o);
+    command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
+    command.add_option("--scene-out", o.sceneOut,
+                       "Write the scene with the lightmap UVs that were used, .glb");
 }
 
 VoxelSettings resolveVoxels(const BakeOptions& o) {

@@ -38,6 +38,9 @@ struct BakeOptions {
 };
 
 void addBakeOptions(CLI::App& command, BakeOptions& options);
+/// Those of them that say how a lightmap is made, for other verbs that need one.
+void addSolverOptions(CLI::App& command, BakeOptions& options);
+void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);
 
 /// What the options ask for. Throws UsageError when they contradict each other.
 struct BakeRequest {

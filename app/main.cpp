@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     relume::setupLog(false);
 
     relume::addBakeCommand(app);
+    relume::addShotCommand(app);
     relume::addInfoCommand(app);
     relume::addUnwrapCommand(app);
     relume::addSceneCommand(app);

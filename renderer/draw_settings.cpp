@@ -22,4 +22,8 @@ bool showsLight(View view) {
     return view == View::Lit || view == View::Lighting || view == View::Emission;
 }
 
+bool readsLightmap(View view) {
+    return view == View::Lit || view == View::Lighting || view == View::Coverage;
+}
+
 } // namespace relume

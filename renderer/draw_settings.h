@@ -40,6 +40,8 @@ const std::vector<std::string>& toneNames();
 
 /// Views of light are exposed and tone mapped, the others are colours that mean something as they are.
 bool showsLight(View view);
+/// Whether a view differs with what the lightmap holds.
+bool readsLightmap(View view);
 
 struct DrawSettings {
     View view = View::Lit;

@@ -16,7 +16,7 @@ constexpr uint32_t kMeterCells =
 
 // Uniforms, as the shaders number them.
 constexpr GLint kViewProjection = 0, kMaterial = 1, kView = 2, kFilter = 3, kEye = 4, kAmbient = 5,
-                kLightmapSize = 6, kPreScale = 7, kMedianDensity = 8;
+                kLightmapSize = 6, kPreScale = 7, kMedianDensity = 8, kHasLightmap = 9;
 constexpr GLint kExposure = 0, kTone = 1, kLinear = 2, kBackground = 3;
 constexpr GLuint kLightmapUnit = 3;
 
@@ -105,7 +105,8 @@ void SceneRenderer::drawScene(const Frame& frame, float preScale) {
     program.set(kFilter, static_cast<GLuint>(frame.settings.filter));
     program.set(kEye, frame.camera.eye);
     program.set(kAmbient, frame.lightmap.ambient);
-    program.set(kLightmapSize, static_cast<GLuint>(frame.lightmap.texture != 0 ? frame.lightmap.size : 0));
+    program.set(kLightmapSize, static_cast<GLuint>(frame.lightmap.size));
+    program.set(kHasLightmap, static_cast<GLuint>(frame.lightmap.texture != 0 ? 1 : 0));
     program.set(kPreScale, preScale);
     program.set(kMedianDensity, frame.scene.medianDensity() * size);
     program.use();

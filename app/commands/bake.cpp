@@ -4,6 +4,7 @@
 #include "app/command.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/solve.h"
 #include "assets/clock.h"
 #include "assets/gltf.h"
 #include "assets/file_write.h"
@@ -21,55 +22,6 @@ double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// Pass, percent, rays per second and the time left: of this pass when only the error can end the bake.
-std::string progressText(Solver& solver, const SolverSettings& settings) {
-    const SolverProgress& p = solver.progress();
-    if (!isPairMethod(settings.method)) {
-        return fmt::format("{} directions per patch  {:.1f} Mrays/s  error {:.2g}", p.samples,
-                           p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds * 1e-6 : 0.0, p.error);
-    }
-    const double done = p.passes + p.passFraction, perPass = done > 0 ? p.seconds / done : 0.0;
-    const bool counted = settings.passes > 0;
-    const double left = perPass * (counted ? settings.passes - done : 1.0 - p.passFraction);
-    std::string text = counted ? fmt::format("pass {}/{}", p.passes + 1, settings.passes)
-                               : fmt::format("pass {}", p.passes + 1);
-    text += fmt::format("  {:3.0f} %", 100.0 * p.passFraction);
-    if (p.seconds > 0)
-        text += fmt::format("  {:.1f} Mrays/s", static_cast<double>(solver.raysSoFar()) / p.seconds * 1e-6);
-    if (p.passes >= 2) text += fmt::format("  error {:.2g}", p.error);
-    return text + fmt::format("  {} left{}", formatDuration(left), counted ? "" : " in this pass");
-}
-
-void stopIfInterrupted() {
-    if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");
-}
-
-// Steps the solver to its end. Throws Error when the user interrupts.
-void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& checkpoints) {
-    ProgressLine line;
-    while (!solver.done()) {
-        solver.step();
-        if (solver.done()) break;
-        if (InterruptGuard::requested()) checkpoints.interrupt(solver);
-        checkpoints.afterStep(solver);
-        if (line.due()) line.show(progressText(solver, settings));
-    }
-    if (solver.progress().converged || settings.error == 0) return;
-    if (solver.progress().gridError > settings.error) {
-        spdlog::warn(
-            "the error is still {:.2g}, {:.2g} of it from --indirect-scale {}: choose a smaller one or "
-            "raise --error",
-            solver.progress().error, solver.progress().gridError, settings.links.indirectScale);
-    } else if (!isPairMethod(settings.method) && settings.links.samples == 0) {
-        spdlog::warn("the error is still {:.2g} after {} directions per patch: raise --error",
-                     solver.progress().error, solver.progress().samples);
-    } else if (isPairMethod(settings.method) && settings.passes == 0) {
-        spdlog::warn(
-            "the error is still {:.2g} after {} passes: lower the albedo or --reflectivity, or raise --error",
-            solver.progress().error, solver.progress().passes);
-    }
-}
-
 void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& request,
                    const SolverProgress& progress) {
     const size_t slash = o.scene.find_last_of('/');
@@ -84,17 +36,6 @@ void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& r
                                                      request.lightmap.sew ? 1 : 0);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
-}
-
-void warnIfDark(const Scene& scene, const PatchSet& patches) {
-    for (uint32_t i = 0; i < patches.count; ++i) {
-        const bool emits =
-            patches.emission[i].r > 0 || patches.emission[i].g > 0 || patches.emission[i].b > 0;
-        if (emits && (patches.scene.patches[i].flags & shader::kPatchSends) != 0) return;
-    }
-    spdlog::warn("{}: nothing that has lightmap UVs emits, the lightmap will be black: give a material an "
-                 "emissive factor{}",
-                 scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
 }
 
 void bake(BakeOptions o) {

@@ -15,9 +15,10 @@ layout(location = 2) uniform uint view;
 layout(location = 3) uniform uint filterKind;
 layout(location = 4) uniform vec3 eye;
 layout(location = 5) uniform vec3 ambient;       // lighting where there is no lightmap [cd/m^2]
-layout(location = 6) uniform uint lightmapSize;  // [texels], 0: there is no lightmap yet
+layout(location = 6) uniform uint lightmapSize;  // [texels]
 layout(location = 7) uniform float preScale;
 layout(location = 8) uniform float medianDensity; // of the scene, in texels per metre at lightmapSize
+layout(location = 9) uniform uint hasLightmap;    // 0: there is no light yet
 
 in vec3 fragPosition;
 in vec3 fragNormal;
@@ -40,7 +41,7 @@ float headlight() {
 
 vec3 lighting(bool mapped) {
     vec3 flatLight = ambient * headlight();
-    return mapped && lightmapSize > 0u ? sampleLightmap(fragLightmapUv, filterKind, flatLight) : flatLight;
+    return mapped && hasLightmap != 0u ? sampleLightmap(fragLightmapUv, filterKind, flatLight) : flatLight;
 }
 
 // Hues a golden angle apart: neighbours in number are far apart in colour.
@@ -101,7 +102,7 @@ void main() {
         color = (mapped ? densityColor(texels / max(metres, 1e-30)) : kNoLightmap) * headlight();
         break;
     }
-    default: color = (mapped && lightmapSize > 0u ? coverageColor() : kNoLightmap) * headlight(); break;
+    default: color = (mapped && hasLightmap != 0u ? coverageColor() : kNoLightmap) * headlight(); break;
     }
     const float largest = 6e4; // below the largest half float
     result = vec4(clamp(color, vec3(0.0), vec3(largest)), 1.0);

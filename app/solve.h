@@ -1,0 +1,18 @@
+#pragma once
+
+#include "app/bake_checkpoints.h"
+#include "bake/baker.h"
+
+namespace relume {
+
+/// Throws Error when Ctrl-C was pressed while an InterruptGuard exists.
+void stopIfInterrupted();
+
+/// Warns about a scene in which nothing emits.
+void warnIfDark(const Scene& scene, const PatchSet& patches);
+
+/// Steps the solver to its end and shows how it stands; warns when the error asked for was not reached.
+/// Throws Error when the user interrupts.
+void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& checkpoints);
+
+} // namespace relume
