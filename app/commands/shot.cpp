@@ -86,8 +86,7 @@ void shoot(ShotOptions o) {
                   {.framebuffer = target.get(), .width = shot.width, .height = shot.height});
     writeImage(o.bake.output, readPicture(target));
     if (showsLight(shot.draw.view)) spdlog::info("exposure {:.2f} EV", renderer.exposure());
-    spdlog::info("wrote {} ({} in all)", o.bake.output,
-                 formatDuration(secondsSince(start)));
+    spdlog::info("wrote {} ({} in all)", o.bake.output, formatDuration(secondsSince(start)));
 }
 
 } // namespace

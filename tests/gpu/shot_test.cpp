@@ -1,0 +1,188 @@
+// `relume shot` as a user runs it: pictures of the scenes that ship against those kept in tests/golden, and
+// what it refuses.
+#include "app/heat_map.h"
+#include "assets/float_image.h"
+#include "assets/gltf.h"
+#include "bake/metrics.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/gpu/relume_process.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace relume {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+ProcessResult shot(Strings arguments) {
+    arguments.insert(arguments.begin(), {"-q", "shot"});
+    const char* device = std::getenv("RELUME_TEST_DEVICE");
+    if (device != nullptr) arguments.insert(arguments.end(), {"--device", device});
+    return runRelume(arguments);
+}
+
+/// Sets an environment variable for the programs a test starts.
+class Environment {
+public:
+    Environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+    ~Environment() { unsetenv(name_); }
+    Environment(const Environment&) = delete;
+    Environment& operator=(const Environment&) = delete;
+
+private:
+    const char* name_;
+};
+
+class GoldenShot : public testing::TestWithParam<const char*> {};
+
+// RELUME_UPDATE_GOLDEN=1 takes the pictures as they are now.
+TEST_P(GoldenShot, LooksAsItDid) {
+    const std::string name = GetParam(), file = name + ".png";
+    const std::string golden = std::string(RELUME_SOURCE_DIR) + "/tests/golden/" + file;
+    const std::string folder = RELUME_GOLDEN_DIR; // of the build: what failed stays there to be looked at
+    std::filesystem::create_directories(folder);
+    const std::string made = folder + "/" + file;
+    const ProcessResult run = shot({std::string(RELUME_SOURCE_DIR) + "/assets/scenes/" + name + ".glb", "-o",
+                                    made, "--size", "320x180", "--lightmap-size", "128", "--samples", "64"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    if (std::getenv("RELUME_UPDATE_GOLDEN") != nullptr) {
+        std::filesystem::copy_file(made, golden, std::filesystem::copy_options::overwrite_existing);
+        GTEST_SKIP() << "updated " << golden;
+    }
+    const FloatImage a = readImage(made), b = readImage(golden);
+    const ImagePair pair({a, made}, {b, golden});
+    const std::vector<float> difference = pair.flipDifferences(67.0);
+    // Another tracer or OpenGL driver moves noise and edges by less; a wrong exposure, filter or material by
+    // more.
+    constexpr double kTolerance = 0.02;
+    EXPECT_LT(pair.mean(difference), kTolerance) << "see " << folder << "/" << name << "_difference.png";
+    if (HasFailure())
+        writeImage(folder + "/" + name + "_difference.png",
+                   heatMap(a.width, difference, pair.covered(), 1.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenShot, testing::Values("cornell_geom", "cornell_statue", "gallery"),
+                         [](const auto& scene) { return std::string(scene.param); });
+
+class ShotCommand : public testing::Test {
+protected:
+    ShotCommand() {
+        SceneMaker maker(64);
+        maker.box({0, 0, 0}, {glm::vec3(2, 0, 0), {0, 2, 0}, {0, 0, 2}}, maker.material(0.5f, 0.25f), 14);
+        saveGlb(maker.scene(), scene_);
+    }
+    std::string path(const std::string& name) const { return folder_.path(name); }
+    ProcessResult shoot(Strings more) const {
+        more.insert(more.begin(),
+                    {scene_, "-o", path("shot.png"), "--size", "64x32", "--lightmap-size", "64"});
+        return shot(more);
+    }
+    void expectNoPicture() const { EXPECT_EQ(folder_.files(), Strings{"room.glb"}); }
+
+    TemporaryFolder folder_;
+    const std::string scene_ = folder_.path("room.glb");
+};
+
+// A closed furnace of albedo 1/2 has radiance emission / (1 - 1/2) everywhere; the camera it finds by itself
+// stands inside.
+TEST_F(ShotCommand, ShowsAFurnaceInItsRadiance) {
+    const ProcessResult run = shoot({"--tone", "none", "--exposure", "0", "--samples", "256"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const FloatImage image = readImage(path("shot.png"));
+    ASSERT_EQ(image.width, 64u);
+    ASSERT_EQ(image.height, 32u);
+    for (const std::vector<float>& plane : image.planes)
+        for (const float value : plane)
+            ASSERT_NEAR(value, 0.5f, 0.02f);
+    EXPECT_EQ(folder_.files(), (Strings{"room.glb", "shot.png"}));
+}
+
+TEST_F(ShotCommand, TakesALightmapThatWasBaked) {
+    ASSERT_EQ(
+        runRelume({"-q", "bake", scene_, "-o", path("room.exr"), "--size", "64", "--samples", "64"}).status,
+        0);
+    const Strings arguments = {scene_, "-o", path("a.png"), "--size", "64x32"};
+    Strings given = arguments, baked = arguments;
+    given.insert(given.end(), {"--lightmap", path("room.exr")});
+    baked[2] = path("b.png");
+    baked.insert(baked.end(), {"--lightmap-size", "64", "--samples", "64"});
+    ASSERT_EQ(shot(given).status, 0);
+    ASSERT_EQ(shot(baked).status, 0);
+    EXPECT_EQ(compareImages(readImage(path("a.png")), "a", readImage(path("b.png")), "b").maximum, 0.0);
+}
+
+TEST_F(ShotCommand, RefusesALightmapOfRadiance) {
+    const std::string lightmap = path("radiance.exr");
+    ASSERT_EQ(runRelume({"-q", "bake", scene_, "-o", lightmap, "--size", "64", "--samples", "16",
+                         "--quantity", "radiance"})
+                  .status,
+              0);
+    const ProcessResult run = shot({scene_, "-o", path("shot.png"), "--lightmap", lightmap});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "radiance.exr: holds radiance")) << run.err;
+}
+
+TEST_F(ShotCommand, NeedsNoBakeToShowGeometry) {
+    for (const char* view : {"albedo", "normal", "material", "instance", "checker", "density", "emission"}) {
+        const ProcessResult run = shoot({"--view", view, "--device", "nosuchdevice"});
+        EXPECT_EQ(run.status, 0) << view << ": " << run.err;
+    }
+}
+
+TEST_F(ShotCommand, TellsWhichCamerasThereAre) {
+    const ProcessResult run = shoot({"--camera", "Nowhere"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "has no camera 'Nowhere': it has none, use --eye and --target")) << run.err;
+    expectNoPicture();
+}
+
+TEST_F(ShotCommand, RefusesWrongUsage) {
+    const std::vector<Strings> wrong = {{"--eye", "1,1,1"},
+                                        {"--eye", "1,1,1", "--target", "1,1,1"},
+                                        {"--eye", "1,1", "--target", "0,0,0"},
+                                        {"--camera", "A", "--eye", "1,1,1", "--target", "0,0,0"},
+                                        {"--view", "nosuchview"},
+                                        {"--tone", "nosuchtone"},
+                                        {"--filter", "nosuchfilter"},
+                                        {"--exposure", "bright"},
+                                        {"--lightmap", "room.exr"}}; // beside --lightmap-size
+    for (const Strings& arguments : wrong) {
+        const ProcessResult run = shoot(arguments);
+        EXPECT_EQ(run.status, 2) << arguments[0] << ": " << run.err;
+    }
+    EXPECT_EQ(shot({scene_, "-o", path("shot.jpg")}).status, 2);
+    EXPECT_EQ(shot({scene_, "-o", path("shot.png"), "--size", "64"}).status, 2);
+    expectNoPicture();
+}
+
+TEST_F(ShotCommand, SaysWhatIsMissingWithoutAnOpenGlDriver) {
+    const Environment none("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent/vendor.json");
+    const ProcessResult run = shoot({});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "'relume bake' needs none")) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    expectNoPicture();
+}
+
+TEST_F(ShotCommand, SaysWhatIsMissingWithAnOldOpenGl) {
+    const char* mesa = "/usr/share/glvnd/egl_vendor.d/50_mesa.json";
+    if (!std::filesystem::exists(mesa))
+        GTEST_SKIP() << "only Mesa can pretend to be older: " << mesa << " is missing";
+    const Environment vendor("__EGL_VENDOR_LIBRARY_FILENAMES", mesa), old("MESA_GL_VERSION_OVERRIDE", "4.3");
+    const ProcessResult run = shoot({});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "OpenGL 4.3: pictures need OpenGL 4.5")) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    expectNoPicture();
+}
+
+} // namespace
+} // namespace relume

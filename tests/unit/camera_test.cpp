@@ -1,0 +1,168 @@
+#include "renderer/camera.h"
+#include "renderer/frustum.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <cmath>
+
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace relume {
+namespace {
+
+Box unitBox() {
+    Box box;
+    box.add(glm::vec3(-1.0f));
+    box.add(glm::vec3(1.0f));
+    return box;
+}
+
+ViewCamera along(const glm::vec3& eye, const glm::vec3& target) {
+    ViewCamera camera;
+    camera.eye = eye;
+    camera.target = target;
+    return camera;
+}
+
+void expectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f) {
+    EXPECT_NEAR(a.x, b.x, tolerance);
+    EXPECT_NEAR(a.y, b.y, tolerance);
+    EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+// Where a point comes to lie: x and y from -1 to 1, z the depth.
+glm::vec3 project(const ViewCamera& camera, float aspect, const glm::vec3& point) {
+    const glm::vec4 clip = projectionMatrix(camera, aspect) * viewMatrix(camera) * glm::vec4(point, 1.0f);
+    return glm::vec3(clip) / clip.w;
+}
+
+TEST(Camera, ProjectsTheTargetToTheMiddleAndTheAngleToTheEdge) {
+    ViewCamera camera = along({1, 2, 3}, {1, 2, -7});
+    camera.yfov = glm::half_pi<float>();
+    const glm::vec3 middle = project(camera, 2.0f, camera.target);
+    EXPECT_NEAR(middle.x, 0.0f, 1e-6f);
+    EXPECT_NEAR(middle.y, 0.0f, 1e-6f);
+    // 45 degrees up, and twice as far to the right as an aspect of 2 allows.
+    expectNear(project(camera, 2.0f, {1, 12, -7}), {0, 1, 0.001f});
+    expectNear(project(camera, 2.0f, {21, 2, -7}), {1, 0, 0.001f});
+}
+
+TEST(Camera, GivesDepthOneNearAndZeroFarAway) {
+    const ViewCamera camera = along({0, 0, 0}, {0, 0, -1});
+    EXPECT_NEAR(project(camera, 1.0f, {0, 0, -camera.znear}).z, 1.0f, 1e-6f);
+    EXPECT_LT(project(camera, 1.0f, {0, 0, -1e6f}).z, 1e-6f);
+    ViewCamera flat = camera;
+    flat.halfHeight = 2.0f;
+    flat.znear = 1.0f;
+    flat.zfar = 5.0f;
+    EXPECT_NEAR(project(flat, 1.0f, {0, 0, -1}).z, 1.0f, 1e-6f);
+    EXPECT_NEAR(project(flat, 1.0f, {0, 0, -5}).z, 0.0f, 1e-6f);
+    expectNear(project(flat, 2.0f, {4, 2, -5}), {1, 1, 0});
+}
+
+TEST(Camera, OrbitsAtAConstantDistance) {
+    const ViewCamera camera = along({0, 0, 5}, {0, 0, 0});
+    const ViewCamera side = orbit(camera, glm::half_pi<float>(), 0.0f);
+    expectNear(side.eye, {5, 0, 0});
+    expectNear(side.target, camera.target);
+    const ViewCamera above = orbit(camera, 0.3f, 0.7f);
+    EXPECT_NEAR(glm::length(above.eye), 5.0f, 1e-5f);
+    EXPECT_NEAR(above.eye.y, 5.0f * std::sin(0.7f), 1e-5f);
+    expectNear(orbit(orbit(camera, 0.4f, 0.2f), -0.4f, -0.2f).eye, camera.eye);
+}
+
+TEST(Camera, StopsShortOfThePoles) {
+    const ViewCamera top = orbit(along({0, 0, 5}, {0, 0, 0}), 0.0f, 10.0f);
+    EXPECT_GT(top.eye.y, 4.99f);
+    EXPECT_GT(top.eye.z, 0.0f); // not over it
+    const ViewCamera lowest = look(along({0, 0, 5}, {0, 0, 0}), 0.0f, -10.0f);
+    EXPECT_LT(lowest.target.y, -4.99f);
+    EXPECT_LT(lowest.target.z, 5.0f);
+    // A camera that looks along `up` has a picture, too.
+    const glm::mat4 view = viewMatrix(along({0, 5, 0}, {0, 0, 0}));
+    EXPECT_NEAR(glm::determinant(view), 1.0f, 1e-5f);
+}
+
+TEST(Camera, LooksAroundFromWhereItStands) {
+    const ViewCamera camera = look(along({0, 0, 5}, {0, 0, 0}), glm::half_pi<float>(), 0.0f);
+    expectNear(camera.eye, {0, 0, 5});
+    expectNear(camera.target, {-5, 0, 5}); // counter-clockwise seen from above, as orbits are
+}
+
+TEST(Camera, PansByThePicturesHeight) {
+    ViewCamera camera = along({0, 0, 5}, {0, 0, 0});
+    camera.yfov = glm::half_pi<float>();
+    const ViewCamera moved = pan(camera, 0.5f, -0.25f); // the picture is 10 m high at the target
+    expectNear(moved.eye, {5, -2.5f, 5});
+    expectNear(moved.target, {5, -2.5f, 0});
+}
+
+TEST(Camera, ZoomsAndFlies) {
+    const ViewCamera camera = along({0, 0, 5}, {0, 0, 1});
+    expectNear(zoom(camera, 0.5f).eye, {0, 0, 3});
+    expectNear(fly(camera, {1, 2, 3}).eye, {1, 2, 2});
+    expectNear(fly(camera, {1, 2, 3}).target, {1, 2, -2});
+    ViewCamera flat = camera;
+    flat.halfHeight = 4.0f;
+    EXPECT_FLOAT_EQ(zoom(flat, 0.5f).halfHeight, 2.0f);
+    expectNear(zoom(flat, 0.5f).eye, camera.eye);
+}
+
+// All corners are in the picture and one is at its edge.
+TEST(Camera, FramesABoxExactly) {
+    for (const float aspect : {0.5f, 1.0f, 2.0f}) {
+        for (const float halfHeight : {0.0f, 1.0f}) {
+            ViewCamera camera = along({3, 2, 5}, {0, 0, 0});
+            camera.halfHeight = halfHeight;
+            camera = frameBox(camera, unitBox(), aspect);
+            float largest = 0.0f;
+            for (int i = 0; i < 8; ++i) {
+                const glm::vec3 place = project(camera, aspect, unitBox().corner(i));
+                largest = std::max({largest, std::abs(place.x), std::abs(place.y)});
+                EXPECT_GT(place.z, 0.0f);
+                EXPECT_LT(place.z, 1.0f);
+            }
+            EXPECT_NEAR(largest, 1.0f, 1e-4f) << aspect << " " << halfHeight;
+        }
+    }
+}
+
+TEST(Camera, TakesAFilesCamera) {
+    Camera file;
+    file.transform =
+        glm::translate(glm::mat4(1.0f), {0, 1, 8}) * glm::rotate(glm::mat4(1.0f), 0.2f, {0, 0, 1});
+    file.yfov = 0.7f;
+    const ViewCamera camera = cameraOfFile(file, unitBox());
+    expectNear(camera.eye, {0, 1, 8});
+    expectNear(camera.target, {0, 1, 0}); // level with the scene's middle
+    expectNear(right(camera), glm::vec3(file.transform[0]));
+    EXPECT_FLOAT_EQ(camera.yfov, 0.7f);
+    EXPECT_FLOAT_EQ(camera.znear, file.znear);
+}
+
+TEST(Frustum, SeesWhatIsInThePictureOnly) {
+    ViewCamera camera = along({0, 0, 5}, {0, 0, 0});
+    camera.yfov = glm::half_pi<float>();
+    const Frustum frustum(projectionMatrix(camera, 1.0f) * viewMatrix(camera));
+    const auto at = [](float x, float y, float z) {
+        Box box = unitBox();
+        box.low += glm::vec3(x, y, z);
+        box.high += glm::vec3(x, y, z);
+        return box;
+    };
+    EXPECT_TRUE(frustum.sees(at(0, 0, 0)));
+    EXPECT_TRUE(frustum.sees(at(5.5f, 0, 0))); // the edge goes through it
+    EXPECT_FALSE(frustum.sees(at(8, 0, 0)));
+    EXPECT_FALSE(frustum.sees(at(-8, 0, 0)));
+    EXPECT_FALSE(frustum.sees(at(0, 8, 0)));
+    EXPECT_FALSE(frustum.sees(at(0, -8, 0)));
+    EXPECT_FALSE(frustum.sees(at(0, 0, 7))); // behind the eye
+    EXPECT_TRUE(frustum.sees(at(0, 0, 5)));  // around it
+    EXPECT_TRUE(frustum.sees(at(0, 0, -1e6f)));
+}
+
+} // namespace
+} // namespace relume

@@ -1,0 +1,80 @@
+#include "assets/float_image.h"
+#include "renderer/exposure.h"
+#include "renderer/shader_types.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace relume {
+namespace {
+
+TEST(Tone, EncodesAsTheStandardSays) {
+    for (int i = 0; i <= 1000; ++i) {
+        const float linear = static_cast<float>(i) / 1000.0f;
+        const float encoded = shader::srgbEncode(glm::vec3(linear)).y;
+        EXPECT_NEAR(encoded, srgbFromLinear(linear), 1e-6);
+        EXPECT_NEAR(shader::srgbDecode(glm::vec3(encoded)).y, linear, 1e-6);
+    }
+}
+
+TEST(Tone, NoneOnlyClamps) {
+    EXPECT_EQ(shader::toneMap(glm::vec3(0.25f, 7.0f, -1.0f), shader::kToneNone),
+              glm::vec3(0.25f, 1.0f, 0.0f));
+}
+
+// Of both curves: greys stay grey, more light is never darker, all is between black and white.
+TEST(Tone, CurvesKeepGreysAndOrder) {
+    for (const uint32_t tone : {shader::kToneAces, shader::kToneAgx}) {
+        float before = -1.0f;
+        for (float ev = -16.0f; ev <= 8.0f; ev += 0.125f) {
+            const glm::vec3 c = shader::toneMap(glm::vec3(std::exp2(ev)), tone);
+            EXPECT_NEAR(c.x, c.y, 2e-3f) << tone << " " << ev;
+            EXPECT_NEAR(c.z, c.y, 2e-3f) << tone << " " << ev;
+            EXPECT_GE(c.y, before - 1e-4f)
+                << tone << " " << ev; // AgX' polynomial is flat to 1e-4 at its ends
+            EXPECT_GE(c.y, 0.0f);
+            EXPECT_LE(c.y, 1.0f);
+            before = c.y;
+        }
+        EXPECT_GT(before, 0.95f) << tone;
+        EXPECT_LT(shader::toneMap(glm::vec3(0.0f), tone).y, 2e-3f) << tone;
+    }
+}
+
+// AgX places middle grey at an encoded 0.46 to 0.5 and lets a strong blue fade to white, which ACES does not.
+TEST(Tone, AgxKeepsMiddleGreyAndFadesBrightColours) {
+    EXPECT_NEAR(std::pow(shader::toneAgx(glm::vec3(0.18f)).y, 1.0f / 2.2f), 0.48f, 0.02f);
+    const glm::vec3 agx = shader::toneAgx(glm::vec3(0, 0, 16)), aces = shader::toneAces(glm::vec3(0, 0, 16));
+    EXPECT_GT(agx.x, 0.2f);
+    EXPECT_LT(aces.x, agx.x);
+}
+
+TEST(Tone, LuminanceOfWhiteIsOne) {
+    EXPECT_NEAR(shader::luminance(glm::vec3(1.0f)), 1.0f, 1e-6f);
+}
+
+glm::vec4 cell(double light, float pixels) {
+    return {static_cast<float>(std::log2(light)) * pixels, static_cast<float>(light) * pixels, pixels, 0.0f};
+}
+
+TEST(Exposure, BringsTheMeanToMiddleGrey) {
+    EXPECT_NEAR(automaticExposure(std::vector{cell(0.18, 10)}), 0.0f, 1e-5f);
+    EXPECT_NEAR(automaticExposure(std::vector{cell(0.36, 10), cell(0.36, 3)}), -1.0f, 1e-5f);
+    EXPECT_NEAR(automaticExposure(std::vector{cell(0.09, 5), cell(0.36, 5)}), 0.0f,
+                1e-5f); // mean of the logarithms
+    EXPECT_NEAR(automaticExposure(std::vector{cell(1800, 5)}), -std::log2(1e4f), 1e-4f);
+}
+
+TEST(Exposure, IsNotLedByBlackOrNothing) {
+    EXPECT_EQ(automaticExposure({}), 0.0f);
+    EXPECT_EQ(automaticExposure(std::vector{glm::vec4(0.0f)}), 0.0f);
+    const float deep = automaticExposure(std::vector{cell(0.18, 5), cell(1e-5, 5)});
+    const float deeper = automaticExposure(std::vector{cell(0.18, 5), cell(1e-7, 5)});
+    EXPECT_NEAR(deep, deeper, 1e-3f);
+    EXPECT_LT(deep, 4.0f);
+}
+
+} // namespace
+} // namespace relume
