@@ -34,7 +34,7 @@ FUNCTION vec3 toneAces(vec3 linear) {
 
 // AgX, base look [T. Sobotka 2022]: a log encoding from 2^-12.47393 to 2^4.026069 in inset primaries and a sigmoid, here the
 // polynomial of degree six that B. Wrensch fitted ["Minimal AgX Implementation" 2023], whose result is encoded by a power
-// of 2.2. Bright colours fade to white where ACES keeps them saturated. linear to linear.
+// of 2.2. Bright colours fade to white without a change of hue. linear to linear.
 FUNCTION vec3 toneAgx(vec3 linear) {
     const mat3 inset = mat3(0.842479062f, 0.042328242f, 0.042375655f, 0.078433600f, 0.878468636f, 0.078433600f,
                             0.079223745f, 0.079166127f, 0.879142974f);

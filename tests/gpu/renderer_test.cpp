@@ -179,7 +179,7 @@ TEST(Renderer, LeavesEmptyTexelsOut) {
                                              .camera = before(),
                                              .settings = plain(View::Lit, filter),
                                              .width = 256,
-                                             .height = 32});
+                                             .height = 256});
         for (uint32_t x = 0; x < 132; ++x) // up to the last covered texel's edge
             EXPECT_NEAR(picture.pixel(x, 9).r, encoded(0.5), 1) << x;
     }
@@ -191,9 +191,9 @@ TEST(Renderer, LightsGeometryWithoutLightmapUvsWithTheMean) {
     maker.blocker({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f));
     const FloatImage lightmap = lightmapOf(0.4f);
     const Picture picture = drawPicture({maker.scene(), &lightmap, before(), plain()});
-    EXPECT_EQ(picture.pixel(32, 32), glm::ivec3(encoded(0.2))); // it faces the eye
+    EXPECT_NEAR(picture.pixel(32, 32).r, encoded(0.2), 1); // it faces the eye
     const Picture flat = drawPicture({maker.scene(), nullptr, before(), plain()});
-    EXPECT_EQ(flat.pixel(32, 32), glm::ivec3(encoded(0.5))); // no light yet: all is lit by 1
+    EXPECT_NEAR(flat.pixel(32, 32).r, encoded(0.5), 1); // no light yet: all is lit by 1
 }
 
 TEST(Renderer, CullsWhatIsOutOfSight) {
@@ -256,23 +256,23 @@ TEST(Renderer, ShowsNormalsAndCoverage) {
 
 TEST(Renderer, ShowsTexelsAndTheirDensity) {
     SceneMaker maker(kSize);
-    maker.quad({-1, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {8, 16});
-    maker.quad({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {32, 64}); // four times as dense
+    maker.quad({-1, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {4, 8});
+    maker.quad({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {16, 32}); // four times as dense
     maker.quad({20, -1, 0}, {9, 0, 0}, {0, 2, 0}, maker.material(0.5f),
-               {72 / 2, 8}); // out of sight, most of the area
+               {36, 8}); // out of sight, most of the area
     const FloatImage lightmap = lightmapOf(0.5f);
     const Picture density = drawPicture({maker.scene(), &lightmap, before(), plain(View::Density)});
     EXPECT_GT(density.pixel(48, 32).r, density.pixel(48, 32).b + 60); // denser: red
-    EXPECT_LT(density.pixel(16, 32).r - density.pixel(16, 32).b,
-              density.pixel(48, 32).r - density.pixel(48, 32).b);
+    EXPECT_NEAR(density.pixel(16, 32).r, density.pixel(16, 32).b, 2); // the median: white
     const Picture checker = drawPicture({maker.scene(), &lightmap, before(), plain(View::Checker)});
-    EXPECT_GT(std::abs(checker.pixel(18, 34).g - checker.pixel(22, 34).g),
-              40); // neighbouring texels of four pixels
+    EXPECT_GT(std::abs(checker.pixel(4, 36).g - checker.pixel(12, 36).g), 40); // texels of eight pixels
 }
 
 TEST(Renderer, EveryViewIsAnotherPicture) {
     SceneMaker maker(kSize);
-    maker.quad({-1, -1, 0}, {1, 0, 0.2f}, {0, 2, 0}, maker.material(0.7f, 0.1f), {8, 16});
+    const int glowing = maker.material(0.7f, 0.1f);
+    maker.quad({-1, -1, 0}, {1, 0, 0.2f}, {0, 1, 0}, glowing, {8, 8});
+    maker.quad({-1, 0, 0}, {1, 0, 0.2f}, {0, 1, 0}, glowing, {8, 8});
     maker.quad({0, -1, 0.2f}, {1, 0, -0.2f}, {0, 2, 0}, maker.material(0.2f), {16, 32});
     const FloatImage lightmap = lightmapOf({0.3f, 0.2f, 0.5f, 1}, {0.9f, 0.8f, 0.4f, 1}, 12);
     std::vector<FloatImage> pictures;
