@@ -54,7 +54,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake info unwrap scene devices compare bench samples)
+verbs=(bake shot info unwrap scene devices compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -69,7 +69,7 @@ grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version
 expectUsageError
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
-for verb in bake info unwrap compare; do
+for verb in bake shot info unwrap compare; do
     expectUsageError "$verb" # the scene or the files are missing
     expectUsageError "$verb" --nosuchoption
 done
@@ -118,7 +118,16 @@ expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
 expectStatus 0 samples 16
 [ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
 
+expectUsageError shot room.glb # no -o
+expectUsageError shot room.glb -o shot.jpg
+expectUsageError shot room.glb -o shot.png --size 640
+expectUsageError shot room.glb -o shot.png --eye 1,2,3
+expectUsageError shot room.glb -o shot.png --view nosuchview
+expectUsageError shot room.glb -o shot.png --lightmap room.exr --method pure
+
 expectWorldError missing.glb bake missing.glb -o room.exr
+expectWorldError missing.exr shot missing.glb -o shot.png --lightmap missing.exr
+expectWorldError nosuchfolder shot missing.glb -o nosuchfolder/shot.png
 expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.glb bench trace missing.glb
