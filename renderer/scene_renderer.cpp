@@ -2,6 +2,7 @@
 
 #include "renderer/exposure.h"
 #include "renderer/frustum.h"
+#include "renderer/gl/debug.h"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,8 @@ constexpr uint32_t kMeterCells =
     64; // along each side: few to read back, and the picture's parts are still told apart
 
 // Uniforms, as the shaders number them.
-constexpr GLint kViewProjection = 0, kMaterial = 1, kView = 2, kFilter = 3, kEye = 4, kAmbient = 5,
-                kLightmapSize = 6, kPreScale = 7, kMedianDensity = 8, kHasLightmap = 9;
+constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6, kPreScale = 7,
+                kMedianDensity = 8, kHasLightmap = 9;
 constexpr GLint kExposure = 0, kTone = 1, kLinear = 2, kBackground = 3;
 constexpr GLuint kLightmapUnit = 3;
 
@@ -47,13 +48,13 @@ void drawScreen(const gl::Program& program, const gl::VertexArray& screen) {
 } // namespace
 
 SceneRenderer::SceneRenderer(uint32_t samples) : samples_(samples > 1 ? samples : 0) {
+    gl::requireOpenGl45();
     GLint most = 0;
     glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &most);
     samples_ = std::min(samples_, static_cast<uint32_t>(most));
     const std::string samplesText = "SAMPLES=" + std::to_string(samples_);
     const std::string cellsText = "kMeterCells=" + std::to_string(kMeterCells);
-    sceneProgram_ = gl::Program(
-        {.vertex = "gl/scene.vert", .fragment = "gl/scene.frag", .definitions = {}, .name = "scene"});
+    sceneProgram({}); // what is wrong with it shows now
     meterProgram_ = gl::Program({.vertex = "gl/screen.vert",
                                  .fragment = "gl/meter.frag",
                                  .definitions = {samplesText, cellsText},
@@ -65,6 +66,19 @@ SceneRenderer::SceneRenderer(uint32_t samples) : samples_(samples > 1 ? samples 
     screen_ = gl::VertexArray({.attributes = {}, .name = "screen"});
     meter_ =
         gl::Framebuffer({.width = kMeterCells, .height = kMeterCells, .color = GL_RGBA32F, .name = "meter"});
+}
+
+const gl::Program& SceneRenderer::sceneProgram(const DrawSettings& settings) {
+    gl::Program& program = scenePrograms_[{settings.view, settings.filter}];
+    if (program.get() == 0) {
+        const auto number = [](auto value) { return std::to_string(static_cast<uint32_t>(value)) + "u"; };
+        program = gl::Program(
+            {.vertex = "gl/scene.vert",
+             .fragment = "gl/scene.frag",
+             .definitions = {"VIEW=" + number(settings.view), "FILTER=" + number(settings.filter)},
+             .name = "scene"});
+    }
+    return program;
 }
 
 void SceneRenderer::resize(const Target& target) {
@@ -98,11 +112,9 @@ void SceneRenderer::drawScene(const Frame& frame, float preScale) {
     glClearNamedFramebufferfv(picture_.get(), GL_COLOR, 0, nothing.data());
     glClearNamedFramebufferfv(picture_.get(), GL_DEPTH, 0, &farAway);
 
-    const gl::Program& program = sceneProgram_;
+    const gl::Program& program = sceneProgram(frame.settings);
     const auto size = static_cast<float>(frame.lightmap.size);
     program.set(kViewProjection, viewProjection);
-    program.set(kView, static_cast<GLuint>(frame.settings.view));
-    program.set(kFilter, static_cast<GLuint>(frame.settings.filter));
     program.set(kEye, frame.camera.eye);
     program.set(kAmbient, frame.lightmap.ambient);
     program.set(kLightmapSize, static_cast<GLuint>(frame.lightmap.size));

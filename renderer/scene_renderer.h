@@ -1,5 +1,8 @@
 #pragma once
 
+#include <map>
+#include <utility>
+
 #include "renderer/camera.h"
 #include "renderer/draw_settings.h"
 #include "renderer/gl/framebuffer.h"
@@ -30,7 +33,8 @@ public:
         uint32_t drawn = 0, culled = 0; // SceneDraws
     };
 
-    /// samples of each pixel, 0 or 1: no multisampling. Throws Error when a shader does not compile.
+    /// samples of each pixel, 0 or 1: no multisampling. Throws Error when a shader does not compile (draw:
+    /// that of another view) or the context is older than OpenGL 4.5.
     explicit SceneRenderer(uint32_t samples = 4);
 
     void draw(const Frame& frame,
@@ -40,12 +44,14 @@ public:
     float exposure() const { return exposure_; }     // of the last picture of light [EV]
 
 private:
+    const gl::Program& sceneProgram(const DrawSettings& settings);
     void resize(const Target& target);
     void drawScene(const Frame& frame, float preScale);
     float measureExposure(float preScale);
 
     uint32_t samples_;
-    gl::Program sceneProgram_, meterProgram_, displayProgram_;
+    std::map<std::pair<View, LightmapFilter>, gl::Program> scenePrograms_; // made when first used
+    gl::Program meterProgram_, displayProgram_;
     gl::VertexArray screen_; // without vertices
     gl::Framebuffer picture_, meter_;
     Counts counts_;

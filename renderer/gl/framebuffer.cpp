@@ -38,11 +38,4 @@ Framebuffer::Framebuffer(const Desc& desc) {
     label(GL_FRAMEBUFFER, name, desc.name);
 }
 
-void resolve(const Framebuffer& from, const Framebuffer& to) {
-    ASSERT(from.width() == to.width() && from.height() == to.height());
-    const auto width = static_cast<GLint>(from.width()), height = static_cast<GLint>(from.height());
-    glBlitNamedFramebuffer(from.get(), to.get(), 0, 0, width, height, 0, 0, width, height,
-                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
-}
-
 } // namespace relume::gl

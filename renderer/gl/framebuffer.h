@@ -34,7 +34,4 @@ private:
     Handle<deleteFramebuffer> handle_;
 };
 
-/// The mean of each pixel's samples into a framebuffer of the same size.
-void resolve(const Framebuffer& from, const Framebuffer& to);
-
 } // namespace relume::gl

@@ -27,7 +27,6 @@ public:
     explicit Program(const Desc& desc);
 
     void use() const { glUseProgram(get()); }
-    void set(GLint location, GLint value) const { glProgramUniform1i(get(), location, value); }
     void set(GLint location, GLuint value) const { glProgramUniform1ui(get(), location, value); }
     void set(GLint location, float value) const { glProgramUniform1f(get(), location, value); }
     void set(GLint location, const glm::vec3& value) const {

