@@ -73,6 +73,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
         if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     }
     vk::barrier(cmd);
+    vk::hostBarrier(cmd);
     commands_.run();
     light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
     const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
@@ -245,6 +246,7 @@ void LinkSolver::beginBounce() {
     recordRadiance(cmd);
     if (buffers_.coarseSums) vkCmdFillBuffer(cmd, buffers_.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
+    vk::hostBarrier(cmd);
     commands_.run();
     state_.nextChunk = 0;
     // Hybrid's first pass is its direct light.
@@ -269,41 +271,17 @@ void LinkSolver::linkBatch() {
     const uint64_t offset = kept ? uint64_t{range.first} * shape_.links * kChunk : 0; // [words]
     const vk::Buffer& links = kept ? buffers_.links : buffers_.linksStaging;
     const auto start = Clock::now();
-    VkCommandBuffer cmd = commands_.begin();
-    timestamps_.reset(cmd);
-    timestamps_.mark(cmd, 0);
-    if (trace) {
-        input_.tracer.closest(cmd, {.receivers = coarse_.count > 0 ? &buffers_.receivers : nullptr,
-                                    .receiversHost = coarse_.count > 0 ? coarse_.receivers.data() : nullptr,
-                                    .firstChunk = range.first,
-                                    .chunkCount = range.count,
-                                    .firstSample = state_.linkRounds * shape_.links,
-                                    .sampleCount = shape_.links,
-                                    .rotation = settings_.links.rotation,
-                                    .disc = disc_ ? &disc_ : nullptr,
-                                    .discCount = discCount_,
-                                    .links = &links,
-                                    .linksOffset = offset});
-    }
-    const double cpuTrace = secondsSince(start);
-    vk::barrier(cmd);
-    timestamps_.mark(cmd, 1);
-    if (trace && footprints_) {
-        const vk::Buffer& receivers = coarse_.count > 0 ? buffers_.receivers : input_.light.patches;
-        footprints_->recordLinks(cmd, input_.light.patches.address(),
-                                 {.receivers = receivers.address(),
-                                  .links = links.address() + offset * sizeof(uint32_t),
-                                  .firstChunk = range.first,
-                                  .chunkCount = range.count,
-                                  .sampleCount = shape_.links,
-                                  .samples = footprintSamples()});
-        vk::barrier(cmd);
-    }
-    if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
-        vk::hostBarrier(cmd);
-        commands_.run();
-        cmd = commands_.begin();
-    }
+    const ClosestWork closest{.receivers = coarse_.count > 0 ? &buffers_.receivers : nullptr,
+                              .receiversHost = coarse_.count > 0 ? coarse_.receivers.data() : nullptr,
+                              .firstChunk = range.first,
+                              .chunkCount = range.count,
+                              .firstSample = state_.linkRounds * shape_.links,
+                              .sampleCount = shape_.links,
+                              .rotation = settings_.links.rotation,
+                              .disc = disc_ ? &disc_ : nullptr,
+                              .discCount = discCount_,
+                              .links = &links,
+                              .linksOffset = offset};
     const LinkGatherPass::Work work{.links = &links,
                                     .linksOffset = offset,
                                     .nodes = footprints_ ? footprints_->nodes() : 0,
@@ -311,16 +289,10 @@ void LinkSolver::linkBatch() {
                                     .hybrid = hybrid_,
                                     .accumulate = state_.last,
                                     .range = range};
-    gatherPass_.record(cmd, input_.light, buffers_, work);
-    if (buffers_.distances && state_.linkRounds == 0 && state_.last)
-        gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
-    timestamps_.mark(cmd, 2);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    progress_.traceSeconds +=
-        input_.tracer.onCpu() && trace ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
-    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
+    if (gatherPass_.onCpu() && !input_.tracer.records() && !footprints_)
+        linksAtOnce(trace ? &closest : nullptr, work);
+    else
+        linksBySubmit(trace ? &closest : nullptr, work);
     double& rate = trace ? traceRate_ : gatherRate_;
     rate = updatedRate(rate, range.count, secondsSince(start));
     const auto first = senders_.begin() + range.first;
@@ -330,6 +302,57 @@ void LinkSolver::linkBatch() {
     progress_.pairs += count;
     state_.nextChunk += range.count;
     if (state_.nextChunk >= chunksOfStage()) endBounce();
+}
+
+// Where the CPU does both, a submit would take longer than a small batch.
+void LinkSolver::linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work) {
+    const auto start = Clock::now();
+    if (closest) input_.tracer.closest(VK_NULL_HANDLE, *closest);
+    const double traced = secondsSince(start);
+    gatherPass_.record(VK_NULL_HANDLE, input_.light, buffers_, work);
+    progress_.traceSeconds += traced;
+    progress_.gatherSeconds += secondsSince(start) - traced;
+    if (!wantsDistances()) return;
+    VkCommandBuffer cmd = commands_.begin();
+    gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
+    vk::barrier(cmd);
+    commands_.run();
+}
+
+void LinkSolver::linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work) {
+    VkCommandBuffer cmd = commands_.begin();
+    timestamps_.reset(cmd);
+    timestamps_.mark(cmd, 0);
+    const auto start = Clock::now();
+    if (closest) input_.tracer.closest(cmd, *closest);
+    const double cpuTrace = secondsSince(start);
+    vk::barrier(cmd);
+    timestamps_.mark(cmd, 1);
+    if (closest && footprints_) {
+        const vk::Buffer& receivers = coarse_.count > 0 ? buffers_.receivers : input_.light.patches;
+        footprints_->recordLinks(cmd, input_.light.patches.address(),
+                                 {.receivers = receivers.address(),
+                                  .links = work.address(),
+                                  .firstChunk = work.range.first,
+                                  .chunkCount = work.range.count,
+                                  .sampleCount = shape_.links,
+                                  .samples = footprintSamples()});
+        vk::barrier(cmd);
+    }
+    if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
+        vk::hostBarrier(cmd);
+        commands_.run();
+        cmd = commands_.begin();
+    }
+    gatherPass_.record(cmd, input_.light, buffers_, work);
+    if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
+    timestamps_.mark(cmd, 2);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    progress_.traceSeconds +=
+        input_.tracer.onCpu() && closest ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
+    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
 }
 
 // From the receivers of the coarser grid to all patches.
@@ -420,6 +443,7 @@ void LinkSolver::restore(const SolverState& state) {
     VkCommandBuffer cmd = commands_.begin();
     recordRadiance(cmd);
     vk::barrier(cmd);
+    vk::hostBarrier(cmd);
     commands_.run();
 }
 

@@ -56,6 +56,9 @@ private:
     bool wantsDirect() const;
     void directBatch();
     void linkBatch();
+    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
+    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work);
+    bool wantsDistances() const { return buffers_.distances && state_.linkRounds == 0 && state_.last; }
     void recordRadiance(VkCommandBuffer cmd);
     void beginBounce();
     void interpolate();

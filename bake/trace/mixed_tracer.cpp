@@ -14,6 +14,7 @@ public:
 
     const char* name() const override { return name_.c_str(); }
     bool onCpu() const override { return exact_->onCpu(); }
+    bool records() const override { return true; }
 
     void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) override {
         exact_->occlusion(cmd, work);

@@ -94,6 +94,8 @@ public:
     virtual ~Tracer() = default;
     virtual const char* name() const = 0;
     virtual bool onCpu() const = 0;
+    /// Whether anything goes into cmd: else it may be none at all.
+    virtual bool records() const { return !onCpu(); }
     virtual void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) = 0;
     virtual void closest(VkCommandBuffer cmd, const ClosestWork& work) = 0;
     /// Not for the RTRad preset. On the CPU the targets must be there when this is called.
