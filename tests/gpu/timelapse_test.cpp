@@ -4,6 +4,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -179,8 +180,12 @@ TEST_F(TimelapseCommand, LeavesWholeFramesBehindWhenItIsStopped) {
     Strings arguments = joined({"timelapse", scene_, "-o", path("out"), "--exposure", "0"}, look());
     // Far more than is waited for.
     arguments.insert(arguments.end(), {"--method", "directional", "--samples", "65536", "--batch-ms", "1"});
-    const ProcessResult r = runRelume(
-        arguments, [&](const std::string&) { return fs::exists(path("out/frame_0003.png")) ? SIGINT : 0; });
+    bool stopped = false; // a second signal would end it at once
+    const ProcessResult r = runRelume(arguments, [&](const std::string&) {
+        if (stopped || !fs::exists(path("out/frame_0003.png"))) return 0;
+        stopped = true;
+        return SIGINT;
+    });
     EXPECT_EQ(r.status, 1);
     EXPECT_TRUE(contains(r.err, "frames were written")) << r.err;
     for (const std::string& name : framesIn("out"))
@@ -231,7 +236,7 @@ TEST_F(TimelapseCommand, GivesFfmpegTheFramesAndHoldsTheLastForTwoSeconds) {
     const std::string told = bytesOf(video_);
     EXPECT_TRUE(contains(told, "-s 320x180 -r 2 ")) << told;
     // Four frames, and the last for two seconds at two frames per second.
-    EXPECT_TRUE(contains(told, "\n" + std::to_string(3 * 320 * 180 * (3 + 4)) + "\n")) << told;
+    EXPECT_TRUE(contains(told, fmt::format("\n{}\n", 3 * 320 * 180 * (3 + 4)))) << told;
     EXPECT_EQ(folder_.files(), (Strings{"ffmpeg", "out.mp4", "room.glb"}));
 }
 
