@@ -38,7 +38,8 @@ uint32_t Timelapse::framesDue() {
         nextSeconds_ += frames * desc_.request.every;
         // Nothing is known before the first pass or round: the series starts with the first light.
         if (count == 0) return 0;
-        const bool first = moments_.empty() && desc_.writer.count() == 0;
+        const bool first =
+            moments_.size() == 1 && moments_.back().frames.empty() && desc_.writer.count() == 0;
         return first ? 1 : static_cast<uint32_t>(frames);
     }
     if (count == 0) return 0;
@@ -57,6 +58,9 @@ uint32_t Timelapse::framesDue() {
 }
 
 void Timelapse::afterStep(Solver&) {
+    // By time, a frame may be due within a round, when light cannot be told: it is kept when one ends.
+    const bool fresh = moments_.empty() ? countNow() > 0 : moments_.back().count != countNow();
+    if (desc_.request.every > 0 && fresh) keepLight();
     const uint32_t frames = framesDue();
     if (frames == 0) return;
     add(frames);
@@ -68,11 +72,13 @@ void Timelapse::afterStep(Solver&) {
 }
 
 void Timelapse::add(uint32_t times) {
-    const bool known = desc_.request.every > 0 && !desc_.baker.solver().done() && !moments_.empty() &&
-                       moments_.back().count == countNow();
-    // First the light, which also tells its error.
-    if (!known) moments_.push_back({countNow(), desc_.baker.lightmap(desc_.lightmap), {}});
+    if (desc_.request.every == 0 || desc_.baker.solver().done()) keepLight();
     moments_.back().frames.push_back({times, caption()});
+}
+
+void Timelapse::keepLight() {
+    if (!moments_.empty() && moments_.back().frames.empty()) moments_.pop_back(); // no frame ever showed it
+    moments_.push_back({countNow(), desc_.baker.lightmap(desc_.lightmap), {}});
 }
 
 std::vector<std::string> Timelapse::caption() const {

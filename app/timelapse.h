@@ -43,6 +43,7 @@ private:
     uint32_t countNow() const;
     uint32_t framesDue();
     void add(uint32_t times);
+    void keepLight();
     std::vector<std::string> caption() const;
     void flush(size_t kept);
     void write(const Moment& moment);
