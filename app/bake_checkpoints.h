@@ -4,13 +4,14 @@
 #include <optional>
 
 #include "app/bake_options.h"
+#include "app/solve_watcher.h"
 #include "assets/clock.h"
 #include "bake/checkpoint.h"
 
 namespace relume {
 
 /// What --checkpoint and --resume ask for; nothing if neither was given.
-class BakeCheckpoints {
+class BakeCheckpoints final : public SolveWatcher {
 public:
     /// Reads the one and sees whether the other can be written. Throws Error.
     explicit BakeCheckpoints(const BakeOptions& options);
@@ -18,9 +19,9 @@ public:
     /// Before the first step: goes on from --resume's file. Throws Error when it belongs to another bake.
     void begin(Baker& baker, const Scene& scene, const BakeSettings& settings, const vk::DeviceInfo& device);
     /// Saves when it is time to. A failure is a warning: the bake itself is sound.
-    void afterStep(Solver& solver);
+    void afterStep(Solver& solver) override;
     /// Saves, and throws the Error that ends an interrupted bake.
-    [[noreturn]] void interrupt(Solver& solver);
+    [[noreturn]] void interrupt(Solver& solver) override;
 
 private:
     void save(Solver& solver);

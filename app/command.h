@@ -8,6 +8,7 @@ namespace relume {
 // callback does the work and throws Error (exit status 1) or UsageError (2).
 void addBakeCommand(CLI::App& app);
 void addShotCommand(CLI::App& app);
+void addTimelapseCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addUnwrapCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);

@@ -70,9 +70,7 @@ std::string cameraNames(const Scene& scene) {
 
 } // namespace
 
-void addShotOptions(CLI::App& command, ShotOptions& o) {
-    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb")->required();
-    command.add_option("-o,--output", o.bake.output, "Picture to write, .png")->required();
+void addPictureOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--size", o.size, "Of the picture in pixels")->capture_default_str()->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
     command.add_option("--eye", o.eye, "Look from this point [m]; with --target")->type_name("X,Y,Z");
@@ -93,6 +91,12 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--filter", o.filter, "Of the lightmap: bilinear, bicubic or nearest")
         ->capture_default_str()
         ->check(CLI::IsMember(filterNames()));
+}
+
+void addShotOptions(CLI::App& command, ShotOptions& o) {
+    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.bake.output, "Picture to write, .png")->required();
+    addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
     CLI::Option* lightmap = command.get_option("--lightmap");
     addSizeOption(command, "--lightmap-size", o.bake);
@@ -110,6 +114,10 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
 ShotRequest resolveShotOptions(const ShotOptions& o) {
     if (!o.bake.output.ends_with(".png"))
         throw UsageError("--output: '" + o.bake.output + "' does not end in .png");
+    return resolvePictureOptions(o);
+}
+
+ShotRequest resolvePictureOptions(const ShotOptions& o) {
     if (o.eye.empty() != o.target.empty())
         throw UsageError("--eye and --target: one says nothing without the other");
     if (!o.eye.empty() && !o.camera.empty())

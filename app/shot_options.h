@@ -19,6 +19,8 @@ struct ShotOptions {
 };
 
 void addShotOptions(CLI::App& command, ShotOptions& options);
+/// Those of them that say what a picture looks like, for other verbs that make some.
+void addPictureOptions(CLI::App& command, ShotOptions& options);
 
 /// What the options ask for. Throws UsageError when they are wrong or contradict each other.
 struct ShotRequest {
@@ -26,6 +28,8 @@ struct ShotRequest {
     DrawSettings draw;
 };
 ShotRequest resolveShotOptions(const ShotOptions& options);
+/// The same for those of addPictureOptions.
+ShotRequest resolvePictureOptions(const ShotOptions& options);
 
 /// The camera asked for: by name, by place, else the file's first one, else a good one. Throws Error when the
 /// scene has none of that name.

@@ -44,13 +44,13 @@ void warnIfDark(const Scene& scene, const PatchSet& patches) {
                  scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
 }
 
-void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& checkpoints) {
+void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher) {
     ProgressLine line;
     while (!solver.done()) {
         solver.step();
         if (solver.done()) break;
-        if (InterruptGuard::requested()) checkpoints.interrupt(solver);
-        checkpoints.afterStep(solver);
+        if (InterruptGuard::requested()) watcher.interrupt(solver);
+        watcher.afterStep(solver);
         if (line.due()) line.show(progressText(solver, settings));
     }
     if (solver.progress().converged || settings.error == 0) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/bake_checkpoints.h"
+#include "app/solve_watcher.h"
 #include "bake/baker.h"
 
 namespace relume {
@@ -13,6 +13,6 @@ void warnIfDark(const Scene& scene, const PatchSet& patches);
 
 /// Steps the solver to its end and shows how it stands; warns when the error asked for was not reached.
 /// Throws Error when the user interrupts.
-void solve(Solver& solver, const SolverSettings& settings, BakeCheckpoints& checkpoints);
+void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher);
 
 } // namespace relume

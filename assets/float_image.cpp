@@ -233,7 +233,7 @@ FloatImage readImage(const std::string& path) {
     }
 }
 
-std::string encodePng(const FloatImage& image, const std::string& name) {
+std::string encodeSrgb(const FloatImage& image, const std::string& name) {
     std::string pixels(size_t(image.width) * image.height * 3, '\0');
     for (size_t c = 0; c < 3; ++c) {
         const std::string channel(1, "RGB"[c]);
@@ -246,6 +246,11 @@ std::string encodePng(const FloatImage& image, const std::string& name) {
                 char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
         }
     }
+    return pixels;
+}
+
+std::string encodePng(const FloatImage& image, const std::string& name) {
+    const std::string pixels = encodeSrgb(image, name);
     std::string bytes;
     const auto append = [](void* context, void* data, int size) {
         static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));

@@ -35,6 +35,10 @@ FloatImage readImage(const std::string& path);
 /// images give equal bytes. Half cuts values beyond its range (65504) with a warning. Throws Error.
 void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
 
+/// R, G and B of each pixel as writeImage writes them to a .png: 8 bits, sRGB encoded. Throws Error, naming
+/// the image `name`, without these channels.
+std::string encodeSrgb(const FloatImage& image, const std::string& name);
+
 /// The bytes that writeImage writes for a .png. Throws Error, naming the image `name`, without R, G and B.
 std::string encodePng(const FloatImage& image, const std::string& name);
 

@@ -54,7 +54,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake shot info unwrap scene devices compare bench samples)
+verbs=(bake shot timelapse info unwrap scene devices compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -69,7 +69,7 @@ grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version
 expectUsageError
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
-for verb in bake shot info unwrap compare; do
+for verb in bake shot timelapse info unwrap compare; do
     expectUsageError "$verb" # the scene or the files are missing
     expectUsageError "$verb" --nosuchoption
 done
@@ -124,10 +124,16 @@ expectUsageError shot room.glb -o shot.png --size 640
 expectUsageError shot room.glb -o shot.png --eye 1,2,3
 expectUsageError shot room.glb -o shot.png --view nosuchview
 expectUsageError shot room.glb -o shot.png --lightmap room.exr --method pure
+expectUsageError timelapse room.glb # no -o
+expectUsageError timelapse room.glb -o frames --at 2,1
+expectUsageError timelapse room.glb -o frames --at 1,2 --fps 5
+expectUsageError timelapse room.glb -o frames --view albedo
+expectUsageError timelapse room.glb -o frames.avi
 
 expectWorldError missing.glb bake missing.glb -o room.exr
 expectWorldError missing.exr shot missing.glb -o shot.png --lightmap missing.exr
 expectWorldError nosuchfolder shot missing.glb -o nosuchfolder/shot.png
+expectWorldError nosuchfolder timelapse missing.glb -o nosuchfolder/frames
 expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.glb bench trace missing.glb

@@ -1,0 +1,64 @@
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/solve.h"
+#include "app/timelapse.h"
+#include "assets/clock.h"
+#include "assets/log.h"
+#include "shaders/shader_library.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace relume {
+namespace {
+
+constexpr double kHoldLast = 2.0; // [s]: a video's last frame is to be looked at
+
+void makeTimelapse(const TimelapseOptions& o) {
+    const auto start = Clock::now();
+    const InterruptGuard guard;
+    const TimelapseRequest request = resolveTimelapseOptions(o);
+    const BakeOptions& options = o.shot.bake;
+    const BakeRequest bakeRequest = resolveBakeOptions(options);
+    const auto writer = makeFrameWriter({.path = options.output,
+                                         .width = request.shot.width,
+                                         .height = request.shot.height,
+                                         .rate = request.rate,
+                                         .hold = kHoldLast,
+                                         .overwrite = o.overwrite});
+    if (!options.shaders.empty()) setShaderFolder(options.shaders);
+    PictureStudio studio(options);
+    const PreparedScene prepared = prepareScene(bakeRequest.prepare);
+    stopIfInterrupted();
+    studio.open(o.shot, request.shot, prepared);
+
+    PictureBake bake(options, bakeRequest, prepared);
+    const SolverSettings& solver = bakeRequest.bake.solver;
+    Timelapse timelapse(
+        {.studio = studio,
+         .baker = bake.baker(),
+         .writer = *writer,
+         .request = request,
+         .lightmap = bakeRequest.lightmap,
+         .title = fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.scene).stem().string(),
+                              methodName(solver.method), options.size, options.size),
+         .pairs = isPairMethod(solver.method)});
+    solve(bake.baker().solver(), solver, timelapse);
+    bake.logEnd();
+    timelapse.finish();
+    spdlog::info("wrote {}: {} frames ({} in all)", options.output, writer->count(),
+                 formatDuration(secondsSince(start)));
+}
+
+} // namespace
+
+void addTimelapseCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "timelapse", "Show how a scene's light converges, as pictures or a video; needs no display");
+    const auto options = std::make_shared<TimelapseOptions>();
+    addTimelapseOptions(*command, *options);
+    command->callback([options] { makeTimelapse(*options); });
+}
+
+} // namespace relume

@@ -1,0 +1,92 @@
+#include "app/frame_writer.h"
+
+#include "app/video_writer.h"
+#include "assets/error.h"
+#include "assets/file_write.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// frame_0001.png and so on.
+class FolderWriter final : public FrameWriter {
+public:
+    explicit FolderWriter(const Desc& desc) : folder_(desc.path) {
+        while (folder_.size() > 1 && folder_.ends_with('/'))
+            folder_.pop_back();
+        std::error_code code;
+        if (!fs::exists(folder_, code)) {
+            checkFileWritable(folder_, 0);
+            return;
+        }
+        if (!fs::is_directory(folder_, code))
+            throw Error(folder_ + ": is a file: name a folder for the frames, or FILE.mp4");
+        old_ = oldFrames();
+        if (!old_.empty() && !desc.overwrite) {
+            throw Error(folder_ + ": holds frames (" + old_.front().filename().string() +
+                        "): name another folder, or pass --overwrite to lose them");
+        }
+        checkFileWritable(folder_ + "/frame_0001.png", 0);
+    }
+
+    void write(const FloatImage& frame, uint32_t times) override {
+        if (count_ == 0) begin();
+        const std::string png = encodePng(frame, folder_);
+        for (uint32_t i = 0; i < times; ++i)
+            writeFileAtomically(fmt::format("{}/frame_{:04}.png", folder_, ++count_), png);
+    }
+    void finish() override {}
+    bool keepsFrames() const override { return true; }
+
+private:
+    static bool isFrame(const std::string& name) {
+        constexpr std::string_view kBefore = "frame_", kAfter = ".png";
+        constexpr size_t kLeastDigits = 4;
+        if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return false;
+        if (name.size() < kBefore.size() + kLeastDigits + kAfter.size()) return false;
+        return std::all_of(name.begin() + kBefore.size(), name.end() - kAfter.size(),
+                           [](unsigned char letter) { return std::isdigit(letter) != 0; });
+    }
+    std::vector<fs::path> oldFrames() const {
+        std::vector<fs::path> frames;
+        std::error_code code;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder_, code))
+            if (isFrame(entry.path().filename().string())) frames.push_back(entry.path());
+        if (code) throw Error(folder_ + ": cannot be read: " + code.message() + ": name another folder");
+        std::sort(frames.begin(), frames.end());
+        return frames;
+    }
+    // A shorter series than the one before it must not end in that one's frames.
+    void begin() {
+        std::error_code code;
+        fs::create_directory(folder_, code);
+        if (code) throw Error(folder_ + ": cannot be made: " + code.message() + ": name another folder");
+        for (const fs::path& frame : old_)
+            fs::remove(frame, code); // what cannot be removed cannot be replaced either, which is told then
+    }
+
+    std::string folder_;
+    std::vector<fs::path> old_;
+};
+
+} // namespace
+
+bool isVideo(const std::string& path) {
+    return path.ends_with(".mp4");
+}
+
+std::unique_ptr<FrameWriter> makeFrameWriter(const FrameWriter::Desc& desc) {
+    if (isVideo(desc.path)) return std::make_unique<VideoWriter>(desc);
+    return std::make_unique<FolderWriter>(desc);
+}
+
+} // namespace relume
