@@ -29,7 +29,9 @@ private:
     gl::Framebuffer target_;
 };
 
-/// A bake for pictures, not yet stepped: what it uses and how many patches there are is logged.
+/// A bake for pictures, not yet stepped: what it uses and how many patches there are is logged. Destroyed
+/// after the studio: with NVIDIA's driver OpenGL finds its context no more once the process has let go of
+/// Vulkan.
 class PictureBake {
 public:
     PictureBake(const BakeOptions& options, const BakeRequest& request, const PreparedScene& prepared);

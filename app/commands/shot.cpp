@@ -14,8 +14,7 @@
 namespace relume {
 namespace {
 
-FloatImage bakeLightmap(const ShotOptions& o, const BakeRequest& request, const PreparedScene& prepared) {
-    PictureBake bake(o.bake, request, prepared);
+FloatImage bakeLightmap(const ShotOptions& o, const BakeRequest& request, PictureBake& bake) {
     BakeCheckpoints none(o.bake);
     solve(bake.baker().solver(), request.bake.solver, none);
     bake.logEnd();
@@ -53,12 +52,16 @@ void shoot(ShotOptions o) {
         image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.scene));
         request.prepare.size = image->width; // the gutters of a repacked atlas depend on it
     }
+    PreparedScene prepared;
+    std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(o.bake);
-    const PreparedScene prepared = prepareScene(request.prepare);
+    prepared = prepareScene(request.prepare);
     stopIfInterrupted();
     studio.open(o, shot, prepared);
-    if (!image && readsLightmap(shot.draw.view))
-        image = std::make_unique<FloatImage>(bakeLightmap(o, request, prepared));
+    if (!image && readsLightmap(shot.draw.view)) {
+        bake = std::make_unique<PictureBake>(o.bake, request, prepared);
+        image = std::make_unique<FloatImage>(bakeLightmap(o, request, *bake));
+    }
     std::unique_ptr<LightmapImage> lightmap;
     if (image)
         lightmap = std::make_unique<LightmapImage>(*image, o.lightmap.empty() ? "lightmap" : o.lightmap);

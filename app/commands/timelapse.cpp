@@ -28,24 +28,26 @@ void makeTimelapse(const TimelapseOptions& o) {
                                          .hold = kHoldLast,
                                          .overwrite = o.overwrite});
     if (!options.shaders.empty()) setShaderFolder(options.shaders);
+    PreparedScene prepared;
+    std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(options);
-    const PreparedScene prepared = prepareScene(bakeRequest.prepare);
+    prepared = prepareScene(bakeRequest.prepare);
     stopIfInterrupted();
     studio.open(o.shot, request.shot, prepared);
 
-    PictureBake bake(options, bakeRequest, prepared);
+    bake = std::make_unique<PictureBake>(options, bakeRequest, prepared);
     const SolverSettings& solver = bakeRequest.bake.solver;
     Timelapse timelapse(
         {.studio = studio,
-         .baker = bake.baker(),
+         .baker = bake->baker(),
          .writer = *writer,
          .request = request,
          .lightmap = bakeRequest.lightmap,
          .title = fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.scene).stem().string(),
                               methodName(solver.method), options.size, options.size),
          .pairs = isPairMethod(solver.method)});
-    solve(bake.baker().solver(), solver, timelapse);
-    bake.logEnd();
+    solve(bake->baker().solver(), solver, timelapse);
+    bake->logEnd();
     timelapse.finish();
     spdlog::info("wrote {}: {} frames ({} in all)", options.output, writer->count(),
                  formatDuration(secondsSince(start)));
