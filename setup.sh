@@ -20,7 +20,7 @@ packages=(
     libglfw3-dev libimgui-dev                 # the viewer's window and panels
     libcli11-dev libspdlog-dev nlohmann-json3-dev
     libgtest-dev libbenchmark-dev vulkan-validationlayers
-    xvfb xdotool                              # the tests of the window, on a machine without a display
+    xvfb xdotool libx11-dev                   # the tests of the window, on a machine without a display
 )
 # The software devices of Vulkan and OpenGL. Both of one version: the viewer shares images between them.
 mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0)

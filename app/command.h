@@ -16,6 +16,8 @@ void addDevicesCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addSamplesCommand(CLI::App& app);
-void addBenchMethodsCommand(CLI::App& bench); // of `relume bench`
+// Of `relume bench`.
+void addBenchMethodsCommand(CLI::App& bench);
+void addBenchFramesCommand(CLI::App& bench);
 
 } // namespace relume

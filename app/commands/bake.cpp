@@ -1,8 +1,8 @@
 #include "app/bake_checkpoints.h"
-#include "app/bake_settings.h"
 #include "app/bake_statistics.h"
 #include "app/command.h"
 #include "app/interrupt.h"
+#include "app/lightmap_attributes.h"
 #include "app/progress.h"
 #include "app/solve.h"
 #include "assets/clock.h"
@@ -20,22 +20,6 @@ namespace {
 // Of all threads, the drivers' too [s].
 double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-void addAttributes(FloatImage& image, const BakeOptions& o, const BakeRequest& request,
-                   const SolverProgress& progress) {
-    const size_t slash = o.scene.find_last_of('/');
-    image.attributes["relume:version"] = RELUME_VERSION;
-    image.attributes["relume:scene"] = slash == std::string::npos ? o.scene : o.scene.substr(slash + 1);
-    image.attributes["relume:method"] = o.method;
-    image.attributes["relume:quantity"] =
-        request.lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
-    image.attributes["relume:settings"] =
-        describeSettings(request.bake) + fmt::format(" dilate={} sew={}",
-                                                     request.lightmap.rtrad ? 1 : request.lightmap.dilate,
-                                                     request.lightmap.sew ? 1 : 0);
-    image.attributes["relume:passes"] = std::to_string(progress.passes);
-    image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
 }
 
 void bake(BakeOptions o) {
@@ -69,7 +53,7 @@ void bake(BakeOptions o) {
     FloatImage image = baker.lightmap(request.lightmap);
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;
     const SolverProgress& progress = baker.solver().progress();
-    addAttributes(image, o, request, progress);
+    addLightmapAttributes(image, o.scene, request.bake, request.lightmap, progress);
     writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
     if (!o.picture.empty()) writeImage(o.picture, image);
     if (!o.errorMap.empty()) writeImage(o.errorMap, baker.errorMap());

@@ -1,0 +1,109 @@
+#include "app/command.h"
+#include "app/frames_bench.h"
+#include "assets/file_write.h"
+#include "assets/log.h"
+#include "shaders/shader_library.h"
+
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+namespace relume {
+namespace {
+
+struct Options {
+    FramesBenchDesc bench;
+    std::string json;
+};
+
+nlohmann::ordered_json describe(const FramesPart& part) {
+    return {{"seconds", part.seconds},
+            {"frames", part.frames.size()},
+            {"p50Ms", percentile(part.frames, 0.5)},
+            {"p95Ms", percentile(part.frames, 0.95)},
+            {"p99Ms", percentile(part.frames, 0.99)},
+            {"raysPerSecond", part.raysPerSecond}};
+}
+
+void print(const FramesReport& report) {
+    fmt::print("{:<20} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "", "frames/s", "p50 ms", "p95 ms", "p99 ms",
+               "Mrays/s", "of alone");
+    for (const FramesPart* part : {&report.alone, &report.bakeAlone, &report.moving, &report.still}) {
+        std::string line = fmt::format("{:<20}", part->name);
+        if (part->frames.empty())
+            line += std::string(36, ' ');
+        else
+            line += fmt::format(" {:>8.1f} {:>8.2f} {:>8.2f} {:>8.2f}",
+                                static_cast<double>(part->frames.size()) / part->seconds,
+                                percentile(part->frames, 0.5), percentile(part->frames, 0.95),
+                                percentile(part->frames, 0.99));
+        if (part != &report.alone)
+            line += fmt::format(" {:>10.1f} {:>7.0f}%", 1e-6 * part->raysPerSecond,
+                                100.0 * part->raysPerSecond / std::max(1.0, report.bakeAlone.raysPerSecond));
+        fmt::print("{}\n", line);
+    }
+}
+
+void benchFrames(Options o) {
+    if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
+    if (!o.bench.bake.shaders.empty()) setShaderFolder(o.bench.bake.shaders);
+    const FramesReport report = measureFrames(o.bench);
+    if (o.json != "-") print(report);
+    if (o.json.empty()) return;
+    const nlohmann::ordered_json json = {{"version", RELUME_VERSION},
+                                         {"scene", o.bench.bake.scene},
+                                         {"size", o.bench.bake.size},
+                                         {"width", o.bench.width},
+                                         {"height", o.bench.height},
+                                         {"device", report.device},
+                                         {"opengl", report.opengl},
+                                         {"display", report.display},
+                                         {"framesAlone", describe(report.alone)},
+                                         {"bakeAlone", describe(report.bakeAlone)},
+                                         {"cameraMoves", describe(report.moving)},
+                                         {"cameraStill", describe(report.still)}};
+    if (o.json == "-")
+        std::cout << json.dump(2) << std::endl;
+    else
+        writeFileAtomically(o.json, json.dump(2) + "\n");
+}
+
+} // namespace
+
+void addBenchFramesCommand(CLI::App& bench) {
+    CLI::App* command = bench.add_subcommand(
+        "frames", "Frame times while a scene is baked, and what drawing leaves of the bake's speed");
+    const auto options = std::make_shared<Options>();
+    FramesBenchDesc& b = options->bench;
+    command->add_option("scene", b.bake.scene, "glTF scene")->required();
+    addSizeOption(*command, "--lightmap-size", b.bake);
+    addSolverOptions(*command, b.bake);
+    command->add_option("--width", b.width, "Of the pictures, in pixels")
+        ->capture_default_str()
+        ->check(CLI::Range(16u, 16384u));
+    command->add_option("--height", b.height, "Of the pictures, in pixels")
+        ->capture_default_str()
+        ->check(CLI::Range(16u, 16384u));
+    command->add_option("--seconds", b.seconds, "Of each part")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 600.0));
+    command->add_option("--rate", b.rate, "Frames per second at most; 0: as many as there can be")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1000.0));
+    command->add_option("--budget", b.budget, "Aim of one batch of the bake in milliseconds")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 45.0));
+    command->add_option("--msaa", b.samples, "Samples of each pixel: 0, 2, 4, 8")
+        ->capture_default_str()
+        ->check(CLI::IsMember({0u, 2u, 4u, 8u}));
+    static const std::map<std::string, DisplayMode> modes = {
+        {"auto", DisplayMode::Auto}, {"shared", DisplayMode::Shared}, {"copied", DisplayMode::Copied}};
+    command->add_option("--display", b.display, "How light reaches OpenGL: auto, shared, copied")
+        ->transform(CLI::CheckedTransformer(modes));
+    command->add_option("--json", options->json, "Write the results to this file, - for standard output");
+    command->callback([options] { benchFrames(*options); });
+}
+
+} // namespace relume

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/bake_options.h"
+#include "app/live/bake_desk.h"
+
+namespace relume {
+
+/// What `relume bench frames` measures: how a bake and the drawing of its scene get on with each other.
+struct FramesBenchDesc {
+    BakeOptions bake; // its error and samples are unused: the bake never ends
+    DisplayMode display = DisplayMode::Auto;
+    uint32_t width = 1920, height = 1080; // of the pictures
+    double seconds = 8;                   // of each part
+    double rate = 60;                     // frames per second at most, as a display would have it; 0: as many
+                                          // as there can be
+    double budget = 8;                    // aim of one batch [ms]
+    uint32_t samples = 4;                 // of each pixel
+};
+
+/// One part of it.
+struct FramesPart {
+    std::string name;
+    std::vector<double> frames; // [ms], each until the device has drawn it
+    double raysPerSecond = 0;
+    double seconds = 0;
+};
+
+struct FramesReport {
+    std::string device, display, opengl;
+    // Frames without a bake, the bake without frames, both while the camera moves, both while it stands
+    // still.
+    FramesPart alone, bakeAlone, moving, still;
+};
+
+/// Needs no display. Throws Error.
+FramesReport measureFrames(const FramesBenchDesc& desc);
+
+/// Of a list of times, the one that `share` of them do not exceed; 0 for none.
+double percentile(std::vector<double> values, double share);
+
+} // namespace relume

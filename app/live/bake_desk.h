@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/live/lightmap_exchange.h"
+#include "app/prepare.h"
+#include "bake/baker.h"
+
+namespace relume {
+
+enum class DisplayMode { Auto, Shared, Copied };
+
+/// What an OpenGL context can import: told to the bake thread, which decides.
+struct DisplayHost {
+    bool memoryObjects = false;                       // GL_EXT_memory_object_fd
+    std::vector<std::array<uint8_t, 16>> deviceUuids; // GL_DEVICE_UUID_EXT
+};
+
+/// What is to be seen beside light, and how. Plain: main thread to bake thread.
+struct InspectRequest {
+    MapContent content = MapContent::Light;
+    uint32_t mip = 0;     // of ligIn and ligOut, 0..4: means over 2^mip texels squared
+    uint32_t texel = 0;   // Seen: v * size + u of the chosen patch
+    PairSettings preview; // Leaves, where the method has no quad-tree of its own
+    bool operator==(const InspectRequest& other) const;
+};
+
+/// Light paths from a chosen patch, and voxels: what no map can hold.
+struct InspectPaths {
+    glm::vec3 from{0.0f};
+    std::vector<glm::vec3> ends; // of the patch's links
+};
+struct InspectVoxels {
+    glm::vec3 edge{0.0f}; // [m], of each
+    std::vector<glm::vec3> centres;
+};
+
+struct ConvergencePoint {
+    double seconds = 0; // of solving
+    double error = 1;   // remaining, relRMSE
+};
+
+/// Where the bake thread stands: a copy, taken once per frame.
+struct BakeStatus {
+    enum class Phase { Idle, Preparing, Baking, Paused, Done, Failed };
+    Phase phase = Phase::Idle;
+    std::string doing;     // Preparing: "tracer", ...; Failed: the error's one line
+    double fraction = 0;   // of preparing
+    uint64_t bake = 0;     // number of the one that this tells of, see LiveBake::start()
+    BakeSettings settings; // of it
+    uint32_t patches = 0;
+    SolverProgress progress;
+    double raysPerSecond = 0; // over the last second or so
+    double secondsLeft = -1;  // until the error that is asked for, by how it fell so far; negative: unknown
+    std::vector<ConvergencePoint> history;
+    std::string device, tracer, display; // what was chosen, with the reason
+    uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
+    uint32_t validationMessages = 0;
+};
+
+/// What a user asked for since the bake thread looked last. Of each kind the newest counts.
+struct BakeOrders {
+    enum class Run { Keep, Resume, Pause, Pass, Step };
+    struct Start {
+        const PreparedScene* scene = nullptr; // read by the thread until it holds it no more
+        std::vector<Material> materials;      // instead of the scene's own
+        BakeSettings settings;
+        bool keepLight = false; // what is shown stays until this bake has a solution with all bounces
+        uint64_t number = 0;    // counts the bakes that were asked for
+    };
+    struct Export {
+        std::string path; // .exr or .png
+        LightmapDesc lightmap;
+    };
+    std::optional<Start> start;
+    bool reset = false, abort = false;
+    Run run = Run::Keep;
+    std::optional<double> batchMs;
+    std::optional<std::vector<uint32_t>> seenTiles;
+    std::optional<InspectRequest> inspect;
+    std::optional<uint32_t> voxels; // resolution
+    std::vector<Export> exports;
+    bool quit = false;
+};
+
+/// What both threads hold on to.
+struct BakeDesk {
+    mutable std::mutex mutex; // of all below but the exchange, which has its own
+    std::condition_variable news;
+    BakeOrders orders;
+    BakeStatus status;
+    std::optional<InspectPaths> paths;
+    std::optional<InspectVoxels> voxels;
+    std::function<void()> wake;
+    const PreparedScene* held = nullptr; // by the bake thread
+    LightmapExchange exchange;
+};
+
+} // namespace relume

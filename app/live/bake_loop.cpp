@@ -1,0 +1,369 @@
+#include "app/live/bake_loop.h"
+
+#include "app/lightmap_attributes.h"
+#include "app/solve.h"
+#include "assets/log.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include <sched.h>
+
+namespace relume {
+namespace {
+
+// Of the status while baking: no eye follows more.
+constexpr double kReportSeconds = 0.05;
+// Rays are asked of the device, memory of the driver.
+constexpr double kMeasureSeconds = 0.25;
+// How long a map waits for a slot before the exchange is asked again.
+constexpr auto kSlotWait = std::chrono::milliseconds(5);
+// Points of the convergence curve that are kept; then every other one goes.
+constexpr size_t kMaxHistory = 4096;
+
+// Ends a preparation that nobody waits for any more.
+struct Cancelled {};
+
+// In the order in which a baker tells them, for the progress bar.
+constexpr std::array<std::string_view, 6> kPhases = {"cit",      "patches", "tracer",
+                                                     "validity", "voxels",  "solver set-up"};
+
+// What a baker is made of beside its solver: without a change there the solver alone is made anew.
+auto preparation(const BakeSettings& s) {
+    const TransportSettings& t = s.solver.transport;
+    return std::tuple(s.size, s.conservative, s.tracer, s.voxels.resolution, s.voxels.ratio, t.rtrad,
+                      t.reflectivity);
+}
+
+bool sameSurfaces(const std::vector<Material>& a, const std::vector<Material>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Material& x, const Material& y) {
+        return x.baseColor == y.baseColor && x.emission == y.emission;
+    });
+}
+
+// Where the CPU bakes, pictures come first: its threads get what time is left. They inherit it from this one.
+void yieldToOthers() {
+    const sched_param none{};
+    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0)
+        spdlog::debug("the bake thread keeps its ordinary priority: SCHED_IDLE was refused");
+}
+
+} // namespace
+
+BakeLoop::BakeLoop(BakeDesk& desk, const LiveBake::Desc& desc) : desk_(desk), desc_(desc) {}
+
+BakeLoop::~BakeLoop() = default;
+
+void BakeLoop::run() {
+    try {
+        openDevice();
+    } catch (const std::exception& error) {
+        fail(error.what());
+    }
+    BakeOrders orders;
+    while (takeOrders(orders)) {
+        try {
+            obey(orders);
+            if (status_.phase == Phase::Baking) stepSolver();
+            publish();
+        } catch (const Cancelled&) {
+            continue; // the newer order is there
+        } catch (const std::bad_alloc&) {
+            fail("out of memory: use a smaller lightmap or close other programs");
+        } catch (const std::exception& error) {
+            fail(error.what());
+        }
+        report(status_.phase != Phase::Baking);
+    }
+    if (maps_) maps_->end();
+    baker_.reset();
+}
+
+void BakeLoop::openDevice() {
+    device_ = std::make_unique<vk::Device>(vk::Device::Desc{
+        .select = desc_.device, .validation = desc_.validation, .chosen = [](const vk::DeviceInfo& info) {
+            if (info.software()) yieldToOthers();
+        }});
+    const vk::DeviceInfo& info = device_->info();
+    status_.device = fmt::format("{} ({})", info.name, info.driver);
+    spdlog::info("device: {}", status_.device);
+    maps_ = std::make_unique<MapPublisher>(*device_, desk_.exchange,
+                                           MapPublisher::Desc{.display = desc_.display, .host = desc_.host});
+    status_.display = maps_->choice();
+    spdlog::info("display: {}", status_.display);
+    report(true);
+}
+
+// Waits where there is nothing to do. False: to quit.
+bool BakeLoop::takeOrders(BakeOrders& orders) {
+    std::unique_lock lock(desk_.mutex);
+    const auto something = [&] {
+        const BakeOrders& o = desk_.orders;
+        return o.quit || o.start || o.reset || o.abort || o.run != BakeOrders::Run::Keep || o.batchMs ||
+               o.seenTiles || o.inspect || o.voxels || !o.exports.empty();
+    };
+    if (status_.phase != Phase::Baking) {
+        if (maps_ && maps_->owes())
+            desk_.news.wait_for(lock, kSlotWait, something);
+        else
+            desk_.news.wait(lock, something);
+    }
+    orders = std::exchange(desk_.orders, {});
+    if (orders.start) desk_.held = orders.start->scene;
+    return !orders.quit;
+}
+
+void BakeLoop::obey(BakeOrders& orders) {
+    if (!device_) return; // Failed, and it stays so
+    if (orders.batchMs) desc_.batchMs = *orders.batchMs;
+    if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
+    if (orders.inspect) inspect_ = *orders.inspect;
+    if (orders.start) prepare(*orders.start);
+    if (!baker_) return;
+    if (orders.reset) {
+        begin();
+        restart(true);
+        ready();
+    }
+    steer(orders);
+    if (orders.seenTiles) applySeen();
+    if (orders.batchMs) baker_->solver().setBatchMs(desc_.batchMs);
+    inspectMore(orders);
+    exportAll(orders);
+}
+
+// Light of another scene is of no use, light of the same one stays until there is better.
+void BakeLoop::prepare(const BakeOrders::Start& start) {
+    const bool sameScene =
+        baker_ && start.scene == prepared_ && sameSurfaces(start.materials, scene_.materials);
+    const bool solverOnly = sameScene && preparation(start.settings) == preparation(settings_);
+    settings_ = start.settings;
+    settings_.solver.batchMs = desc_.batchMs;
+    settings_.solver.live = true;
+    status_.bake = start.number;
+    status_.settings = settings_;
+    begin();
+    if (solverOnly) {
+        onPhase("solver set-up");
+        restart(start.keepLight);
+    } else {
+        maps_->end();
+        baker_.reset(); // before the new one takes its memory
+        scene_ = start.scene->scene;
+        scene_.materials = start.materials;
+        WorldMesh mesh = start.scene->mesh;
+        prepared_ = start.scene;
+        baker_ = std::make_unique<Baker>(*device_, scene_, std::move(mesh), settings_,
+                                         [this](const char* phase) { onPhase(phase); });
+        spdlog::info("{} patches", baker_->patches().count);
+        warnIfDark(scene_, baker_->patches());
+        beginMaps(start.keepLight);
+    }
+    {
+        const std::lock_guard lock(desk_.mutex);
+        desk_.held = nullptr;
+    }
+    ready();
+}
+
+// The same patches, from no light.
+void BakeLoop::restart(bool keepLight) {
+    maps_->end();
+    baker_->resetSolver(settings_.solver);
+    beginMaps(keepLight);
+}
+
+void BakeLoop::beginMaps(bool keepLight) {
+    maps_->begin({.baker = *baker_, .number = status_.bake, .keepLight = keepLight, .settings = settings_});
+}
+
+void BakeLoop::begin() {
+    status_.phase = Phase::Preparing;
+    status_.doing.clear();
+    status_.fraction = 0;
+    status_.progress = {};
+    status_.history.clear();
+    status_.raysPerSecond = 0;
+    status_.secondsLeft = -1;
+    meter_.clear();
+    report(true);
+}
+
+void BakeLoop::ready() {
+    status_.phase = Phase::Baking;
+    status_.doing.clear();
+    status_.fraction = 1;
+    status_.patches = baker_->patches().count;
+    applySeen();
+    report(true);
+}
+
+// Of a preparation; ends it where something newer is wanted.
+void BakeLoop::onPhase(const char* phase) {
+    {
+        const std::lock_guard lock(desk_.mutex);
+        if (desk_.orders.quit || desk_.orders.start) throw Cancelled();
+    }
+    if (status_.doing == phase) return;
+    const auto place = std::find(kPhases.begin(), kPhases.end(), phase);
+    status_.doing = phase;
+    status_.fraction =
+        std::max(status_.fraction, static_cast<double>(place - kPhases.begin()) / kPhases.size());
+    report(true);
+}
+
+// Pause, resume and so on.
+void BakeLoop::steer(const BakeOrders& orders) {
+    using Run = BakeOrders::Run;
+    Solver& solver = baker_->solver();
+    if (orders.abort) {
+        solver.abortPass();
+        spdlog::info("the pass under way was given up");
+    }
+    if (orders.run == Run::Keep) return;
+    run_ = orders.run;
+    if (solver.done()) return;
+    status_.phase = run_ == Run::Pause ? Phase::Paused : Phase::Baking;
+}
+
+void BakeLoop::stepSolver() {
+    using Run = BakeOrders::Run;
+    Solver& solver = baker_->solver();
+    solver.step();
+    if (solver.done())
+        status_.phase = Phase::Done;
+    else if (run_ == Run::Step || (run_ == Run::Pass && solver.passBoundary()))
+        status_.phase = Phase::Paused;
+    if (status_.phase == Phase::Done) logEnd();
+}
+
+void BakeLoop::logEnd() {
+    const SolverProgress& p = baker_->solver().progress();
+    spdlog::info("baked {} x {} in {:.2f} s, remaining error {:.2g}", settings_.size, settings_.size,
+                 p.seconds, p.error);
+}
+
+// From tiles of texels to chunks of patches.
+void BakeLoop::applySeen() {
+    if (!baker_ || seenTiles_.empty()) return;
+    const TraceScene& scene = baker_->patches().scene;
+    const uint32_t tiles = (scene.size + shader::kTile - 1) / shader::kTile;
+    std::vector<uint8_t> seen(scene.chunkCount(), 0);
+    for (const uint32_t tile : seenTiles_) {
+        const uint32_t left = tile % tiles * shader::kTile, top = tile / tiles * shader::kTile;
+        for (uint32_t y = top; y < std::min(top + shader::kTile, scene.size); ++y) {
+            for (uint32_t x = left; x < std::min(left + shader::kTile, scene.size); ++x) {
+                const uint32_t patch = scene.texelToPatch[size_t{y} * scene.size + x];
+                if (patch != shader::kNoPatch) seen[patch / shader::kChunk] = 1;
+            }
+        }
+    }
+    baker_->solver().setPriority(std::move(seen));
+}
+
+// What maps cannot hold: light paths and voxels.
+void BakeLoop::inspectMore(const BakeOrders& orders) {
+    std::optional<InspectPaths> paths;
+    std::optional<InspectVoxels> voxels;
+    if (orders.inspect && inspect_.content == MapContent::Seen) paths = maps_->paths(inspect_.texel);
+    if (orders.voxels) voxels = maps_->voxels(*orders.voxels);
+    const std::lock_guard lock(desk_.mutex);
+    if (paths) desk_.paths = std::move(paths);
+    if (voxels) desk_.voxels = std::move(voxels);
+}
+
+void BakeLoop::exportAll(const BakeOrders& orders) {
+    for (const BakeOrders::Export& wanted : orders.exports) {
+        try {
+            LightmapDesc desc = wanted.lightmap;
+            desc.rtrad = settings_.solver.transport.rtrad;
+            desc.reflectivity = settings_.solver.transport.reflectivity;
+            if (desc.rtrad) desc.quantity = Quantity::Radiance;
+            // At the end the bytes of a bake without a window, before what is on screen.
+            const bool done = baker_->solver().done();
+            FloatImage image =
+                done ? baker_->lightmap(desc) : makeLightmap(baker_->patches(), maps_->lightNow(), desc);
+            addLightmapAttributes(image, scene_.path, settings_, wanted.lightmap,
+                                  baker_->solver().progress());
+            writeImage(wanted.path, image);
+            spdlog::info("wrote {}", wanted.path);
+        } catch (const Error& error) {
+            spdlog::error("{}", error.what());
+        }
+    }
+}
+
+void BakeLoop::publish() {
+    if (!maps_) return;
+    if (maps_->publish(inspect_)) wake();
+    status_.display = maps_->choice();
+}
+
+// A bake that cannot go on; what is shown stays.
+void BakeLoop::fail(const std::string& message) {
+    spdlog::error("{}", message);
+    status_.phase = Phase::Failed;
+    status_.doing = message;
+    if (maps_) maps_->end();
+    baker_.reset();
+    prepared_ = nullptr;
+    const std::lock_guard lock(desk_.mutex);
+    desk_.held = nullptr;
+}
+
+void BakeLoop::measure() {
+    if (secondsSince(measured_) < kMeasureSeconds || !baker_) return;
+    measured_ = Clock::now();
+    Solver& solver = baker_->solver();
+    meter_.add(solver.progress().seconds, solver.raysSoFar());
+    status_.raysPerSecond = meter_.perSecond();
+    status_.deviceBytes =
+        device_->info().deviceMemory - std::min(device_->freeMemory(), device_->info().deviceMemory);
+    status_.validationMessages = device_->validationMessages();
+}
+
+void BakeLoop::follow() {
+    if (!baker_) return;
+    const SolverProgress& now = baker_->solver().progress();
+    status_.progress = now;
+    std::vector<ConvergencePoint>& history = status_.history;
+    if (now.error < 1 && (history.empty() || history.back().error != now.error)) {
+        history.push_back({now.seconds, now.error});
+        if (history.size() > kMaxHistory) {
+            for (size_t i = 0; 2 * i < history.size(); ++i)
+                history[i] = history[2 * i];
+            history.resize((history.size() + 1) / 2);
+        }
+    }
+    status_.secondsLeft =
+        status_.phase == Phase::Baking ? secondsUntil(history, settings_.solver.error) : -1.0;
+}
+
+void BakeLoop::report(bool always) {
+    if (!always && secondsSince(reported_) < kReportSeconds) return;
+    reported_ = Clock::now();
+    if (status_.phase != Phase::Preparing && status_.phase != Phase::Failed) {
+        follow();
+        measure();
+    }
+    {
+        const std::lock_guard lock(desk_.mutex);
+        desk_.status = status_;
+    }
+    wake();
+}
+
+void BakeLoop::wake() {
+    std::function<void()> wake;
+    {
+        const std::lock_guard lock(desk_.mutex);
+        wake = desk_.wake;
+    }
+    if (wake) wake();
+}
+
+} // namespace relume

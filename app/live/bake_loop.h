@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+
+#include "app/live/bake_forecast.h"
+#include "app/live/live_bake.h"
+#include "app/live/map_publisher.h"
+#include "assets/clock.h"
+
+namespace relume {
+
+/// What the bake thread does: follows orders, steps the solver batch by batch and publishes its light.
+class BakeLoop {
+public:
+    BakeLoop(BakeDesk& desk, const LiveBake::Desc& desc);
+    ~BakeLoop(); // from any thread, once run() has returned
+    BakeLoop(const BakeLoop&) = delete;
+    BakeLoop& operator=(const BakeLoop&) = delete;
+
+    /// Until it is ordered to quit. Never throws: what goes wrong is told in the status.
+    void run();
+
+private:
+    using Phase = BakeStatus::Phase;
+    void openDevice();
+    bool takeOrders(BakeOrders& orders);
+    void obey(BakeOrders& orders);
+    void prepare(const BakeOrders::Start& start);
+    void restart(bool keepLight);
+    void beginMaps(bool keepLight);
+    void begin();
+    void ready();
+    void onPhase(const char* phase);
+    void steer(const BakeOrders& orders);
+    void stepSolver();
+    void logEnd();
+    void applySeen();
+    void inspectMore(const BakeOrders& orders);
+    void exportAll(const BakeOrders& orders);
+    void publish();
+    void fail(const std::string& message);
+    void measure();
+    void follow();
+    void report(bool always);
+    void wake();
+
+    BakeDesk& desk_;
+    LiveBake::Desc desc_;
+    std::unique_ptr<vk::Device> device_;
+    std::unique_ptr<MapPublisher> maps_;
+    Scene scene_;                             // with its edited materials
+    const PreparedScene* prepared_ = nullptr; // that it came from; only its address counts
+    BakeSettings settings_;
+    std::unique_ptr<Baker> baker_; // of scene_
+    BakeStatus status_;            // the desk's, as it will be
+    BakeOrders::Run run_ = BakeOrders::Run::Resume;
+    std::vector<uint32_t> seenTiles_;
+    InspectRequest inspect_;
+    RayMeter meter_;
+    Clock::time_point reported_{}, measured_{};
+};
+
+} // namespace relume

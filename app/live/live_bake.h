@@ -1,0 +1,73 @@
+#pragma once
+
+#include "app/live/bake_desk.h"
+
+#include <memory>
+#include <thread>
+
+namespace relume {
+
+class BakeLoop;
+
+/// One bake after the other on a thread and a device of its own. All calls return at once; they are for one
+/// thread (the main one). The light of a former bake stays published until a new one has a first solution
+/// with all its bounces.
+class LiveBake {
+public:
+    struct Desc {
+        std::string device; // as vk::Device::Desc::select
+        bool validation = false;
+        DisplayMode display = DisplayMode::Auto;
+        DisplayHost host;
+        double batchMs = 8; // aim of one batch
+    };
+    /// Starts the thread. Where Vulkan is missing the status says so (Failed).
+    explicit LiveBake(const Desc& desc);
+    ~LiveBake(); // stops; the Vulkan device goes with it: after OpenGL's context (picture_studio.h)
+    LiveBake(const LiveBake&) = delete;
+    LiveBake& operator=(const LiveBake&) = delete;
+
+    /// Ends the thread, waiting for the batch under way; the Vulkan device stays.
+    void stop();
+
+    using Start = BakeOrders::Start;
+    /// Bakes this from now on, in place of what was asked for before. Returns the bake's number, which status
+    /// and maps bear.
+    uint64_t start(Start start);
+    /// Whether the thread may still read a scene.
+    bool holds(const PreparedScene& scene) const;
+    void setBatchMs(double ms);
+    void pause() { run(BakeOrders::Run::Pause); }
+    void resume() { run(BakeOrders::Run::Resume); }
+    /// Goes on until the pass (link methods: round) under way ends, then pauses.
+    void makePass() { run(BakeOrders::Run::Pass); }
+    void step() { run(BakeOrders::Run::Step); } // one batch, then pauses
+    void abortPass();                           // forgets the pass under way and pauses
+    void reset();                               // begins the same bake again from no light
+    /// Tiles (8 x 8 texels, row by row) that the camera sees: they come first.
+    void setSeenTiles(std::vector<uint32_t> tiles);
+    void inspect(const InspectRequest& request);
+    /// Voxels of this resolution; answered by takeVoxels().
+    void askVoxels(uint32_t resolution);
+    /// Writes the lightmap as it stands; the log tells how it went.
+    void exportLightmap(const std::string& path, const LightmapDesc& desc);
+
+    BakeStatus status() const;
+    LightmapExchange& exchange() { return desk_->exchange; }
+    std::optional<InspectPaths> takePaths();
+    std::optional<InspectVoxels> takeVoxels();
+    /// Called from the bake thread whenever there is something new to see; must be harmless at any time.
+    void setWake(std::function<void()> wake);
+
+private:
+    template<typename Change>
+    void order(Change change);
+    void run(BakeOrders::Run run);
+
+    uint64_t bakes_ = 0;
+    std::unique_ptr<BakeDesk> desk_;
+    std::unique_ptr<BakeLoop> loop_; // has the device, which outlives the thread
+    std::thread thread_;
+};
+
+} // namespace relume

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/live/bake_desk.h"
+#include "assets/clock.h"
+#include "bake/patch_inspector.h"
+#include "bake/publisher.h"
+
+namespace relume {
+
+/// Brings what a bake has found to the exchange, as maps: decides between shared images and plain memory, and
+/// keeps the light of the bake before until the new one has a solution. For the bake thread.
+class MapPublisher {
+public:
+    struct Desc {
+        DisplayMode display = DisplayMode::Auto;
+        DisplayHost host;
+    };
+    /// Throws Error when images must be shared and cannot be.
+    MapPublisher(const vk::Device& device, LightmapExchange& exchange, const Desc& desc);
+
+    /// What was chosen, with the reason: "shared (OpenGL and Vulkan use one device)".
+    const std::string& choice() const { return choice_; }
+
+    /// Another bake begins. All must outlive it until end().
+    struct Bake {
+        Baker& baker;
+        uint64_t number = 0;
+        bool keepLight = false; // what is shown stays until there is a solution with all bounces
+        const BakeSettings& settings;
+    };
+    void begin(const Bake& bake);
+    void end();
+
+    /// Publishes what was asked for, where there is something new and a slot to write. True when it did.
+    bool publish(const InspectRequest& request);
+    /// Whether something new waits for a slot.
+    bool owes() const { return owes_; }
+
+    /// Light as it stands, as the solver has it for each patch. Needs a bake.
+    std::vector<glm::vec4> lightNow();
+    /// Light paths of the patch at this texel, none beside all charts. Needs a bake.
+    std::optional<InspectPaths> paths(uint32_t texel);
+    InspectVoxels voxels(uint32_t resolution) const;
+
+private:
+    /// What writes maps of one kind.
+    struct Source {
+        std::unique_ptr<Publisher> publisher;
+        uint64_t bake = 0;
+        bool radiance = false;
+    };
+    /// Images that the drawing thread may still have.
+    struct FormerImages {
+        uint32_t set = 0;
+        std::array<vk::SharedImage, Publisher::kSlots> images;
+    };
+    void choose();
+    Source makeSource() const;
+    LiveLight askSolver();
+    bool publishLight();
+    bool publishInspected(const InspectRequest& request);
+    PatchValues inspect(const InspectRequest& request);
+    PatchValues leafColors(const PairSettings& preview);
+    uint32_t patchAt(uint32_t texel) const;
+    void offer();
+    void takeBackFormer();
+    std::optional<uint32_t> claim(uint32_t size);
+    void write(Source& source, uint32_t slot, PublishedMap map);
+
+    const vk::Device& device_;
+    LightmapExchange& exchange_;
+    Desc desc_;
+    bool shared_ = false;
+    std::string choice_;
+    uint32_t set_ = 0, setSize_ = 0;
+    std::array<vk::SharedImage, Publisher::kSlots> images_;
+    std::vector<FormerImages> former_;
+
+    std::optional<Bake> bake_;
+    std::optional<PatchInspector> inspector_;
+    Source light_, next_, inspected_; // next_: takes light_'s place once there is a solution
+    std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
+    uint64_t drawnVersion_ = 0;       // of the solver's light, in light_; 0: none of this bake
+    bool owes_ = false;
+    InspectRequest shown_; // by the newest map
+    bool anyShown_ = false;
+    const Publisher* writer_ = nullptr; // of the newest map
+    uint64_t inspectedVersion_ = 0;
+    Clock::time_point inspectedAt_{};
+};
+
+} // namespace relume

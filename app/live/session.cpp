@@ -1,0 +1,231 @@
+#include "app/live/session.h"
+
+#include "assets/error.h"
+#include "assets/log.h"
+#include "renderer/good_view.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+namespace relume {
+namespace {
+
+// Pictures are wider than high; only the camera's distance depends on it.
+constexpr float kAspect = 16.0f / 9.0f;
+// A file is looked at so often, and must have held still for so long: who writes it may not be done yet.
+constexpr double kPollSeconds = 0.5;
+// Steps of undo that are kept.
+constexpr size_t kMaxSteps = 200;
+
+std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number) {
+    auto scene = std::make_unique<LoadedScene>();
+    scene->prepared = prepareScene(desc);
+    const Scene& file = scene->prepared.scene;
+    scene->geometry = makeGeometry(file, scene->prepared.mesh);
+    scene->view = file.cameras.empty() ? goodView(scene->prepared.mesh, kAspect)
+                                       : cameraOfFile(file.cameras.front(), scene->geometry.bounds);
+    scene->size = desc.size;
+    scene->number = number;
+    return scene;
+}
+
+} // namespace
+
+Session::FileTime Session::fileTime(const std::string& path) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(path, error);
+    return error ? FileTime() : FileTime(time);
+}
+
+Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prepare_(request.prepare) {
+    document_.bake = request.bake;
+    document_.lightmap = request.lightmap;
+}
+
+Session::~Session() {
+    if (loading_.valid()) loading_.wait();
+}
+
+void Session::open(const std::string& path, bool keep) {
+    if (loading_.valid()) { // one at a time: the newest wish is looked at when the present one is done
+        nextPath_ = path;
+        keepNext_ = keep;
+        return;
+    }
+    keepLoading_ = keep;
+    loadingPath_ = path;
+    PrepareDesc desc = prepare_;
+    desc.path = path;
+    desc.size = document_.bake.size;
+    spdlog::info("opening {}", path);
+    watched_ = fileTime(path);
+    loading_ = std::async(std::launch::async, [desc, number = ++loads_] { return load(desc, number); });
+}
+
+bool Session::update() {
+    dropFormer();
+    const bool changed = finishLoading();
+    if (watch_) pollFile();
+    return changed;
+}
+
+bool Session::finishLoading() {
+    if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return false;
+    bool changed = false;
+    try {
+        take(loading_.get());
+        changed = true;
+    } catch (const std::bad_alloc&) {
+        fail(loadingPath_ + ": does not fit in memory");
+    } catch (const std::exception& error) {
+        fail(error.what());
+    }
+    loadingPath_.clear();
+    if (!nextPath_.empty())
+        open(std::exchange(nextPath_, {}), keepNext_);
+    else if (changed && scene_->size != document_.bake.size)
+        open(prepare_.path, true); // edited meanwhile
+    else if (!changed && scene_ && scene_->size != document_.bake.size) {
+        scene_->size = document_.bake.size; // its file is gone: the atlas it has must do
+        startBake(true);
+    }
+    return changed;
+}
+
+void Session::fail(const std::string& message) {
+    spdlog::error("{}", message);
+    lastError_ = message;
+}
+
+// What was edited goes over to a file that was written anew; the rest is as the file has it now.
+void Session::keepEdits(std::vector<Material>& materials) {
+    const std::vector<Material>& before = scene_->prepared.scene.materials;
+    const bool sameNames = std::equal(materials.begin(), materials.end(), before.begin(), before.end(),
+                                      [](const Material& a, const Material& b) { return a.name == b.name; });
+    for (size_t i = 0; i < before.size(); ++i) {
+        const Material& edited = document_.materials[i];
+        if (edited.baseColor == before[i].baseColor && edited.emission == before[i].emission) continue;
+        const auto same = sameNames ? materials.begin() + static_cast<std::ptrdiff_t>(i)
+                                    : std::find_if(materials.begin(), materials.end(),
+                                                   [&](const Material& m) { return m.name == edited.name; });
+        if (same == materials.end()) continue;
+        same->baseColor = edited.baseColor;
+        same->emission = edited.emission;
+    }
+    if (!sameNames) forgetSteps(); // which number the materials
+}
+
+void Session::forgetSteps() {
+    steps_.clear();
+    done_ = 0;
+    open_ = false;
+}
+
+void Session::take(std::unique_ptr<LoadedScene> scene) {
+    kept_ = keepLoading_ && scene_ != nullptr;
+    std::vector<Material> materials = scene->prepared.scene.materials;
+    if (kept_)
+        keepEdits(materials);
+    else
+        forgetSteps();
+    document_.materials = std::move(materials);
+    if (scene_) former_.push_back(std::move(scene_));
+    scene_ = std::move(scene);
+    prepare_.path = loadingPath_;
+    startBake(kept_);
+}
+
+void Session::dropFormer() {
+    std::erase_if(former_, [&](const auto& scene) { return !bake_.holds(scene->prepared); });
+}
+
+void Session::startBake(bool keepLight) {
+    if (!scene_ || scene_->size != document_.bake.size) return; // its new atlas is on its way
+    const uint64_t bake = bake_.start({.scene = &scene_->prepared,
+                                       .materials = document_.materials,
+                                       .settings = document_.bake,
+                                       .keepLight = keepLight});
+    if (!keepLight) firstBake_ = bake;
+}
+
+void Session::edit(const std::string& name, const Document& next) {
+    if (open_ && done_ == steps_.size() && done_ > 0 && steps_.back().name == name) {
+        steps_.back().after = next;
+    } else {
+        steps_.resize(done_);
+        if (steps_.size() >= kMaxSteps) steps_.erase(steps_.begin());
+        steps_.push_back({name, document_, next});
+        done_ = steps_.size();
+    }
+    open_ = true;
+    apply(next);
+}
+
+void Session::apply(const Document& next) {
+    const bool resized = next.bake.size != document_.bake.size;
+    document_ = next;
+    // Charts are packed for a size: another one is another atlas.
+    if (resized && scene_)
+        open(prepare_.path, true);
+    else
+        startBake(true);
+}
+
+std::string Session::problem(const BakeSettings& settings) {
+    const SolverSettings& solver = settings.solver;
+    const auto power = [](uint32_t value, uint32_t most) {
+        return value > 0 && value <= most && (value & (value - 1)) == 0;
+    };
+    if (settings.size < 8 || settings.size > Baker::kMaxSize)
+        return fmt::format("a lightmap's edge is from 8 to {} texels", Baker::kMaxSize);
+    if (solver.transport.rtrad && !isPairMethod(solver.method))
+        return fmt::format("RTRad's preset has no {} method: choose another one", methodName(solver.method));
+    if (!solver.transport.rtrad && solver.transport.distanceFactor != 1.0f)
+        return "the distance factor has a meaning in RTRad's preset only: set it to 1";
+    if (!power(solver.pairs.window, 32)) return "a window is a power of two up to 32 texels wide";
+    if (!power(solver.pairs.node, 64) || solver.pairs.node < 2)
+        return "a node is a power of two from 2 to 64 texels wide";
+    if (settings.tracer == TracerKind::Voxel && settings.voxels.ratio != 1)
+        return "a share of senders through voxels needs another tracer beside them";
+    if (!(solver.transport.reflectivity >= 0 && solver.transport.reflectivity <= 10))
+        return "the reflectivity is from 0 to 10";
+    if (solver.passes > Solver::kMaxPasses) return fmt::format("at most {} passes", Solver::kMaxPasses);
+    return "";
+}
+
+bool Session::undo() {
+    open_ = false;
+    if (done_ == 0) return false;
+    apply(Document(steps_[--done_].before));
+    return true;
+}
+
+bool Session::redo() {
+    open_ = false;
+    if (done_ == steps_.size()) return false;
+    apply(Document(steps_[done_++].after));
+    return true;
+}
+
+std::string Session::undoName() const {
+    return done_ > 0 ? steps_[done_ - 1].name : "";
+}
+
+std::string Session::redoName() const {
+    return done_ < steps_.size() ? steps_[done_].name : "";
+}
+
+// Who writes the file may take a while: it is read once its time stamp stays as it is.
+void Session::pollFile() {
+    if (!scene_ || loading_.valid() || secondsSince(polled_) < kPollSeconds) return;
+    polled_ = Clock::now();
+    const auto time = fileTime(prepare_.path);
+    const bool still = time == seen_;
+    seen_ = time;
+    if (time && still && time != watched_) open(prepare_.path, true);
+}
+
+} // namespace relume

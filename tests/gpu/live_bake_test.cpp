@@ -1,0 +1,281 @@
+#include "app/live/live_bake.h"
+
+#include "app/lightmap_attributes.h"
+#include "assets/float_image.h"
+#include "assets/generate.h"
+#include "tests/gpu/gpu_environment.h"
+#include "tests/gpu/relume_process.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include <glm/gtc/packing.hpp>
+
+namespace relume {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t kSize = 64;
+
+PreparedScene cornell() {
+    return prepareScene(
+        {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb", .size = kSize});
+}
+
+BakeSettings quickSettings() {
+    BakeSettings settings;
+    settings.size = kSize;
+    settings.solver.method = Method::Hybrid;
+    settings.solver.error = 0.02;
+    return settings;
+}
+
+/// The drawing thread without OpenGL: takes every map into memory.
+class Screen {
+public:
+    explicit Screen(LightmapExchange& exchange) : exchange_(exchange) {}
+
+    /// Whether a map came.
+    bool update() {
+        if (const auto offer = exchange_.takeOffer()) {
+            EXPECT_FALSE(offer->shared);
+            std::array<std::span<std::byte>, LightmapExchange::kSlots> spans;
+            for (size_t slot = 0; slot < spans.size(); ++slot) {
+                next_[slot].assign(size_t{offer->size} * offer->size * 8, std::byte{0});
+                spans[slot] = next_[slot];
+            }
+            exchange_.accept(offer->set, spans);
+            if (offer->set > 1) exchange_.retire(offer->set - 1);
+        }
+        const auto map = exchange_.take();
+        if (!map) return false;
+        if (map_ && map_->set == map->set) exchange_.release(map_->set, map_->slot);
+        map_ = map;
+        return true;
+    }
+
+    const std::optional<PublishedMap>& map() const { return map_; }
+
+    /// Of all patches [cd/m^2].
+    double mean() const {
+        const auto* texels = reinterpret_cast<const glm::u16vec4*>(next_[map_->slot].data());
+        double sum = 0, count = 0;
+        for (size_t i = 0; i < next_[map_->slot].size() / sizeof(*texels); ++i) {
+            const glm::vec4 value = glm::unpackHalf(texels[i]);
+            if (value.a < 0.75f) continue;
+            sum += double{value.r} + value.g + value.b;
+            count += 3;
+        }
+        return map_->unit * sum / count;
+    }
+
+private:
+    LightmapExchange& exchange_;
+    std::array<std::vector<std::byte>, LightmapExchange::kSlots> next_;
+    std::optional<PublishedMap> map_;
+};
+
+class LiveBakeTest : public testing::Test {
+protected:
+    bool until(const std::function<bool()>& what, double seconds = 60) {
+        const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+        while (Clock::now() < end) {
+            if (screen_.update() && onMap_) onMap_();
+            if (what()) return true;
+            std::this_thread::sleep_for(1ms);
+        }
+        return false;
+    }
+    bool untilPhase(BakeStatus::Phase phase) {
+        return until([&] { return bake_.status().phase == phase && bake_.status().bake == newest_; });
+    }
+    /// That the newest bake's end is on screen.
+    bool untilShown() {
+        return untilPhase(BakeStatus::Phase::Done) && until([&] {
+                   return screen_.map() && screen_.map()->bake == newest_ && screen_.map()->complete;
+               }) &&
+               until([&, start = Clock::now()] { return Clock::now() - start > 50ms; });
+    }
+    void start(const BakeSettings& settings, bool keepLight = true) {
+        newest_ = bake_.start({&scene_, materials_, settings, keepLight});
+    }
+
+    PreparedScene scene_ = cornell();
+    std::vector<Material> materials_ = scene_.scene.materials;
+    LiveBake bake_{{.validation = true}};
+    Screen screen_{bake_.exchange()};
+    std::function<void()> onMap_;
+    uint64_t newest_ = 0;
+};
+
+TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
+    const TemporaryFolder folder;
+    for (const Method method : {Method::Hybrid, Method::Directional, Method::MonteCarlo}) {
+        BakeSettings settings = quickSettings();
+        settings.solver.method = method;
+        if (isPairMethod(method)) {
+            settings.solver.pairs.window = 2;
+            settings.solver.passes = 3;
+            settings.solver.error = 0;
+        }
+        start(settings);
+        // The camera sees a part of the scene only, and the budget changes all the time.
+        bake_.setSeenTiles({5, 6, 7, 12, 13, 14, 40});
+        double ms = 1;
+        ASSERT_TRUE(until([&] {
+            bake_.setBatchMs(ms = ms > 20 ? 1 : 1.3 * ms);
+            return bake_.status().phase == BakeStatus::Phase::Done && bake_.status().bake == newest_;
+        }));
+        bake_.exportLightmap(folder.path("live.exr"), {});
+        ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
+
+        const vk::Device& device = testDevice();
+        Baker baker(device, scene_.scene, scene_.mesh, settings);
+        while (!baker.solver().done())
+            baker.solver().step();
+        const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
+        for (size_t c = 0; c < expected.planes.size(); ++c) {
+            if (!isPairMethod(method)) {
+                EXPECT_EQ(got.planes[c], expected.planes[c]) << methodName(method);
+                continue;
+            }
+            double square = 0, sum = 0;
+            for (size_t i = 0; i < expected.planes[c].size(); ++i) {
+                square += std::pow(got.planes[c][i] - expected.planes[c][i], 2.0);
+                sum += expected.planes[c][i];
+            }
+            const auto texels = static_cast<double>(expected.planes[c].size());
+            EXPECT_LE(std::sqrt(square / texels), 1e-5 * sum / texels) << methodName(method);
+        }
+        std::filesystem::remove(folder.path("live.exr"));
+    }
+}
+
+TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {
+    start(quickSettings(), false);
+    ASSERT_TRUE(untilShown());
+    const double before = screen_.mean();
+    ASSERT_GT(before, 0);
+    std::vector<double> means;
+    onMap_ = [&] { means.push_back(screen_.mean()); };
+    for (Material& material : materials_)
+        material.emission *= 0.5f;
+    start(quickSettings());
+    ASSERT_TRUE(untilShown());
+    const double after = screen_.mean();
+    EXPECT_NEAR(after, 0.5 * before, 0.03 * before);
+    for (const double mean : means) {
+        EXPECT_LE(mean, 1.02 * before);
+        EXPECT_GE(mean, 0.98 * after);
+    }
+}
+
+TEST_F(LiveBakeTest, AnotherMethodAndSizeKeepTheOldLightUntilTheirsIsThere) {
+    start(quickSettings(), false);
+    ASSERT_TRUE(untilShown());
+    const double before = screen_.mean();
+    std::vector<double> means;
+    onMap_ = [&] { means.push_back(screen_.mean()); };
+    BakeSettings settings = quickSettings();
+    settings.solver.method = Method::Directional;
+    settings.solver.error = 0.05;
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    settings.size = 32;
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    settings.solver.method = Method::Mipmapped;
+    settings.solver.pairs.window = 2;
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    for (const double mean : means)
+        EXPECT_NEAR(mean, before, 0.1 * before);
+}
+
+TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
+    using Phase = BakeStatus::Phase;
+    BakeSettings settings = quickSettings();
+    settings.solver.error = 0.002;
+    start(settings, false);
+    bake_.pause();
+    ASSERT_TRUE(untilPhase(Phase::Paused));
+    const double still = bake_.status().progress.seconds;
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(bake_.status().progress.seconds, still) << "it stands still";
+    bake_.step();
+    ASSERT_TRUE(until([&] { return bake_.status().progress.seconds > still; }));
+    ASSERT_TRUE(untilPhase(Phase::Paused));
+    bake_.makePass();
+    ASSERT_TRUE(until([&] {
+        return bake_.status().phase == Phase::Paused &&
+               bake_.status().progress.passes + bake_.status().progress.samples > 0;
+    }));
+    const uint32_t samples = bake_.status().progress.samples;
+    bake_.resume();
+    ASSERT_TRUE(until([&] { return bake_.status().progress.samples > samples; }));
+    bake_.abortPass();
+    ASSERT_TRUE(untilPhase(Phase::Paused));
+    bake_.resume();
+    ASSERT_TRUE(untilPhase(Phase::Done));
+    const double error = bake_.status().progress.error;
+    EXPECT_LE(error, 0.002);
+    bake_.reset();
+    ASSERT_TRUE(until([&] { return bake_.status().phase == Phase::Baking; }));
+    ASSERT_TRUE(untilPhase(Phase::Done));
+    EXPECT_EQ(bake_.status().progress.error, error) << "the same bake again";
+}
+
+TEST_F(LiveBakeTest, ShowsWhatIsInspectedAndTheLightAgain) {
+    start(quickSettings(), false);
+    ASSERT_TRUE(untilShown());
+    const double light = screen_.mean();
+    for (const MapContent content :
+         {MapContent::LigIn, MapContent::LigOut, MapContent::Position, MapContent::Normal,
+          MapContent::Material, MapContent::Area, MapContent::Leaves, MapContent::Error, MapContent::Seen}) {
+        bake_.inspect({.content = content, .texel = kSize * kSize / 2 + kSize / 2});
+        EXPECT_TRUE(until([&] { return screen_.map()->content == content; })) << static_cast<int>(content);
+    }
+    EXPECT_TRUE(until([&] { return bake_.takePaths().has_value(); }));
+    bake_.askVoxels(32);
+    std::optional<InspectVoxels> voxels;
+    EXPECT_TRUE(until([&] { return (voxels = bake_.takeVoxels()).has_value(); }));
+    EXPECT_FALSE(voxels->centres.empty());
+    bake_.inspect({});
+    ASSERT_TRUE(until([&] { return screen_.map()->content == MapContent::Light; }));
+    EXPECT_EQ(screen_.mean(), light);
+}
+
+TEST_F(LiveBakeTest, WhatCannotBeBakedIsToldAndTheNextBakeRuns) {
+    BakeSettings settings = quickSettings();
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const double light = screen_.mean();
+    settings.size = 2 * Baker::kMaxSize;
+    start(settings);
+    ASSERT_TRUE(until([&] { return bake_.status().phase == BakeStatus::Phase::Failed; }));
+    EXPECT_FALSE(bake_.status().doing.empty());
+    EXPECT_EQ(screen_.mean(), light) << "what was shown stays";
+    start(quickSettings());
+    ASSERT_TRUE(untilShown());
+}
+
+TEST_F(LiveBakeTest, EndsWithinASecondWhateverItDoes) {
+    const PreparedScene statue = prepareScene(
+        {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_statue.glb", .size = 512});
+    BakeSettings settings = quickSettings();
+    settings.size = 512;
+    newest_ = bake_.start({&statue, statue.scene.materials, settings, false});
+    ASSERT_TRUE(until([&] { return bake_.status().phase == BakeStatus::Phase::Preparing; }));
+    const auto start = Clock::now();
+    bake_.stop();
+    EXPECT_LT(Clock::now() - start, 1s);
+}
+
+} // namespace
+} // namespace relume

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace relume {
+
+/// `relume view` on a virtual display, driven as a user would: by keys and a mouse.
+class ViewerProcess {
+public:
+    struct Desc {
+        std::string display;                // as DISPLAY has it, "": none
+        std::string home;                   // of its preferences and pictures
+        std::vector<std::string> arguments; // of relume
+    };
+    explicit ViewerProcess(const Desc& desc); // throws Error
+    ~ViewerProcess();                         // ends it by force where it still runs
+    ViewerProcess(const ViewerProcess&) = delete;
+    ViewerProcess& operator=(const ViewerProcess&) = delete;
+
+    /// Whether stderr has this text, or gets it within so many seconds: behind mark() only.
+    [[nodiscard]] bool says(const std::string& text, double seconds = 20);
+    /// What is said from now on.
+    void mark();
+    std::string output(); // all of stderr so far
+
+    /// Waits for its window; false when there is none after so long.
+    [[nodiscard]] bool window(double seconds = 20);
+    unsigned long windowId() const { return window_; }
+    /// Sends keys to the window, by xdotool's names: {"ctrl+z"}.
+    void keys(const std::vector<std::string>& names);
+    void type(const std::string& text);
+    void moveTo(int x, int y); // within the window [pixels]
+    void click(int x, int y, int button = 1);
+    void drag(int fromX, int fromY, int toX, int toY, int button = 1);
+    void wheel(int clicks); // above 0: up
+    void resize(int width, int height);
+    void xdotool(const std::vector<std::string>& arguments);
+
+    /// Its exit status (128 + signal) when it ends within so many seconds.
+    std::optional<int> ended(double seconds);
+    bool runs();
+    /// Memory that it has in use [KiB].
+    long residentKiB() const;
+    pid_t pid() const { return pid_; }
+
+private:
+    void listen(int stream);
+
+    std::string display_;
+    pid_t pid_ = -1;
+    unsigned long window_ = 0;
+    std::optional<int> status_;
+    std::thread listener_;
+    std::mutex mutex_;
+    std::condition_variable more_;
+    std::string output_;
+    size_t mark_ = 0;
+    bool closed_ = false;
+};
+
+} // namespace relume

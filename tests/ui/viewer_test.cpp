@@ -1,0 +1,383 @@
+// The viewer under a virtual display, driven by keys and a mouse.
+#include "assets/float_image.h"
+#include "bake/metrics.h"
+#include "tests/gpu/relume_process.h"
+#include "tests/ui/file_drop.h"
+#include "tests/ui/viewer_process.h"
+#include "tests/ui/virtual_display.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <regex>
+#include <thread>
+
+namespace relume {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+const std::string kScenes = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/";
+constexpr int kWidth = 1280, kHeight = 800;
+
+/// A display of all tests, and a home of each.
+class Viewer : public testing::Test {
+protected:
+    static void SetUpTestSuite() { display_ = std::make_unique<VirtualDisplay>(kWidth, kHeight); }
+    static void TearDownTestSuite() { display_.reset(); }
+
+    std::unique_ptr<ViewerProcess> open(std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--log-actions", "--validate", "--size", "64"});
+        auto viewer = std::make_unique<ViewerProcess>(
+            ViewerProcess::Desc{.display = display_->name(), .home = home_.path(""), .arguments = arguments});
+        EXPECT_TRUE(viewer->window()) << viewer->output();
+        return viewer;
+    }
+    std::unique_ptr<ViewerProcess> openCornell() {
+        auto viewer = open({"view", kScenes + "cornell_small.glb"});
+        EXPECT_TRUE(viewer->says("bake: done", 60)) << viewer->output();
+        return viewer;
+    }
+
+    /// Where a widget is, as the viewer told last.
+    static std::optional<std::pair<int, int>> item(ViewerProcess& viewer, const std::string& name) {
+        std::optional<std::pair<int, int>> place;
+        const std::string text = viewer.output(), start = "item: " + name + " ";
+        for (size_t at = text.find(start); at != std::string::npos; at = text.find(start, at + 1)) {
+            int x = 0, y = 0;
+            if (std::sscanf(text.c_str() + at + start.size(), "%d %d", &x, &y) == 2) place = {x, y};
+        }
+        return place;
+    }
+
+    /// Takes a screenshot by its key and reads it.
+    FloatImage screenshot(ViewerProcess& viewer, const std::string& key = "F12") {
+        viewer.mark();
+        viewer.keys({key});
+        EXPECT_TRUE(viewer.says("wrote ")) << viewer.output();
+        EXPECT_TRUE(viewer.says(".png")) << viewer.output();
+        const std::string text = viewer.output();
+        const size_t at = text.rfind("wrote ") + 6;
+        return readImage(text.substr(at, text.find(".png", at) + 4 - at));
+    }
+
+    /// Quits by its key: a clean end within a second, and nothing that went wrong before.
+    void quit(ViewerProcess& viewer) {
+        viewer.keys({"ctrl+q"});
+        const auto start = Clock::now();
+        const std::optional<int> status = viewer.ended(10);
+        EXPECT_LT(Clock::now() - start, 1s);
+        ASSERT_TRUE(status) << "it does not end: " << viewer.output();
+        EXPECT_EQ(*status, 0) << viewer.output();
+        EXPECT_EQ(viewer.output().find("validation"), std::string::npos) << viewer.output();
+    }
+
+    static double mean(const FloatImage& image) {
+        double sum = 0;
+        for (size_t c = 0; c < 3; ++c)
+            for (const float value : image.planes[c])
+                sum += value;
+        return sum / (3.0 * static_cast<double>(image.planes[0].size()));
+    }
+    static double difference(const FloatImage& a, const FloatImage& b) {
+        if (a.width != b.width || a.height != b.height) return 1;
+        double sum = 0;
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < a.planes[c].size(); ++i)
+                sum += std::abs(a.planes[c][i] - b.planes[c][i]);
+        return sum / (3.0 * static_cast<double>(a.planes[0].size()));
+    }
+
+    static std::unique_ptr<VirtualDisplay> display_;
+    TemporaryFolder home_;
+};
+
+std::unique_ptr<VirtualDisplay> Viewer::display_;
+
+TEST_F(Viewer, ShowsTheWindowBeforeTheScene) {
+    const auto start = Clock::now();
+    auto viewer = open({"view", kScenes + "atrium.glb"});
+    // Half a second on a machine of its own; this one runs other tests beside it.
+    EXPECT_LT(Clock::now() - start, 2s);
+    EXPECT_EQ(viewer->output().find("scene: "), std::string::npos) << "the window comes first";
+    EXPECT_TRUE(viewer->says("scene: ", 60)) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, TakesASceneWithoutAVerb) {
+    auto viewer = open({kScenes + "cornell_small.glb"});
+    EXPECT_TRUE(viewer->says("scene: ")) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, OrbitsZoomsAndFramesAll) {
+    auto viewer = openCornell();
+    const FloatImage before = screenshot(*viewer);
+    EXPECT_GT(mean(before), 0.01) << "the picture is black";
+    viewer->drag(640, 400, 760, 440);
+    const FloatImage turned = screenshot(*viewer);
+    EXPECT_GT(difference(before, turned), 0.005);
+    viewer->moveTo(640, 400);
+    viewer->wheel(3);
+    const FloatImage near = screenshot(*viewer);
+    EXPECT_GT(difference(turned, near), 0.005);
+    viewer->keys({"Home"});
+    EXPECT_GT(difference(near, screenshot(*viewer)), 0.005);
+    viewer->keys({"shift+Home"});
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.002) << "the camera is where it was at first";
+    quit(*viewer);
+}
+
+TEST_F(Viewer, EveryViewKeyShowsItsView) {
+    auto viewer = openCornell();
+    std::vector<FloatImage> pictures;
+    for (const char* key : {"1", "2", "3", "4", "5", "6", "7"}) {
+        viewer->keys({key});
+        std::this_thread::sleep_for(1s); // what the baker has to tell comes with the next map
+        pictures.push_back(screenshot(*viewer));
+        EXPECT_GT(mean(pictures.back()), 0.001) << "view " << key << " is black";
+        for (size_t i = 0; i + 1 < pictures.size(); ++i)
+            EXPECT_GT(difference(pictures[i], pictures.back()), 0.001) << "views " << i + 1 << " and " << key;
+    }
+    viewer->keys({"1"});
+    std::this_thread::sleep_for(1s);
+    EXPECT_LT(difference(pictures.front(), screenshot(*viewer)), 0.002);
+    viewer->keys({"u"});
+    EXPECT_GT(difference(pictures.front(), screenshot(*viewer)), 0.005) << "the UV texture";
+    quit(*viewer);
+}
+
+TEST_F(Viewer, AnEmissionIsEditedAndUndone) {
+    auto viewer = openCornell();
+    viewer->keys({"bracketleft"}); // exposure by hand: automatic would hide the change
+    const FloatImage before = screenshot(*viewer);
+    viewer->keys({"alt+3"});
+    std::this_thread::sleep_for(500ms);
+    const std::string text = viewer->output();
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(
+        text, found, std::regex("item: (Scene/[^\n]*[Ee]mission strength[^\n]*) -?[0-9]+ -?[0-9]+\n")))
+        << text;
+    const auto place = item(*viewer, found[1]);
+    ASSERT_TRUE(place);
+    viewer->mark();
+    viewer->drag(place->first, place->second, place->first + 60, place->second);
+    EXPECT_TRUE(viewer->says("edit: ")) << viewer->output();
+    EXPECT_TRUE(viewer->says("bake: done", 60)) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    const FloatImage edited = screenshot(*viewer);
+    EXPECT_GT(std::abs(mean(edited) - mean(before)), 0.005);
+    viewer->mark();
+    viewer->keys({"ctrl+z"});
+    EXPECT_TRUE(viewer->says("undo: ")) << viewer->output();
+    EXPECT_TRUE(viewer->says("bake: done", 60)) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.003);
+    viewer->mark();
+    viewer->keys({"ctrl+shift+z"});
+    EXPECT_TRUE(viewer->says("redo: ")) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, MakesPassesPausesAndResets) {
+    auto viewer = open({"view", kScenes + "cornell_geom.glb", "--method", "montecarlo", "--passes", "40"});
+    ASSERT_TRUE(viewer->says("bake: baking", 60)) << viewer->output();
+    viewer->mark();
+    viewer->keys({"space"});
+    EXPECT_TRUE(viewer->says("bake: paused")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"p"});
+    EXPECT_TRUE(viewer->says("action: Make pass")) << viewer->output();
+    EXPECT_TRUE(viewer->says("bake: paused", 60)) << viewer->output();
+    viewer->mark();
+    viewer->keys({"space"});
+    EXPECT_TRUE(viewer->says("bake: baking")) << viewer->output();
+    viewer->keys({"Escape"});
+    EXPECT_TRUE(viewer->says("given up")) << viewer->output();
+    viewer->keys({"ctrl+r", "space"});
+    EXPECT_TRUE(viewer->says("action: Reset")) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, ResizesAndMinimises) {
+    auto viewer = openCornell();
+    viewer->mark();
+    viewer->resize(700, 500);
+    EXPECT_TRUE(viewer->says("window: 700 x 500")) << viewer->output();
+    EXPECT_GT(mean(screenshot(*viewer)), 0.01);
+    viewer->resize(60, 40);
+    viewer->resize(900, 600);
+    EXPECT_TRUE(viewer->says("window: 900 x 600")) << viewer->output();
+    viewer->xdotool({"windowminimize", std::to_string(viewer->windowId())});
+    viewer->xdotool({"windowunmap", std::to_string(viewer->windowId())});
+    std::this_thread::sleep_for(500ms);
+    viewer->xdotool({"windowmap", "--sync", std::to_string(viewer->windowId())});
+    viewer->xdotool({"windowfocus", "--sync", std::to_string(viewer->windowId())});
+    EXPECT_GT(mean(screenshot(*viewer)), 0.01);
+    quit(*viewer);
+}
+
+TEST_F(Viewer, ABadFileLeavesTheSceneThatIsThere) {
+    auto viewer = openCornell();
+    const FloatImage before = screenshot(*viewer);
+    const std::string bad = home_.path("bad.glb");
+    std::ofstream(bad) << "this is no glTF";
+    viewer->mark();
+    ASSERT_TRUE(dropFile(display_->name(), viewer->windowId(), bad));
+    EXPECT_TRUE(viewer->says("bad.glb: ")) << viewer->output();
+    EXPECT_TRUE(viewer->says("error: ")) << viewer->output();
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.002);
+    viewer->mark();
+    ASSERT_TRUE(dropFile(display_->name(), viewer->windowId(), kScenes + "cornell_geom.glb"));
+    EXPECT_TRUE(viewer->says("scene: ", 60)) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, ScreenshotsNeverOverwrite) {
+    auto viewer = openCornell();
+    const FloatImage plain = screenshot(*viewer), withUi = screenshot(*viewer, "shift+F12");
+    EXPECT_GT(difference(plain, withUi), 0.005) << "panels are in one of them only";
+    for (int i = 0; i < 3; ++i)
+        screenshot(*viewer);
+    const std::string text = viewer->output();
+    std::vector<std::string> names;
+    for (size_t at = text.find("wrote "); at != std::string::npos; at = text.find("wrote ", at + 1))
+        names.push_back(text.substr(at, text.find('\n', at) - at));
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names.size(), 5u);
+    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << "a name came twice";
+    quit(*viewer);
+}
+
+TEST_F(Viewer, QuitsWhileItBakes) {
+    auto viewer = open({"view", kScenes + "cornell_statue.glb", "--error", "0.0001"});
+    ASSERT_TRUE(viewer->says("bake: baking", 60)) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(Viewer, ReloadsShaders) {
+    const std::string shaders = home_.path("shaders");
+    std::filesystem::copy(std::string(RELUME_SOURCE_DIR) + "/shaders", shaders,
+                          std::filesystem::copy_options::recursive);
+    auto viewer = open({"view", kScenes + "cornell_small.glb", "--shaders", shaders});
+    ASSERT_TRUE(viewer->says("bake: done", 60)) << viewer->output();
+    const FloatImage before = screenshot(*viewer);
+    std::ofstream(shaders + "/gl/scene.frag", std::ios::app) << "\nthis is no GLSL\n";
+    viewer->mark();
+    viewer->keys({"F5"});
+    EXPECT_TRUE(viewer->says("scene.frag")) << viewer->output();
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.002) << "the old shaders stay";
+    quit(*viewer);
+}
+
+/// Input that nobody planned.
+TEST_F(Viewer, SurvivesRandomInput) {
+    // Ten minutes by RELUME_RANDOM_INPUT_SECONDS=600.
+    const char* wanted = std::getenv("RELUME_RANDOM_INPUT_SECONDS");
+    const double seconds = wanted != nullptr ? std::atof(wanted) : 20;
+    auto viewer = openCornell();
+    std::mt19937 random(7);
+    const auto number = [&](int most) {
+        return static_cast<int>(random() % static_cast<unsigned>(most + 1));
+    };
+    const std::vector<std::string> keys = {"1",           "2",
+                                           "3",           "4",
+                                           "5",           "6",
+                                           "7",           "8",
+                                           "9",           "0",
+                                           "u",           "m",
+                                           "t",           "x",
+                                           "f",           "w",
+                                           "a",           "s",
+                                           "d",           "space",
+                                           "p",           "period",
+                                           "ctrl+r",      "Escape",
+                                           "ctrl+z",      "ctrl+shift+z",
+                                           "F1",          "F2",
+                                           "F5",          "Home",
+                                           "bracketleft", "bracketright",
+                                           "alt+1",       "alt+2",
+                                           "alt+3",       "alt+4",
+                                           "alt+5",       "shift+f",
+                                           "Tab",         "Return",
+                                           "ctrl+b",      "ctrl+o",
+                                           "Down",        "Up"};
+    const auto start = Clock::now();
+    long early = 0;
+    for (int step = 0; Clock::now() - start < std::chrono::duration<double>(seconds) && viewer->runs();
+         ++step) {
+        switch (number(5)) {
+        case 0:
+            viewer->click(number(kWidth), number(kHeight), 1 + number(2));
+            break;
+        case 1:
+            viewer->drag(number(kWidth), number(kHeight), number(kWidth), number(kHeight), 1 + number(2));
+            break;
+        case 2:
+            viewer->wheel(number(6) - 3);
+            break;
+        case 3:
+            viewer->resize(100 + number(kWidth), 100 + number(kHeight));
+            break;
+        default:
+            viewer->keys({keys[static_cast<size_t>(number(static_cast<int>(keys.size()) - 1))]});
+        }
+        if (early == 0 && Clock::now() - start > std::chrono::duration<double>(0.5 * seconds))
+            early = viewer->residentKiB();
+    }
+    ASSERT_TRUE(viewer->runs()) << viewer->output();
+    const long late = viewer->residentKiB();
+    // Scenes and sizes of the window change all the time, so it wavers; a leak per frame would show.
+    EXPECT_LT(late - early, 200 * 1024) << "memory grew from " << early << " to " << late << " KiB";
+    viewer->keys({"Escape", "Escape"});
+    viewer->resize(kWidth, kHeight);
+    quit(*viewer);
+}
+
+TEST(ViewerWithout, ADisplayNamesTheMend) {
+    const TemporaryFolder home;
+    ViewerProcess viewer(
+        {.display = "", .home = home.path(""), .arguments = {"view", kScenes + "cornell_small.glb"}});
+    EXPECT_EQ(viewer.ended(20), 1);
+    EXPECT_TRUE(viewer.says("relume bake", 1)) << viewer.output();
+    const std::string text = viewer.output();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(ViewerWithout, Opengl45NamesTheMend) {
+    const VirtualDisplay display(640, 480);
+    const TemporaryFolder home;
+    setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+    ViewerProcess viewer({.display = display.name(),
+                          .home = home.path(""),
+                          .arguments = {"view", kScenes + "cornell_small.glb"}});
+    unsetenv("MESA_GL_VERSION_OVERRIDE");
+    EXPECT_EQ(viewer.ended(20), 1);
+    EXPECT_TRUE(viewer.says("4.5", 1)) << viewer.output();
+    EXPECT_TRUE(viewer.says("relume bake", 1)) << viewer.output();
+}
+
+TEST(ViewerWithout, VulkanShowsTheSceneAndSaysSo) {
+    const VirtualDisplay display(640, 480);
+    const TemporaryFolder home;
+    setenv("VK_ICD_FILENAMES", "/nonexistent.json", 1);
+    setenv("VK_DRIVER_FILES", "/nonexistent.json", 1);
+    ViewerProcess viewer({.display = display.name(),
+                          .home = home.path(""),
+                          .arguments = {"view", kScenes + "cornell_small.glb", "--log-actions"}});
+    unsetenv("VK_ICD_FILENAMES");
+    unsetenv("VK_DRIVER_FILES");
+    ASSERT_TRUE(viewer.window()) << viewer.output();
+    EXPECT_TRUE(viewer.says("bake: failed")) << viewer.output();
+    EXPECT_TRUE(viewer.says("Vulkan", 1)) << viewer.output();
+    viewer.keys({"ctrl+q"});
+    EXPECT_EQ(viewer.ended(10), 0) << viewer.output();
+}
+
+} // namespace
+} // namespace relume
