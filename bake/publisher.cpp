@@ -12,19 +12,17 @@ namespace {
 
 using shader::kRegion;
 
-// Chunks per submit: a million patches, some milliseconds even where the CPU does it.
-constexpr uint32_t kChunksPerSubmit = 16384;
+// Chunks per submit: a million patches on a GPU, below a millisecond; fewer where the CPU does it, some 10
+// ms.
+constexpr uint32_t kChunksPerSubmit = 16384, kChunksPerSubmitSoftware = 4096;
 // Texels copied per submit: 32 MiB of them, below 20 ms through host memory on every device measured.
 constexpr uint64_t kTexelsPerSubmit = uint64_t{1} << 22;
 constexpr uint32_t kMaxX = 32768; // workgroups in x, below every device's limit
 
+// One workgroup for each of push.count.
 void dispatchGroups(const vk::ComputeProgram& program, VkCommandBuffer cmd, const shader::PublishPush& push) {
     const uint32_t x = std::min(push.count, kMaxX);
-    program.dispatch(cmd, push, x, (push.count + x - 1) / x);
-}
-
-uint32_t sumCount(uint32_t chunks) {
-    return (chunks + shader::kSumChunks - 1) / shader::kSumChunks;
+    if (x > 0) program.dispatch(cmd, push, x, (push.count + x - 1) / x);
 }
 
 // Light that bounces for ever between patches of albedo a is at most what the brightest one emits over 1 - a.
@@ -68,27 +66,32 @@ float unitFor(float largest) {
 
 Publisher::Publisher(const vk::Device& device, const PatchSet& patches, const Desc& desc)
     : device_(device), size_(patches.scene.size), chunkCount_(patches.chunkCount()),
+      chunksAtOnce_(
+          std::min(device.info().software() ? kChunksPerSubmitSoftware : kChunksPerSubmit, chunkCount_)),
       rings_(patches.scene.rtrad ? std::min(desc.rings, 1u) : desc.rings),
       unit_(unitFor(brightestLighting(patches, desc.reflectivity))),
       scatter_(device, "publish", {patches.scene.rtrad ? 1u : 0u}), sum_(device, "publish_sum"),
       commands_(device), texels_(device, {.size = uint64_t{size_} * size_ * kTexelBytes, .name = "texels"}),
       patchTexels_(vk::makeBuffer(device, shownTexels(patches), "texel of patch")),
-      chunks_(device,
-              {.size = chunkCount_ * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "changed chunks"}),
-      sums_(device, {.size = chunkCount_ * sizeof(glm::vec4), .name = "chunk sums"}),
-      totals_(device, {.size = sumCount(chunkCount_) * sizeof(glm::vec4), .name = "sums"}),
-      allChunks_(chunkCount_) {
+      chunks_(device, {.size = 2 * chunksAtOnce_ * sizeof(uint32_t),
+                       .memory = vk::Memory::Host,
+                       .name = "changed chunks"}),
+      sums_(device,
+            {.size = chunkCount_ * sizeof(glm::vec4), .memory = vk::Memory::Host, .name = "chunk sums"}),
+      allChunks_(chunkCount_), hasFills_(chunkCount_, 0) {
     const SeamPlan plan = buildSeamPlan(patches, rings_);
     fills_ = vk::makeBuffer(device, plan.fills, "seam fills");
     starts_ = vk::makeBuffer(device, plan.starts, "seam starts");
+    for (uint32_t ring = 1; ring <= rings_; ++ring)
+        for (uint32_t c = 0; c < chunkCount_; ++c)
+            hasFills_[c] |=
+                static_cast<uint8_t>(plan.starts[plan.at(ring, c)] < plan.starts[plan.at(ring, c) + 1]);
     const uint32_t regions = regionsPerRow() * regionsPerRow();
     changed_ = vk::Buffer(device, {.size = regions * sizeof(uint32_t), .name = "changed regions"});
     report_ = vk::Buffer(
-        device,
-        {.size = changed_.size() + totals_.size(), .memory = vk::Memory::Host, .name = "publisher's report"});
+        device, {.size = changed_.size(), .memory = vk::Memory::Host, .name = "changed regions, read"});
     std::iota(allChunks_.begin(), allChunks_.end(), 0u);
-    for (std::vector<uint8_t>& slot : stale_)
-        slot.assign(regions, 1);
+    stale_.fill(std::vector<uint8_t>(regions, 1));
     VkCommandBuffer cmd = commands_.begin();
     vkCmdFillBuffer(cmd, texels_.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
@@ -99,7 +102,6 @@ void Publisher::update(const Update& update) {
     const std::span<const uint32_t> chunks = updated_ ? update.chunks : allChunks();
     if (chunks.empty()) return;
     ASSERT(chunks.size() <= chunkCount_ && update.values.size() >= patchTexels_.size() * 4);
-    std::copy(chunks.begin(), chunks.end(), chunks_.as<uint32_t>());
     shader::PublishPush push{.values = update.values.address(),
                              .patchTexels = patchTexels_.address(),
                              .fills = fills_.address(),
@@ -114,17 +116,19 @@ void Publisher::update(const Update& update) {
                              .size = size_,
                              .ring = 0,
                              .scale = 1.0f / update.unit};
-    const auto count = static_cast<uint32_t>(chunks.size());
-    for (push.first = 0; push.first < count; push.first += kChunksPerSubmit) {
-        push.count = std::min(kChunksPerSubmit, count - push.first);
+    for (size_t first = 0; first < chunks.size(); first += chunksAtOnce_) {
+        const auto portion = chunks.subspan(first, std::min<size_t>(chunksAtOnce_, chunks.size() - first));
         VkCommandBuffer cmd = commands_.begin();
         vk::barrier(cmd);
-        if (push.first == 0) {
+        if (first == 0) {
             vkCmdFillBuffer(cmd, changed_.handle(), 0, VK_WHOLE_SIZE, 0);
             vk::barrier(cmd);
         }
-        recordUpdate(cmd, push);
-        if (push.first + push.count == count) recordReport(cmd);
+        recordUpdate(cmd, push, portion);
+        if (first + portion.size() == chunks.size()) {
+            const VkBufferCopy whole{0, 0, changed_.size()};
+            vkCmdCopyBuffer(cmd, changed_.handle(), report_.handle(), 1, &whole);
+        }
         vk::hostBarrier(cmd);
         commands_.run();
     }
@@ -132,21 +136,25 @@ void Publisher::update(const Update& update) {
     updated_ = true;
 }
 
-void Publisher::recordUpdate(VkCommandBuffer cmd, shader::PublishPush push) const {
-    for (push.ring = 0; push.ring <= rings_; ++push.ring) {
-        dispatchGroups(scatter_, cmd, push);
+// Chunks beside no empty texel, most of them, are left out where it is about fills.
+void Publisher::recordUpdate(VkCommandBuffer cmd, shader::PublishPush push,
+                             std::span<const uint32_t> chunks) {
+    auto* list = chunks_.as<uint32_t>();
+    std::copy(chunks.begin(), chunks.end(), list);
+    push.first = 0;
+    push.count = static_cast<uint32_t>(chunks.size());
+    sum_.dispatch(cmd, push, (push.count + shader::kChunk - 1) / shader::kChunk);
+    dispatchGroups(scatter_, cmd, push);
+    uint32_t* end = list + chunksAtOnce_;
+    for (uint32_t chunk : chunks)
+        if (hasFills_[chunk] != 0) *end++ = chunk;
+    push.first = chunksAtOnce_;
+    push.count = static_cast<uint32_t>(end - list) - chunksAtOnce_;
+    for (push.ring = 1; push.ring <= rings_; ++push.ring) {
         vk::barrier(cmd);
+        dispatchGroups(scatter_, cmd, push);
     }
-}
-
-void Publisher::recordReport(VkCommandBuffer cmd) const {
-    const shader::PublishSumPush push{
-        .sums = sums_.address(), .totals = totals_.address(), .chunkCount = chunkCount_};
-    sum_.dispatch(cmd, push, sumCount(chunkCount_));
     vk::barrier(cmd);
-    const VkBufferCopy regions{0, 0, changed_.size()}, totals{0, changed_.size(), totals_.size()};
-    vkCmdCopyBuffer(cmd, changed_.handle(), report_.handle(), 1, &regions);
-    vkCmdCopyBuffer(cmd, totals_.handle(), report_.handle(), 1, &totals);
 }
 
 void Publisher::readReport() {
@@ -154,11 +162,15 @@ void Publisher::readReport() {
     for (std::vector<uint8_t>& slot : stale_)
         for (size_t r = 0; r < slot.size(); ++r)
             slot[r] |= static_cast<uint8_t>(changed[r]);
-    const auto* totals = reinterpret_cast<const glm::vec4*>(changed + changed_.size() / sizeof(uint32_t));
     glm::dvec4 sum(0.0);
-    for (uint32_t i = 0; i < sumCount(chunkCount_); ++i)
-        sum += glm::dvec4(totals[i]);
+    for (uint32_t i = 0; i < chunkCount_; ++i)
+        sum += glm::dvec4(sums_.as<glm::vec4>()[i]);
     mean_ = sum.w > 0.0 ? glm::vec3(glm::dvec3(sum) / sum.w) : glm::vec3(0.0f);
+}
+
+void Publisher::forget() {
+    for (std::vector<uint8_t>& slot : stale_)
+        std::fill(slot.begin(), slot.end(), uint8_t{1});
 }
 
 // Runs of regions side by side; what lies right below a run of the same columns is added to it.

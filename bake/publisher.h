@@ -62,9 +62,11 @@ public:
     /// The same into size * size * kTexelBytes bytes of memory.
     std::vector<TexelArea> publish(std::span<std::byte> texels, uint32_t slot);
 
+    /// All slots count as never written: they hold something else now.
+    void forget();
+
 private:
-    void recordUpdate(VkCommandBuffer cmd, shader::PublishPush push) const;
-    void recordReport(VkCommandBuffer cmd) const;
+    void recordUpdate(VkCommandBuffer cmd, shader::PublishPush push, std::span<const uint32_t> chunks);
     void readReport();
     std::vector<TexelArea> changedAreas(uint32_t slot) const;
     const std::byte* hostTexels(const std::vector<TexelArea>& areas);
@@ -72,6 +74,7 @@ private:
 
     const vk::Device& device_;
     uint32_t size_, chunkCount_;
+    uint32_t chunksAtOnce_; // in one submit
     uint32_t rings_;
     float unit_ = 1.0f;
     vk::ComputeProgram scatter_, sum_;
@@ -79,12 +82,13 @@ private:
     vk::Buffer texels_;         // uvec2 per texel: what is shown
     vk::Buffer patchTexels_;    // uint per patch
     vk::Buffer fills_, starts_; // SeamPlan
-    vk::Buffer chunks_;         // uint per chunk: of the update; on the host
-    vk::Buffer sums_, totals_;  // vec4 per chunk and per kSumChunks of them
-    vk::Buffer changed_;        // uint per region
-    vk::Buffer report_;         // changed_ and totals_ on the host
-    vk::Buffer staging_;        // the texels on the host, where it does not see those of the device
+    vk::Buffer chunks_;  // uint: chunksAtOnce_ of the update, behind them those with fills; on the host
+    vk::Buffer sums_;    // vec4 per chunk: of what it shows; on the host
+    vk::Buffer changed_; // uint per region
+    vk::Buffer report_;  // the same on the host
+    vk::Buffer staging_; // the texels on the host, where it does not see those of the device
     std::vector<uint32_t> allChunks_;
+    std::vector<uint8_t> hasFills_;                  // per chunk
     std::array<std::vector<uint8_t>, kSlots> stale_; // per region: a slot's copy is an old one
     glm::vec3 mean_{0.0f};
     bool updated_ = false;

@@ -12,8 +12,6 @@ const float kShown = 1.0, kFilled = 0.5; // coverage
 
 layout(local_size_x = 64) in;
 
-shared vec4 terms[kChunk];
-
 void store(uint texel, vec4 value) {
     value.rgb = clamp(value.rgb, vec3(-kLargestHalf), vec3(kLargestHalf));
     uvec2 halves = uvec2(packHalf2x16(value.rg), packHalf2x16(value.ba));
@@ -27,13 +25,7 @@ void store(uint texel, vec4 value) {
 void showPatches(uint chunk, uint lane) {
     uint index = chunk * kChunk + lane, texel = Words(push.patchTexels).items[index];
     vec3 value = Vec4s(push.values).items[index].rgb;
-    terms[lane] = texel == kNoTexel ? vec4(0.0) : vec4(value, 1.0);
     if (texel != kNoTexel) store(texel, vec4(value * push.scale, kShown));
-    barrier();
-    if (lane != 0u) return;
-    vec4 sum = terms[0];
-    for (uint i = 1u; i < kChunk; ++i) sum += terms[i];
-    Vec4s(push.sums).items[chunk] = sum;
 }
 
 vec3 fromNeighbours(uint fill) {

@@ -1,21 +1,19 @@
-// Sums over kSumChunks chunks each: one workgroup per sum, in a fixed order.
+// Sums of what is shown of some chunks, for the mean: one invocation per chunk, which costs a software device far less than
+// adding up across invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
-layout(push_constant, scalar) uniform Push { PublishSumPush push; };
+layout(push_constant, scalar) uniform Push { PublishPush push; };
 
 layout(local_size_x = 64) in;
 
-shared vec4 terms[64];
-
 void main() {
-    uint group = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-    uint end = min((group + 1u) * kSumChunks, push.chunkCount);
+    uint index = gl_WorkGroupID.x * 64u + gl_LocalInvocationID.x;
+    if (index >= push.count) return;
+    uint chunk = Words(push.chunks).items[push.first + index];
     vec4 sum = vec4(0.0);
-    for (uint c = group * kSumChunks + lane; c < end; c += 64u) sum += Vec4s(push.sums).items[c];
-    terms[lane] = sum;
-    barrier();
-    if (lane != 0u) return;
-    for (uint i = 1u; i < 64u; ++i) sum += terms[i];
-    Vec4s(push.totals).items[group] = sum;
+    for (uint i = chunk * kChunk; i < (chunk + 1u) * kChunk; ++i) {
+        if (Words(push.patchTexels).items[i] != kNoTexel) sum += vec4(Vec4s(push.values).items[i].rgb, 1.0);
+    }
+    Vec4s(push.sums).items[chunk] = sum;
 }

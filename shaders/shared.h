@@ -442,7 +442,6 @@ struct SmoothPush {
 };
 // What is shown is copied in regions of kRegion x kRegion texels: 32 KiB of halves each.
 CONST uint kRegion = 64u;
-CONST uint kSumChunks = 1024u; // chunks whose sums are added up to one
 struct PublishPush {
     ADDRESS values;      // vec4[], per patch
     ADDRESS patchTexels; // uint[], per patch: where it is shown; kNoTexel
@@ -458,11 +457,6 @@ struct PublishPush {
     uint size;       // lightmap edge [texels]
     uint ring;       // 0: patches; else texels that are filled
     float scale;     // on values
-};
-struct PublishSumPush {
-    ADDRESS sums;   // vec4[chunkCount]
-    ADDRESS totals; // vec4[ceil(chunkCount / kSumChunks)]
-    uint chunkCount;
 };
 struct FinishPush {
     ADDRESS emission;

@@ -218,6 +218,8 @@ TEST(Publisher, SameLightChangesNothing) {
     EXPECT_TRUE(published.publisher().publish(std::as_writable_bytes(std::span(texels)), 0).empty());
     EXPECT_EQ(texels, Texels(size_t{128} * 128, 77));
     EXPECT_EQ(published.publisher().publish(std::as_writable_bytes(std::span(texels)), 1).size(), 1u);
+    published.publisher().forget();
+    EXPECT_EQ(published.publisher().publish(std::as_writable_bytes(std::span(texels)), 1).size(), 1u);
 }
 
 TEST(Publisher, ImagesHoldTheSameTexels) {
