@@ -72,18 +72,22 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bo
     return std::max(cit, solve) + triangles * kBytesPerTriangle + voxels;
 }
 
-Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings)
-    : settings_(settings) {
+Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+             PhaseHook onPhase)
+    : device_(device), scene_(scene), settings_(settings), onPhase_(std::move(onPhase)) {
+    if (!onPhase_) onPhase_ = [](const char*) {};
     const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
     const std::string problem = sizeProblem(device, settings, mesh.triangleCount(), limit);
     if (!problem.empty()) throw Error(problem);
     const bool rtrad = settings.solver.transport.rtrad;
     PhaseClock clock(phases_);
+    onPhase_("cit");
     {
         const TextureGroup group = rasterizeTextureGroup(
             device, scene, mesh,
             {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
         clock.end("cit");
+        onPhase_("patches");
         patches_ = buildPatches(scene, std::move(mesh), group,
                                 {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
     }
@@ -95,17 +99,18 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
     light_ = std::make_unique<LightBuffers>(device, patches_);
     clock.end("patches");
 
-    makeTracers(device);
+    makeTracers();
+    onPhase_("solver set-up");
     PhaseClock setUp(phases_);
     solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
     setUp.end("solver set-up");
 }
 
 // Whether a patch lies inside something is told by triangles: a voxel knows no inside.
-void Baker::makeTracers(const vk::Device& device) {
+void Baker::makeTracers() {
     std::string why = "as asked for";
     TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
-    if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
+    if (kind == TracerKind::Auto) kind = chooseTracer(device_.info(), why);
     const bool marches = usesVoxels(settings_);
     spdlog::info("tracer: {} ({})", tracerName(kind), why);
     if (marches) {
@@ -116,33 +121,36 @@ void Baker::makeTracers(const vk::Device& device) {
     }
     PhaseClock clock(phases_);
     if (!marches || !settings_.solver.transport.rtrad) {
+        onPhase_("tracer");
         const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
-        tracer_ = makeTracer(exact, device, patches_.scene, light_->patches);
+        tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
         clock.end("tracer");
     }
-    if (!settings_.solver.transport.rtrad) findInvalid(device);
+    if (!settings_.solver.transport.rtrad) findInvalid();
     if (marches) clock.end("validity");
     // A tracer on the CPU keeps the patches in a form of its own.
     if (marches || (invalid_ > 0 && tracer_->onCpu())) {
+        onPhase_(marches ? "voxels" : "validity");
         tracer_.reset();
-        tracer_ = makeTracer(kind, device, patches_.scene, light_->patches, settings_.voxels);
+        tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
     }
     clock.end(marches ? "voxels" : "validity");
 }
 
 // Patches inside something are found once, before the first pass, by short batches of closest hits.
-void Baker::findInvalid(const vk::Device& device) {
+void Baker::findInvalid() {
     // 131072 rays on a GPU, 16384 on the CPU: below 50 ms on every device that was measured.
-    const uint32_t chunksPerBatch = device.info().software() ? 8 : 64;
+    const uint32_t chunksPerBatch = device_.info().software() ? 8 : 64;
     const uint32_t chunks = patches_.chunkCount();
     const uint64_t linkWords = uint64_t{chunksPerBatch} * kInsideSamples * shader::kChunk;
     const vk::Buffer links(
-        device, {.size = linkWords * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links"});
+        device_, {.size = linkWords * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links"});
     std::vector<uint32_t> all;
     all.reserve(uint64_t{chunks} * kInsideSamples * shader::kChunk);
-    vk::Commands commands(device);
+    vk::Commands commands(device_);
     for (uint32_t first = 0; first < chunks; first += chunksPerBatch) {
         const uint32_t count = std::min(chunksPerBatch, chunks - first);
+        onPhase_("validity");
         VkCommandBuffer cmd = commands.begin();
         tracer_->closest(cmd, {.firstChunk = first,
                                .chunkCount = count,
@@ -160,8 +168,14 @@ void Baker::findInvalid(const vk::Device& device) {
     spdlog::info(
         "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
         invalid_, patches_.count);
-    vk::upload(device, light_->patches, patches_.scene.patches.data(),
+    vk::upload(device_, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
+}
+
+void Baker::resetSolver(const SolverSettings& settings) {
+    solver_.reset(); // before the new one takes its memory
+    settings_.solver = settings;
+    solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

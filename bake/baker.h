@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,10 +34,17 @@ public:
     static constexpr uint32_t kMaxSize = 4096; // texels are numbered by 24 bits in Patch::flags
 
     /// Throws Error when the size does not fit the device's memory (before anything is allocated), no texel
-    /// is covered or the tracer cannot run.
-    Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
+    /// is covered or the tracer cannot run. Device and scene must outlive it.
+    /// onPhase hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends
+    /// the preparation.
+    using PhaseHook = std::function<void(const char* phase)>;
+    Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+          PhaseHook onPhase = {});
 
     Solver& solver() { return *solver_; }
+    /// Another solver of the same patches, which starts from no light; `transport` must stay as it is. Throws
+    /// Error when its method cannot run: then there is none any more.
+    void resetSolver(const SolverSettings& settings);
     Tracer& tracer() { return *tracer_; }
     const PatchSet& patches() const { return patches_; }
     LightBuffers& light() { return *light_; }
@@ -56,10 +64,13 @@ public:
     static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
 
 private:
-    void makeTracers(const vk::Device& device);
-    void findInvalid(const vk::Device& device);
+    void makeTracers();
+    void findInvalid();
 
+    const vk::Device& device_;
+    const Scene& scene_;
     BakeSettings settings_;
+    PhaseHook onPhase_;
     PatchSet patches_;
     std::unique_ptr<LightBuffers> light_;
     std::unique_ptr<Tracer> tracer_;

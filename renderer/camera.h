@@ -15,6 +15,8 @@ struct ViewCamera {
     float halfHeight = 0.0f;                       // [m], above 0: orthographic, yfov unused
     float znear = 0.01f;                           // [m]
     float zfar = 1000.0f;                          // [m], orthographic only: a perspective has no end
+
+    bool operator==(const ViewCamera&) const = default;
 };
 
 glm::vec3 forward(const ViewCamera& camera); // unit

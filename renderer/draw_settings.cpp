@@ -19,11 +19,13 @@ const std::vector<std::string>& toneNames() {
 }
 
 bool showsLight(View view) {
-    return view == View::Lit || view == View::Lighting || view == View::Emission;
+    return view == View::Lit || view == View::Lighting || view == View::Emission ||
+           view == View::InspectColor;
 }
 
 bool readsLightmap(View view) {
-    return view == View::Lit || view == View::Lighting || view == View::Coverage;
+    return view == View::Lit || view == View::Lighting || view == View::Coverage ||
+           view >= View::InspectColor;
 }
 
 } // namespace relume

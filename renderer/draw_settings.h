@@ -23,6 +23,15 @@ enum class View : uint32_t {
     Checker = shader::kViewChecker,
     Density = shader::kViewDensity,
     Coverage = shader::kViewCoverage,
+    // Of a quantity that the lightmap's texture holds in place of light, in RGB:
+    InspectColor = shader::kViewInspectColor,       // light: ligIn, ligOut, their mips
+    InspectRaw = shader::kViewInspectRaw,           // as displayed
+    InspectPosition = shader::kViewInspectPosition, // as a share of DrawSettings' range
+    InspectNormal = shader::kViewInspectNormal,
+    InspectHeat = shader::kViewInspectHeat, // R on a scale of colours over the range's x
+    InspectLeaves =
+        shader::kViewInspectLeaves, // R log2 of a quad-tree leaf's edge in texels, G its weight in [0, 1]
+    InspectMask = shader::kViewInspectMask, // R 1 seen or 0 not, G form factor, of the largest one
 };
 
 enum class LightmapFilter : uint32_t {
@@ -33,7 +42,8 @@ enum class LightmapFilter : uint32_t {
 
 enum class ToneMap : uint32_t { None = shader::kToneNone, Aces = shader::kToneAces, Agx = shader::kToneAgx };
 
-/// By number, as users write them: "lit", "bilinear", "agx".
+/// By number, as users write them: "lit", "bilinear", "agx". Views only up to Coverage: the others need a
+/// baker that tells quantities.
 const std::vector<std::string>& viewNames();
 const std::vector<std::string>& filterNames();
 const std::vector<std::string>& toneNames();
@@ -49,6 +59,11 @@ struct DrawSettings {
     ToneMap tone = ToneMap::Agx;
     std::optional<float> exposure; // [EV]: light counts 2^exposure times; none: what the picture asks for
     glm::vec3 background{0.11f, 0.12f, 0.13f}; // as displayed (sRGB)
+    glm::vec3 rangeLow{0.0f},
+        rangeHigh{1.0f};   // InspectPosition and InspectHeat: from one end of the scale to the other
+    int32_t selected = -1; // instance that is tinted, -1: none
+
+    bool operator==(const DrawSettings&) const = default;
 };
 
 } // namespace relume

@@ -24,6 +24,26 @@ bool fitsHalf(const Range& range) {
     return range.largest < 6e4f && mean > 1e-2;
 }
 
+// Whether no texel that a filter reaches from a patch is empty.
+bool isFilled(const std::vector<glm::vec4>& texels, int64_t size) {
+    constexpr int64_t kReach = 2; // [texels], of the cubic filter
+    // Along rows, then columns of the patches so widened.
+    std::vector<uint8_t> wide(texels.size(), 0);
+    for (int64_t i = 0; i < size * size; ++i) {
+        if (texels[static_cast<size_t>(i)].a < kCovered) continue;
+        const int64_t row = i - i % size, first = std::max(i - kReach, row);
+        const int64_t last = std::min(i + kReach, row + size - 1);
+        std::fill(wide.begin() + first, wide.begin() + last + 1, uint8_t{1});
+    }
+    for (int64_t i = 0; i < size * size; ++i) {
+        if (wide[static_cast<size_t>(i)] == 0) continue;
+        for (int64_t k = std::max(i - kReach * size, i % size);
+             k <= std::min(i + kReach * size, size * size - 1); k += size)
+            if (texels[static_cast<size_t>(k)].a <= 0.0f) return false;
+    }
+    return true;
+}
+
 } // namespace
 
 LightmapImage::LightmapImage(const FloatImage& image, const std::string& name) {
@@ -49,6 +69,7 @@ LightmapImage::LightmapImage(const FloatImage& image, const std::string& name) {
         range.sum += light;
         range.count += 1;
     }
+    filled_ = isFilled(texels, image.width);
     if (range.count > 0) ambient_ = glm::vec3(range.sum / range.count);
     texture_ = gl::Texture({.width = image.width,
                             .height = image.height,

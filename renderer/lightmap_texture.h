@@ -6,15 +6,22 @@
 
 #include "assets/float_image.h"
 #include "renderer/gl/texture.h"
+#include "renderer/version.h"
 
 namespace relume {
 
-/// A lightmap to draw with, whoever made and owns the texture: lighting (irradiance / pi) in RGB, coverage in
-/// A (1 a patch, 0.5 filled from its neighbours, 0 empty), row 0 is v = 0.
+/// A lightmap to draw with, whoever made and owns the texture: lighting (irradiance / pi) or, for the views
+/// that inspect, another quantity in RGB, coverage in A (1 a patch, 0.5 filled from its neighbours, 0 empty),
+/// row 0 is v = 0. Empty texels are 0 in all channels; the texture filters linearly and clamps at its edges.
 struct LightmapTexture {
     GLuint texture = 0;      // 0: no light yet, all is lit by `ambient`
     uint32_t size = 0;       // edge [texels]
     glm::vec3 ambient{1.0f}; // lighting of what has no lightmap UVs [cd/m^2]
+    float unit = 1.0f;       // lighting of a texel's 1 [cd/m^2]
+    bool filled = false;  // within two texels of a patch none is empty: filters need not look and are faster
+    uint64_t version = 0; // another one for other texels (newVersion); 0: they may have changed, always draw
+
+    bool operator==(const LightmapTexture&) const = default;
 };
 
 /// One that is made from an image: 16-bit floats where they hold its values, else 32-bit ones.
@@ -24,10 +31,19 @@ public:
     /// `name`, when it is not square or a channel is missing.
     LightmapImage(const FloatImage& image, const std::string& name);
 
-    LightmapTexture texture() const { return {texture_.get(), texture_.width(), ambient_}; }
+    LightmapTexture texture() const {
+        return {.texture = texture_.get(),
+                .size = texture_.width(),
+                .ambient = ambient_,
+                .unit = 1.0f,
+                .filled = filled_,
+                .version = version_};
+    }
 
 private:
+    uint64_t version_ = newVersion();
     gl::Texture texture_;
+    bool filled_ = false;
     glm::vec3 ambient_{0.0f}; // mean of the patches
 };
 

@@ -64,6 +64,12 @@ SceneVertex vertexOf(const WorldMesh& mesh, uint32_t triangle, uint32_t corner) 
     return vertex;
 }
 
+// What a draw's triangles have together, `before` that of the first ones.
+uint32_t mappedWith(uint32_t before, bool first, bool mapped) {
+    const uint32_t own = mapped ? shader::kMappedAll : shader::kMappedNone;
+    return first || before == own ? own : shader::kMappedSome;
+}
+
 float medianDensity(const WorldMesh& mesh) {
     std::vector<std::pair<double, double>> densities; // and the area that has it
     double total = 0;
@@ -106,7 +112,9 @@ SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
             geometry.draws.push_back({.firstIndex = static_cast<uint32_t>(geometry.indices.size()),
                                       .indexCount = 0,
                                       .material = mesh.material[triangle],
+                                      .instance = mesh.instance[triangle],
                                       .doubleSided = isDoubleSided(scene, mesh.material[triangle]),
+                                      .mapped = shader::kMappedNone,
                                       .bounds = {}});
         }
         SceneDraw& draw = geometry.draws.back();
@@ -115,6 +123,7 @@ SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
             geometry.indices.push_back(welder.add(vertex));
             draw.bounds.add(vertex.position);
         }
+        draw.mapped = mappedWith(draw.mapped, draw.indexCount == 0, mesh.chart[triangle] != kNoChart);
         draw.indexCount += 3;
     }
     for (const SceneDraw& draw : geometry.draws)

@@ -7,6 +7,7 @@
 
 #include "assets/world_mesh.h"
 #include "renderer/box.h"
+#include "renderer/shader_types.h"
 
 namespace relume {
 
@@ -24,7 +25,10 @@ struct SceneVertex {
 struct SceneDraw {
     uint32_t firstIndex = 0, indexCount = 0;
     uint32_t material = 0; // into Scene::materials; materials.size() is the default
+    uint32_t instance = 0; // into Scene::instances
     bool doubleSided = false;
+    uint32_t mapped =
+        shader::kMappedNone; // which of its triangles have lightmap UVs: kMappedNone, Some or All
     Box bounds;
 };
 

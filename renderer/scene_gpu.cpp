@@ -1,7 +1,9 @@
 #include "renderer/scene_gpu.h"
 
+#include "assets/error.h"
 #include "renderer/shader_types.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -26,13 +28,12 @@ gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb) {
     glTextureParameteri(made.get(), GL_TEXTURE_WRAP_S, wrapOf(texture.wrapS));
     glTextureParameteri(made.get(), GL_TEXTURE_WRAP_T, wrapOf(texture.wrapT));
     if (texture.nearest) glTextureParameteri(made.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    // Floors seen at a flat angle are blurred without it; more than 8 samples show no difference.
-    constexpr float kAnisotropy = 8.0f;
-    if (epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
-        epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
-        glTextureParameterf(made.get(), GL_TEXTURE_MAX_ANISOTROPY, kAnisotropy);
-    }
     return made;
+}
+
+bool canFilterAnisotropically() {
+    return epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
+           epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic");
 }
 
 shader::SceneMaterial describe(const Material& material) {
@@ -44,12 +45,21 @@ shader::SceneMaterial describe(const Material& material) {
     return result;
 }
 
+std::vector<shader::SceneMaterial> describeAll(const Scene& scene) {
+    std::vector<shader::SceneMaterial> materials;
+    materials.reserve(scene.materials.size() + 1);
+    for (const Material& material : scene.materials)
+        materials.push_back(describe(material));
+    materials.push_back(describe({})); // glTF's default material
+    return materials;
+}
+
 } // namespace
 
 GLuint SceneGpu::textureOf(const Scene& scene, const TextureRef& use, bool srgb) {
-    if (use.texture < 0) return white_.get();
+    if (use.texture < 0) return 0;
     const Texture& texture = scene.textures[static_cast<size_t>(use.texture)];
-    if (texture.image < 0) return white_.get();
+    if (texture.image < 0) return 0;
     gl::Texture& slot = loaded_[{use.texture, srgb}];
     if (slot.get() == 0) slot = makeTexture(scene, texture, srgb);
     return slot.get();
@@ -78,19 +88,33 @@ SceneGpu::SceneGpu(const Scene& scene, const WorldMesh& mesh) {
                                     .attributes = attributes,
                                     .name = "scene"});
 
-    white_ = gl::Texture({.width = 1, .height = 1, .name = "white"});
-    const std::array<uint8_t, 4> white = {255, 255, 255, 255};
-    white_.upload(GL_RGBA, GL_UNSIGNED_BYTE, white.data());
-    std::vector<shader::SceneMaterial> materials;
-    std::vector<Material> all = scene.materials;
-    all.emplace_back(); // glTF's default material
-    for (const Material& material : all) {
-        materials.push_back(describe(material));
+    for (const Material& material : scene.materials)
         textures_.push_back({textureOf(scene, material.baseColorTexture, true),
                              textureOf(scene, material.emissionTexture, true),
-                             textureOf(scene, material.metallicRoughnessTexture, false)});
-    }
-    materials_ = gl::Buffer::of<shader::SceneMaterial>(materials, "materials");
+                             textureOf(scene, material.metallicRoughnessTexture, false),
+                             material.alphaMode == AlphaMode::Mask});
+    textures_.emplace_back();
+    const std::vector<shader::SceneMaterial> materials = describeAll(scene);
+    materials_ = gl::Buffer({.size = static_cast<GLsizeiptr>(materials.size() * sizeof(materials[0])),
+                             .data = materials.data(),
+                             .flags = GL_DYNAMIC_STORAGE_BIT,
+                             .name = "materials"});
+    setAnisotropy(kAnisotropy);
+}
+
+void SceneGpu::updateMaterials(const Scene& scene) {
+    const std::vector<shader::SceneMaterial> materials = describeAll(scene);
+    ASSERT(materials.size() == textures_.size());
+    glNamedBufferSubData(materials_.get(), 0,
+                         static_cast<GLsizeiptr>(materials.size() * sizeof(materials[0])), materials.data());
+    version_ = newVersion();
+}
+
+void SceneGpu::setAnisotropy(float samples) {
+    if (!canFilterAnisotropically()) return;
+    for (const auto& [use, texture] : loaded_)
+        glTextureParameterf(texture.get(), GL_TEXTURE_MAX_ANISOTROPY, std::clamp(samples, 1.0f, kAnisotropy));
+    version_ = newVersion();
 }
 
 } // namespace relume

@@ -8,6 +8,7 @@
 #include "renderer/gl/texture.h"
 #include "renderer/gl/vertex_array.h"
 #include "renderer/scene_geometry.h"
+#include "renderer/version.h"
 
 namespace relume {
 
@@ -15,12 +16,22 @@ namespace relume {
 /// current when it is made; needs neither scene nor mesh afterwards.
 class SceneGpu {
 public:
-    /// Textures of one material; never 0: white where it has none.
+    /// Textures of one material, 0: none.
     struct MaterialTextures {
         GLuint base = 0, emission = 0, metallic = 0;
+        bool masked = false; // has holes
     };
+    // Floors seen at a flat angle are blurred without it; more than 8 samples show no difference.
+    static constexpr float kAnisotropy = 8.0f;
 
     SceneGpu(const Scene& scene, const WorldMesh& mesh); // throws Error when it does not fit
+
+    /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
+    /// the alpha mode and the number of materials must be as they were.
+    void updateMaterials(const Scene& scene);
+    /// Samples along the longer side of a texel's footprint, at most kAnisotropy; 1: none. A software device
+    /// draws textured scenes up to twice as fast without.
+    void setAnisotropy(float samples);
 
     const std::vector<SceneDraw>& draws() const { return draws_; }
     const MaterialTextures& textures(uint32_t material) const { return textures_[material]; }
@@ -28,6 +39,7 @@ public:
     float medianDensity() const { return medianDensity_; } // as SceneGeometry has it
     const gl::VertexArray& vertexArray() const { return vertexArray_; }
     const gl::Buffer& materials() const { return materials_; } // SceneMaterial[], the default one last
+    uint64_t version() const { return version_; }              // another one when it looks different
 
 private:
     GLuint textureOf(const Scene& scene, const TextureRef& use, bool srgb);
@@ -37,9 +49,9 @@ private:
     float medianDensity_ = 0;
     gl::Buffer vertices_, indices_, materials_;
     gl::VertexArray vertexArray_;
-    gl::Texture white_;
     std::map<std::pair<int, bool>, gl::Texture> loaded_; // by Scene::textures and whether it is sRGB
     std::vector<MaterialTextures> textures_;             // the default material's last
+    uint64_t version_ = newVersion();
 };
 
 } // namespace relume

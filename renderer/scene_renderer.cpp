@@ -1,103 +1,96 @@
 #include "renderer/scene_renderer.h"
 
-#include "renderer/exposure.h"
 #include "renderer/frustum.h"
 #include "renderer/gl/debug.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <string>
 
 namespace relume {
 namespace {
 
-constexpr uint32_t kMeterCells =
-    64; // along each side: few to read back, and the picture's parts are still told apart
-
 // Uniforms, as the shaders number them.
-constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6, kPreScale = 7,
-                kMedianDensity = 8, kHasLightmap = 9;
-constexpr GLint kExposure = 0, kTone = 1, kLinear = 2, kBackground = 3;
+constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6,
+                kMeterScale = 7, kMedianDensity = 8, kExposure = 9, kUnit = 10, kRangeLow = 11,
+                kRangeHigh = 12;
+constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye = 3;
 constexpr GLuint kLightmapUnit = 3;
+// Keys of programs; those of the scene are below.
+constexpr uint32_t kLineProgram = 1u << 30, kVoxelProgram = 1u << 31;
 
-/// Names the commands issued while it exists, for captures and debug messages.
-class Group {
-public:
-    explicit Group(const char* name) { glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name); }
-    ~Group() { glPopDebugGroup(); }
-    Group(const Group&) = delete;
-    Group& operator=(const Group&) = delete;
-};
+constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
 
-// Brings the light of any unit near 1, so that half floats hold lamps and shadows alike.
-float preScaleOf(const LightmapTexture& lightmap) {
+// Brings the light of any unit near 1, where the meter's scale has its middle.
+float meterScaleOf(const LightmapTexture& lightmap) {
     const float mean = shader::luminance(lightmap.ambient);
     return mean > 0.0f && std::isfinite(mean) ? 1.0f / mean : 1.0f;
 }
 
-void drawScreen(const gl::Program& program, const gl::VertexArray& screen) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
-    program.use();
-    glBindVertexArray(screen.get());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+// Before anything was measured: the mean light on a surface of albedo one half is a middle grey.
+float guessExposure(const LightmapTexture& lightmap) {
+    constexpr float kMiddleGrey = 0.18f, kAlbedo = 0.5f;
+    return std::log2(kMiddleGrey / kAlbedo * meterScaleOf(lightmap));
 }
 
-} // namespace
-
-SceneRenderer::SceneRenderer(uint32_t samples) : samples_(samples > 1 ? samples : 0) {
-    gl::requireOpenGl45();
-    GLint most = 0;
-    glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &most);
-    samples_ = std::min(samples_, static_cast<uint32_t>(most));
-    const std::string samplesText = "SAMPLES=" + std::to_string(samples_);
-    const std::string cellsText = "kMeterCells=" + std::to_string(kMeterCells);
-    sceneProgram({}); // what is wrong with it shows now
-    meterProgram_ = gl::Program({.vertex = "gl/screen.vert",
-                                 .fragment = "gl/meter.frag",
-                                 .definitions = {samplesText, cellsText},
-                                 .name = "meter"});
-    displayProgram_ = gl::Program({.vertex = "gl/screen.vert",
-                                   .fragment = "gl/display.frag",
-                                   .definitions = {samplesText},
-                                   .name = "display"});
-    screen_ = gl::VertexArray({.attributes = {}, .name = "screen"});
-    meter_ =
-        gl::Framebuffer({.width = kMeterCells, .height = kMeterCells, .color = GL_RGBA32F, .name = "meter"});
+float farthest(const Box& box, const glm::vec3& eye) {
+    const glm::vec3 reach = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
+    return glm::dot(reach, reach);
 }
 
-const gl::Program& SceneRenderer::sceneProgram(const DrawSettings& settings) {
-    gl::Program& program = scenePrograms_[{settings.view, settings.filter}];
-    if (program.get() == 0) {
-        const auto number = [](auto value) { return std::to_string(static_cast<uint32_t>(value)) + "u"; };
-        program = gl::Program(
-            {.vertex = "gl/scene.vert",
-             .fragment = "gl/scene.frag",
-             .definitions = {"VIEW=" + number(settings.view), "FILTER=" + number(settings.filter)},
-             .name = "scene"});
+bool fetchesAlbedo(View view) {
+    return view == View::Lit || view == View::Albedo;
+}
+
+bool fetchesEmission(View view) {
+    return view == View::Lit || view == View::Emission;
+}
+
+/// What a variant of scene.frag is compiled for, in the order of its definitions.
+struct Variant {
+    uint32_t view = 0, filter = 0, tone = 0, base = 0, emission = 0, metallic = 0, masked = 0, mapped = 0,
+             selected = 0, filled = 0;
+
+    uint32_t key() const {
+        return view | filter << 5 | tone << 7 | base << 9 | emission << 10 | metallic << 11 | masked << 12 |
+               mapped << 13 | selected << 15 | filled << 16;
     }
-    return program;
+    std::vector<std::string> definitions() const {
+        const auto define = [](const char* name, uint32_t value) {
+            return std::string(name) + "=" + std::to_string(value) + "u";
+        };
+        return {define("VIEW", view),     define("FILTER", filter),     define("TONE", tone),
+                define("BASE", base),     define("EMISSION", emission), define("METALLIC", metallic),
+                define("MASKED", masked), define("MAPPED", mapped),     define("SELECTED", selected),
+                define("FILLED", filled)};
+    }
+};
+
+// No more of them than there are different programs: what a view does not look at is left out.
+Variant variantOf(const DrawSettings& settings, const SceneDraw& draw,
+                  const SceneGpu::MaterialTextures& textures, const LightmapTexture& lightmap) {
+    const View view = settings.view;
+    const bool lightless = readsLightmap(view) && lightmap.texture == 0;
+    Variant variant;
+    variant.view = static_cast<uint32_t>(view);
+    if (readsLightmap(view)) variant.filter = static_cast<uint32_t>(settings.filter);
+    if (showsLight(view)) variant.tone = static_cast<uint32_t>(settings.tone);
+    variant.masked = textures.masked ? 1 : 0;
+    variant.base = textures.base != 0 && (fetchesAlbedo(view) || textures.masked) ? 1 : 0;
+    variant.emission = textures.emission != 0 && fetchesEmission(view) ? 1 : 0;
+    variant.metallic = textures.metallic != 0 && fetchesAlbedo(view) ? 1 : 0;
+    variant.filled = readsLightmap(view) && lightmap.filled ? 1 : 0;
+    variant.mapped = lightless ? shader::kMappedNone : draw.mapped;
+    variant.selected =
+        settings.selected >= 0 && draw.instance == static_cast<uint32_t>(settings.selected) ? 1 : 0;
+    return variant;
 }
 
-void SceneRenderer::resize(const Target& target) {
-    if (picture_.get() != 0 && picture_.width() == target.width && picture_.height() == target.height) return;
-    picture_ = {}; // before the new one takes its memory
-    picture_ = gl::Framebuffer({.width = target.width,
-                                .height = target.height,
-                                .color = GL_RGBA16F,
-                                .depth = GL_DEPTH_COMPONENT32F,
-                                .samples = samples_,
-                                .name = "picture"});
-}
-
-void SceneRenderer::drawScene(const Frame& frame, float preScale) {
-    const Group group("scene");
-    const float aspect = static_cast<float>(picture_.width()) / static_cast<float>(picture_.height());
-    const glm::mat4 viewProjection = projectionMatrix(frame.camera, aspect) * viewMatrix(frame.camera);
-    glBindFramebuffer(GL_FRAMEBUFFER, picture_.get());
-    glViewport(0, 0, static_cast<GLsizei>(picture_.width()), static_cast<GLsizei>(picture_.height()));
+// Depth is reversed: 1 near, 0 infinitely far.
+void beginSurface(const gl::Framebuffer& surface, const glm::vec3& background) {
+    glBindFramebuffer(GL_FRAMEBUFFER, surface.get());
+    glViewport(0, 0, static_cast<GLsizei>(surface.width()), static_cast<GLsizei>(surface.height()));
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
@@ -105,81 +98,268 @@ void SceneRenderer::drawScene(const Frame& frame, float preScale) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
     glFrontFace(GL_CCW);
     glCullFace(GL_BACK);
-    const std::array<float, 4> nothing = {0, 0, 0, 0};
+    const std::array<float, 4> color = {background.r, background.g, background.b, 0.0f}; // no light
     const float farAway = 0;
-    glClearNamedFramebufferfv(picture_.get(), GL_COLOR, 0, nothing.data());
-    glClearNamedFramebufferfv(picture_.get(), GL_DEPTH, 0, &farAway);
+    glClearNamedFramebufferfv(surface.get(), GL_COLOR, 0, color.data());
+    glClearNamedFramebufferfv(surface.get(), GL_DEPTH, 0, &farAway);
+}
 
-    const gl::Program& program = sceneProgram(frame.settings);
-    const auto size = static_cast<float>(frame.lightmap.size);
-    program.set(kViewProjection, viewProjection);
+} // namespace
+
+SceneRenderer::SceneRenderer(uint32_t samples, Metering metering)
+    : metering_((gl::requireOpenGl45(), metering)), empty_({.attributes = {}, .name = "empty"}) {
+    setSamples(samples);
+    // What is wrong with it shows now.
+    const DrawSettings usual;
+    const Variant plain{.filter = static_cast<uint32_t>(usual.filter),
+                        .tone = static_cast<uint32_t>(usual.tone),
+                        .mapped = shader::kMappedAll,
+                        .filled = 1};
+    programs_.get(plain.key(), [&]() -> gl::Program::Desc {
+        return {.vertex = "gl/scene.vert",
+                .fragment = "gl/scene.frag",
+                .definitions = plain.definitions(),
+                .name = "scene"};
+    });
+}
+
+void SceneRenderer::setSamples(uint32_t samples) {
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &most);
+    const uint32_t wanted = samples > 1 ? std::min(samples, static_cast<uint32_t>(most)) : 0;
+    if (wanted == samples_) return;
+    samples_ = wanted;
+    multisampled_ = {};
+    picture_ = {};
+    shown_.reset();
+}
+
+void SceneRenderer::reload() {
+    // Both or none: the meter's few programs are made twice where the scene's fail.
+    gl::ProgramCache programs = programs_.reloaded();
+    meter_.reload();
+    programs_ = std::move(programs);
+    shown_.reset();
+}
+
+const gl::Program& SceneRenderer::sceneProgram(const Frame& frame, const SceneDraw& draw) {
+    const Variant variant =
+        variantOf(frame.settings, draw, frame.scene.textures(draw.material), frame.lightmap);
+    return programs_.get(variant.key(), [&]() -> gl::Program::Desc {
+        return {.vertex = "gl/scene.vert",
+                .fragment = "gl/scene.frag",
+                .definitions = variant.definitions(),
+                .name = "scene"};
+    });
+}
+
+void SceneRenderer::resize(uint32_t width, uint32_t height) {
+    if (picture_.get() != 0 && picture_.width() == width && picture_.height() == height) return;
+    multisampled_ = {}; // before the new ones take their memory
+    picture_ = {};
+    constexpr GLenum kDepth = GL_DEPTH_COMPONENT32F;
+    if (samples_ > 0)
+        multisampled_ = gl::Framebuffer(
+            {.width = width, .height = height, .depth = kDepth, .samples = samples_, .name = "samples"});
+    picture_ = gl::Framebuffer(
+        {.width = width, .height = height, .depth = samples_ > 0 ? 0 : kDepth, .name = "picture"});
+}
+
+void SceneRenderer::setUniforms(const gl::Program& program, const Frame& frame, const Pass& pass) const {
+    program.set(kViewProjection, pass.viewProjection);
     program.set(kEye, frame.camera.eye);
     program.set(kAmbient, frame.lightmap.ambient);
     program.set(kLightmapSize, static_cast<GLuint>(frame.lightmap.size));
-    program.set(kHasLightmap, static_cast<GLuint>(frame.lightmap.texture != 0 ? 1 : 0));
-    program.set(kPreScale, preScale);
-    program.set(kMedianDensity, frame.scene.medianDensity() * size);
-    program.use();
+    program.set(kMeterScale, pass.meterScale);
+    program.set(kMedianDensity, frame.scene.medianDensity() * static_cast<float>(frame.lightmap.size));
+    program.set(kExposure, std::exp2(pass.exposure));
+    program.set(kUnit, frame.lightmap.unit);
+    program.set(kRangeLow, frame.settings.rangeLow);
+    program.set(kRangeHigh, frame.settings.rangeHigh);
+}
+
+void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
     glBindVertexArray(frame.scene.vertexArray().get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, frame.scene.materials().get());
     glBindTextureUnit(kLightmapUnit, frame.lightmap.texture);
 
-    const Frustum frustum(viewProjection);
-    counts_ = {};
-    uint32_t material = 0xffffffffu;
-    for (const SceneDraw& draw : frame.scene.draws()) {
-        if (!frustum.sees(draw.bounds)) {
-            ++counts_.culled;
-            continue;
+    const Frustum frustum(pass.viewProjection);
+    visible_.clear();
+    for (const SceneDraw& draw : frame.scene.draws())
+        if (frustum.sees(draw.bounds)) visible_.push_back(&draw);
+    counts_.drawn = static_cast<uint32_t>(visible_.size());
+    counts_.culled = static_cast<uint32_t>(frame.scene.draws().size()) - counts_.drawn;
+    // What is hidden is then not shaded. By the far ends: a room is behind what stands in it.
+    std::stable_sort(visible_.begin(), visible_.end(), [&](const SceneDraw* a, const SceneDraw* b) {
+        return farthest(a->bounds, frame.camera.eye) < farthest(b->bounds, frame.camera.eye);
+    });
+
+    std::vector<const gl::Program*> ready; // have this frame's uniforms
+    for (const SceneDraw* draw : visible_) {
+        const gl::Program& program = sceneProgram(frame, *draw);
+        if (std::find(ready.begin(), ready.end(), &program) == ready.end()) {
+            ready.push_back(&program);
+            setUniforms(program, frame, pass);
         }
-        ++counts_.drawn;
-        if (draw.material != material) {
-            material = draw.material;
-            const SceneGpu::MaterialTextures& textures = frame.scene.textures(material);
-            program.set(kMaterial, static_cast<GLuint>(material));
-            glBindTextureUnit(0, textures.base);
-            glBindTextureUnit(1, textures.emission);
-            glBindTextureUnit(2, textures.metallic);
-        }
-        if (draw.doubleSided)
+        const SceneGpu::MaterialTextures& textures = frame.scene.textures(draw->material);
+        program.set(kMaterial, static_cast<GLuint>(draw->material));
+        program.use();
+        glBindTextureUnit(0, textures.base);
+        glBindTextureUnit(1, textures.emission);
+        glBindTextureUnit(2, textures.metallic);
+        if (draw->doubleSided)
             glDisable(GL_CULL_FACE);
         else
             glEnable(GL_CULL_FACE);
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.indexCount), GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(sizeof(uint32_t) * size_t{draw.firstIndex}));
+        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw->indexCount), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(sizeof(uint32_t) * size_t{draw->firstIndex}));
     }
 }
 
-float SceneRenderer::measureExposure(float preScale) {
-    const Group group("meter");
-    glBindFramebuffer(GL_FRAMEBUFFER, meter_.get());
-    glViewport(0, 0, kMeterCells, kMeterCells);
-    glBindTextureUnit(0, picture_.color().get());
-    drawScreen(meterProgram_, screen_);
-    std::vector<glm::vec4> cells(size_t{kMeterCells} * kMeterCells);
-    glGetTextureImage(meter_.color().get(), 0, GL_RGBA, GL_FLOAT,
-                      static_cast<GLsizei>(cells.size() * sizeof(glm::vec4)), cells.data());
-    return automaticExposure(cells) + std::log2(preScale);
+void SceneRenderer::drawVoxels(const Frame& frame, const Pass& pass) {
+    const gl::Program& program = programs_.get(kVoxelProgram, []() -> gl::Program::Desc {
+        return {.vertex = "gl/voxel.vert", .fragment = "gl/voxel.frag", .definitions = {}, .name = "voxels"};
+    });
+    const VoxelDraw& voxels = *frame.voxels;
+    const bool orthographic = frame.camera.halfHeight > 0.0f;
+    const glm::vec4 eye =
+        orthographic ? glm::vec4(-forward(frame.camera), 0.0f) : glm::vec4(frame.camera.eye, 1.0f);
+    program.set(kViewProjection, pass.viewProjection);
+    program.set(kVoxelEdge, voxels.edge());
+    program.set(kVoxelColored, static_cast<GLuint>(voxels.colored() ? 1 : 0));
+    program.set(kVoxelEye, eye);
+    program.use();
+    counts_ = {};
+    if (voxels.count() == 0) return;
+    constexpr GLsizei kCorners = 18; // of three faces
+    glEnable(GL_CULL_FACE);
+    glBindVertexArray(empty_.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, voxels.voxels().get());
+    glDrawArraysInstanced(GL_TRIANGLES, 0, kCorners, static_cast<GLsizei>(voxels.count()));
 }
 
-void SceneRenderer::draw(const Frame& frame, const Target& target) {
-    resize(target);
-    const bool linear = showsLight(frame.settings.view);
-    const float preScale = linear ? preScaleOf(frame.lightmap) : 1.0f;
-    drawScene(frame, preScale);
-    if (linear) exposure_ = frame.settings.exposure ? *frame.settings.exposure : measureExposure(preScale);
+void SceneRenderer::drawLines(const Frame& frame, const Pass& pass) {
+    if (frame.lines->vertexCount() == 0) return;
+    const gl::Program& program = programs_.get(kLineProgram, []() -> gl::Program::Desc {
+        return {.vertex = "gl/line.vert", .fragment = "gl/line.frag", .definitions = {}, .name = "lines"};
+    });
+    constexpr float kHidden = 0.2f; // opacity of what surfaces hide
+    program.set(kViewProjection, pass.viewProjection);
+    program.use();
+    glBindVertexArray(frame.lines->vertexArray().get());
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); // the meter's alpha stays
+    glDepthMask(GL_FALSE);
+    for (const bool hidden : {true, false}) {
+        program.set(kLineOpacity, hidden ? kHidden : 1.0f);
+        glDepthFunc(hidden ? GL_LEQUAL : GL_GREATER);
+        glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(frame.lines->vertexCount()));
+    }
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
 
-    const Group group("display");
+void SceneRenderer::render(const Frame& frame, float exposure) {
+    const gl::Timer::Scope scope(timer_, "scene");
+    const float aspect = static_cast<float>(picture_.width()) / static_cast<float>(picture_.height());
+    const Pass pass{.viewProjection = projectionMatrix(frame.camera, aspect) * viewMatrix(frame.camera),
+                    .meterScale = meterScaleOf(frame.lightmap),
+                    .exposure = exposure};
+    beginSurface(surface(), frame.settings.background);
+    if (frame.voxels != nullptr)
+        drawVoxels(frame, pass);
+    else
+        drawScene(frame, pass);
+    if (frame.lines != nullptr) drawLines(frame, pass);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+}
+
+void SceneRenderer::resolve() {
+    if (samples_ == 0) return;
+    const gl::Timer::Scope scope(timer_, "resolve");
+    const auto width = static_cast<GLint>(picture_.width()), height = static_cast<GLint>(picture_.height());
+    glBlitNamedFramebuffer(multisampled_.get(), picture_.get(), 0, 0, width, height, 0, 0, width, height,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+float SceneRenderer::exposureFor(const Frame& frame) const {
+    if (frame.settings.exposure) return *frame.settings.exposure;
+    if (!measured_) return guessExposure(frame.lightmap);
+    // Less than can be seen is no reason to draw again.
+    return std::abs(*measured_ - exposure_) < kSameExposure ? exposure_ : *measured_;
+}
+
+SceneRenderer::Shown SceneRenderer::describe(const Frame& frame, const Target& target) const {
+    return {.scene = frame.scene.version(),
+            .lines = frame.lines != nullptr ? frame.lines->version() : 0,
+            .voxels = frame.voxels != nullptr ? frame.voxels->version() : 0,
+            .lightmap = frame.lightmap,
+            .camera = frame.camera,
+            .settings = frame.settings,
+            .width = target.width,
+            .height = target.height,
+            .exposure = showsLight(frame.settings.view) ? exposureFor(frame) : 0.0f};
+}
+
+void SceneRenderer::takeMeasurement(bool wait) {
+    if (const std::optional<float> result = meter_.result(wait)) measured_ = result;
+}
+
+void SceneRenderer::measure(const Frame& frame) {
+    // What was asked for before must arrive, or a device that is behind would never be measured.
+    unmeasured_ = meter_.pending();
+    if (unmeasured_) return;
+    const gl::Timer::Scope scope(timer_, "meter");
+    meter_.measure(surface(), samples_, meterScaleOf(frame.lightmap));
+}
+
+bool SceneRenderer::draw(const Frame& frame, const Target& target) {
+    const bool automatic = showsLight(frame.settings.view) && !frame.settings.exposure && !frame.voxels;
+    takeMeasurement(false);
+    Shown wanted = describe(frame, target);
+    const bool same = shown_ == wanted && frame.lightmap.version != 0;
+    if (!same) {
+        shown_.reset(); // none where the rest fails
+        resize(target.width, target.height);
+        render(frame, wanted.exposure);
+        unmeasured_ = automatic;
+        if (automatic) measure(frame);
+        if (automatic && metering_ == Metering::Wait) {
+            takeMeasurement(true);
+            wanted.exposure = *measured_;
+            render(frame, wanted.exposure);
+        }
+        resolve();
+        if (showsLight(frame.settings.view)) exposure_ = wanted.exposure;
+        shown_ = wanted;
+    } else if (automatic && unmeasured_) {
+        measure(frame);
+    }
+    present(target);
+    return !same;
+}
+
+void SceneRenderer::present(const Target& target) {
+    if (picture_.get() == 0) return;
+    const gl::Timer::Scope scope(timer_, "present");
+    const bool sameSize = picture_.width() == target.width && picture_.height() == target.height;
+    glDisable(GL_SCISSOR_TEST);
+    glBlitNamedFramebuffer(picture_.get(), target.framebuffer, 0, 0, static_cast<GLint>(picture_.width()),
+                           static_cast<GLint>(picture_.height()), 0, 0, static_cast<GLint>(target.width),
+                           static_cast<GLint>(target.height), GL_COLOR_BUFFER_BIT,
+                           sameSize ? GL_NEAREST : GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    glViewport(0, 0, static_cast<GLsizei>(target.width), static_cast<GLsizei>(target.height));
-    glBindTextureUnit(0, picture_.color().get());
-    displayProgram_.set(kExposure, std::exp2(exposure_) / preScale);
-    displayProgram_.set(kTone, static_cast<GLuint>(frame.settings.tone));
-    displayProgram_.set(kLinear, static_cast<GLuint>(linear ? 1 : 0));
-    displayProgram_.set(kBackground, frame.settings.background);
-    drawScreen(displayProgram_, screen_);
+}
+
+bool SceneRenderer::adapting() const {
+    if (!shown_ || shown_->settings.exposure || !showsLight(shown_->settings.view)) return false;
+    return meter_.pending() || unmeasured_ ||
+           (measured_ && std::abs(*measured_ - exposure_) >= kSameExposure);
 }
 
 } // namespace relume

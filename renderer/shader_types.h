@@ -15,6 +15,7 @@
 namespace relume::shader {
 using namespace glm; // GLSL's names: vec3, uint, dot, ...
 using glm::uint;
+#include "shaders/lib/heat.glsl"
 #include "shaders/lib/tone.glsl"
 #include "shaders/lib/scene_material.glsl"
 

@@ -43,6 +43,7 @@ CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
 CONST uint kLinkDark =
     0xfffffffdu; // hit geometry that is no receiver (no lightmap UV), or the back of a double-sided one
 CONST uint kNoPatch = 0xffffffffu; // texel -> patch map: empty
+CONST uint kNoTexel = 0xffffffffu; // patch -> texel: not shown
 
 // What the tracers and the gather read of a patch. Positions are texel centres on the surface.
 struct Patch {
@@ -438,6 +439,30 @@ struct SmoothPush {
     uint reach;               // [texels], 0: no smoothing
     float sigma;              // [texels]
     float scale, directScale; // from a replicate's sum to its mean
+};
+// What is shown is copied in regions of kRegion x kRegion texels: 32 KiB of halves each.
+CONST uint kRegion = 64u;
+CONST uint kSumChunks = 1024u; // chunks whose sums are added up to one
+struct PublishPush {
+    ADDRESS values;      // vec4[], per patch
+    ADDRESS patchTexels; // uint[], per patch: where it is shown; kNoTexel
+    ADDRESS fills;       // uint[]: texel << 8 | bits of the neighbours that it is filled from
+    ADDRESS starts;      // uint[rings * chunkCount + 1]: where the fills of a ring and chunk begin
+    ADDRESS chunks;      // uint[]: those that changed
+    ADDRESS texels;      // uvec2[size * size]: four halves
+    ADDRESS changed;     // uint[], per region: set to 1 where a texel is another one than before
+    ADDRESS sums;        // vec4[chunkCount]: values of shown patches, and their number
+    uint first;          // of chunks
+    uint count;
+    uint chunkCount; // of all
+    uint size;       // lightmap edge [texels]
+    uint ring;       // 0: patches; else texels that are filled
+    float scale;     // on values
+};
+struct PublishSumPush {
+    ADDRESS sums;   // vec4[chunkCount]
+    ADDRESS totals; // vec4[ceil(chunkCount / kSumChunks)]
+    uint chunkCount;
 };
 struct FinishPush {
     ADDRESS emission;

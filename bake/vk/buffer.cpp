@@ -54,7 +54,9 @@ void Buffer::create(const Desc& desc) {
     vkGetBufferMemoryRequirements(device_->handle(), buffer_, &needs);
 
     const uint32_t type = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
-    memory_ = allocateMemory(*device_, needs.size, type, true, what);
+    VkMemoryAllocateFlagsInfo byAddress{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
+    byAddress.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    memory_ = allocateMemory(*device_, needs.size, type, &byAddress, what);
     VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_, 0));
 
     const VkMemoryPropertyFlags properties = device_->memoryProperties(type);

@@ -98,6 +98,7 @@ Device::Device(const Desc& desc) {
             VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_));
         }
         choose(desc.select);
+        if (desc.chosen) desc.chosen(info_);
         createDevice();
         pipelineCache_ = loadPipelineCache(device_, info_);
     } catch (...) {

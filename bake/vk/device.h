@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -60,6 +61,9 @@ public:
                             // of the name
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
+        // Told before the logical device is made: a software driver's threads inherit the priority that the
+        // calling thread has then.
+        std::function<void(const DeviceInfo&)> chosen = {};
     };
     /// Throws Error: no loader, no driver, no such device, what it lacks. Devices alive at one time must
     /// agree on `validation`: the function pointers are per process.

@@ -91,7 +91,7 @@ void Image2D::create(const Desc& desc) {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device_->handle(), image_, &needs);
     memory_ =
-        allocateMemory(*device_, needs.size, device_->deviceMemoryType(needs.memoryTypeBits), false, what);
+        allocateMemory(*device_, needs.size, device_->deviceMemoryType(needs.memoryTypeBits), nullptr, what);
     VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_, 0));
     device_->setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), desc.name);
 

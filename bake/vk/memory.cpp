@@ -14,15 +14,13 @@ void checkMemory(const Device& device, VkResult result, const char* call, const 
     check(result, call);
 }
 
-VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, bool byAddress,
+VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, const void* chain,
                               const std::string& what) {
     if (type == ~0u)
         throw Error(device.info().name + ": no memory type for " + what + ": try another --device");
     if (size > device.heapSize(type)) // asking all the same is against Vulkan's rules
         checkMemory(device, VK_ERROR_OUT_OF_DEVICE_MEMORY, "", what);
-    VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
-    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, byAddress ? &flags : nullptr};
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, chain};
     info.allocationSize = size;
     info.memoryTypeIndex = type;
     VkDeviceMemory memory = VK_NULL_HANDLE;

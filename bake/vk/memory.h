@@ -6,9 +6,9 @@
 
 namespace relume::vk {
 
-/// Allocates memory of `type` (~0u: there is none). Throws Error naming `what` ("buffer 'bits' of 3 MiB") and
-/// the free memory.
-VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, bool byAddress,
+/// Allocates memory of `type` (~0u: there is none). chain: what VkMemoryAllocateInfo is followed by. Throws
+/// Error naming `what` ("buffer 'bits' of 3 MiB") and the free memory.
+VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, const void* chain,
                               const std::string& what);
 /// check(), but out of memory names `what`.
 void checkMemory(const Device& device, VkResult result, const char* call, const std::string& what);

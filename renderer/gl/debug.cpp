@@ -61,6 +61,11 @@ std::string describeContext() {
            std::to_string(version % 10);
 }
 
+bool isSoftware() {
+    const std::string renderer = textOf(GL_RENDERER);
+    return renderer.find("llvmpipe") != std::string::npos || renderer.find("softpipe") != std::string::npos;
+}
+
 void requireOpenGl45() {
     if (epoxy_gl_version() >= 45) return;
     throw Error(describeContext() +

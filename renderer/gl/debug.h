@@ -15,6 +15,9 @@ uint32_t debugMessageCount();
 /// The current context's renderer and version: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
 std::string describeContext();
 
+/// Whether the current context draws on the host: Mesa's llvmpipe or softpipe.
+bool isSoftware();
+
 /// Throws Error when the current context is older than OpenGL 4.5; the message names the mend.
 void requireOpenGl45();
 

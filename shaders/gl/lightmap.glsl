@@ -1,12 +1,14 @@
-// Reading the lightmap: lighting in RGB, coverage in A; empty texels (A 0) are left out of every filter, so that a chart's
-// edge stays as bright as its inside.
+// Reading the lightmap: lighting or another quantity in RGB, coverage in A; empty texels (A 0) are left out of every filter, so
+// that a chart's edge stays as bright as its inside.
 
 layout(binding = 3) uniform sampler2D lightmap;
 
-// Lighting and the share of the weights that fell on texels with light.
+// RGB is premultiplied by A, the share of the weights that fell on texels with light. FILLED: no texel that a filter reaches is
+// empty, so nothing needs to look.
 vec4 bilinearTap(vec2 uv) {
-    vec2 size = vec2(textureSize(lightmap, 0));
     vec3 light = textureLod(lightmap, uv, 0.0).rgb;
+    if (FILLED != 0) return vec4(light, 1.0);
+    vec2 size = vec2(textureSize(lightmap, 0));
     vec4 filled = vec4(greaterThan(textureGather(lightmap, uv, 3), vec4(0.0)));
     if (all(equal(filled, vec4(1.0)))) return vec4(light, 1.0);
     vec2 f = fract(uv * size - 0.5);
@@ -32,11 +34,11 @@ vec4 bicubicTap(vec2 uv) {
 
 vec4 nearestTap(vec2 uv) {
     ivec2 size = textureSize(lightmap, 0);
-    vec4 texel = texelFetch(lightmap, clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1), 0);
+    vec4 texel = texelFetch(lightmap, clamp(ivec2(floor(uv * vec2(size))), ivec2(0), size - 1), 0);
     return texel.a > 0.0 ? vec4(texel.rgb, 1.0) : vec4(0.0);
 }
 
-// Lighting [cd/m^2] at uv; `otherwise` where no texel near has any.
+// The quantity at uv; `otherwise` where no texel near has any.
 vec3 sampleLightmap(vec2 uv, uint filterKind, vec3 otherwise) {
     vec4 tap = filterKind == kFilterNearest    ? nearestTap(uv)
                : filterKind == kFilterBilinear ? bilinearTap(uv)

@@ -5,7 +5,8 @@
 
 out vec4 result;
 
-const float kDark = 1e-6; // of preScale's unit: no light at all
+// [pixels] in each row and column: a ninth of the work, and of large pictures still twenty in each cell.
+const int kStep = 3;
 
 void main() {
     ivec2 size = pictureSize();
@@ -13,11 +14,12 @@ void main() {
     ivec2 cell = ivec2(gl_FragCoord.xy);
     ivec2 first = ivec2(vec2(cell) / cells * vec2(size)), end = ivec2(vec2(cell + 1) / cells * vec2(size));
     vec3 sums = vec3(0.0);
-    for (int y = first.y; y < end.y; ++y) {
-        for (int x = first.x; x < end.x; ++x) {
-            vec4 pixel = fetchSample(ivec2(x, y), 0);
-            float light = luminance(pixel.rgb);
-            if (pixel.a > 0.0 && light > kDark) sums += vec3(log2(light), light, 1.0);
+    for (int y = first.y; y < end.y; y += kStep) {
+        for (int x = first.x; x < end.x; x += kStep) {
+            float code = 255.0 * fetchSample(ivec2(x, y), 0).a;
+            if (code < 0.5) continue;
+            float bright = meterLog2(code);
+            sums += vec3(bright, exp2(bright), 1.0);
         }
     }
     result = vec4(sums, 0.0);

@@ -1,9 +1,11 @@
-// A fragment of the scene in view VIEW with lightmap filter FILTER. Lit views are linear light times preScale, which keeps any unit within half
-// floats; the others are colours as they are to be displayed.
+// A fragment of the scene in view VIEW with lightmap filter FILTER and tone mapping TONE. What a material does not need is not
+// fetched: BASE, EMISSION, METALLIC say which textures it has, MASKED whether it has holes, MAPPED whether there are lightmap UVs;
+// SELECTED tints.
 
-#include "lib/tone.glsl"
 #include "lib/scene_material.glsl"
+#include "gl/light.glsl"
 #include "gl/lightmap.glsl"
+#include "gl/inspect.glsl"
 
 layout(binding = 0) uniform sampler2D baseTexture;
 layout(binding = 1) uniform sampler2D emissionTexture;
@@ -12,11 +14,10 @@ layout(std430, binding = 0) readonly buffer Materials { SceneMaterial materials[
 
 layout(location = 1) uniform uint material;
 layout(location = 4) uniform vec3 eye;
-layout(location = 5) uniform vec3 ambient;       // lighting where there is no lightmap [cd/m^2]
-layout(location = 6) uniform uint lightmapSize;  // [texels]
-layout(location = 7) uniform float preScale;
+layout(location = 5) uniform vec3 ambient;        // lighting where there is no lightmap [cd/m^2]
+layout(location = 6) uniform uint lightmapSize;   // [texels]
 layout(location = 8) uniform float medianDensity; // of the scene, in texels per metre at lightmapSize
-layout(location = 9) uniform uint hasLightmap;    // 0: there is no light yet
+layout(location = 10) uniform float unit;         // of the lightmap's light [cd/m^2]
 
 in vec3 fragPosition;
 in vec3 fragNormal;
@@ -27,22 +28,43 @@ in vec2 fragLightmapUv;
 in vec4 fragColor;
 flat in uvec2 fragIds;
 
-out vec4 result; // a: 1 where the scene is
+out vec4 result; // as displayed; a: for the meter
 
 // Constants, not uniforms: a software device would go through all branches.
 const uint view = VIEW;
 const uint filterKind = FILTER;
-const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4); // display; of geometry without lightmap UVs
-const float kTile = 8.0;                       // texels, the unit of the baker's order
+const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4);   // display; of geometry without lightmap UVs
+const vec3 kSelected = vec3(1.0, 0.55, 0.1);     // display
+const float kTile = 8.0;                         // texels, the unit of the baker's order
+
+bool mapped() {
+    return MAPPED == kMappedAll || (MAPPED == kMappedSome && fragIds.y != 0u);
+}
 
 // Light from the viewer's side, so that shapes show where there is no other light.
 float headlight() {
     return 0.6 + 0.4 * abs(dot(normalize(fragNormal), normalize(eye - fragPosition)));
 }
 
-vec3 lighting(bool mapped) {
+vec3 lighting() {
+    if (MAPPED == kMappedNone) return ambient * headlight();
+    if (MAPPED == kMappedAll) return unit * sampleLightmap(fragLightmapUv, filterKind, ambient / unit);
     vec3 flatLight = ambient * headlight();
-    return mapped && hasLightmap != 0u ? sampleLightmap(fragLightmapUv, filterKind, flatLight) : flatLight;
+    return mapped() ? unit * sampleLightmap(fragLightmapUv, filterKind, flatLight / unit) : flatLight;
+}
+
+vec4 baseColor(SceneMaterial m) {
+    vec4 base = m.baseColor * fragColor;
+    return BASE != 0 ? base * texture(baseTexture, fragBaseUv) : base;
+}
+
+vec3 albedo(SceneMaterial m, vec3 base) {
+    vec2 metal = METALLIC != 0 ? texture(metallicTexture, fragMetallicUv).bg : vec2(1.0);
+    return diffuseAlbedo(base, m.metallic.x * metal.x, m.metallic.y * metal.y);
+}
+
+vec3 emission(SceneMaterial m) {
+    return EMISSION != 0 ? m.emission.rgb * texture(emissionTexture, fragEmissionUv).rgb : m.emission.rgb;
 }
 
 // Hues a golden angle apart: neighbours in number are far apart in colour.
@@ -62,7 +84,10 @@ vec3 checkerColor() {
 }
 
 // Blue: fewer texels per metre than the median, red: more; full colour at a factor of 4.
-vec3 densityColor(float density) {
+vec3 densityColor(vec2 tx, vec2 ty, vec3 px, vec3 py) {
+    float texels = float(lightmapSize) * sqrt(abs(tx.x * ty.y - tx.y * ty.x));
+    float metres = sqrt(length(cross(px, py)));
+    float density = texels / max(metres, 1e-30);
     float octaves = clamp(log2(max(density / medianDensity, 1e-6)) / 2.0, -1.0, 1.0);
     vec3 end = octaves < 0.0 ? vec3(0.15, 0.3, 0.85) : vec3(0.85, 0.2, 0.1);
     return mix(vec3(0.9), end, abs(octaves));
@@ -75,36 +100,41 @@ vec3 coverageColor() {
                             : vec3(0.85, 0.15, 0.15);
 }
 
-void main() {
-    SceneMaterial m = materials[material];
-    // Derivatives and mips need all fragments of a quad: no discard before them.
+vec3 inspectColor() {
+    vec2 texel = fragLightmapUv * vec2(textureSize(lightmap, 0));
+    vec3 none = view == kViewInspectHeat ? rangeLow : vec3(0.0);
+    return quantityColor(sampleLightmap(fragLightmapUv, filterKind, none), texel);
+}
+
+vec4 shown(SceneMaterial m, vec3 base) {
+    // Derivatives need all fragments of a quad: none in a branch.
     vec3 px = dFdx(fragPosition), py = dFdy(fragPosition);
     vec2 tx = dFdx(fragLightmapUv), ty = dFdy(fragLightmapUv);
-    vec4 base = m.baseColor * fragColor * texture(baseTexture, fragBaseUv);
-    vec3 emission = m.emission.rgb * texture(emissionTexture, fragEmissionUv).rgb;
-    vec4 metal = texture(metallicTexture, fragMetallicUv);
-    if (m.emission.a > 0.0 && base.a < m.emission.a) discard;
-
-    vec3 albedo = diffuseAlbedo(base.rgb, m.metallic.x * metal.b, m.metallic.y * metal.g);
-    bool mapped = fragIds.y != 0u;
-    vec3 color;
     switch (view) {
-    case kViewLit: color = (emission + albedo * lighting(mapped)) * preScale; break;
-    case kViewLighting: color = lighting(mapped) * preScale; break;
-    case kViewAlbedo: color = srgbEncode(clamp(albedo, 0.0, 1.0)); break;
-    case kViewEmission: color = emission * preScale; break;
-    case kViewNormal: color = 0.5 * normalize(fragNormal) + 0.5; break;
-    case kViewMaterial: color = idColor(material) * headlight(); break;
-    case kViewInstance: color = idColor(fragIds.x) * headlight(); break;
-    case kViewChecker: color = (mapped ? checkerColor() : kNoLightmap) * headlight(); break;
-    case kViewDensity: {
-        float texels = float(lightmapSize) * sqrt(abs(tx.x * ty.y - tx.y * ty.x));
-        float metres = sqrt(length(cross(px, py)));
-        color = (mapped ? densityColor(texels / max(metres, 1e-30)) : kNoLightmap) * headlight();
-        break;
+    case kViewLit: return displayedLight(emission(m) + albedo(m, base) * lighting());
+    case kViewLighting: return displayedLight(lighting());
+    case kViewEmission: return displayedLight(emission(m));
+    case kViewAlbedo: return vec4(srgbEncode(clamp(albedo(m, base), 0.0, 1.0)), 1.0);
+    case kViewNormal: return vec4(0.5 * normalize(fragNormal) + 0.5, 1.0);
+    case kViewMaterial: return vec4(idColor(material) * headlight(), 1.0);
+    case kViewInstance: return vec4(idColor(fragIds.x) * headlight(), 1.0);
+    default: break;
     }
-    default: color = (mapped && hasLightmap != 0u ? coverageColor() : kNoLightmap) * headlight(); break;
+    if (!mapped()) return vec4(kNoLightmap * headlight(), 1.0);
+    switch (view) {
+    case kViewChecker: return vec4(checkerColor() * headlight(), 1.0);
+    case kViewDensity: return vec4(densityColor(tx, ty, px, py) * headlight(), 1.0);
+    case kViewCoverage: return vec4(coverageColor() * headlight(), 1.0);
+    case kViewInspectColor: return displayedLight(unit * sampleLightmap(fragLightmapUv, filterKind, vec3(0.0)));
+    default: return vec4(inspectColor(), 1.0);
     }
-    const float largest = 6e4; // below the largest half float
-    result = vec4(clamp(color, vec3(0.0), vec3(largest)), 1.0);
+}
+
+void main() {
+    SceneMaterial m = materials[material];
+    vec4 base = baseColor(m);
+    vec4 color = shown(m, base.rgb);
+    if (SELECTED != 0) color.rgb = mix(color.rgb, kSelected, 0.35);
+    if (MASKED != 0 && base.a < m.emission.a) discard; // behind all look-ups: mips need all fragments of a quad
+    result = color;
 }

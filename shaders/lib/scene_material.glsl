@@ -11,11 +11,24 @@ CONST uint kViewInstance = 6u;
 CONST uint kViewChecker = 7u;   // lightmap texels as a checker, tiles of 8 x 8 tinted
 CONST uint kViewDensity = 8u;   // lightmap texels per metre against the scene's median
 CONST uint kViewCoverage = 9u;  // of the lightmap: patches, filled texels, empty ones
-CONST uint kViewCount = 10u;
+// Of a quantity that the baker put in the lightmap's place:
+CONST uint kViewInspectColor = 10u;    // light
+CONST uint kViewInspectRaw = 11u;      // RGB as displayed
+CONST uint kViewInspectPosition = 12u; // as a share of a range
+CONST uint kViewInspectNormal = 13u;
+CONST uint kViewInspectHeat = 14u;     // R on a scale of colours
+CONST uint kViewInspectLeaves = 15u;   // R log2 of the edge in texels, G weight in [0, 1]
+CONST uint kViewInspectMask = 16u;     // R 1 seen, 0 not; G form factor, of the largest one
+CONST uint kViewCount = 17u;
 
 CONST uint kFilterNearest = 0u;
 CONST uint kFilterBilinear = 1u;
 CONST uint kFilterBicubic = 2u;
+
+// What MAPPED says of a draw's triangles: whether they have lightmap UVs.
+CONST uint kMappedNone = 0u;
+CONST uint kMappedSome = 1u;
+CONST uint kMappedAll = 2u;
 
 // std430: vectors of four only.
 struct SceneMaterial {

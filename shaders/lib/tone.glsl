@@ -27,9 +27,9 @@ FUNCTION vec3 toneAces(vec3 linear) {
 }
 
 // AgX, base look [T. Sobotka 2022]: a log encoding from 2^-12.47393 to 2^4.026069 in inset primaries and a sigmoid, here the
-// polynomial of degree six that B. Wrensch fitted ["Minimal AgX Implementation" 2023], whose result is encoded by a power
-// of 2.2. Bright colours fade to white without a change of hue. linear to linear.
-FUNCTION vec3 toneAgx(vec3 linear) {
+// polynomial of degree six that B. Wrensch fitted ["Minimal AgX Implementation" 2023]. Bright colours fade to white without a
+// change of hue. linear to values encoded by a power of 2.2.
+FUNCTION vec3 agxEncoded(vec3 linear) {
     const mat3 inset = mat3(0.842479062f, 0.042328242f, 0.042375655f, 0.078433600f, 0.878468636f, 0.078433600f,
                             0.079223745f, 0.079166127f, 0.879142974f);
     const mat3 outset = mat3(1.196879005f, -0.052896852f, -0.052971636f, -0.098020881f, 1.151903130f, -0.098043450f,
@@ -39,8 +39,22 @@ FUNCTION vec3 toneAgx(vec3 linear) {
     vec3 x = clamp((log2(v) - lowest) / (highest - lowest), 0.0f, 1.0f);
     vec3 curve =
         (((((15.5f * x - 40.14f) * x + 31.96f) * x - 6.868f) * x + 0.4298f) * x + 0.1191f) * x - 0.00232f;
-    vec3 encoded = clamp(outset * curve, 0.0f, 1.0f);
-    return pow(encoded, vec3(2.2f));
+    return clamp(outset * curve, 0.0f, 1.0f);
+}
+
+// linear to linear.
+FUNCTION vec3 toneAgx(vec3 linear) {
+    return pow(agxEncoded(linear), vec3(2.2f));
+}
+
+// toneAgx in sRGB encoding with one power instead of two. Where sRGB is linear, below 10 of 255, a square stands for the power of
+// 2.2: within 0.3 of one step of 8 bits.
+FUNCTION vec3 toneAgxAsSrgb(vec3 linear) {
+    const float limit = 0.0727f; // its power of 2.2 is sRGB's limit, 0.0031308
+    vec3 encoded = agxEncoded(linear);
+    vec3 low = 12.92f * 0.5923f * encoded * encoded; // 0.5923: limit to the power of 0.2
+    vec3 high = 1.055f * pow(max(encoded, vec3(limit)), vec3(2.2f / 2.4f)) - 0.055f;
+    return mix(high, low, vec3(lessThanEqual(encoded, vec3(limit))));
 }
 
 // Light times exposure to linear values in [0, 1].
@@ -48,4 +62,18 @@ FUNCTION vec3 toneMap(vec3 linear, uint tone) {
     if (tone == kToneAces) return toneAces(linear);
     if (tone == kToneAgx) return toneAgx(linear);
     return clamp(linear, 0.0f, 1.0f);
+}
+
+// The same, sRGB encoded: what a screen takes.
+FUNCTION vec3 toneMapAsSrgb(vec3 linear, uint tone) {
+    return tone == kToneAgx ? toneAgxAsSrgb(linear) : srgbEncode(toneMap(linear, tone));
+}
+
+// Brightness in a picture's 8 bits for the meter: 0 no light, 1 to 255 an eighth of an EV each, from 2^-20 to 2^12.
+CONST float kMeterLowest = -20.0f, kMeterSteps = 8.0f;
+FUNCTION float meterCode(float light) {
+    return light > 1e-6f ? clamp(1.0f + kMeterSteps * (log2(light) - kMeterLowest), 1.0f, 254.5f) : 0.0f;
+}
+FUNCTION float meterLog2(float code) { // of one above 0
+    return (code - 1.0f) / kMeterSteps + kMeterLowest;
 }

@@ -276,10 +276,10 @@ TEST(Renderer, EveryViewIsAnotherPicture) {
     maker.quad({0, -1, 0.2f}, {1, 0, -0.2f}, {0, 2, 0}, maker.material(0.2f), {16, 32});
     const FloatImage lightmap = lightmapOf({0.3f, 0.2f, 0.5f, 1}, {0.9f, 0.8f, 0.4f, 1}, 12);
     std::vector<FloatImage> pictures;
-    for (uint32_t view = 0; view < shader::kViewCount; ++view)
+    ASSERT_EQ(viewNames().size(), shader::kViewInspectColor); // the others show no lightmap
+    for (uint32_t view = 0; view < viewNames().size(); ++view)
         pictures.push_back(
             drawPicture({maker.scene(), &lightmap, before(), plain(static_cast<View>(view))}).image);
-    ASSERT_EQ(pictures.size(), viewNames().size());
     for (size_t a = 0; a < pictures.size(); ++a)
         for (size_t b = 0; b < a; ++b)
             EXPECT_GT(compareImages(pictures[a], "a", pictures[b], "b").dfpr, 0.02)

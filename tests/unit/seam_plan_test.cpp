@@ -1,0 +1,135 @@
+// SewSeams cut into what each chunk of patches is responsible for, against makeLightmap, which fills whole
+// maps.
+#include "bake/lightmap.h"
+#include "bake/seam_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+namespace relume {
+namespace {
+
+// Patches at random texels in tile order, some of them inside something. share: of texels with a patch.
+PatchSet randomPatches(uint32_t size, double share, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    PatchSet set;
+    set.scene.size = size;
+    set.scene.texelToPatch.assign(size_t{size} * size, shader::kNoPatch);
+    const uint32_t tiles = (size + 7) / 8;
+    for (uint32_t tile = 0; tile < tiles * tiles; ++tile) {
+        const bool covered = uniform(random) < share;
+        for (uint32_t in = 0; in < 64; ++in) {
+            const uint32_t x = tile % tiles * 8 + in % 8, y = tile / tiles * 8 + in / 8;
+            if (x >= size || y >= size || !covered || uniform(random) > 0.9) continue;
+            shader::Patch patch{};
+            patch.flags = (y * size + x) << 8 | (uniform(random) < 0.9 ? shader::kPatchSends : 0u);
+            set.scene.texelToPatch[y * size + x] = static_cast<uint32_t>(set.scene.patches.size());
+            set.scene.patches.push_back(patch);
+        }
+    }
+    set.count = static_cast<uint32_t>(set.scene.patches.size());
+    while (set.scene.patches.size() % shader::kChunk != 0)
+        set.scene.patches.emplace_back();
+    return set;
+}
+
+struct Texel {
+    double light = 0, coverage = 0;
+};
+
+// What a device does with a plan: all patches, then fills ring by ring of the given chunks.
+void follow(const PatchSet& set, const SeamPlan& plan, const std::vector<uint32_t>& chunks,
+            const std::vector<glm::vec4>& light, std::vector<Texel>& texels) {
+    const std::vector<uint32_t> shown = shownTexels(set);
+    for (uint32_t chunk : chunks)
+        for (uint32_t i = chunk * shader::kChunk; i < (chunk + 1) * shader::kChunk; ++i)
+            if (shown[i] != shader::kNoTexel) texels[shown[i]] = {double{light[i].x}, 1.0};
+    const auto size = static_cast<int>(set.scene.size);
+    for (uint32_t ring = 1; ring <= plan.rings; ++ring) {
+        for (uint32_t chunk : chunks) {
+            for (uint32_t f = plan.starts[plan.at(ring, chunk)]; f < plan.starts[plan.at(ring, chunk) + 1];
+                 ++f) {
+                const auto texel = static_cast<int>(plan.fills[f] >> 8);
+                double sum = 0;
+                int count = 0;
+                for (uint32_t n = 0; n < 8; ++n) {
+                    if ((plan.fills[f] >> n & 1u) == 0) continue;
+                    const glm::ivec2 from = glm::ivec2(texel % size, texel / size) + shader::seamOffset(n);
+                    sum += texels[static_cast<size_t>(from.y * size + from.x)].light;
+                    ++count;
+                }
+                texels[static_cast<size_t>(texel)] = {sum / count, 0.5};
+            }
+        }
+    }
+}
+
+void expectSame(const std::vector<Texel>& texels, const FloatImage& expected) {
+    for (size_t t = 0; t < texels.size(); ++t) {
+        ASSERT_EQ(float(texels[t].coverage), expected.planes[3][t]) << t;
+        ASSERT_NEAR(texels[t].light, expected.planes[0][t], 1e-5) << t;
+    }
+}
+
+std::vector<glm::vec4> randomLight(size_t count, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> uniform(0.0f, 4.0f);
+    std::vector<glm::vec4> light(count);
+    for (glm::vec4& l : light)
+        l = glm::vec4(uniform(random));
+    return light;
+}
+
+TEST(SeamPlan, FillsWhatMakeLightmapFills) {
+    for (const auto& [size, share] : {std::pair(64u, 0.3), std::pair(37u, 0.6), std::pair(16u, 0.05)}) {
+        for (uint32_t rings : {0u, 1u, 4u}) {
+            const PatchSet set = randomPatches(size, share, size);
+            const SeamPlan plan = buildSeamPlan(set, rings);
+            std::vector<uint32_t> all;
+            for (uint32_t c = 0; c < set.chunkCount(); ++c)
+                all.push_back(c);
+            const std::vector<glm::vec4> light = randomLight(set.scene.patches.size(), 7);
+            std::vector<Texel> texels(size_t{size} * size);
+            follow(set, plan, all, light, texels);
+            expectSame(texels, makeLightmap(set, light, {.sew = rings > 0, .dilate = rings}));
+        }
+    }
+}
+
+// After one chunk's light has changed nothing but its own part of the plan is followed.
+TEST(SeamPlan, FollowsOneChunkAtATime) {
+    const PatchSet set = randomPatches(48, 0.4, 3);
+    const SeamPlan plan = buildSeamPlan(set, 4);
+    std::vector<glm::vec4> light = randomLight(set.scene.patches.size(), 1);
+    const std::vector<glm::vec4> later = randomLight(set.scene.patches.size(), 2);
+    std::vector<Texel> texels(size_t{48} * 48);
+    std::vector<uint32_t> all;
+    for (uint32_t c = 0; c < set.chunkCount(); ++c)
+        all.push_back(c);
+    follow(set, plan, all, light, texels);
+    ASSERT_GT(set.chunkCount(), 6u);
+    for (uint32_t chunk : {5u, 0u, set.chunkCount() - 1}) {
+        for (uint32_t i = chunk * shader::kChunk; i < (chunk + 1) * shader::kChunk; ++i)
+            light[i] = later[i];
+        follow(set, plan, {chunk}, light, texels);
+        expectSame(texels, makeLightmap(set, light, {}));
+    }
+}
+
+TEST(SeamPlan, NamesATexelOncePerChunk) {
+    const PatchSet set = randomPatches(48, 0.4, 3);
+    const SeamPlan plan = buildSeamPlan(set, 4);
+    ASSERT_EQ(plan.starts.size(), size_t{4} * set.chunkCount() + 1);
+    for (size_t i = 0; i + 1 < plan.starts.size(); ++i) {
+        const std::set<uint32_t> once(plan.fills.begin() + plan.starts[i],
+                                      plan.fills.begin() + plan.starts[i + 1]);
+        EXPECT_EQ(once.size(), plan.starts[i + 1] - plan.starts[i]);
+    }
+    EXPECT_EQ(plan.starts.back(), plan.fills.size());
+}
+
+} // namespace
+} // namespace relume
