@@ -6,6 +6,7 @@ namespace relume {
 
 // One function per verb, in app/commands/<verb>.cpp. Each adds its subcommand with its options to `app`; its
 // callback does the work and throws Error (exit status 1) or UsageError (2).
+void addViewCommand(CLI::App& app);
 void addBakeCommand(CLI::App& app);
 void addShotCommand(CLI::App& app);
 void addTimelapseCommand(CLI::App& app);

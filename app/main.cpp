@@ -1,9 +1,13 @@
 #include "app/command.h"
+#include "app/viewer/view_options.h"
 #include "assets/error.h"
 #include "assets/log.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 int main(int argc, char** argv) {
     CLI::App app{"Relume bakes the radiosity lightmap of a glTF scene."};
@@ -15,6 +19,7 @@ int main(int argc, char** argv) {
     app.parse_complete_callback([&] { relume::setupLog(quiet); });
     relume::setupLog(false);
 
+    relume::addViewCommand(app);
     relume::addBakeCommand(app);
     relume::addShotCommand(app);
     relume::addTimelapseCommand(app);
@@ -27,7 +32,12 @@ int main(int argc, char** argv) {
     relume::addSamplesCommand(app);
 
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> verbs;
+        for (const CLI::App* verb : app.get_subcommands({}))
+            verbs.push_back(verb->get_name());
+        std::vector<std::string> arguments = relume::withViewVerb({argv + 1, argv + argc}, verbs);
+        std::reverse(arguments.begin(), arguments.end()); // as this overload takes them
+        app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     } catch (const relume::UsageError& error) {

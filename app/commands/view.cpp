@@ -1,0 +1,22 @@
+#include "app/command.h"
+#include "app/viewer/view_options.h"
+#include "app/viewer/viewer.h"
+#include "shaders/shader_library.h"
+
+#include <memory>
+
+namespace relume {
+
+void addViewCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("view", "Open a window that shows a scene while it bakes");
+    const auto options = std::make_shared<ViewOptions>();
+    addViewOptions(*command, *options);
+    command->callback([options] {
+        const ViewerDesc desc = resolveViewOptions(*options);
+        if (!options->bake.shaders.empty()) setShaderFolder(options->bake.shaders);
+        Viewer viewer(desc);
+        viewer.run();
+    });
+}
+
+} // namespace relume

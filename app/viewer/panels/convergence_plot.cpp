@@ -1,0 +1,75 @@
+#include "app/viewer/panels/convergence_plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace relume {
+namespace {
+
+constexpr float kHeightLines = 8; // of text
+constexpr double kLeastError = 1e-7;
+
+struct Axes {
+    ImVec2 low, high; // corners on screen: y grows downwards
+    double seconds = 1, top = 0, bottom = -2; // exponents of ten
+
+    ImVec2 at(double time, double error) const {
+        const double x = time / seconds;
+        const double y = (top - std::log10(std::max(error, kLeastError))) / (top - bottom);
+        return {low.x + static_cast<float>(x) * (high.x - low.x),
+                low.y + static_cast<float>(std::clamp(y, 0.0, 1.0)) * (high.y - low.y)};
+    }
+};
+
+Axes axesOf(const std::vector<ConvergencePoint>& history, double aim) {
+    Axes axes;
+    double least = aim > 0 ? aim : 0.1, most = 0.1;
+    for (const ConvergencePoint& point : history) {
+        least = std::min(least, std::max(point.error, kLeastError));
+        most = std::max(most, point.error);
+    }
+    axes.seconds = std::max(history.empty() ? 1.0 : history.back().seconds, 1e-3);
+    axes.top = std::ceil(std::log10(most));
+    axes.bottom = std::min(std::floor(std::log10(least)), axes.top - 1);
+    return axes;
+}
+
+} // namespace
+
+void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim) {
+    const float line = ImGui::GetTextLineHeight();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size(std::max(ImGui::GetContentRegionAvail().x, 4 * line), kHeightLines * line);
+    ImGui::Dummy(size);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 frame = ImGui::GetColorU32(ImGuiCol_FrameBg), text = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    const ImU32 curve = ImGui::GetColorU32(ImGuiCol_PlotLines), grid = ImGui::GetColorU32(ImGuiCol_Border);
+    const ImU32 goal = IM_COL32(110, 190, 110, 200);
+    list->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, frame);
+    Axes axes = axesOf(history, aim);
+    axes.low = {corner.x + 3.2f * line, corner.y + 0.5f * line};
+    axes.high = {corner.x + size.x - 0.5f * line, corner.y + size.y - 1.4f * line};
+    for (double decade = axes.bottom; decade <= axes.top; decade += 1) {
+        const ImVec2 at = axes.at(0, std::pow(10.0, decade));
+        list->AddLine(at, {axes.high.x, at.y}, grid);
+        list->AddText({corner.x + 0.2f * line, at.y - 0.5f * line}, text,
+                      fmt::format("{:g}", std::pow(10.0, decade)).c_str());
+    }
+    if (aim > 0) list->AddLine(axes.at(0, aim), axes.at(axes.seconds, aim), goal);
+    std::vector<ImVec2> points;
+    for (const ConvergencePoint& point : history)
+        points.push_back(axes.at(point.seconds, point.error));
+    if (points.size() > 1)
+        list->AddPolyline(points.data(), static_cast<int>(points.size()), curve, ImDrawFlags_None, 1.5f);
+    else if (points.size() == 1)
+        list->AddCircleFilled(points.front(), 2.0f, curve);
+    list->AddText({axes.low.x, axes.high.y + 0.1f * line}, text, "error left over seconds of solving");
+    const std::string end = fmt::format("{:.3g} s", axes.seconds);
+    list->AddText({axes.high.x - ImGui::CalcTextSize(end.c_str()).x, axes.high.y + 0.1f * line}, text,
+                  history.empty() ? "" : end.c_str());
+}
+
+} // namespace relume

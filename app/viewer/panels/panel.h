@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+
+#include "app/live/session.h"
+#include "app/viewer/camera_control.h"
+#include "app/viewer/frame_figures.h"
+#include "app/viewer/log_buffer.h"
+#include "app/viewer/preferences.h"
+#include "app/viewer/shortcuts.h"
+#include "app/viewer/view_state.h"
+
+namespace relume {
+
+/// What panels show and change; all of it lives in the viewer.
+struct PanelContext {
+    Session& session;
+    const BakeStatus& status;
+    ViewState& view;
+    CameraControl& camera;
+    Preferences& preferences;
+    const FrameFigures& figures;
+    const LogBuffer& log;
+    const PublishedMap* map; // that is shown, nullptr: none yet
+    float exposure = 0;      // of the last picture [EV]
+    double& budgetMs;        // aim of a batch while the camera is still
+    bool recording = false;
+    std::function<void(Action, int)> perform;
+    std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
+};
+
+} // namespace relume

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "app/viewer/panels/panel.h"
+
+namespace relume {
+
+/// What frames and the bake cost.
+void drawProfilerPanel(const PanelContext& context);
+
+} // namespace relume

@@ -1,0 +1,92 @@
+#include "app/viewer/panels/scene_lists.h"
+
+#include "app/viewer/panels/widgets.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+namespace relume {
+namespace {
+
+const char* typeName(LightType type) {
+    return type == LightType::Point ? "point" : type == LightType::Spot ? "spot" : "directional";
+}
+
+} // namespace
+
+std::string nameOf(const std::string& name, const char* kind, size_t index) {
+    return name.empty() ? fmt::format("{} {}", kind, index) : name;
+}
+
+void drawCameras(const PanelContext& context, const LoadedScene& scene) {
+    const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Selectable((nameOf(cameras[i].name, "camera", i) + "###camera").c_str())) {
+            context.camera.set(cameraOfFile(cameras[i], scene.geometry.bounds));
+            context.sceneChanged();
+        }
+        ImGui::PopID();
+    }
+    std::error_code code;
+    const std::string path =
+        std::filesystem::absolute(scene.prepared.scene.path, code).lexically_normal().string();
+    const auto found = context.preferences.bookmarks.find(path);
+    if (found != context.preferences.bookmarks.end()) {
+        std::vector<Bookmark>& marks = found->second;
+        for (size_t i = 0; i < marks.size(); ++i) {
+            ImGui::PushID(static_cast<int>(cameras.size() + i));
+            if (ImGui::SmallButton("x")) {
+                marks.erase(marks.begin() + static_cast<ptrdiff_t>(i));
+                ImGui::PopID();
+                break;
+            }
+            ui::tip("Forget this bookmark");
+            ImGui::SameLine();
+            if (ImGui::Selectable((marks[i].name + "###bookmark").c_str())) {
+                context.camera.set(marks[i].camera);
+                context.sceneChanged();
+            }
+            ImGui::PopID();
+        }
+    }
+    if (ImGui::Button("Store bookmark")) context.perform(Action::StoreBookmark, 0);
+    ImGui::SameLine();
+    if (ImGui::Button("Reset camera")) context.perform(Action::ResetCamera, 0);
+}
+
+void drawInstances(const PanelContext& context, const LoadedScene& scene) {
+    const std::vector<Instance>& instances = scene.prepared.scene.instances;
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(instances.size()));
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            ImGui::PushID(i);
+            const auto index = static_cast<size_t>(i);
+            const std::string title = nameOf(instances[index].name, "instance", index) + "###instance";
+            if (ImGui::Selectable(title.c_str(), context.view.selected == i)) {
+                context.view.selected = context.view.selected == i ? -1 : i;
+                context.sceneChanged();
+            }
+            ui::tip("F frames what is selected");
+            ImGui::PopID();
+        }
+    }
+}
+
+void drawLights(const LoadedScene& scene) {
+    const std::vector<Light>& lights = scene.prepared.scene.lights;
+    if (lights.empty()) ImGui::TextWrapped("The file has no punctual lights.");
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const Light& light = lights[i];
+        const char* unit = light.type == LightType::Directional ? "lux" : "cd";
+        ImGui::BulletText("%s", fmt::format("{}: {}, {:.4g} {}", nameOf(light.name, "light", i),
+                                            typeName(light.type), light.intensity, unit)
+                                    .c_str());
+    }
+}
+
+} // namespace relume

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <future>
+#include <optional>
+
+#include "app/scene_info.h"
+#include "app/viewer/panels/panel.h"
+
+namespace relume {
+
+/// What the scene is made of, and edits of its materials.
+class ScenePanel {
+public:
+    void draw(const PanelContext& context);
+
+private:
+    void measure(const LoadedScene& scene, uint32_t size);
+    void drawStatistics(const LoadedScene& scene);
+    void drawMaterials(const PanelContext& context);
+    void drawMaterial(const PanelContext& context, size_t index);
+
+    uint64_t measured_ = 0; // number of the scene that `info_` is about
+    uint32_t size_ = 0;     // of its lightmap
+    std::future<SceneInfo> measuring_;
+    std::optional<SceneInfo> info_;
+};
+
+/// Emission as a colour of full brightness and a strength [cd/m^2].
+struct EmissionParts {
+    glm::vec3 colour{1.0f};
+    float strength = 0;
+};
+EmissionParts splitEmission(const glm::vec3& emission);
+
+} // namespace relume

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer/camera.h"
+#include "renderer/draw_settings.h"
+
+namespace relume {
+
+/// A camera that the user wants to come back to.
+struct Bookmark {
+    std::string name;
+    ViewCamera camera;
+};
+
+/// What stays from one run of the viewer to the next.
+struct Preferences {
+    static constexpr size_t kMostRecent = 12;
+
+    std::vector<std::string> recent; // scenes, absolute paths, the newest first
+    std::map<std::string, std::vector<Bookmark>> bookmarks; // by a scene's absolute path
+    uint32_t width = 1280, height = 800;                    // of the window [screen coordinates]
+    float panelWidth = 340;                                 // [screen coordinates] at scale 1
+    float uiScale = 1;                                      // beside the monitor's own scale
+    bool vsync = true, caption = false;
+    std::optional<uint32_t> samples; // of each pixel; none: what suits the device
+    LightmapFilter filter = LightmapFilter::Bilinear;
+    ToneMap tone = ToneMap::Agx;
+    std::string captureFolder; // "": defaultCaptureFolder()
+
+    void addRecent(const std::string& path);
+};
+
+/// $XDG_CONFIG_HOME/relume/preferences.json, or the same in ~/.config; "" where there is neither.
+std::string preferencesPath();
+/// ~/Pictures/relume where there is a ~/Pictures, else the working folder.
+std::string defaultCaptureFolder();
+
+/// What is missing or wrong in the file keeps its default, with one warning; so does all of it where there
+/// is none (no warning).
+Preferences readPreferences(const std::string& path);
+/// Makes the folder. Throws Error.
+void writePreferences(const std::string& path, const Preferences& preferences);
+
+} // namespace relume

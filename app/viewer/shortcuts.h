@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace relume {
+
+/// Everything that a user can do by a key or a menu.
+enum class Action : uint8_t {
+    Open,
+    Export,
+    Watch,
+    Quit,
+    Undo,
+    Redo,
+    MakePass,
+    Pause,
+    Step,
+    Reset,
+    Close, // a dialog, else the pass under way
+    View,  // argument: of viewEntries()
+    UvTexture,
+    Masked,
+    NextFilter,
+    NextTone,
+    Darker,
+    Brighter,
+    AutomaticExposure,
+    FrameAll,
+    FrameSelected,
+    ResetCamera,
+    StoreBookmark,
+    Screenshot,
+    ScreenshotWithUi,
+    Record,
+    Caption,
+    ReloadShaders,
+    Help,
+    HideUi,
+    Panel, // argument: of panelNames()
+};
+
+/// A key and what it does. Keys are GLFW_KEY_, mods GLFW_MOD_.
+struct Shortcut {
+    Action action;
+    int argument = 0;
+    int key = 0; // 0: in the menu only
+    int mods = 0;
+    std::string group; // the menu
+    std::string name;  // "Make pass"; of all keys of an action the same
+};
+
+/// The one list of them: dispatch, menus and help are made of it.
+const std::vector<Shortcut>& shortcuts();
+/// nullptr: this key does nothing.
+const Shortcut* findShortcut(int key, int mods);
+const Shortcut& shortcutOf(Action action, int argument = 0);
+/// "Ctrl+Shift+Z", "" without a key.
+std::string keyText(const Shortcut& shortcut);
+
+/// In the order of their tabs.
+const std::vector<std::string>& panelNames();
+
+/// Of keys that are not actions but are held or dragged: what and how, for the help.
+struct MouseHint {
+    const char* what;
+    const char* how;
+};
+const std::vector<MouseHint>& mouseHints();
+
+} // namespace relume

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "app/viewer/file_dialog.h"
+#include "app/viewer/messages.h"
+#include "app/viewer/panels/bake_panel.h"
+#include "app/viewer/panels/panel.h"
+#include "app/viewer/panels/scene_panel.h"
+
+namespace relume {
+
+/// All that is drawn over the scene or beside it: menus, the side panel with its tabs, status, dialogs.
+class Ui {
+public:
+    /// Of the window, in screen coordinates from the upper left: what is left for the scene.
+    struct Area {
+        glm::vec2 corner{0.0f}, size{0.0f};
+    };
+    /// Between Gui::begin() and end(). `hidden`: messages and dialogs only.
+    Area draw(const PanelContext& context, bool hidden, float scale);
+
+    /// Closes what is in front. False: nothing was open.
+    bool closeDialog();
+    void toggleHelp() { help_ = !help_; }
+    void showPanel(size_t index) { wantedPanel_ = static_cast<int>(index); }
+    FileDialog& files() { return files_; }
+    Messages& messages() { return messages_; }
+
+private:
+    float drawMenus(const PanelContext& context);
+    float drawStatus(const PanelContext& context);
+    void drawSide(const PanelContext& context, float top, float bottom, float scale);
+    void drawTab(const PanelContext& context, size_t index);
+    void drawHelp();
+    void drawMessages(const Area& area);
+
+    BakePanel bake_;
+    ScenePanel scene_;
+    FileDialog files_;
+    Messages messages_;
+    bool help_ = false;
+    int wantedPanel_ = -1;
+};
+
+/// One line about the bake: phase, method, pass, error, rays. Of status bars and captions.
+std::string statusLine(const BakeStatus& status);
+
+} // namespace relume

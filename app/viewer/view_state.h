@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "app/live/live_bake.h"
+#include "renderer/draw_settings.h"
+
+namespace relume {
+
+/// How the scene is looked at: what the View panel and its keys change.
+struct ViewState {
+    size_t view = 0; // of viewEntries()
+    LightmapFilter filter = LightmapFilter::Bilinear;
+    ToneMap tone = ToneMap::Agx;
+    std::optional<float> exposure; // [EV], none: automatic
+    uint32_t samples = 0;          // of each pixel
+    int selected = -1;             // of Scene::instances
+
+    bool uv = false; // the lightmap as a flat picture
+    bool masked = true;
+    glm::vec2 uvCentre{0.5f}; // that is in the middle of the picture
+    float uvZoom = 1;         // 1: all of it fits
+
+    uint32_t mip = 0;
+    PairSettings preview; // of the quad-tree
+    uint32_t voxels = 64; // along each edge
+    std::optional<float> high; // end of a range of colours; none: the map's
+    std::optional<uint32_t> seenTexel; // of visible-from-here
+};
+
+} // namespace relume

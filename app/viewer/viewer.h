@@ -1,0 +1,130 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/live/session.h"
+#include "app/viewer/camera_control.h"
+#include "app/viewer/capture.h"
+#include "app/viewer/gui.h"
+#include "app/viewer/lightmap_bridge.h"
+#include "app/viewer/redraw_pacer.h"
+#include "app/viewer/scene_pane.h"
+#include "app/viewer/ui.h"
+#include "app/viewer/window.h"
+
+namespace relume {
+
+struct ViewerDesc {
+    std::string scene; // "": none yet
+    BakeRequest request;
+    std::string device; // as vk::Device::Desc::select
+    bool validation = false;
+    DisplayMode display = DisplayMode::Auto;
+    double budgetMs = 8; // aim of a batch while the camera is still
+    bool watch = false;
+    uint32_t width = 0, height = 0; // of the window [screen coordinates], 0: as last time
+    std::string camera;             // of the scene's, "": its first one
+    bool logActions = false;        // on stderr, each as it is done
+};
+
+/// The window with the scene in it, lit by a bake that goes on beside it. Belongs to the main thread.
+class Viewer {
+public:
+    explicit Viewer(const ViewerDesc& desc); // shows the window; throws Error when there can be none
+    ~Viewer();
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+
+    /// Until the window is closed. Throws Error when drawing fails for good.
+    void run();
+
+private:
+    // viewer.cpp
+    void startBake();
+    double now() const;
+    double idleSeconds(double time) const;
+    void follow(double time);
+    void followScene();
+    void followBake(double time);
+    void followCamera(double time);
+    void followLog(double time);
+    void inspect();
+    PanelContext context();
+    void frame(const Redraw& redraw);
+    void drawScene(bool anew);
+    LightmapTexture lightmap() const;
+    const PublishedMap* map() const;
+    void changeScene() { sceneDirty_ = true; }
+    float pixelsPerPoint() const;
+
+    // viewer_input.cpp
+    void handle(const std::vector<WindowEvent>& events);
+    void onKey(const WindowEvent& event);
+    void onButton(const WindowEvent& event);
+    void onCursor(const WindowEvent& event);
+    void onScroll(const WindowEvent& event);
+    void onClick(const WindowEvent& event);
+    bool overScene(const glm::dvec2& at) const;
+    void updateFlight();
+    void cameraMoved();
+
+    // viewer_actions.cpp
+    void perform(Action action, int argument);
+    void performFile(Action action);
+    void performBake(Action action);
+    void performView(Action action, int argument);
+    void performCamera(Action action);
+    void performCapture(Action action);
+    void open(const std::string& path);
+    void exportLightmap(const std::string& path);
+    void reloadShaders();
+    void storeBookmark();
+    void captureFrame(double time);
+    std::string captureFolder() const;
+    void note(const std::string& text, bool bad = false);
+    void tell(const std::string& action) const;
+    std::string scenePath() const; // absolute, the key of bookmarks; "" without a scene
+    std::vector<std::string> captionLines() const;
+
+    ViewerDesc desc_;
+    Clock::time_point start_;
+    std::string preferencesPath_;
+    Preferences preferences_;
+    LogBuffer log_;
+    std::unique_ptr<LiveBake> bake_; // outlives OpenGL (live_bake.h)
+    Window window_;
+    Gui gui_;
+    ScenePane pane_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<LightmapBridge> bridge_;
+    Capture capture_;
+    Ui ui_;
+
+    ViewState view_;
+    CameraControl camera_;
+    FrameFigures figures_;
+    RedrawPacer pacer_;
+    BakeStatus status_;
+    InspectRequest inspected_;
+    std::vector<Material> materials_; // as drawn
+    Ui::Area area_;                   // of the scene, in the last frame
+    bool software_ = false;           // OpenGL is drawn by the CPU
+    bool sceneDirty_ = true, hidden_ = false, vsync_ = false;
+    float scale_ = 1;
+    bool shotWithUi_ = false; // of the next frame
+    double frameStart_ = 0; // of the last frame
+    double flown_ = 0;      // when the flight went on last
+    double moved_ = -1e9;   // when the camera moved last
+    double batchMs_ = 0;    // that the bake was told
+    uint64_t logSeen_ = 0;
+    std::string edited_; // the newest edit that was told
+    glm::dvec2 cursor_{0.0}, pressed_{0.0};
+    int button_ = 0;         // of the mouse, that drags
+    bool dragged_ = false;   // it went further than a click does
+    std::vector<int> keys_;  // of flight, that are held
+    bool fast_ = false;
+};
+
+} // namespace relume

@@ -1,0 +1,218 @@
+#include "app/viewer/viewer.h"
+
+#include "app/viewer/views.h"
+#include "assets/error.h"
+#include "assets/warnings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kExposureStep = 0.25f; // [EV] of a key press
+
+std::string absolutePath(const std::string& path) {
+    std::error_code code;
+    const fs::path whole = fs::absolute(path, code);
+    return code ? path : whole.lexically_normal().string();
+}
+
+template<typename T>
+void next(T& choice, size_t count) {
+    choice = static_cast<T>((static_cast<size_t>(choice) + 1) % count);
+}
+
+} // namespace
+
+void Viewer::tell(const std::string& action) const {
+    if (desc_.logActions) std::fprintf(stderr, "action: %s\n", action.c_str());
+}
+
+void Viewer::note(const std::string& text, bool bad) {
+    ui_.messages().add(text, bad, now());
+    pacer_.input();
+}
+
+std::string Viewer::scenePath() const {
+    const LoadedScene* scene = session_->scene();
+    return scene != nullptr ? absolutePath(scene->prepared.scene.path) : "";
+}
+
+void Viewer::perform(Action action, int argument) {
+    tell(shortcutOf(action, argument).name);
+    pacer_.input();
+    switch (action) {
+    case Action::Open:
+    case Action::Export:
+    case Action::Watch: return performFile(action);
+    case Action::Quit: return window_.close();
+    case Action::Undo:
+        if (!session_->undo()) note("nothing to undo");
+        return;
+    case Action::Redo:
+        if (!session_->redo()) note("nothing to make again");
+        return;
+    case Action::MakePass:
+    case Action::Pause:
+    case Action::Step:
+    case Action::Reset: return performBake(action);
+    case Action::Close:
+        if (!ui_.closeDialog()) bake_->abortPass();
+        return;
+    case Action::View:
+    case Action::UvTexture:
+    case Action::Masked:
+    case Action::NextFilter:
+    case Action::NextTone:
+    case Action::Darker:
+    case Action::Brighter:
+    case Action::AutomaticExposure: return performView(action, argument);
+    case Action::FrameAll:
+    case Action::FrameSelected:
+    case Action::ResetCamera:
+    case Action::StoreBookmark: return performCamera(action);
+    case Action::Screenshot:
+    case Action::ScreenshotWithUi:
+    case Action::Record:
+    case Action::Caption: return performCapture(action);
+    case Action::ReloadShaders: return reloadShaders();
+    case Action::Help: return ui_.toggleHelp();
+    case Action::HideUi: hidden_ = !hidden_; return;
+    case Action::Panel: return ui_.showPanel(static_cast<size_t>(argument));
+    }
+}
+
+void Viewer::performFile(Action action) {
+    if (action == Action::Watch) return session_->watchFile(!session_->watchesFile());
+    const std::string path = scenePath();
+    if (action == Action::Open) {
+        const std::string folder = path.empty() ? "" : fs::path(path).parent_path().string() + "/";
+        ui_.files().open({.title = "Open scene",
+                          .path = folder,
+                          .endings = {".glb", ".gltf"},
+                          .recent = preferences_.recent,
+                          .done = [this](const std::string& chosen) { open(chosen); }});
+        return;
+    }
+    if (path.empty()) return note("there is no scene whose lightmap could be written", true);
+    const fs::path scene(path);
+    ui_.files().open({.title = "Export lightmap",
+                      .path = freePath((scene.parent_path() / scene.stem()).string() + "_lightmap.exr"),
+                      .endings = {".exr", ".png"},
+                      .recent = {},
+                      .saves = true,
+                      .done = [this](const std::string& chosen) { exportLightmap(chosen); }});
+}
+
+void Viewer::open(const std::string& path) {
+    session_->open(path);
+    pacer_.input();
+}
+
+void Viewer::exportLightmap(const std::string& path) {
+    tell("export " + path);
+    if (!path.ends_with(".exr") && !path.ends_with(".png"))
+        return note(path + ": a lightmap ends in .exr or .png", true);
+    bake_->exportLightmap(path, session_->document().lightmap);
+    note("writing " + path);
+}
+
+void Viewer::performBake(Action action) {
+    if (session_->scene() == nullptr) return note("there is no scene to bake", true);
+    switch (action) {
+    case Action::MakePass: return bake_->makePass();
+    case Action::Step: return bake_->step();
+    case Action::Reset: return bake_->reset();
+    default: break;
+    }
+    if (status_.phase == BakeStatus::Phase::Paused)
+        bake_->resume();
+    else
+        bake_->pause();
+}
+
+void Viewer::performView(Action action, int argument) {
+    switch (action) {
+    case Action::View: view_.view = static_cast<size_t>(argument); break;
+    case Action::UvTexture: view_.uv = !view_.uv; break;
+    case Action::Masked: view_.masked = !view_.masked; break;
+    case Action::NextFilter:
+        next(view_.filter, filterNames().size());
+        note("lightmap filter: " + filterNames()[static_cast<size_t>(view_.filter)]);
+        break;
+    case Action::NextTone:
+        next(view_.tone, toneNames().size());
+        note("tone mapping: " + toneNames()[static_cast<size_t>(view_.tone)]);
+        break;
+    case Action::AutomaticExposure:
+        view_.exposure = view_.exposure ? std::nullopt : std::optional(pane_.exposure());
+        break;
+    default: {
+        const float step = action == Action::Brighter ? kExposureStep : -kExposureStep;
+        view_.exposure = view_.exposure.value_or(pane_.exposure()) + step;
+        note(fmt::format("exposure {:+.2f} EV", *view_.exposure));
+        break;
+    }
+    }
+    changeScene();
+}
+
+void Viewer::performCamera(Action action) {
+    const LoadedScene* scene = session_->scene();
+    if (scene == nullptr) return;
+    const float aspect = area_.size.y > 0 ? area_.size.x / area_.size.y : 1.0f;
+    switch (action) {
+    case Action::FrameAll:
+        if (view_.uv) {
+            view_.uvCentre = glm::vec2(0.5f);
+            view_.uvZoom = 1;
+        } else {
+            camera_.frame(scene->geometry.bounds, aspect);
+        }
+        break;
+    case Action::FrameSelected: {
+        if (view_.selected < 0) return note("nothing is selected: click something");
+        const WorldMesh& mesh = scene->prepared.mesh;
+        Box box;
+        for (size_t i = 0; i < mesh.triangleCount(); ++i)
+            for (size_t k = 0; k < 3 && mesh.instance[i] == static_cast<uint32_t>(view_.selected); ++k)
+                box.add(mesh.positions[3 * i + k]);
+        camera_.frame(box, aspect);
+        break;
+    }
+    case Action::ResetCamera: camera_.reset(); break;
+    default: return storeBookmark();
+    }
+    cameraMoved();
+}
+
+void Viewer::storeBookmark() {
+    std::vector<Bookmark>& marks = preferences_.bookmarks[scenePath()];
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(marks.begin(), marks.end(), [&](const Bookmark& mark) { return mark.name == name; });
+    };
+    size_t number = marks.size() + 1;
+    while (taken(fmt::format("bookmark {}", number)))
+        ++number;
+    marks.push_back({fmt::format("bookmark {}", number), camera_.camera()});
+    note("stored " + marks.back().name);
+}
+
+void Viewer::reloadShaders() {
+    try {
+        pane_.reload();
+        note("shaders reloaded");
+    } catch (const Error& error) {
+        spdlog::error("{}", error.what()); // shown as well: followLog()
+    }
+    changeScene();
+}
+
+} // namespace relume

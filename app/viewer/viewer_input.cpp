@@ -1,0 +1,166 @@
+#include "app/viewer/viewer.h"
+
+#include "app/viewer/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace relume {
+namespace {
+
+constexpr double kClickSlack = 4; // [screen coordinates] that a hand moves while it clicks
+constexpr float kUvZoomStep = 0.85f, kUvNearest = 1.0f / 64.0f, kUvFarthest = 8.0f;
+
+bool isFunctionKey(int key) {
+    return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25;
+}
+
+// Directions of flight by places of the keyboard, so that they lie together on every layout.
+glm::ivec3 flightOf(int place) {
+    switch (place) {
+    case GLFW_KEY_D: return {1, 0, 0};
+    case GLFW_KEY_A: return {-1, 0, 0};
+    case GLFW_KEY_E: return {0, 1, 0};
+    case GLFW_KEY_Q: return {0, -1, 0};
+    case GLFW_KEY_W: return {0, 0, 1};
+    case GLFW_KEY_S: return {0, 0, -1};
+    default: return {0, 0, 0};
+    }
+}
+
+const char* dragName(int button, int mods) {
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) return "look";
+    return button == GLFW_MOUSE_BUTTON_MIDDLE || (mods & GLFW_MOD_SHIFT) != 0 ? "pan" : "orbit";
+}
+
+} // namespace
+
+void Viewer::handle(const std::vector<WindowEvent>& events) {
+    if (!events.empty()) pacer_.input();
+    for (const WindowEvent& event : events) {
+        gui_.feed(event);
+        switch (event.kind) {
+        case WindowEvent::Kind::Key: onKey(event); break;
+        case WindowEvent::Kind::Button: onButton(event); break;
+        case WindowEvent::Kind::Cursor: onCursor(event); break;
+        case WindowEvent::Kind::Scroll: onScroll(event); break;
+        case WindowEvent::Kind::Drop:
+            if (!event.paths.empty()) {
+                tell("drop " + event.paths.front());
+                open(event.paths.front());
+            }
+            break;
+        case WindowEvent::Kind::Focus:
+            if (!event.pressed) keys_.clear(); // their releases go to another window
+            break;
+        default: break;
+        }
+    }
+}
+
+void Viewer::onKey(const WindowEvent& event) {
+    const bool typing = gui_.wantsKeyboard();
+    fast_ = (event.mods & GLFW_MOD_SHIFT) != 0;
+    if (flightOf(event.place) != glm::ivec3(0)) {
+        std::erase(keys_, event.place);
+        const bool alone = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0;
+        if (event.pressed && alone && !typing) {
+            keys_.push_back(event.place);
+            if (!event.repeated) tell("fly");
+            return;
+        }
+    }
+    if (!event.pressed) return;
+    const Shortcut* shortcut = findShortcut(event.code, event.mods);
+    if (shortcut == nullptr) return;
+    const bool repeats = shortcut->action == Action::Darker || shortcut->action == Action::Brighter ||
+                         shortcut->action == Action::Undo || shortcut->action == Action::Redo;
+    if (event.repeated && !repeats) return;
+    // Letters, and Ctrl with one, are the text's while one types; Esc leaves a field, or closes a dialog.
+    const bool closes = shortcut->action == Action::Close && ui_.files().isOpen();
+    if (typing && !closes && !isFunctionKey(event.code) && shortcut->action != Action::Quit) return;
+    perform(shortcut->action, shortcut->argument);
+}
+
+bool Viewer::overScene(const glm::dvec2& at) const {
+    const glm::vec2 p(at), low = area_.corner, high = area_.corner + area_.size;
+    return p.x >= low.x && p.y >= low.y && p.x < high.x && p.y < high.y && !gui_.wantsMouse();
+}
+
+void Viewer::onButton(const WindowEvent& event) {
+    cursor_ = event.at;
+    if (!event.pressed) {
+        if (!camera_.dragging() || event.code != button_) return;
+        camera_.end();
+        const bool moved = glm::distance(event.at, pressed_) > kClickSlack;
+        if (moved)
+            tell(dragName(event.code, event.mods));
+        else if (event.code == GLFW_MOUSE_BUTTON_LEFT)
+            onClick(event);
+        return;
+    }
+    if (camera_.dragging() || !overScene(event.at)) return;
+    button_ = event.code;
+    pressed_ = event.at;
+    dragged_ = false;
+    if (event.code == GLFW_MOUSE_BUTTON_LEFT)
+        camera_.begin((event.mods & GLFW_MOD_SHIFT) != 0 ? CameraControl::Drag::Pan
+                                                         : CameraControl::Drag::Orbit);
+    else if (event.code == GLFW_MOUSE_BUTTON_MIDDLE)
+        camera_.begin(CameraControl::Drag::Pan);
+    else if (event.code == GLFW_MOUSE_BUTTON_RIGHT)
+        camera_.begin(CameraControl::Drag::Look);
+}
+
+void Viewer::onCursor(const WindowEvent& event) {
+    const glm::dvec2 before = cursor_;
+    cursor_ = event.at;
+    // A click that trembles is no drag: it would leave the camera a little beside.
+    if (!camera_.dragging() || area_.size.y <= 0) return;
+    if (!dragged_ && glm::distance(event.at, pressed_) <= kClickSlack) return;
+    const glm::dvec2 way = (event.at - (dragged_ ? before : pressed_)) / double(area_.size.y);
+    dragged_ = true;
+    if (view_.uv) {
+        const float shown = view_.uvZoom; // of the texture, over the picture's height
+        view_.uvCentre -= shown * glm::vec2(way);
+        changeScene();
+    } else if (camera_.move(static_cast<float>(way.x), static_cast<float>(way.y))) {
+        cameraMoved();
+    }
+}
+
+void Viewer::onScroll(const WindowEvent& event) {
+    if (!overScene(cursor_)) return;
+    const auto steps = static_cast<float>(event.at.y);
+    if (view_.uv) {
+        view_.uvZoom = std::clamp(view_.uvZoom * std::pow(kUvZoomStep, steps), kUvNearest, kUvFarthest);
+        changeScene();
+    } else {
+        camera_.zoomBy(steps);
+        cameraMoved();
+    }
+    tell("zoom");
+}
+
+void Viewer::updateFlight() {
+    glm::ivec3 held(0);
+    for (const int key : keys_)
+        held += flightOf(key);
+    camera_.setFlight({held, fast_});
+}
+
+void Viewer::cameraMoved() {
+    moved_ = now();
+    changeScene();
+}
+
+// Of an instance, or with Ctrl or in its own view of the patch to see from.
+void Viewer::onClick(const WindowEvent& event) {
+    (void)event;
+    (void)viewIndex("seen");
+}
+
+} // namespace relume

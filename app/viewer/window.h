@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+struct GLFWwindow;
+
+namespace relume {
+
+/// Something that happened to a window.
+struct WindowEvent {
+    enum class Kind { Key, Letter, Button, Cursor, Scroll, Drop, Focus, Enter, Redraw };
+    Kind kind = Kind::Redraw;
+    // Key: GLFW_KEY_ of the letter on the user's keyboard; Letter: Unicode; Button: GLFW_MOUSE_BUTTON_
+    int code = 0;
+    int place = 0;         // Key: GLFW_KEY_ of the same place on a US keyboard
+    int scancode = 0;      // Key
+    int mods = 0;          // GLFW_MOD_
+    bool pressed = false;  // Key, Button; Focus, Enter: it came in
+    bool repeated = false; // Key: it is held
+    glm::dvec2 at{0.0};    // Button, Cursor: [screen coordinates]; Scroll: steps
+    std::vector<std::string> paths = {}; // Drop
+};
+
+/// A window with an OpenGL 4.5 core context, current on the thread that made it. One at a time; all calls but
+/// wake() are for that thread.
+class Window {
+public:
+    struct Desc {
+        uint32_t width = 1280, height = 800; // [screen coordinates]
+        std::string title;
+        bool debug = false; // the driver checks more and tells more, and is slower
+    };
+    explicit Window(const Desc& desc); // shown; throws Error naming what is missing and the mend
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    GLFWwindow* handle() const { return window_; }
+    bool closing() const;
+    void close();
+    bool minimised() const;
+    glm::uvec2 size() const;   // [pixels], of what is drawn into
+    glm::uvec2 extent() const; // [screen coordinates]
+    float contentScale() const { return contentScale_; } // of text and controls
+    double refreshRate() const;                          // [1/s] of the monitor, 60 where unknown
+    void setTitle(const std::string& title);
+    void setVsync(bool on);
+
+    /// Takes what has happened so far after waiting for something at most so long [s]; 0: not at all.
+    std::vector<WindowEvent> wait(double seconds);
+    void swap();
+    /// Ends wait(). From any thread.
+    static void wake();
+
+private:
+    void installCallbacks();
+
+    GLFWwindow* window_ = nullptr;
+    float contentScale_ = 1;
+    std::vector<WindowEvent> events_;
+};
+
+} // namespace relume
