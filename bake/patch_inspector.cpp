@@ -37,6 +37,11 @@ float sceneSize(const PatchSet& set) {
     return glm::distance(lo, hi);
 }
 
+// In the device's own memory: kernels add to them atomically.
+vk::Buffer rayCounters(const vk::Device& device) {
+    return vk::makeBuffer(device, std::vector<uint32_t>(2 * shader::kRayCounters, 0u), "ray counters");
+}
+
 // Marks where a texel beside a patch's belongs to another leaf.
 void markBorders(const PatchSet& set, const std::vector<uint32_t>& leaf, PatchValues& values) {
     constexpr glm::ivec2 kBeside[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -211,8 +216,7 @@ std::vector<uint32_t> PatchInspector::seeingBits(uint32_t patch) {
     };
     const vk::Buffer targets = hostBuffer(count * sizeof(glm::vec4), "segment ends");
     const vk::Buffer bits = hostBuffer(count * sizeof(uint32_t), "seeing patches");
-    const vk::Buffer rays = hostBuffer(shader::kRayCounters * sizeof(uint32_t), "ray counters");
-    std::fill_n(rays.as<uint32_t>(), shader::kRayCounters, 0u);
+    const vk::Buffer rays = rayCounters(input_.device);
     const shader::Patch& to = set.scene.patches[patch];
     const glm::vec3 end = to.position + to.offset * to.normal;
     std::vector<uint32_t> seen(set.scene.patches.size());
@@ -248,10 +252,9 @@ std::vector<uint32_t> PatchInspector::seeingBitsRtrad(uint32_t patch) {
     };
     const vk::Buffer bits = hostBuffer(superBytes(false), "seen patches");
     const vk::Buffer sends = hostBuffer(set.chunkCount() * sizeof(uint32_t), "chunk sends");
-    const vk::Buffer rays = hostBuffer(2 * shader::kRayCounters * sizeof(uint32_t), "ray counters");
+    const vk::Buffer rays = rayCounters(input_.device);
     const vk::Buffer table = hostBuffer(sizeof(SuperBlock), "super-block");
     std::fill_n(sends.as<uint32_t>(), set.chunkCount(), 1u);
-    std::fill_n(rays.as<uint32_t>(), 2 * shader::kRayCounters, 0u);
     const uint32_t own = patch / kChunk;
     std::vector<uint32_t> seen(set.scene.patches.size());
     vk::Commands commands(input_.device);
