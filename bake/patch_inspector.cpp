@@ -243,42 +243,53 @@ std::vector<uint32_t> PatchInspector::seeingBits(uint32_t patch) {
 }
 
 // The preset's ray intervals are known to occlusion() alone: all of the patch's chunk are asked, block by
-// block.
+// block, those of some super-blocks at a time.
 std::vector<uint32_t> PatchInspector::seeingBitsRtrad(uint32_t patch) {
     using shader::kSuper;
+    constexpr uint32_t kAtOnce = 16; // super-blocks, 2 MiB of bits; 256 blocks of them are asked
     const PatchSet& set = input_.patches;
     const auto hostBuffer = [&](uint64_t size, const char* name) {
         return vk::Buffer(input_.device, {.size = size, .memory = vk::Memory::Host, .name = name});
     };
-    const vk::Buffer bits = hostBuffer(superBytes(false), "seen patches");
+    const vk::Buffer bits = hostBuffer(kAtOnce * superBytes(false), "seen patches");
     const vk::Buffer sends = hostBuffer(set.chunkCount() * sizeof(uint32_t), "chunk sends");
+    const vk::Buffer table = hostBuffer(kAtOnce * sizeof(SuperBlock), "super-blocks");
     const vk::Buffer rays = rayCounters(input_.device);
-    const vk::Buffer table = hostBuffer(sizeof(SuperBlock), "super-block");
     std::fill_n(sends.as<uint32_t>(), set.chunkCount(), 1u);
-    const uint32_t own = patch / kChunk;
+    const uint32_t own = patch / kChunk, supers = (set.chunkCount() + kSuper - 1) / kSuper;
+    std::vector<uint32_t*> words;
+    for (uint32_t s = 0; s < kAtOnce; ++s)
+        words.push_back(bits.as<uint32_t>() + s * superBytes(false) / sizeof(uint32_t));
+    const auto unitOf = [&](uint32_t chunk) {
+        return std::min(own, chunk) % kSuper * kSuper + std::max(own, chunk) % kSuper;
+    };
     std::vector<uint32_t> seen(set.scene.patches.size());
     vk::Commands commands(input_.device);
-    for (uint32_t other = 0; other < set.chunkCount(); ++other) {
-        const uint32_t row = std::min(own, other), column = std::max(own, other);
-        SuperBlock super{row / kSuper, column / kSuper, bits.address(), {}, {}, 0};
-        *table.as<SuperBlock>() = super;
-        uint32_t* words = bits.as<uint32_t>();
-        const uint32_t unit = row % kSuper * kSuper + column % kSuper;
+    for (uint32_t first = 0; first < supers; first += kAtOnce) {
+        const uint32_t count = std::min(kAtOnce, supers - first);
+        for (uint32_t s = 0; s < count; ++s) {
+            const auto [row, column] = std::minmax({own / kSuper, first + s});
+            table.as<SuperBlock>()[s] = {row, column, bits.address() + s * superBytes(false), {}, {}, 0};
+        }
+        const uint32_t firstChunk = first * kSuper,
+                       endChunk = std::min((first + count) * kSuper, set.chunkCount());
         VkCommandBuffer cmd = commands.begin();
-        input_.tracer.occlusion(cmd, {.supers = {&super, 1},
-                                      .superBuffer = &table,
-                                      .bits = {&words, 1},
-                                      .firstUnit = unit,
-                                      .unitCount = 1,
-                                      .sends = &sends,
-                                      .rays = &rays});
+        for (uint32_t chunk = firstChunk; chunk < endChunk; ++chunk) {
+            input_.tracer.occlusion(
+                cmd, {.supers = {table.as<SuperBlock>(), count},
+                      .superBuffer = &table,
+                      .bits = words,
+                      .firstUnit = (chunk / kSuper - first) * shader::kSuperBlocks + unitOf(chunk),
+                      .unitCount = 1,
+                      .sends = &sends,
+                      .rays = &rays});
+        }
         vk::hostBarrier(cmd);
         commands.run();
-        const uint32_t* block = words + size_t{unit} * shader::kBlockWords;
-        for (uint32_t i = 0; i < kChunk; ++i) {
-            const uint32_t index = other * kChunk + i;
-            const uint32_t r = (patch < index ? patch : index) % kChunk,
-                           c = (patch < index ? index : patch) % kChunk;
+        for (uint32_t index = firstChunk * kChunk; index < endChunk * kChunk; ++index) {
+            const uint32_t chunk = index / kChunk;
+            const uint32_t* block = words[chunk / kSuper - first] + unitOf(chunk) * shader::kBlockWords;
+            const uint32_t r = std::min(patch, index) % kChunk, c = std::max(patch, index) % kChunk;
             seen[index] = index == patch ? 0 : block[r * 2 + c / 32] >> c % 32 & 1u;
         }
     }

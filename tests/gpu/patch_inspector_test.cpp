@@ -175,6 +175,23 @@ TEST(PatchInspector, SeesAllOtherWallsOfABox) {
     }
 }
 
+// The preset asks for whole blocks, many super-blocks of them here.
+TEST(PatchInspector, RtradSeesAllOtherWallsOfABox) {
+    SceneMaker maker(192);
+    maker.box(glm::vec3(0), kUnitBox, maker.material(0.5f), 54);
+    Inspected box(maker.scene(), {.size = 192, .rtrad = true});
+    ASSERT_GT(box.set().chunkCount(), 17 * shader::kSuper);
+    for (uint32_t patch : {3u, box.set().count / 2, box.set().count - 1}) {
+        const PatchValues seen = box.inspector.seenFrom(patch);
+        uint32_t wrong = 0;
+        for (uint32_t i = 0; i < box.set().count; ++i) {
+            const bool other = glm::dot(box.patch(i).normal, box.patch(patch).normal) < 0.9f;
+            wrong += seen[i].r != (other ? 1.0f : 0.0f);
+        }
+        EXPECT_EQ(wrong, 0u) << patch;
+    }
+}
+
 // A screen across the middle of a room hides what is behind it.
 TEST(PatchInspector, DoesNotSeeThroughAScreen) {
     SceneMaker maker(96);
