@@ -28,10 +28,13 @@ enum class View : uint32_t {
     InspectRaw = shader::kViewInspectRaw,           // as displayed
     InspectPosition = shader::kViewInspectPosition, // as a share of DrawSettings' range
     InspectNormal = shader::kViewInspectNormal,
-    InspectHeat = shader::kViewInspectHeat, // R on a scale of colours over the range's x
-    InspectLeaves =
-        shader::kViewInspectLeaves, // R log2 of a quad-tree leaf's edge in texels, G its weight in [0, 1]
-    InspectMask = shader::kViewInspectMask, // R 1 seen or 0 not, G form factor, of the largest one
+    // R on a scale of colours over the range's x:
+    InspectHeat = shader::kViewInspectHeat,
+    // Quad-tree: R log2 of a leaf's edge in texels, G 1 along its border, B in [0, 1) tells it from
+    // neighbours:
+    InspectLeaves = shader::kViewInspectLeaves,
+    // R 1 seen or 0 not, G form factor, of the largest one, B 1 where it is seen from:
+    InspectMask = shader::kViewInspectMask,
 };
 
 enum class LightmapFilter : uint32_t {

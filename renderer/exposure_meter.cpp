@@ -17,8 +17,7 @@ constexpr size_t kBytes = sizeof(glm::vec4) * kMeterCells * kMeterCells;
 } // namespace
 
 ExposureMeter::ExposureMeter()
-    : empty_({.attributes = {}, .name = "screen"}),
-      cells_({.width = kMeterCells, .height = kMeterCells, .color = GL_RGBA32F, .name = "meter"}),
+    : cells_({.width = kMeterCells, .height = kMeterCells, .color = GL_RGBA32F, .name = "meter"}),
       readback_({.size = kBytes, .name = "meter"}) {
     program(0); // what is wrong with it shows now
 }
@@ -35,15 +34,8 @@ const gl::Program& ExposureMeter::program(uint32_t samples) {
 
 void ExposureMeter::measure(const gl::Framebuffer& picture, uint32_t samples, float meterScale) {
     meterScale_ = meterScale;
-    glBindFramebuffer(GL_FRAMEBUFFER, cells_.get());
-    glViewport(0, 0, kMeterCells, kMeterCells);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
     glBindTextureUnit(0, picture.color().get());
-    program(samples).use();
-    glBindVertexArray(empty_.get());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    screen_.draw(program(samples), cells_.get(), kMeterCells, kMeterCells);
     readback_.request(cells_, GL_RGBA, GL_FLOAT);
 }
 

@@ -5,7 +5,7 @@
 #include "renderer/gl/framebuffer.h"
 #include "renderer/gl/program_cache.h"
 #include "renderer/gl/readback.h"
-#include "renderer/gl/vertex_array.h"
+#include "renderer/gl/screen.h"
 
 namespace relume {
 
@@ -28,7 +28,7 @@ private:
     const gl::Program& program(uint32_t samples);
 
     gl::ProgramCache programs_; // by the number of samples
-    gl::VertexArray empty_;
+    gl::Screen screen_;
     gl::Framebuffer cells_;
     gl::Readback readback_;
     float meterScale_ = 1.0f; // of the picture that is measured

@@ -31,25 +31,25 @@ private:
     gl::VertexArray vertexArray_;
 };
 
-/// Cubes of one size in OpenGL's memory, drawn in a scene's place.
+/// Boxes of one size in OpenGL's memory, drawn in a scene's place.
 class VoxelDraw {
 public:
     struct Desc {
         std::span<const glm::vec3> centres; // [m], world space
-        float edge = 1.0f;                  // [m]
+        glm::vec3 edge{1.0f};               // [m]
         std::span<const glm::vec3> colors;  // as displayed, one for each; empty: by the faces' normals
     };
     explicit VoxelDraw(const Desc& desc); // throws Error when it does not fit
 
     uint32_t count() const { return count_; }
-    float edge() const { return edge_; }
+    const glm::vec3& edge() const { return edge_; }
     bool colored() const { return colored_; }
     const gl::Buffer& voxels() const { return voxels_; } // as shaders/gl/voxel.vert reads them
     uint64_t version() const { return version_; }
 
 private:
     uint32_t count_ = 0;
-    float edge_ = 1.0f;
+    glm::vec3 edge_{1.0f};
     bool colored_ = false;
     uint64_t version_ = newVersion();
     gl::Buffer voxels_;

@@ -1,7 +1,7 @@
 #include "renderer/scene_renderer.h"
 
-#include "renderer/frustum.h"
 #include "renderer/gl/debug.h"
+#include "renderer/visible_draws.h"
 
 #include <algorithm>
 #include <array>
@@ -32,11 +32,6 @@ float meterScaleOf(const LightmapTexture& lightmap) {
 float guessExposure(const LightmapTexture& lightmap) {
     constexpr float kMiddleGrey = 0.18f, kAlbedo = 0.5f;
     return std::log2(kMiddleGrey / kAlbedo * meterScaleOf(lightmap));
-}
-
-float farthest(const Box& box, const glm::vec3& eye) {
-    const glm::vec3 reach = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
-    return glm::dot(reach, reach);
 }
 
 bool fetchesAlbedo(View view) {
@@ -87,20 +82,7 @@ Variant variantOf(const DrawSettings& settings, const SceneDraw& draw,
     return variant;
 }
 
-// Depth is reversed: 1 near, 0 infinitely far.
-void beginSurface(const gl::Framebuffer& surface, const glm::vec3& background) {
-    glBindFramebuffer(GL_FRAMEBUFFER, surface.get());
-    glViewport(0, 0, static_cast<GLsizei>(surface.width()), static_cast<GLsizei>(surface.height()));
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDisable(GL_BLEND);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_FRAMEBUFFER_SRGB);
-    glFrontFace(GL_CCW);
-    glCullFace(GL_BACK);
+void clear(const gl::Framebuffer& surface, const glm::vec3& background) {
     const std::array<float, 4> color = {background.r, background.g, background.b, 0.0f}; // no light
     const float farAway = 0;
     glClearNamedFramebufferfv(surface.get(), GL_COLOR, 0, color.data());
@@ -182,23 +164,15 @@ void SceneRenderer::setUniforms(const gl::Program& program, const Frame& frame, 
 }
 
 void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
-    glBindVertexArray(frame.scene.vertexArray().get());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, frame.scene.materials().get());
+    bindScene(frame.scene);
     glBindTextureUnit(kLightmapUnit, frame.lightmap.texture);
-
-    const Frustum frustum(pass.viewProjection);
-    visible_.clear();
-    for (const SceneDraw& draw : frame.scene.draws())
-        if (frustum.sees(draw.bounds)) visible_.push_back(&draw);
-    counts_.drawn = static_cast<uint32_t>(visible_.size());
+    const std::vector<const SceneDraw*> visible =
+        visibleDraws(frame.scene, pass.viewProjection, frame.camera.eye);
+    counts_.drawn = static_cast<uint32_t>(visible.size());
     counts_.culled = static_cast<uint32_t>(frame.scene.draws().size()) - counts_.drawn;
-    // What is hidden is then not shaded. By the far ends: a room is behind what stands in it.
-    std::stable_sort(visible_.begin(), visible_.end(), [&](const SceneDraw* a, const SceneDraw* b) {
-        return farthest(a->bounds, frame.camera.eye) < farthest(b->bounds, frame.camera.eye);
-    });
 
     std::vector<const gl::Program*> ready; // have this frame's uniforms
-    for (const SceneDraw* draw : visible_) {
+    for (const SceneDraw* draw : visible) {
         const gl::Program& program = sceneProgram(frame, *draw);
         if (std::find(ready.begin(), ready.end(), &program) == ready.end()) {
             ready.push_back(&program);
@@ -210,12 +184,7 @@ void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
         glBindTextureUnit(0, textures.base);
         glBindTextureUnit(1, textures.emission);
         glBindTextureUnit(2, textures.metallic);
-        if (draw->doubleSided)
-            glDisable(GL_CULL_FACE);
-        else
-            glEnable(GL_CULL_FACE);
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw->indexCount), GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(sizeof(uint32_t) * size_t{draw->firstIndex}));
+        issue(*draw);
     }
 }
 
@@ -269,7 +238,8 @@ void SceneRenderer::render(const Frame& frame, float exposure) {
     const Pass pass{.viewProjection = projectionMatrix(frame.camera, aspect) * viewMatrix(frame.camera),
                     .meterScale = meterScaleOf(frame.lightmap),
                     .exposure = exposure};
-    beginSurface(surface(), frame.settings.background);
+    beginScene(surface());
+    clear(surface(), frame.settings.background);
     if (frame.voxels != nullptr)
         drawVoxels(frame, pass);
     else

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "renderer/camera.h"
 #include "renderer/draw_settings.h"
@@ -102,10 +101,9 @@ private:
     gl::VertexArray empty_;                  // without vertices
     gl::Framebuffer multisampled_, picture_; // the first is resolved into the second
     gl::Timer timer_;
-    std::vector<const SceneDraw*> visible_; // nearest first
-    std::optional<Shown> shown_;            // none: draw in any case
-    bool unmeasured_ = false;               // the last picture's light is not what was measured last
-    std::optional<float> measured_;         // the newest exposure that a picture asked for [EV]
+    std::optional<Shown> shown_;    // none: draw in any case
+    bool unmeasured_ = false;       // the last picture's light is not what was measured last
+    std::optional<float> measured_; // the newest exposure that a picture asked for [EV]
     Counts counts_;
     float exposure_ = 0;
 };

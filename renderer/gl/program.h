@@ -29,6 +29,9 @@ public:
     void use() const { glUseProgram(get()); }
     void set(GLint location, GLuint value) const { glProgramUniform1ui(get(), location, value); }
     void set(GLint location, float value) const { glProgramUniform1f(get(), location, value); }
+    void set(GLint location, const glm::vec2& value) const {
+        glProgramUniform2fv(get(), location, 1, &value.x);
+    }
     void set(GLint location, const glm::vec3& value) const {
         glProgramUniform3fv(get(), location, 1, &value.x);
     }

@@ -15,6 +15,7 @@ namespace {
 double bytesPerTexel(GLenum format) {
     switch (format) {
     case GL_RGBA32F:
+    case GL_RGBA32UI:
         return 16.0;
     case GL_RGBA16F:
     case GL_RG32F:

@@ -33,9 +33,8 @@ out vec4 result; // as displayed; a: for the meter
 // Constants, not uniforms: a software device would go through all branches.
 const uint view = VIEW;
 const uint filterKind = FILTER;
-const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4);   // display; of geometry without lightmap UVs
-const vec3 kSelected = vec3(1.0, 0.55, 0.1);     // display
-const float kTile = 8.0;                         // texels, the unit of the baker's order
+const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4); // display; of geometry without lightmap UVs
+const vec3 kSelected = vec3(1.0, 0.55, 0.1);   // display
 
 bool mapped() {
     return MAPPED == kMappedAll || (MAPPED == kMappedSome && fragIds.y != 0u);
@@ -77,7 +76,7 @@ vec3 idColor(uint id) {
 
 vec3 checkerColor() {
     vec2 texel = floor(fragLightmapUv * float(lightmapSize));
-    vec2 tile = floor(texel / kTile);
+    vec2 tile = floor(texel / float(kTileTexels));
     float odd = mod(texel.x + texel.y, 2.0), oddTile = mod(tile.x + tile.y, 2.0);
     vec3 tint = mix(vec3(1.0, 0.93, 0.8), vec3(0.78, 0.88, 1.0), oddTile);
     return tint * mix(0.55, 0.9, odd);
@@ -101,9 +100,8 @@ vec3 coverageColor() {
 }
 
 vec3 inspectColor() {
-    vec2 texel = fragLightmapUv * vec2(textureSize(lightmap, 0));
     vec3 none = view == kViewInspectHeat ? rangeLow : vec3(0.0);
-    return quantityColor(sampleLightmap(fragLightmapUv, filterKind, none), texel);
+    return quantityColor(sampleLightmap(fragLightmapUv, filterKind, none));
 }
 
 vec4 shown(SceneMaterial m, vec3 base) {

@@ -1,9 +1,9 @@
-// A corner of a cube. Of each instance only the three faces towards the eye are made, six corners each.
+// A corner of a box. Of each instance only the three faces towards the eye are made, six corners each.
 
 layout(std430, binding = 1) readonly buffer Voxels { uvec4 voxels[]; }; // centre as floats [m], colour in 3 x 8 bits
 
 layout(location = 0) uniform mat4 viewProjection;
-layout(location = 1) uniform float edge;      // [m]
+layout(location = 1) uniform vec3 edge;       // [m]
 layout(location = 2) uniform uint colored;    // 0: by the faces' normals
 layout(location = 3) uniform vec4 eye;        // point; w 0: the direction towards it
 

@@ -17,8 +17,8 @@ CONST uint kViewInspectRaw = 11u;      // RGB as displayed
 CONST uint kViewInspectPosition = 12u; // as a share of a range
 CONST uint kViewInspectNormal = 13u;
 CONST uint kViewInspectHeat = 14u;     // R on a scale of colours
-CONST uint kViewInspectLeaves = 15u;   // R log2 of the edge in texels, G weight in [0, 1]
-CONST uint kViewInspectMask = 16u;     // R 1 seen, 0 not; G form factor, of the largest one
+CONST uint kViewInspectLeaves = 15u;   // R log2 of the edge in texels, G 1 along the border, B tells neighbours apart
+CONST uint kViewInspectMask = 16u;     // R 1 seen, 0 not; G form factor, of the largest one; B 1: seen from here
 CONST uint kViewCount = 17u;
 
 CONST uint kFilterNearest = 0u;
@@ -29,6 +29,9 @@ CONST uint kFilterBicubic = 2u;
 CONST uint kMappedNone = 0u;
 CONST uint kMappedSome = 1u;
 CONST uint kMappedAll = 2u;
+
+CONST uint kTileTexels = 8u;       // along each side of a tile, the unit of the baker's order
+CONST uint kNoUv = 0xffffffffu;    // in place of a coordinate's bits
 
 // std430: vectors of four only.
 struct SceneMaterial {

@@ -1,0 +1,55 @@
+#include "renderer/id_pass.h"
+
+#include "renderer/visible_draws.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace relume {
+namespace {
+
+// Uniforms, as the shaders number them.
+constexpr GLint kViewProjection = 0, kMaterial = 1, kLightmapSize = 2;
+
+} // namespace
+
+const gl::Program& IdPass::program(const SceneGpu::MaterialTextures& textures, Output output) {
+    const uint32_t masked = textures.masked ? 1 : 0, base = textures.masked && textures.base != 0 ? 1 : 0;
+    const auto number = static_cast<uint32_t>(output);
+    return programs_.get(number | masked << 2 | base << 3, [&]() -> gl::Program::Desc {
+        return {.vertex = "gl/scene.vert",
+                .fragment = "gl/ids.frag",
+                .definitions = {"OUTPUT=" + std::to_string(number), "MASKED=" + std::to_string(masked),
+                                "BASE=" + std::to_string(base)},
+                .name = "ids"};
+    });
+}
+
+void IdPass::draw(const Desc& desc, Output output, const gl::Framebuffer& to) {
+    beginScene(to);
+    const std::array<GLuint, 4> nothing = {0, 0, 0, 0};
+    const float farAway = 0;
+    glClearNamedFramebufferuiv(to.get(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(to.get(), GL_DEPTH, 0, &farAway);
+    bindScene(desc.scene);
+    std::vector<const gl::Program*> ready; // have the uniforms
+    for (const SceneDraw* draw : visibleDraws(desc.scene, desc.viewProjection, desc.eye)) {
+        const SceneGpu::MaterialTextures& textures = desc.scene.textures(draw->material);
+        const gl::Program& variant = program(textures, output);
+        if (std::find(ready.begin(), ready.end(), &variant) == ready.end()) {
+            ready.push_back(&variant);
+            variant.set(kViewProjection, desc.viewProjection);
+            variant.set(kLightmapSize, static_cast<GLuint>(desc.lightmapSize));
+        }
+        variant.set(kMaterial, static_cast<GLuint>(draw->material));
+        variant.use();
+        glBindTextureUnit(0, textures.base);
+        issue(*draw);
+    }
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+}
+
+} // namespace relume

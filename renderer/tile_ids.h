@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderer/gl/readback.h"
+#include "renderer/id_pass.h"
+
+namespace relume {
+
+/// Tells which tiles of 8 x 8 lightmap texels a camera sees, by a small picture of their numbers. Nothing
+/// waits for the device.
+class TileIds {
+public:
+    /// Asks; replaces what was asked for before. aspect: width / height of the picture that the user sees,
+    /// lightmapSize: edge [texels]. Throws Error when the shader does not compile.
+    void request(const SceneGpu& scene, const ViewCamera& camera, float aspect, uint32_t lightmapSize);
+    bool pending() const { return readback_.pending(); }
+    /// Once after each request, as soon as it is there: row x tiles per row + column, ascending, each once.
+    std::optional<std::vector<uint32_t>> poll();
+
+    /// Compiles its programs again. Throws Error and keeps the old ones when one fails.
+    void reload() { pass_.reload(); }
+
+private:
+    void resize(uint32_t height);
+
+    IdPass pass_;
+    gl::Framebuffer picture_;
+    gl::Readback readback_;
+};
+
+} // namespace relume

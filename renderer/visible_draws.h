@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "renderer/gl/framebuffer.h"
+#include "renderer/scene_gpu.h"
+
+namespace relume {
+
+/// The draws of a scene of which something may be in the picture, so ordered that what is hidden is mostly
+/// drawn after what hides it.
+std::vector<const SceneDraw*> visibleDraws(const SceneGpu& scene, const glm::mat4& viewProjection,
+                                           const glm::vec3& eye);
+
+/// Binds a scene's vertices and materials.
+void bindScene(const SceneGpu& scene);
+/// Draws with the program in use and that culling of backs which the draw asks for; bindScene before.
+void issue(const SceneDraw& draw);
+
+/// Binds a framebuffer of reversed depth (1 near, 0 infinitely far) and sets all the state that a scene is
+/// drawn with; clears nothing.
+void beginScene(const gl::Framebuffer& framebuffer);
+
+} // namespace relume
