@@ -69,6 +69,12 @@ void LinkSolver::resolve() {
     }
     stale_ = false;
     light_.clear();
+    if (!hasSolution()) {
+        live_.all = true; // this result is without what has arrived since
+        return;
+    }
+    ++live_.resolves;
+    live_.complete = live_.complete || settings_.passes > 0 || state_.settling.left <= kMostDimmer;
 }
 
 // What interpolation leaves: a share of how far the receivers themselves are from what their neighbours say.
@@ -135,14 +141,17 @@ void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
     if (!close) state_.sigma = best;
 }
 
-// Within a round only some patches have its samples. What a look teaches about widths and variances must not
-// decide what comes next: looking changes no byte.
+// What a look teaches about widths and variances must not decide what comes next: looking changes no byte.
+void LinkSolver::resolveForLook() {
+    const State before = state_;
+    resolve();
+    state_ = before;
+}
+
+// Within a round only some patches have its samples.
 const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0) {
-        const State before = state_;
-        resolve();
-        state_ = before;
-    }
+    if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0)
+        resolveForLook();
     if (light_.empty())
         light_ =
             vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());

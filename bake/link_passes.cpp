@@ -110,8 +110,9 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
             : 0;
     const uint64_t packed = software ? 0 : sizeof(glm::uvec2);
     const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
-    return count * (vec4s(sums + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse + footprint +
-           batch * perChunk;
+    const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
+    return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
+           footprint + batch * perChunk;
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -231,6 +232,16 @@ void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& ligh
                                    .light = light.ligIn.address(),
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
+    dispatchChunks(compose_, cmd, push, light.chunkCount);
+}
+
+void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,
+                                      const LinkBuffers& buffers, uint32_t rounds) const {
+    const shader::ComposePush push{.sums = buffers.directSums.address(),
+                                   .light = buffers.direct.address(),
+                                   .patchCount = light.chunkCount * kChunk,
+                                   .scale =
+                                       rounds > 0 ? 1.0f / static_cast<float>(kReplicates * rounds) : 0.0f};
     dispatchChunks(compose_, cmd, push, light.chunkCount);
 }
 

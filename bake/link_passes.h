@@ -56,10 +56,6 @@ struct LinkBuffers {
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 };
 
-struct ChunkRange {
-    uint32_t first = 0, count = 0;
-};
-
 /// Direct light: draws points on emitters, and adds the light of those that a tracer's segments reach.
 class DirectPass {
 public:
@@ -114,6 +110,9 @@ public:
     /// ligIn = direct light and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        bool hybrid, uint32_t samples) const;
+    /// direct, as DirectPass left it after so many rounds.
+    void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                          uint32_t rounds) const;
 
 private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;

@@ -1,6 +1,5 @@
 #include "bake/link_solver.h"
 
-#include "assets/clock.h"
 #include "bake/directions.h"
 
 #include <algorithm>
@@ -24,8 +23,16 @@ constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
 // A segment towards a light costs about so much of a closest hit.
 constexpr double kSegmentCost = 0.3;
-double updatedRate(double rate, double chunks, double seconds) {
+// A GPU is not filled by less than this, and each submit costs 0.05 to 0.1 ms: unseen chunks that take no
+// longer come along with seen ones on both sides.
+constexpr double kWorthASubmit = 0.5; // [ms]
+// What a batch this much shorter than wanted took says little about longer ones.
+constexpr double kShortBatch = 0.25;
+
+// [chunks/ms]. wanted: chunks that the batch might have had.
+double updatedRate(double rate, double chunks, double wanted, double seconds) {
     const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
+    if (chunks < kShortBatch * wanted && measured < rate) return rate;
     return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
 }
 
@@ -49,7 +56,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                 .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
                 .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device, settings.transport),
-      resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3) {
+      resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3),
+      order_(std::max(input.patches.chunkCount(), coarse_.chunkCount())) {
+    batchMs_ = settings.batchMs;
     settings_.transport.reflectedOnly = hybrid_;
     const PatchSet& patches = input.patches;
     if (settings.links.footprint) {
@@ -68,14 +77,17 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
 
     if (settings.links.directions == DirectionSet::Lec) makeDisc();
     VkCommandBuffer cmd = commands_.begin();
-    for (const vk::Buffer* buffer : {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct,
-                                     &buffers_.rays, &input.light.ligIn, &input.light.ligOut}) {
+    for (const vk::Buffer* buffer :
+         {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct, &buffers_.rays, &buffers_.result,
+          &input.light.ligIn, &input.light.ligOut}) {
         if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     }
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
     light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
+    if (settings.live && !buffers_.rows)
+        undo_ = vk::Buffer(input.device, {.size = buffers_.linkSums.size(), .name = "sums before the round"});
     const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
     progress_.cacheBytes = kept;
     traced_.assign(buffers_.keptChunks, 0);
@@ -98,12 +110,11 @@ void LinkSolver::step() {
     if (done_) return;
     const auto start = Clock::now();
     if (state_.stage == Stage::Plan) plan();
-    const uint32_t chunks = chunksOfStage();
     if (state_.stage == Stage::Direct)
         directBatch();
     else if (state_.stage == Stage::Links)
         linkBatch();
-    progress_.passFraction = static_cast<double>(state_.nextChunk) / chunks;
+    progress_.passFraction = 1.0 - static_cast<double>(order_.left()) / std::max(1u, order_.count());
     progress_.seconds += secondsSince(start);
 }
 
@@ -117,19 +128,21 @@ void LinkSolver::plan() {
         done_ = true;
         return;
     }
+    if (settings_.live) look();
     begin(wantsDirect() ? Stage::Direct : Stage::Links);
 }
 
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
-    state_.nextChunk = 0;
     state_.bounce = 0;
     if (stage == Stage::Links) {
         std::fill(traced_.begin(), traced_.end(), uint8_t{0});
         beginBounce();
     } else {
+        order_.begin(chunksOfStage(), seenOfStage());
         VkCommandBuffer cmd = commands_.begin();
         vkCmdFillBuffer(cmd, buffers_.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+        recordUndo(cmd);
         vk::barrier(cmd);
         commands_.run();
     }
@@ -170,9 +183,13 @@ bool LinkSolver::wantsDirect() const {
 }
 
 ChunkRange LinkSolver::nextRange(double chunksPerMs, uint32_t most) const {
-    const double wanted = chunksPerMs > 0 ? chunksPerMs * settings_.batchMs : kFirstChunks;
-    const uint32_t left = chunksOfStage() - state_.nextChunk;
-    return {state_.nextChunk, std::min({left, most, static_cast<uint32_t>(std::max(1.0, wanted))})};
+    const double wanted = chunksPerMs > 0 ? chunksPerMs * batchMs_ : kFirstChunks;
+    const double limit = std::clamp(wanted, 1.0, std::max(1.0, static_cast<double>(most)));
+    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(chunksPerMs * kWorthASubmit));
+}
+
+const std::vector<uint8_t>& LinkSolver::seenOfStage() const {
+    return state_.stage == Stage::Links && coarse_.count > 0 ? seenReceivers_ : seenPatches_;
 }
 
 // Direct light is every patch's own; links may start at fewer.
@@ -214,9 +231,10 @@ void LinkSolver::directBatch() {
     commands_.run();
     progress_.traceSeconds += input_.tracer.onCpu() ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
     progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
-    directRate_ = updatedRate(directRate_, range.count, secondsSince(start));
-    state_.nextChunk += range.count;
-    if (state_.nextChunk < input_.patches.chunkCount()) return;
+    directRate_ = updatedRate(directRate_, range.count, directRate_ * batchMs_, secondsSince(start));
+    order_.finish(range);
+    if (settings_.live && !hasSolution()) live_.ranges.push_back(range);
+    if (order_.left() > 0) return;
     const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
     progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
     ++state_.directRounds;
@@ -237,7 +255,16 @@ void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
 
 void LinkSolver::beginBounce() {
     const bool counted = settings_.passes > 0;
+    // Hybrid's first pass is its direct light.
+    const uint32_t bounces = hybrid_ ? settings_.passes - 1 : settings_.passes;
+    if (counted)
+        state_.last = state_.bounce + 1 >= bounces;
+    else if (state_.linkRounds > 0)
+        state_.last = true;
+    else if (state_.bounce == 0)
+        state_.last = false;
     VkCommandBuffer cmd = commands_.begin();
+    if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const uint32_t samples = counted ? 0 : state_.linkRounds * shape_.links;
         gatherPass_.recordCompose(cmd, input_.light, buffers_, hybrid_, samples);
@@ -248,21 +275,18 @@ void LinkSolver::beginBounce() {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    state_.nextChunk = 0;
-    // Hybrid's first pass is its direct light.
-    const uint32_t bounces = hybrid_ ? settings_.passes - 1 : settings_.passes;
-    if (counted)
-        state_.last = state_.bounce + 1 >= bounces;
-    else if (state_.linkRounds > 0)
-        state_.last = true;
-    else if (state_.bounce == 0)
-        state_.last = false;
+    order_.begin(chunksOfStage(), seenOfStage());
+    if (!hasSolution()) {
+        live_.all = true;
+        live_.ranges.clear();
+    }
 }
 
 void LinkSolver::linkBatch() {
     // Mostly links are there from the round's second bounce on; after a restore they are traced once more.
-    const bool kept = state_.nextChunk < buffers_.keptChunks;
-    const auto known = traced_.begin() + std::min(state_.nextChunk, buffers_.keptChunks);
+    const uint32_t next = order_.next(1, 0).first;
+    const bool kept = next < buffers_.keptChunks;
+    const auto known = traced_.begin() + std::min(next, buffers_.keptChunks);
     const bool trace = !kept || *known == 0;
     const auto alike = static_cast<uint32_t>(std::find(known, traced_.end(), trace ? 1 : 0) - known);
     const uint32_t room = kept ? alike : buffers_.batchChunks;
@@ -294,14 +318,15 @@ void LinkSolver::linkBatch() {
     else
         linksBySubmit(trace ? &closest : nullptr, work);
     double& rate = trace ? traceRate_ : gatherRate_;
-    rate = updatedRate(rate, range.count, secondsSince(start));
+    rate = updatedRate(rate, range.count, rate * batchMs_, secondsSince(start));
     const auto first = senders_.begin() + range.first;
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * shape_.links;
     (trace ? progress_.rays : progress_.raysSaved) += count;
     if (kept) std::fill_n(known, range.count, uint8_t{1});
     progress_.pairs += count;
-    state_.nextChunk += range.count;
-    if (state_.nextChunk >= chunksOfStage()) endBounce();
+    order_.finish(range);
+    if (settings_.live && !hasSolution() && coarse_.count == 0) live_.ranges.push_back(range);
+    if (order_.left() == 0) endBounce();
 }
 
 // Where the CPU does both, a submit would take longer than a small batch.
@@ -384,9 +409,13 @@ void LinkSolver::endBounce() {
         if (settling) state_.last = state_.iterationError <= aim || state_.bounce + 1 >= kMaxPasses;
         return beginBounce();
     }
-    if (settings_.passes == 0)
+    if (settings_.passes == 0) {
         state_.iterationError *= state_.ratio; // this bounce's own share
-    else
+        if (state_.linkRounds == 0)
+            state_.settling.bounce();
+        else
+            state_.settling.round(state_.linkRounds);
+    } else
         state_.iterationError = 0; // what more bounces would add is not asked for
     ++state_.linkRounds;
     progress_.samples = state_.linkRounds * shape_.links;
@@ -404,11 +433,13 @@ void LinkSolver::measureChange() {
     commands_.run();
     const auto sums =
         vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount());
-    glm::dvec3 total(0.0);
+    glm::dvec4 total(0.0);
     for (const glm::vec4& sum : sums)
-        total += glm::dvec3(sum);
+        total += glm::dvec4(sum);
     const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
+    if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
+    state_.settling.add(mean);
     if (change == 0.0 || mean <= 0.0) {
         state_.iterationError = state_.ratio = 0.0;
     } else if (state_.change > 0.0) {
@@ -431,13 +462,16 @@ std::vector<StatePart> LinkSolver::stateParts() {
           &buffers_.direct, &buffers_.distances, &buffers_.coarseSums, &buffers_.rays}) {
         if (*buffer) parts.push_back(part(input_.device, *buffer));
     }
+    parts.push_back(part(order_));
     return parts;
 }
 
 void LinkSolver::restore(const SolverState& state) {
     state_ = takeState<State>(state);
+    order_.restore(chunksOfStage(), seenOfStage());
     done_ = false;
     stale_ = true;
+    live_ = {.version = live_.version};
     std::fill(traced_.begin(), traced_.end(), uint8_t{0});
     if (state_.stage != Stage::Links) return;
     VkCommandBuffer cmd = commands_.begin();

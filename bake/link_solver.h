@@ -1,7 +1,9 @@
 #pragma once
 
+#include "assets/clock.h"
 #include "bake/footprint.h"
 #include "bake/link_passes.h"
+#include "bake/settling.h"
 #include "bake/vk/commands.h"
 
 #include <optional>
@@ -26,25 +28,30 @@ public:
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
+    void setPriority(std::vector<uint8_t> chunkSeen) override;
+    bool passBoundary() const override { return done_ || state_.stage == Stage::Plan; }
+    void abortPass() override;
+    LiveLight liveLight() override;
+
     /// Directions per patch beyond which no error is worth the time.
     static constexpr uint32_t kMaxSamples = 65536;
 
 private:
     enum class Stage : uint32_t { Plan, Direct, Links };
-    /// Everything that decides what comes next, but the sums and the light.
+    /// Everything that decides what comes next, but the sums, the light and the order of chunks.
     struct State {
         Stage stage = Stage::Plan;
         uint32_t directRounds = 0, linkRounds = 0; // finished
         uint32_t bounce = 0;                       // of the current round
-        uint32_t nextChunk = 0;
-        uint32_t nextCheck = 0; // rounds of both kinds after which the error is looked at
-        bool last = false;      // this bounce is the round's last one: it counts
-        double change = 0;      // RMS of the last bounce [cd/m^2]
-        double ratio = 0;       // of the last two changes
+        uint32_t nextCheck = 0;                    // rounds of both kinds after which the error is looked at
+        bool last = false;                         // this bounce is the round's last one: it counts
+        double change = 0;                         // RMS of the last bounce [cd/m^2]
+        double ratio = 0;                          // of the last two changes
         double iterationError = 1, directVariance = 0, indirectVariance = 0,
                coarseVariance = 0; // of the light, R, G and B of all patches together
         double sigma = 2.0; // of smoothing [texels]; what suits the noise is learnt from the result itself
         uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
+        Settling settling;                            // of the first round, then of the result
     };
 
     void makeDisc();
@@ -70,7 +77,17 @@ private:
     shader::ResolveSums resolveOnce();
     double coarseVariance(double patches);
     void adaptSigma(const shader::ResolveSums& sums);
+    void resolveForLook();
     ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
+    const std::vector<uint8_t>& seenOfStage() const;
+
+    // For a viewer: link_live.cpp.
+    bool hasSolution() const;
+    void look();
+    std::vector<ChunkRange> showUnfinished();
+    const vk::Buffer& sumsOfStage() const;
+    void recordUndo(VkCommandBuffer cmd);
+    void undo();
 
     const SolverInput input_;
     SolverSettings settings_;
@@ -89,11 +106,26 @@ private:
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     State state_;
+    ChunkOrder order_;                                       // of the round's chunks
+    std::vector<uint8_t> seenPatches_, seenReceivers_;       // chunks that come first
     double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
     std::vector<uint32_t> senders_; // of each chunk with links: patches that take part
     bool gridLimits_ = false;       // more samples are of no use
     bool stale_ = true;             // light_ is behind the sums
     std::vector<glm::vec4> light_;  // empty: not read back yet
+    /// What a viewer has seen. Before the first solution `result` holds what there is, then rounds' results.
+    struct Live {
+        uint64_t version = 0;
+        bool all = true;                  // result is behind the light that bounces
+        std::vector<ChunkRange> ranges;   // of the unfinished bounce, not in result yet
+        uint32_t resolves = 0, shown = 0; // results with a solution; as of the last call
+        bool complete = false, asked = true;
+        Clock::time_point looked; // when the last look began
+        double cost = 0;          // of it [s]
+        bool undoable = false;    // what `undo` goes back to is there
+    };
+    Live live_;
+    vk::Buffer undo_;             // vec4[kReplicates][patches]; none where `rows` serves
     std::vector<uint8_t> traced_; // of each chunk whose links are kept: whether those of this round are there
 };
 

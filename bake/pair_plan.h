@@ -20,6 +20,7 @@ public:
 
     uint32_t superRows() const { return superCount(desc_.rows); }
     uint32_t superColumns() const { return superCount(desc_.columns); }
+    bool symmetric() const { return desc_.symmetric; }
     /// First column of a row of super-blocks.
     uint32_t firstColumn(uint32_t row) const { return desc_.symmetric ? row : 0; }
     UnitMask units(uint32_t row, uint32_t column) const;

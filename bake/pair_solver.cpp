@@ -35,7 +35,8 @@ uint64_t PairSolver::bytes(uint32_t chunkCount, bool software, const SolverSetti
     constexpr uint64_t kSender =
         sizeof(shader::Patch) + sizeof(shader::PatchEdges) + sizeof(shader::Sender) + sizeof(glm::vec4);
     const uint64_t senders = list ? patches / (window * window) * kSender + patches * sizeof(uint32_t) : 0;
-    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1); // the host's copy
+    const uint64_t live = settings.live ? patches * sizeof(glm::vec4) : 0;
+    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1) + live; // the host's copy
 }
 
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
@@ -43,7 +44,8 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
       settings_(settings), senders_(input, settings),
       bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
       gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_), commands_(device_),
-      timestamps_(device_, 3) {
+      timestamps_(device_, 3), rows_(PairPlan::superCount(patches_.chunkCount())) {
+    batchMs_ = settings.batchMs;
     makeCache();
     const PairPlan::Desc most{.rows = patches_.chunkCount(),
                               .columns = senders_.maxColumns(),
@@ -61,6 +63,9 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     state_.threshold = settings_.pairs.threshold;
     vk::upload(device_, light_.ligIn, last_.data(), LightBuffers::lightBytes(patches_));
     vk::upload(device_, light_.ligOut, last_.data(), LightBuffers::lightBytes(patches_));
+    fresh_.assign(PairPlan::superCount(patches_.chunkCount()), Fresh::LigIn);
+    if (settings_.live)
+        live_ = vk::Buffer(device_, {.size = LightBuffers::lightBytes(patches_), .name = "live light"});
 }
 
 void PairSolver::makeCache() {
@@ -110,9 +115,10 @@ void PairSolver::beginPass() {
     vk::hostBarrier(cmd);
     commands_.run();
     state_.inPass = true;
-    state_.row = state_.column = state_.unit = 0;
     state_.ringTurn = 0;
     listSupers();
+    rows_.begin(plan_.superRows(), seenRows_);
+    nextRow();
 }
 
 // What the pass goes through; follows from the light it starts from.
@@ -129,17 +135,47 @@ void PairSolver::listSupers() {
 
 void PairSolver::nextSuper() {
     state_.unit = 0;
-    if (++state_.column < plan_.superColumns()) return;
-    ++state_.row;
-    state_.column = plan_.firstColumn(state_.row);
+    do
+        ++state_.column;
+    while (state_.column < plan_.superColumns() && isDone(state_.column));
+    if (state_.column < plan_.superColumns()) return;
+    rows_.finish({state_.row, 1});
+    // RTRad adds emission to the light only at the pass' end.
+    if (!settings_.transport.rtrad) fresh_[state_.row] = Fresh::LigOut;
+    nextRow();
+}
+
+void PairSolver::nextRow() {
+    state_.row = rows_.left() > 0 ? rows_.next(1, 0).first : plan_.superRows();
+    state_.column = firstColumn();
+    state_.unit = 0;
+}
+
+// Of a row that has not begun.
+uint32_t PairSolver::firstColumn() const {
+    uint32_t column = 0;
+    while (column < plan_.superColumns() && isDone(column))
+        ++column;
+    return column;
+}
+
+// Whether the row of the patches that send in a column had its super-blocks before.
+bool PairSolver::isDone(uint32_t column) const {
+    return plan_.symmetric() && !rows_.isLeft(column);
+}
+
+SuperBlock PairSolver::current() const {
+    const bool turned = plan_.symmetric() && state_.column < state_.row;
+    return {.row = turned ? state_.column : state_.row, .column = turned ? state_.row : state_.column};
 }
 
 // Super-blocks in which nobody sends are left out.
 PairSolver::Batch PairSolver::cutBatch() {
     Batch batch;
     batch.firstUnit = state_.unit;
-    while (!passDone() && batch.supers.size() < buffers_.capacity && batch.cost < settings_.batchMs) {
-        const UnitMask units = plan_.units(state_.row, state_.column);
+    while (!passDone() && batch.supers.size() < buffers_.capacity && batch.cost < batchMs_) {
+        const SuperBlock next = current();
+        const UnitMask units = plan_.units(next.row, next.column);
         if (units.count() == 0) {
             nextSuper();
             continue;
@@ -153,13 +189,14 @@ PairSolver::Batch PairSolver::cutBatch() {
 
 // Adds the current super-block; false when only a part of it fits.
 bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
-    BitsCache::Entry* entry = cache_ ? cache_->find(state_.row, state_.column) : nullptr;
+    const SuperBlock super = current();
+    BitsCache::Entry* entry = cache_ ? cache_->find(super.row, super.column) : nullptr;
     if (!entry && !ring_.bits) ring_ = BitsRing(device_, buffers_.capacity, superBytes(bothEnds_));
     const UnitMask known = entry ? entry->known : UnitMask{};
     if (state_.unit == 0) superKnown_ = units.within(known).count();
     const uint64_t slot = state_.ringTurn % buffers_.capacity;
-    batch.supers.push_back({.row = state_.row,
-                            .column = state_.column,
+    batch.supers.push_back({.row = super.row,
+                            .column = super.column,
                             .bits = entry ? entry->address : ring_.address(slot),
                             .known0 = known.lo,
                             .known1 = known.hi,
@@ -182,7 +219,7 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
     unitsKnown_ += superKnown_;
     batch.gatheredUnits += units.count();
     batch.cost += units.count() * msPerGathered_;
-    batch.pairs += plan_.pairs(state_.row, state_.column);
+    batch.pairs += plan_.pairs(super.row, super.column);
     ++batch.complete;
     if (!entry) ++state_.ringTurn;
     nextSuper();
@@ -192,7 +229,7 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
 // Up to which unit of the super-block just added the batch goes; always some further.
 uint32_t PairSolver::unitsThatFit(const Batch& batch, const UnitMask& missing) const {
     const double room =
-        msPerTraced_ > 0 ? (settings_.batchMs - batch.cost) / msPerTraced_ : kFirstUnits - batch.tracedUnits;
+        msPerTraced_ > 0 ? (batchMs_ - batch.cost) / msPerTraced_ : kFirstUnits - batch.tracedUnits;
     auto fits = static_cast<uint32_t>(std::clamp(room, batch.tracedUnits > 0 ? 0.0 : 1.0, 256.0));
     if (missing.count() <= fits) return kSuperBlocks;
     uint32_t unit = state_.unit;
@@ -277,15 +314,19 @@ uint64_t PairSolver::raysSoFar() {
     return state_.inPass ? progress_.rays + countedRays(0) + countedRays(1) : progress_.rays;
 }
 
+void PairSolver::countRays() {
+    progress_.rays = raysSoFar();
+    keptRays_ += static_cast<double>(countedRays(0));
+}
+
 void PairSolver::endPass() {
     VkCommandBuffer cmd = commands_.begin();
     finishPass_.record(cmd, light_, settings_.transport.rtrad);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    progress_.rays = raysSoFar();
     if (unitsKnown_ > 0) progress_.raysSaved += static_cast<uint64_t>(keptRays_);
-    keptRays_ += static_cast<double>(countedRays(0));
+    countRays();
     progress_.cacheBytes = cache_ ? cache_->bytes() : 0;
     progress_.cachedShare =
         unitsDone_ > 0 ? static_cast<double>(unitsKnown_) / static_cast<double>(unitsDone_) : 0.0;
@@ -295,6 +336,8 @@ void PairSolver::endPass() {
     vk::download(device_, light_.ligOut, last_.data(), last_.size() * sizeof(glm::vec4));
     measureChange();
     std::swap(light_.ligIn, light_.ligOut);
+    for (Fresh& fresh : fresh_)
+        if (fresh != Fresh::No || settings_.transport.rtrad) fresh = Fresh::LigIn;
     state_.threshold *= settings_.pairs.thresholdRamp;
     state_.inPass = false;
 
@@ -325,6 +368,9 @@ void PairSolver::measureChange() {
         left_ = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
     }
     state_.lastChange = change;
+    // RTRad's light has the emission in it from the start.
+    if (progress_.passes == 1 && !settings_.transport.rtrad) state_.settling.add(0.0);
+    state_.settling.add(mean);
 }
 
 // Of the patches from `first` on.
@@ -356,7 +402,7 @@ SolverState PairSolver::state() {
 }
 
 std::vector<StatePart> PairSolver::stateParts() {
-    return {part(device_, light_.ligIn), part(device_, light_.ligOut), part(device_, rays_)};
+    return {part(device_, light_.ligIn), part(device_, light_.ligOut), part(device_, rays_), part(rows_)};
 }
 
 void PairSolver::restore(const SolverState& state) {
@@ -365,7 +411,12 @@ void PairSolver::restore(const SolverState& state) {
     last_ = vk::readBuffer<glm::vec4>(device_, light_.ligIn, patches_.scene.patches.size());
     before_ = last_;
     left_ = -1;
+    fresh_.assign(fresh_.size(), Fresh::LigIn);
+    complete_ = false;
     if (!state_.inPass) return;
+    rows_.restore(PairPlan::superCount(patches_.chunkCount()), seenRows_);
+    for (uint32_t row = 0; row < fresh_.size() && !settings_.transport.rtrad; ++row)
+        if (!rows_.isLeft(row)) fresh_[row] = Fresh::LigOut;
     VkCommandBuffer cmd = commands_.begin();
     radiancePass_.record(cmd, light_, settings_.transport);
     vk::barrier(cmd);

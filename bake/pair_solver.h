@@ -3,20 +3,23 @@
 #include "bake/bits_cache.h"
 #include "bake/pair_plan.h"
 #include "bake/pair_senders.h"
+#include "bake/settling.h"
 #include "bake/solver.h"
 #include "bake/vk/commands.h"
 
 namespace relume {
 
-/// Where a pair method stands; with ligOut all that a bake needs to go on at a super-block's border.
+/// Where a pair method stands; with ligOut and the rows that are left all that a bake needs to go on at a
+/// super-block's border.
 struct PairState {
     uint32_t passes = 0;          // finished
     bool inPass = false;          // then:
-    uint32_t row = 0, column = 0; // the next super-block
+    uint32_t row = 0, column = 0; // the next super-block; symmetric: in either order
     uint32_t unit = 0;            // of it, the next one to be traced; 0 at its border
     uint64_t ringTurn = 0;        // super-blocks of the pass that were not kept
     double lastChange = 0;        // RMS [cd/m^2] of the last pass
     double threshold = 0;         // of the quad-tree in this pass
+    Settling settling;
 };
 
 /// The pair methods. A pass gathers every patch's light from all senders and adds one bounce; ligIn and
@@ -35,6 +38,11 @@ public:
     SolverState state() override;
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
+
+    void setPriority(std::vector<uint8_t> chunkSeen) override;
+    bool passBoundary() const override { return done_ || !state_.inPass; }
+    void abortPass() override;
+    LiveLight liveLight() override;
 
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 
@@ -58,6 +66,10 @@ private:
     bool addSuper(Batch& batch, const UnitMask& units);
     uint32_t unitsThatFit(const Batch& batch, const UnitMask& missing) const;
     void nextSuper();
+    void nextRow();
+    uint32_t firstColumn() const;
+    bool isDone(uint32_t column) const;
+    SuperBlock current() const;
     void run(Batch& batch);
     void trace(VkCommandBuffer cmd, const Batch& batch);
     void learn(const Batch& batch, double traceMs, double gatherMs);
@@ -68,6 +80,7 @@ private:
     };
     void measureChange();
     ChangeSums changeOf(uint32_t first) const;
+    void countRays();
     bool passDone() const { return state_.row >= plan_.superRows(); }
     uint64_t countedRays(uint32_t half);
 
@@ -97,6 +110,17 @@ private:
     std::vector<glm::vec4> before_;              // of the one before it
     float left_ = -1; // share of the last change that is still to come; negative: not known yet
     WorkerPool pool_{0};
+    // Of rows of super-blocks. Where the patches themselves send, a row is all super-blocks of its patches,
+    // as rows or as columns, that no earlier row had: at its end its patches have all their light.
+    ChunkOrder rows_;
+    std::vector<uint8_t> seenRows_; // that come first
+
+    // For a viewer: pair_live.cpp.
+    enum class Fresh : uint8_t { No, LigIn, LigOut };
+    vk::Buffer live_;          // vec4 per patch, what is shown
+    std::vector<Fresh> fresh_; // per row: where there is light that live_ has not
+    uint64_t liveVersion_ = 0;
+    bool complete_ = false;
 };
 
 } // namespace relume

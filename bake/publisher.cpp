@@ -12,8 +12,7 @@ namespace {
 
 using shader::kRegion;
 
-// Chunks per submit: a million patches on a GPU, below a millisecond; fewer where the CPU does it, some 10
-// ms.
+// Chunks per submit: a million patches on a GPU, a quarter of that, some 10 ms, where the CPU does it.
 constexpr uint32_t kChunksPerSubmit = 16384, kChunksPerSubmitSoftware = 4096;
 // Texels copied per submit: 32 MiB of them, below 20 ms through host memory on every device measured.
 constexpr uint64_t kTexelsPerSubmit = uint64_t{1} << 22;

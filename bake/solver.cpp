@@ -62,6 +62,26 @@ StatePart Solver::part(const vk::Device& device, const vk::Buffer& buffer) {
             }};
 }
 
+StatePart Solver::part(ChunkOrder& order) {
+    std::vector<uint8_t>& marks = order.marks();
+    return {marks.size(),
+            [&](void* to, uint64_t offset, uint64_t size) { std::memcpy(to, marks.data() + offset, size); },
+            [&](const void* from, uint64_t offset, uint64_t size) {
+                std::memcpy(marks.data() + offset, from, size);
+            }};
+}
+
+void Solver::recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
+                        const std::vector<ChunkRange>& ranges) {
+    constexpr VkDeviceSize kChunkBytes = shader::kChunk * sizeof(glm::vec4);
+    std::vector<VkBufferCopy> regions;
+    for (const ChunkRange& range : ranges)
+        regions.push_back({range.first * kChunkBytes, range.first * kChunkBytes, range.count * kChunkBytes});
+    if (!regions.empty())
+        vkCmdCopyBuffer(cmd, from.handle(), to.handle(), static_cast<uint32_t>(regions.size()),
+                        regions.data());
+}
+
 std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings) {
     SolverSettings complete = settings;
     if (complete.cache.bytes == 0)

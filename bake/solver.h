@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "bake/chunk_order.h"
 #include "bake/passes.h"
 #include "bake/trace/tracer.h"
 
@@ -79,6 +80,7 @@ struct SolverSettings {
     double error =
         0.01; // stop when the remaining error (relRMSE) is below this; 0: by passes and samples alone
     double batchMs = 20.0; // aim of one submit
+    bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
 };
 
 /// Where a bake stands, and what it has cost.
@@ -118,6 +120,16 @@ struct StatePart {
     std::function<void(const void* from, uint64_t offset, uint64_t size)> write;
 };
 
+/// What can be shown between two steps.
+struct LiveLight {
+    const vk::Buffer* light = nullptr; // vec4 per patch, on the device: lighting, w means nothing
+    uint64_t version = 0;              // changes when the light does
+    // The light has all bounces, so that it is at most some percent dimmer than the result will be. Before,
+    // it is what there is: direct light as it arrives, then bounce by bounce. Stays true.
+    bool complete = false;
+    std::vector<ChunkRange> changed; // since the call before, merged()
+};
+
 /// Progressive radiosity, resumable: each step() does one batch. Neither batch sizes nor timing change a byte
 /// of the result.
 class Solver {
@@ -131,6 +143,21 @@ public:
     const SolverProgress& progress() const { return progress_; }
     /// progress().rays and those of the current pass; may ask the device.
     virtual uint64_t raysSoFar() { return progress_.rays; }
+    /// From the next step on.
+    void setBatchMs(double ms) { batchMs_ = ms; }
+    /// Patches in chunks that are not 0 (one per chunk; empty: none) come first wherever the order is free:
+    /// within a bounce of link methods, which changes no byte, and in rows of super-blocks of pair methods
+    /// that have not begun, where sums then agree to 1e-5.
+    virtual void setPriority(std::vector<uint8_t> chunkSeen) = 0;
+    /// Whether the next step() begins a pass (link methods: a round), or nothing is left.
+    virtual bool passBoundary() const = 0;
+    /// Forgets the pass that has begun: what follows has the bytes of an undisturbed bake. counters keep what
+    /// it has cost. Right after a restore() within a pass that adds to sums, that pass is done to its end
+    /// instead.
+    virtual void abortPass() = 0;
+    /// Needs SolverSettings::live. Its buffer holds until the next step(), restore() or abortPass(). Asking
+    /// changes no byte of the result.
+    virtual LiveLight liveLight() = 0;
     /// Light of the last finished pass (link methods: round) for display and output, one vec4 per patch.
     /// Looking at it in between changes no byte of the result.
     virtual const std::vector<glm::vec4>& light() = 0;
@@ -147,6 +174,10 @@ public:
     virtual void restore(const SolverState& state) = 0;
 
 protected:
+    /// What may be missing of the mean light of what is called complete, as Settling tells it: ratios of the
+    /// first bounces are too small, so that it is up to twice as much, which one does not see come.
+    static constexpr double kMostDimmer = 0.01;
+
     /// The state with a solver's own plain struct, and back.
     template<typename Own>
     SolverState makeState(const Own& own) const {
@@ -161,8 +192,13 @@ protected:
         return own;
     }
     static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
+    static StatePart part(ChunkOrder& order);
+    /// Of vec4 per patch.
+    static void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
+                           const std::vector<ChunkRange>& ranges);
 
     bool done_ = false;
+    double batchMs_ = 20.0; // aim of one submit
     SolverProgress progress_;
 
 private:

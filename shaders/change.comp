@@ -1,5 +1,5 @@
-// How much a bounce changed the light, summed over each chunk: x squares of the difference, y the light, z patches. One
-// workgroup per chunk.
+// How much a bounce changed the light, summed over each chunk: x squares of the difference, y the light, z patches, w the
+// light before. One workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -16,8 +16,8 @@ void main() {
     uint flags = loadPatch(push.patches, index).flags;
     vec4 term = vec4(0.0);
     if ((flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u) {
-        vec3 now = Vec4s(push.ligOut).items[index].rgb, change = now - Vec4s(push.ligIn).items[index].rgb;
-        term = vec4(dot(change, change), now.r + now.g + now.b, 1.0, 0.0);
+        vec3 now = Vec4s(push.ligOut).items[index].rgb, before = Vec4s(push.ligIn).items[index].rgb, change = now - before;
+        term = vec4(dot(change, change), now.r + now.g + now.b, 1.0, before.r + before.g + before.b);
     }
     terms[lane] = term;
     barrier();

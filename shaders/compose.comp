@@ -1,4 +1,5 @@
-// The light that bounces on: direct light and the mean of all links so far. One invocation per patch.
+// The light that bounces on: direct light and the mean of all links so far. Or direct light itself, from its sums, as
+// direct.comp makes it. One invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -12,5 +13,5 @@ void main() {
     vec3 sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) sum += Vec4s(push.sums).items[q * push.patchCount + index].rgb;
     vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
-    Vec4s(push.light).items[index] = vec4(direct + sum * push.scale, 1.0);
+    Vec4s(push.light).items[index] = vec4(max(direct + sum * push.scale, 0.0), 1.0);
 }

@@ -79,6 +79,7 @@ struct BakeDesc {
     PairSettings pairs = {};
     bool rtrad = false; // the preset
     bool deviceGather = false;
+    bool live = false;
 };
 
 struct Baked {

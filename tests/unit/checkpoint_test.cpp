@@ -43,6 +43,10 @@ public:
         }
     }
     void step() override {}
+    void setPriority(std::vector<uint8_t>) override {}
+    bool passBoundary() const override { return true; }
+    void abortPass() override {}
+    LiveLight liveLight() override { return {}; }
     const std::vector<glm::vec4>& light() override { return light_; }
     std::vector<float> errors() override { return {}; }
     SolverState state() override { return makeState(own); }
@@ -208,6 +212,10 @@ TEST_F(CheckpointFile, AFailureLeavesTheOlderOne) {
     class BrokenSolver final : public Solver {
     public:
         void step() override {}
+        void setPriority(std::vector<uint8_t>) override {}
+        bool passBoundary() const override { return true; }
+        void abortPass() override {}
+        LiveLight liveLight() override { return {}; }
         const std::vector<glm::vec4>& light() override { return light_; }
         std::vector<float> errors() override { return {}; }
         SolverState state() override { return {}; }

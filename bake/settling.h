@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+
+namespace relume {
+
+/// How much of the mean light is still to come, if what each bounce adds goes on as a geometric series. Of
+/// the mean, for the root mean square says little while a few bright texels make most of it.
+struct Settling {
+    double mean = -1; // after the last bounce; negative: none yet
+    double gain = 0;  // of the last bounce
+    double ratio = 0; // of the last two gains
+    double left = 1;  // relative to the mean; 1 until it can be told
+
+    /// The mean light before the first bounce, then after each.
+    void add(double now) {
+        const double added = mean >= 0 ? now - mean : 0.0;
+        if (mean >= 0 && added <= 0.0) {
+            ratio = left = 0.0;
+        } else if (gain > 0) {
+            ratio = added / gain;
+            left = ratio < 1.0 ? std::min(1.0, added * ratio / (1.0 - ratio) / now) : 1.0;
+        }
+        gain = added;
+        mean = now;
+    }
+    /// A bounce more, of the same light.
+    void bounce() { left *= ratio; }
+    /// The same of new samples from the mean light of so many rounds; the mean of all is the light then.
+    void round(double rounds) { left *= (rounds + ratio) / (rounds + 1.0); }
+};
+
+} // namespace relume
