@@ -8,12 +8,12 @@
 namespace relume {
 namespace {
 
-constexpr float kOrbitTurn = glm::pi<float>();       // [rad] over the picture's height: half round in one sweep
-constexpr float kZoomStep = 0.85f;                   // distance after one step of a wheel
-constexpr float kCrossing = 4.0f;                    // [s] that a flight through the whole scene takes
-constexpr float kFaster = 4.0f;                      // with Shift
-constexpr float kNearest = 1e-4f, kFarthest = 1e4f;  // of the scene's diagonal: where zooming ends
-constexpr double kLongestStep = 0.1;                 // [s]: a stall must not throw one out of the scene
+constexpr float kOrbitTurn = glm::pi<float>(); // [rad] over the picture's height: half round in one sweep
+constexpr float kZoomStep = 0.85f;             // distance after one step of a wheel
+constexpr float kCrossing = 4.0f;              // [s] that a flight through the whole scene takes
+constexpr float kFaster = 4.0f;                // with Shift
+constexpr float kNearest = 1e-4f, kFarthest = 1e4f; // of the scene's diagonal: where zooming ends
+constexpr double kLongestStep = 0.1;                // [s]: a stall must not throw one out of the scene
 
 } // namespace
 
@@ -25,11 +25,18 @@ void CameraControl::set(const ViewCamera& camera, const Box& bounds) {
 bool CameraControl::move(float dx, float dy) {
     if (dx == 0 && dy == 0) return false;
     switch (drag_) {
-    case Drag::None: return false;
-    case Drag::Orbit: camera_ = orbit(camera_, -kOrbitTurn * dx, -kOrbitTurn * dy); break;
-    case Drag::Pan: camera_ = pan(camera_, -dx, dy); break;
+    case Drag::None:
+        return false;
+    case Drag::Orbit:
+        camera_ = orbit(camera_, -kOrbitTurn * dx, -kOrbitTurn * dy);
+        break;
+    case Drag::Pan:
+        camera_ = pan(camera_, -dx, dy);
+        break;
     // What is under the cursor stays there.
-    case Drag::Look: camera_ = look(camera_, camera_.yfov * dx, camera_.yfov * dy); break;
+    case Drag::Look:
+        camera_ = look(camera_, camera_.yfov * dx, camera_.yfov * dy);
+        break;
     }
     return true;
 }

@@ -75,7 +75,8 @@ std::string captureName(const std::string& folder, const std::string& ending) {
         const std::string name = entry->path().stem().string();
         if (!name.starts_with(start)) continue;
         int number = 0;
-        for (size_t i = start.size(); i < name.size() && name[i] >= '0' && name[i] <= '9' && number < 1000000; ++i)
+        for (size_t i = start.size(); i < name.size() && name[i] >= '0' && name[i] <= '9' && number < 1000000;
+             ++i)
             number = 10 * number + (name[i] - '0');
         last = std::max(last, number);
     }

@@ -62,7 +62,7 @@ private:
     // The calling thread's.
     bool recording_ = false;
     double begun_ = 0, lastTime_ = 0;
-    uint64_t sent_ = 0; // frames of the recording, repeated ones counted
+    uint64_t sent_ = 0;             // frames of the recording, repeated ones counted
     std::optional<Pixels> waiting_; // the newest frame: how long it is shown is not known yet
     std::string folder_;
     // Both threads'.

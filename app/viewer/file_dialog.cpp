@@ -1,5 +1,7 @@
 #include "app/viewer/file_dialog.h"
 
+#include "app/viewer/panels/widgets.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -48,7 +50,7 @@ void FileDialog::list(const std::vector<std::string>& paths, const char* id) {
     const float height = line * (0.6f + static_cast<float>(std::clamp<size_t>(paths.size(), 1, kLines)));
     ImGui::BeginChild(id, {0, height}, true);
     for (const std::string& path : paths) {
-        if (!ImGui::Selectable(path.c_str())) continue;
+        if (!ui::selectable(path.c_str())) continue;
         typed_ = path;
         focus_ = true;
         asks_ = false;
@@ -96,14 +98,14 @@ void FileDialog::draw() {
     ImGui::TextDisabled("Tab completes, Enter takes it, Esc closes.");
     if (asks_) {
         ImGui::TextWrapped("This file exists.");
-        if (ImGui::Button("Replace it")) finish();
+        if (ui::button("Replace it")) finish();
         ImGui::SameLine();
-        if (ImGui::Button("Take a free name")) {
+        if (ui::button("Take a free name")) {
             typed_ = freePath(expandHome(typed_));
             asks_ = false;
             finish();
         }
-    } else if (entered || ImGui::Button(desc_.saves ? "Write" : "Open")) {
+    } else if (entered || ui::button(desc_.saves ? "Write" : "Open")) {
         finish();
     }
     if (open_ && !completion_.matches.empty()) list(completion_.matches, "matches");

@@ -49,11 +49,11 @@ void setColours(ImGuiStyle& style) {
     style.Colors[ImGuiCol_Button] = ImVec4(0.26f, 0.27f, 0.30f, 1.0f);
     style.Colors[ImGuiCol_Header] = ImVec4(0.24f, 0.25f, 0.28f, 1.0f);
     style.Colors[ImGuiCol_Tab] = quiet;
-    for (const int colour : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered,
-                             ImGuiCol_TabHovered})
+    for (const int colour :
+         {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered, ImGuiCol_TabHovered})
         style.Colors[colour] = ImVec4(0.45f, 0.33f, 0.20f, 1.0f);
-    for (const int colour : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive,
-                             ImGuiCol_TabActive})
+    for (const int colour :
+         {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive, ImGuiCol_TabActive})
         style.Colors[colour] = ImVec4(0.60f, 0.40f, 0.18f, 1.0f);
     for (const int colour : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
                              ImGuiCol_PlotLines, ImGuiCol_PlotHistogram})
@@ -65,7 +65,7 @@ void setColours(ImGuiStyle& style) {
 Gui::Gui(Window& window) : window_(window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr; // preferences.h keeps what is to be kept
+    ImGui::GetIO().IniFilename = nullptr;              // preferences.h keeps what is to be kept
     ImGui::GetIO().ConfigInputTextCursorBlink = false; // nothing is to be drawn for a blinking cursor alone
     ImGui_ImplGlfw_InitForOpenGL(window.handle(), false); // feed() calls what it would install
     ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -122,7 +122,8 @@ void Gui::feed(const WindowEvent& event) {
     case WindowEvent::Kind::Enter:
         ImGui_ImplGlfw_CursorEnterCallback(window, event.pressed ? GLFW_TRUE : GLFW_FALSE);
         break;
-    default: break; // where the cursor is it asks for itself
+    default:
+        break; // where the cursor is it asks for itself
     }
 }
 

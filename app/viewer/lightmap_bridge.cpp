@@ -18,7 +18,10 @@ LightmapBridge::~LightmapBridge() {
 }
 
 std::unique_ptr<LightmapBridge::Set> LightmapBridge::import(const MapOffer& offer) {
-    auto set = std::make_unique<Set>(Set{.number = offer.set, .size = offer.size, .shared = true});
+    auto set = std::make_unique<Set>();
+    set->number = offer.set;
+    set->size = offer.size;
+    set->shared = true;
     for (size_t i = 0; i < LightmapExchange::kSlots; ++i) {
         try {
             set->images[i] = gl::SharedTexture({.fd = offer.fds[i],
@@ -36,7 +39,9 @@ std::unique_ptr<LightmapBridge::Set> LightmapBridge::import(const MapOffer& offe
 }
 
 std::unique_ptr<LightmapBridge::Set> LightmapBridge::allocate(const MapOffer& offer) {
-    auto set = std::make_unique<Set>(Set{.number = offer.set, .size = offer.size});
+    auto set = std::make_unique<Set>();
+    set->number = offer.set;
+    set->size = offer.size;
     for (gl::PixelBuffer& buffer : set->buffers)
         buffer = gl::PixelBuffer({.width = offer.size, .height = offer.size, .name = "lightmap upload"});
     set->copy = gl::Texture(
@@ -111,6 +116,7 @@ LightmapTexture LightmapBridge::texture() const {
     texture.texture = shown_->shared ? shown_->images[map_->slot].get() : shown_->copy.get();
     texture.size = shown_->size;
     texture.ambient = map_->ambient;
+    texture.unit = map_->unit;
     return texture;
 }
 

@@ -19,9 +19,8 @@ std::string lower(std::string text) {
 
 bool hasEnding(const std::string& name, const std::vector<std::string>& endings) {
     const std::string plain = lower(name);
-    return endings.empty() || std::any_of(endings.begin(), endings.end(), [&](const std::string& ending) {
-               return plain.ends_with(ending);
-           });
+    return endings.empty() || std::any_of(endings.begin(), endings.end(),
+                                          [&](const std::string& ending) { return plain.ends_with(ending); });
 }
 
 } // namespace

@@ -7,7 +7,7 @@ namespace relume {
 
 /// What a typed path may become.
 struct PathCompletion {
-    std::string text;                // the typed path, as far as it can only go on one way
+    std::string text;                 // the typed path, as far as it can only go on one way
     std::vector<std::string> matches; // whole paths, folders with a slash behind them, by name
 };
 

@@ -89,9 +89,9 @@ Json point(const glm::vec3& p) {
 
 Json writeBookmark(const Bookmark& mark) {
     const ViewCamera& camera = mark.camera;
-    return {{"name", mark.name},        {"eye", point(camera.eye)},          {"target", point(camera.target)},
-            {"up", point(camera.up)},   {"yfov", camera.yfov},               {"halfHeight", camera.halfHeight},
-            {"znear", camera.znear},    {"zfar", camera.zfar}};
+    return {{"name", mark.name},      {"eye", point(camera.eye)}, {"target", point(camera.target)},
+            {"up", point(camera.up)}, {"yfov", camera.yfov},      {"halfHeight", camera.halfHeight},
+            {"znear", camera.znear},  {"zfar", camera.zfar}};
 }
 
 // None where it is no camera.

@@ -21,7 +21,7 @@ struct Bookmark {
 struct Preferences {
     static constexpr size_t kMostRecent = 12;
 
-    std::vector<std::string> recent; // scenes, absolute paths, the newest first
+    std::vector<std::string> recent;                        // scenes, absolute paths, the newest first
     std::map<std::string, std::vector<Bookmark>> bookmarks; // by a scene's absolute path
     uint32_t width = 1280, height = 800;                    // of the window [screen coordinates]
     float panelWidth = 340;                                 // [screen coordinates] at scale 1

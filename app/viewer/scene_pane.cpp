@@ -2,34 +2,93 @@
 
 #include "app/viewer/views.h"
 
+#include <algorithm>
 #include <array>
 
 namespace relume {
+namespace {
+
+constexpr glm::vec3 kLinkColour(1.0f, 0.75f, 0.25f); // as displayed
+
+} // namespace
 
 void ScenePane::setScene(const LoadedScene* scene) {
     gpu_.reset(); // before the new one takes its memory
-    if (scene != nullptr) gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->prepared.mesh);
+    lines_.reset();
+    voxels_.reset();
+    if (scene == nullptr) return;
+    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->prepared.mesh);
+    bounds_ = scene->geometry.bounds;
+    if (software_) gpu_->setAnisotropy(1.0f);
 }
 
 void ScenePane::setMaterials(const std::vector<Material>& materials) {
-    if (gpu_) gpu_->setMaterials(materials);
+    Scene factors;
+    factors.materials = materials;
+    if (gpu_) gpu_->updateMaterials(factors);
+}
+
+void ScenePane::setPaths(const InspectPaths& paths) {
+    std::vector<LineDraw::Segment> segments;
+    for (const glm::vec3& end : paths.ends)
+        segments.push_back({.from = paths.from, .to = end, .color = kLinkColour});
+    lines_ = segments.empty() ? nullptr : std::make_unique<LineDraw>(segments);
+}
+
+void ScenePane::setVoxels(const InspectVoxels& voxels) {
+    voxels_ = voxels.centres.empty() ? nullptr
+                                     : std::make_unique<VoxelDraw>(VoxelDraw::Desc{
+                                           .centres = voxels.centres, .edge = voxels.edge, .colors = {}});
 }
 
 void ScenePane::reload() {
-    auto fresh = std::make_unique<SceneRenderer>(samples_);
-    renderer_ = std::move(fresh);
+    if (renderer_) renderer_->reload();
+    if (flat_) flat_->reload();
+    if (picker_) picker_->reload();
+    tiles_.reload();
 }
 
 // What the map holds may still be of the view before.
 DrawSettings ScenePane::settingsOf(const Look& look) {
     const ViewEntry& wanted = viewEntries()[look.state.view];
-    const bool there = look.map == nullptr ? wanted.content == MapContent::Light
-                                           : look.map->content == wanted.content;
-    if (there || !wanted.readsMap) shownView_ = look.state.view;
-    return {.view = viewEntries()[shownView_].view,
-            .filter = look.state.filter,
-            .tone = look.state.tone,
-            .exposure = look.state.exposure};
+    const MapContent held = look.map != nullptr ? look.map->content : MapContent::Light;
+    if (!wanted.readsMap || held == wanted.content) shownView_ = look.state.view;
+    const ViewEntry* shown = &viewEntries()[shownView_];
+    // Another scene's map, or none: whatever was shown, only light can be drawn without.
+    if (shown->readsMap && shown->content != held) shown = &viewEntries()[viewIndex("lit")];
+    DrawSettings settings{.view = shown->view,
+                          .filter = look.state.filter,
+                          .tone = look.state.tone,
+                          .exposure = look.state.exposure,
+                          .selected = look.state.selected};
+    // RTRad's map has the albedo in it.
+    if (settings.view == View::Lit && look.map != nullptr && look.map->radiance)
+        settings.view = View::Lighting;
+    const float unit = look.map != nullptr ? look.map->unit : 1.0f; // ranges are those of texels
+    if (settings.view == View::InspectPosition) {
+        settings.rangeLow = bounds_.low / unit;
+        settings.rangeHigh = bounds_.high / unit;
+    } else if (settings.view == View::InspectHeat && look.map != nullptr) {
+        settings.rangeLow.x = std::min(look.map->low, 0.0f) / unit;
+        settings.rangeHigh.x = look.state.high.value_or(std::max(look.map->high, 1e-12f)) / unit;
+    }
+    return settings;
+}
+
+void ScenePane::makeRenderer(uint32_t samples) {
+    if (!renderer_) renderer_ = std::make_unique<SceneRenderer>(samples, SceneRenderer::Metering::Async);
+    if (samples_ != samples) renderer_->setSamples(samples);
+    samples_ = samples;
+}
+
+void ScenePane::drawFlat(const Look& look, const DrawSettings& settings,
+                         const SceneRenderer::Target& target) {
+    if (!flat_) flat_ = std::make_unique<UvView>();
+    DrawSettings exposed = settings;
+    // The exposure that the scene asked for last: between model and texture nothing jumps.
+    if (!exposed.exposure) exposed.exposure = exposure();
+    flat_->draw(look.lightmap, {.window = look.state.uvWindow, .masked = look.state.masked, .draw = exposed},
+                target);
 }
 
 void ScenePane::draw(const Look& look, glm::uvec2 size) {
@@ -38,29 +97,66 @@ void ScenePane::draw(const Look& look, glm::uvec2 size) {
         picture_ = gl::Framebuffer({.width = size.x, .height = size.y, .name = "scene picture"});
     }
     const DrawSettings settings = settingsOf(look);
+    light_ = false;
     if (!gpu_) {
         const std::array<float, 4> background = {settings.background.r, settings.background.g,
                                                  settings.background.b, 1.0f};
         glClearNamedFramebufferfv(picture_.get(), GL_COLOR, 0, background.data());
         return;
     }
-    if (!renderer_ || samples_ != look.state.samples) {
-        renderer_.reset();
-        samples_ = look.state.samples;
-        renderer_ = std::make_unique<SceneRenderer>(samples_);
-    }
-    renderer_->draw({.scene = *gpu_, .lightmap = look.lightmap, .camera = look.camera, .settings = settings},
-                    {.framebuffer = picture_.get(), .width = size.x, .height = size.y});
+    const SceneRenderer::Target target{.framebuffer = picture_.get(), .width = size.x, .height = size.y};
+    makeRenderer(look.state.samples);
+    if (look.state.uv) return drawFlat(look, settings, target);
+    const ViewEntry& wanted = viewEntries()[look.state.view];
+    light_ = showsLight(settings.view);
+    renderer_->draw({.scene = *gpu_,
+                     .lightmap = look.lightmap,
+                     .camera = look.camera,
+                     .settings = settings,
+                     .lines = settings.view == View::InspectMask ? lines_.get() : nullptr,
+                     .voxels = wanted.voxels ? voxels_.get() : nullptr},
+                    target);
 }
 
 void ScenePane::show(glm::uvec2 corner) const {
     if (picture_.get() == 0) return;
     const auto width = static_cast<GLint>(picture_.width()), height = static_cast<GLint>(picture_.height());
     const auto x = static_cast<GLint>(corner.x), y = static_cast<GLint>(corner.y);
-    glDisable(GL_SCISSOR_TEST);
     const GLuint window = 0;
     glBlitNamedFramebuffer(picture_.get(), window, 0, 0, width, height, x, y, x + width, y + height,
                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+std::vector<gl::Timer::Pass> ScenePane::endFrame() {
+    if (!renderer_) return {};
+    renderer_->timer().endFrame();
+    return renderer_->timer().passes();
+}
+
+std::optional<Pick> ScenePane::pick(const Look& look, glm::vec2 pixel) {
+    if (!gpu_ || picture_.get() == 0) return std::nullopt;
+    const glm::vec2 size(picture_.width(), picture_.height());
+    if (look.state.uv) {
+        const glm::vec2 uv = uvAt(look.state.uvWindow, pixel, size);
+        if (glm::any(glm::lessThan(uv, glm::vec2(0))) || glm::any(glm::greaterThanEqual(uv, glm::vec2(1))))
+            return std::nullopt;
+        Pick pick;
+        pick.lightmapUv = uv;
+        pick.texel = glm::uvec2(uv * static_cast<float>(look.lightmap.size));
+        return pick;
+    }
+    if (!picker_) picker_ = std::make_unique<Picker>();
+    return picker_->pick({.scene = *gpu_,
+                          .camera = look.camera,
+                          .pixel = pixel,
+                          .size = size,
+                          .lightmapSize = std::max(look.lightmap.size, 1u)});
+}
+
+void ScenePane::askTiles(const Look& look) {
+    if (!gpu_ || picture_.get() == 0 || look.lightmap.size == 0) return;
+    const float aspect = static_cast<float>(picture_.width()) / static_cast<float>(picture_.height());
+    tiles_.request(*gpu_, look.camera, aspect, look.lightmap.size);
 }
 
 } // namespace relume

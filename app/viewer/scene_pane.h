@@ -1,22 +1,32 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "app/live/session.h"
 #include "app/viewer/view_state.h"
+#include "renderer/overlays.h"
+#include "renderer/picker.h"
 #include "renderer/scene_renderer.h"
+#include "renderer/tile_ids.h"
+#include "renderer/uv_view.h"
 
 namespace relume {
 
-/// The picture of the scene: drawn when something of it changed, shown as often as one likes.
+/// The picture of the scene: drawn when something of it changed, shown as often as one likes. Belongs to the
+/// current OpenGL context.
 class ScenePane {
 public:
-    ScenePane() = default;
+    /// software: OpenGL is drawn by the CPU, which does without what costs it most.
+    explicit ScenePane(bool software) : software_(software) {}
 
     /// nullptr: none. The scene is not read afterwards.
     void setScene(const LoadedScene* scene);
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);
+    /// The links of a patch, over the scene in the view of what it sees.
+    void setPaths(const InspectPaths& paths);
+    void setVoxels(const InspectVoxels& voxels);
 
     struct Look {
         const ViewCamera& camera;
@@ -28,19 +38,41 @@ public:
     /// Copies the last picture into the window's framebuffer, its lower left corner at `corner` [pixels].
     void show(glm::uvec2 corner) const;
     const gl::Framebuffer& picture() const { return picture_; }
+    /// Whether the last picture's automatic exposure is not settled: draw again soon.
+    bool adapting() const { return light_ && renderer_ && renderer_->adapting(); }
     float exposure() const { return renderer_ ? renderer_->exposure() : 0.0f; }
     SceneRenderer::Counts counts() const { return renderer_ ? renderer_->counts() : SceneRenderer::Counts{}; }
-    /// Compiles the shaders anew. Throws Error and keeps the old ones when one does not compile.
+    /// Device and host times of the newest frame that is known; empty before.
+    std::vector<gl::Timer::Pass> endFrame();
+
+    /// What is at a pixel of the last picture, counted from its upper left corner.
+    std::optional<Pick> pick(const Look& look, glm::vec2 pixel);
+    /// Asks which tiles are seen; seenTiles() answers some frames later.
+    void askTiles(const Look& look);
+    bool tilesPending() const { return tiles_.pending(); }
+    std::optional<std::vector<uint32_t>> seenTiles() { return tiles_.poll(); }
+
+    /// Compiles the shaders in use anew. Throws Error and keeps the old ones when one does not compile.
     void reload();
 
 private:
     DrawSettings settingsOf(const Look& look);
+    void drawFlat(const Look& look, const DrawSettings& settings, const SceneRenderer::Target& target);
+    void makeRenderer(uint32_t samples);
 
-    std::unique_ptr<SceneRenderer> renderer_; // with so many samples as were asked for
-    uint32_t samples_ = 0;
+    bool software_ = false;
+    std::unique_ptr<SceneRenderer> renderer_; // made when there is first something to draw
+    std::unique_ptr<UvView> flat_;
+    TileIds tiles_;
+    std::unique_ptr<Picker> picker_;
     std::unique_ptr<SceneGpu> gpu_;
+    Box bounds_;
+    std::unique_ptr<LineDraw> lines_;
+    std::unique_ptr<VoxelDraw> voxels_;
     gl::Framebuffer picture_;
     size_t shownView_ = 0; // of viewEntries(): the newest whose content was there
+    uint32_t samples_ = 0;
+    bool light_ = false; // the last picture shows light of the scene
 };
 
 } // namespace relume

@@ -60,10 +60,14 @@ std::vector<Shortcut> makeShortcuts() {
 
 std::string keyName(int key) {
     switch (key) {
-    case GLFW_KEY_SPACE: return "Space";
-    case GLFW_KEY_ESCAPE: return "Esc";
-    case GLFW_KEY_HOME: return "Home";
-    default: break;
+    case GLFW_KEY_SPACE:
+        return "Space";
+    case GLFW_KEY_ESCAPE:
+        return "Esc";
+    case GLFW_KEY_HOME:
+        return "Home";
+    default:
+        break;
     }
     if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return "F" + std::to_string(key - GLFW_KEY_F1 + 1);
     return std::string(1, static_cast<char>(key)); // GLFW's codes of printable keys are ASCII

@@ -17,19 +17,27 @@ namespace {
 using Phase = BakeStatus::Phase;
 
 constexpr ImGuiWindowFlags kBar = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                  ImGuiWindowFlags_NoSavedSettings |
-                                  ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
+                                  ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                  ImGuiWindowFlags_NoNav;
 
 bool isChecked(const PanelContext& context, const Shortcut& shortcut) {
     switch (shortcut.action) {
-    case Action::Watch: return context.session.watchesFile();
-    case Action::View: return static_cast<size_t>(shortcut.argument) == context.view.view;
-    case Action::UvTexture: return context.view.uv;
-    case Action::Masked: return context.view.masked;
-    case Action::AutomaticExposure: return !context.view.exposure;
-    case Action::Record: return context.recording;
-    case Action::Caption: return context.preferences.caption;
-    default: return false;
+    case Action::Watch:
+        return context.session.watchesFile();
+    case Action::View:
+        return static_cast<size_t>(shortcut.argument) == context.view.view;
+    case Action::UvTexture:
+        return context.view.uv;
+    case Action::Masked:
+        return context.view.masked;
+    case Action::AutomaticExposure:
+        return !context.view.exposure;
+    case Action::Record:
+        return context.recording;
+    case Action::Caption:
+        return context.preferences.caption;
+    default:
+        return false;
     }
 }
 
@@ -74,15 +82,22 @@ std::string statusLine(const BakeStatus& status) {
     const SolverProgress& progress = status.progress;
     const char* method = methodName(status.settings.solver.method);
     switch (status.phase) {
-    case Phase::Idle: return "no bake";
-    case Phase::Preparing: return "preparing " + status.doing;
-    case Phase::Failed: return "failed: " + status.doing;
-    default: break;
+    case Phase::Idle:
+        return "no bake";
+    case Phase::Preparing:
+        return "preparing " + status.doing;
+    case Phase::Failed:
+        return "failed: " + status.doing;
+    default:
+        break;
     }
-    std::string text = status.phase == Phase::Paused ? "paused, " : status.phase == Phase::Done ? "done, " : "";
-    text += isPairMethod(status.settings.solver.method)
-                ? fmt::format("{}, pass {} + {:.0f} %", method, progress.passes, 100.0 * progress.passFraction)
-                : fmt::format("{}, {} directions", method, progress.samples);
+    std::string text = status.phase == Phase::Paused ? "paused, "
+                       : status.phase == Phase::Done ? "done, "
+                                                     : "";
+    text +=
+        isPairMethod(status.settings.solver.method)
+            ? fmt::format("{}, pass {} + {:.0f} %", method, progress.passes, 100.0 * progress.passFraction)
+            : fmt::format("{}, {} directions", method, progress.samples);
     if (progress.error < 1.0) text += fmt::format(", error {:.2g}", progress.error);
     if (status.phase == Phase::Baking) text += fmt::format(", {:.1f} Mrays/s", status.raysPerSecond * 1e-6);
     return text;
@@ -132,12 +147,23 @@ float Ui::drawStatus(const PanelContext& context) {
 }
 
 void Ui::drawTab(const PanelContext& context, size_t index) {
+    const ui::ItemLog::Scope scope(context.items, panelNames()[index]);
     switch (index) {
-    case 0: bake_.draw(context); break;
-    case 1: drawViewPanel(context); break;
-    case 2: scene_.draw(context); break;
-    case 3: drawProfilerPanel(context); break;
-    default: drawLogPanel(context); break;
+    case 0:
+        bake_.draw(context);
+        break;
+    case 1:
+        drawViewPanel(context);
+        break;
+    case 2:
+        scene_.draw(context);
+        break;
+    case 3:
+        drawProfilerPanel(context);
+        break;
+    default:
+        drawLogPanel(context);
+        break;
     }
 }
 
@@ -157,7 +183,12 @@ void Ui::drawSide(const PanelContext& context, float top, float bottom, float sc
         for (size_t i = 0; i < names.size(); ++i) {
             const bool wanted = wantedPanel_ == static_cast<int>(i);
             const ImGuiTabItemFlags flags = wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None;
-            if (!ImGui::BeginTabItem(names[i].c_str(), nullptr, flags)) continue;
+            const bool open = ImGui::BeginTabItem(names[i].c_str(), nullptr, flags);
+            {
+                const ui::ItemLog::Scope tabs(context.items, "Tabs");
+                ui::mark(names[i].c_str(), false);
+            }
+            if (!open) continue;
             ImGui::BeginChild("content");
             drawTab(context, i);
             ImGui::EndChild();
@@ -226,7 +257,10 @@ Ui::Area Ui::draw(const PanelContext& context, bool hidden, float scale) {
         area = {{left, top}, {std::max(window.x - left, 1.0f), std::max(window.y - top - bottom, 1.0f)}};
     }
     drawHelp();
-    files_.draw();
+    {
+        const ui::ItemLog::Scope scope(context.items, "Dialog");
+        files_.draw();
+    }
     drawMessages(area);
     return area;
 }
@@ -241,7 +275,7 @@ bool Ui::closeDialog() {
         return true;
     }
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) {
-        ImGui::CloseCurrentPopup();
+        ImGui::SetWindowFocus(nullptr); // closes menus and lists
         return true;
     }
     return false;

@@ -28,6 +28,7 @@ public:
     void showPanel(size_t index) { wantedPanel_ = static_cast<int>(index); }
     FileDialog& files() { return files_; }
     Messages& messages() { return messages_; }
+    const Messages& messages() const { return messages_; }
 
 private:
     float drawMenus(const PanelContext& context);

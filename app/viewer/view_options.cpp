@@ -36,8 +36,7 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb (default: none yet)");
     addSizeOption(command, "--size", o.bake);
     addSolverOptions(command, o.bake);
-    command
-        .add_option("--preset", o.bake.preset, "rtrad: the reference implementation to the letter")
+    command.add_option("--preset", o.bake.preset, "rtrad: the reference implementation to the letter")
         ->check(CLI::IsMember({"rtrad"}));
     command.add_option("--budget", o.budget, "Aim of one batch in milliseconds while the camera is still")
         ->capture_default_str()

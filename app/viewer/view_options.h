@@ -20,8 +20,8 @@ void addViewOptions(CLI::App& command, ViewOptions& options);
 /// What the options ask for. Throws UsageError when they are wrong or contradict each other.
 ViewerDesc resolveViewOptions(const ViewOptions& options);
 
-/// The arguments with "view" in front of a scene that stands where a verb belongs: `relume room.glb`. `verbs`:
-/// those that there are.
+/// The arguments with "view" in front of a scene that stands where a verb belongs: `relume room.glb`.
+/// `verbs`: those that there are.
 std::vector<std::string> withViewVerb(std::vector<std::string> arguments,
                                       const std::vector<std::string>& verbs);
 

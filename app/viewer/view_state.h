@@ -7,6 +7,7 @@
 
 #include "app/live/live_bake.h"
 #include "renderer/draw_settings.h"
+#include "renderer/uv_view.h"
 
 namespace relume {
 
@@ -21,13 +22,12 @@ struct ViewState {
 
     bool uv = false; // the lightmap as a flat picture
     bool masked = true;
-    glm::vec2 uvCentre{0.5f}; // that is in the middle of the picture
-    float uvZoom = 1;         // 1: all of it fits
+    UvWindow uvWindow;
 
     uint32_t mip = 0;
-    PairSettings preview; // of the quad-tree
-    uint32_t voxels = 64; // along each edge
-    std::optional<float> high; // end of a range of colours; none: the map's
+    PairSettings preview;              // of the quad-tree
+    uint32_t voxels = 64;              // along each edge
+    std::optional<float> high;         // end of a range of colours; none: the map's
     std::optional<uint32_t> seenTexel; // of visible-from-here
 };
 

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace relume {
 namespace {
 
@@ -15,12 +17,39 @@ using Phase = BakeStatus::Phase;
 
 // Turns without anything to draw: so often what runs beside is looked at [s].
 constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleWatching = 0.25, kIdleFence = 0.01;
-constexpr double kRestsAfter = 0.25;    // [s] without a move until the camera counts as still
-constexpr double kMovingShare = 0.25;   // of the budget that a batch has while it moves
+constexpr double kRestsAfter = 0.25;  // [s] without a move until the camera counts as still
+constexpr double kMovingShare = 0.25; // of the budget that a batch has while it moves
 constexpr double kLeastBatchMs = 1;
+constexpr uint64_t kNoMapVersion = ~uint64_t{0}; // of the lightmap before there is one: always the same
 // Frames are drawn no faster than the monitor shows them; a little faster, so that vsync, where it works, is
 // what decides.
 constexpr double kLimiterSlack = 1.05;
+
+constexpr double kTilesEvery = 0.2; // [s] while the camera moves
+
+const char* phaseName(Phase phase) {
+    switch (phase) {
+    case Phase::Idle:
+        return "idle";
+    case Phase::Preparing:
+        return "preparing";
+    case Phase::Baking:
+        return "baking";
+    case Phase::Paused:
+        return "paused";
+    case Phase::Done:
+        return "done";
+    case Phase::Failed:
+        return "failed";
+    }
+    return "";
+}
+
+const char* contentName(MapContent content) {
+    for (const ViewEntry& entry : viewEntries())
+        if (entry.readsMap && entry.content == content && content != MapContent::Light) return entry.name;
+    return "light";
+}
 
 bool drawnByCpu() {
     const std::string context = gl::describeContext();
@@ -54,9 +83,9 @@ bool sameFactors(const std::vector<Material>& a, const std::vector<Material>& b)
 Viewer::Viewer(const ViewerDesc& desc)
     : desc_(desc), start_(Clock::now()), preferencesPath_(preferencesPath()),
       preferences_(preferencesPath_.empty() ? Preferences{} : readPreferences(preferencesPath_)),
-      window_(windowDesc(desc, preferences_)), gui_(window_) {
+      window_(windowDesc(desc, preferences_)), gui_(window_), software_(drawnByCpu()), pane_(software_),
+      items_(desc.logActions) {
     clearWindow(window_); // there at once, whatever takes its time below
-    software_ = drawnByCpu();
     spdlog::info("window: {}", gl::describeContext());
     view_.filter = preferences_.filter;
     view_.tone = preferences_.tone;
@@ -72,12 +101,12 @@ Viewer::Viewer(const ViewerDesc& desc)
 
 void Viewer::startBake() {
     const gl::GlSharing sharing = gl::querySharing();
-    bake_ = std::make_unique<LiveBake>(LiveBake::Desc{
-        .device = desc_.device,
-        .validation = desc_.validation,
-        .display = desc_.display,
-        .host = {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids},
-        .batchMs = desc_.budgetMs});
+    bake_ = std::make_unique<LiveBake>(
+        LiveBake::Desc{.device = desc_.device,
+                       .validation = desc_.validation,
+                       .display = desc_.display,
+                       .host = {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids},
+                       .batchMs = desc_.budgetMs});
     batchMs_ = desc_.budgetMs;
     bake_->setWake([] { Window::wake(); });
     session_ = std::make_unique<Session>(*bake_, desc_.request);
@@ -115,7 +144,7 @@ double Viewer::idleSeconds(double time) const {
     if (status_.phase == Phase::Baking || status_.phase == Phase::Preparing) idle = kIdleBaking;
     if (session_->watchesFile()) idle = std::min(idle, kIdleWatching);
     if (session_->loading()) idle = std::min(idle, kIdleLoading);
-    if (bridge_->waiting()) idle = std::min(idle, kIdleFence);
+    if (bridge_->waiting() || pane_.tilesPending()) idle = std::min(idle, kIdleFence);
     if (time - moved_ < kRestsAfter) idle = std::min(idle, kRestsAfter); // then the bake gets its budget back
     const double message = ui_.messages().nextExpiry(time + idle);
     return std::clamp(message - time, 0.0, idle);
@@ -125,7 +154,9 @@ void Viewer::run() {
     while (!window_.closing()) {
         const double limit = 1.0 / (kLimiterSlack * window_.refreshRate());
         const double before = now();
-        const double wait = std::max(pacer_.wait(before, idleSeconds(before)), frameStart_ + limit - before);
+        const double idle = idleSeconds(before);
+        const double wait =
+            window_.minimised() ? idle : std::max(pacer_.wait(before, idle), frameStart_ + limit - before);
         handle(window_.wait(std::max(wait, 0.0)));
         const double time = now();
         follow(time);
@@ -134,14 +165,14 @@ void Viewer::run() {
         frameStart_ = time;
         frame(redraw);
     }
-    tell("closed");
+    tell("window", "closed");
 }
 
 void Viewer::follow(double time) {
     followScene();
     followBake(time);
     followCamera(time);
-    followLog(time);
+    followLog();
     const bool messages = !ui_.messages().shown().empty();
     ui_.messages().expire(time);
     if (messages && ui_.messages().shown().empty()) pacer_.input();
@@ -150,6 +181,10 @@ void Viewer::follow(double time) {
         window_.setVsync(vsync_);
     }
     if (sceneDirty_) pacer_.sceneChanged();
+    if (window_.size() != toldSize_ && !window_.minimised()) {
+        toldSize_ = window_.size();
+        tell("window", fmt::format("{} x {}", toldSize_.x, toldSize_.y));
+    }
 }
 
 void Viewer::followScene() {
@@ -172,14 +207,16 @@ void Viewer::followScene() {
             camera_.set(camera, scene.geometry.bounds);
             camera_.setHome(camera);
             preferences_.addRecent(scene.prepared.scene.path);
-            window_.setTitle(scene.prepared.scene.path.substr(scene.prepared.scene.path.find_last_of('/') + 1) +
-                             " - Relume");
+            window_.setTitle(
+                scene.prepared.scene.path.substr(scene.prepared.scene.path.find_last_of('/') + 1) +
+                " - Relume");
         }
-        tell("scene " + scene.prepared.scene.path);
+        askedBake_ = 0;
+        tell("scene", scene.prepared.scene.path);
         changeScene();
     }
     if (!session_->lastError().empty()) {
-        note(session_->lastError(), true);
+        ui_.messages().add(session_->lastError(), true, now()); // which the log has told
         session_->clearError();
     }
     if (session_->scene() != nullptr && !sameFactors(materials_, session_->document().materials)) {
@@ -187,28 +224,66 @@ void Viewer::followScene() {
         pane_.setMaterials(materials_);
         changeScene();
     }
-    const std::string edit = session_->undoName();
-    if (edit != edited_) {
-        edited_ = edit;
-        if (!edit.empty()) tell("edit " + edit);
-        pacer_.input();
-    }
 }
 
 void Viewer::followBake(double time) {
     BakeStatus status = bake_->status();
-    if (status.phase != status_.phase) pacer_.input();
+    if (status.phase != status_.phase) {
+        pacer_.input();
+        tell("bake", phaseName(status.phase));
+    }
     if (status.phase == Phase::Baking || status.phase == Phase::Preparing || session_->loading() ||
         status.doing != status_.doing)
         pacer_.statusChanged();
     status_ = std::move(status);
-    if (bridge_->update()) pacer_.newMap();
+    if (bridge_->update()) followMap();
     inspect();
+    followInspected();
+    if (pane_.adapting()) pacer_.newMap(); // the exposure follows
     const bool moves = time - moved_ < kRestsAfter;
     const double wanted = moves ? std::max(kMovingShare * desc_.budgetMs, kLeastBatchMs) : desc_.budgetMs;
     if (wanted == batchMs_) return;
     batchMs_ = wanted;
     bake_->setBatchMs(wanted);
+}
+
+void Viewer::followMap() {
+    mapVersion_ = newVersion();
+    if (view_.uv || viewEntries()[view_.view].readsMap) pacer_.newMap();
+    const PublishedMap& map = *bridge_->map();
+    const std::string told =
+        std::string(contentName(map.content)) + (map.complete ? " complete" : " partial");
+    if (told != told_) tell("map", told);
+    told_ = told;
+}
+
+// What is seen beside maps: links of a patch, voxels, and which tiles the camera sees.
+void Viewer::followInspected() {
+    if (const std::optional<InspectPaths> paths = bake_->takePaths()) {
+        pane_.setPaths(*paths);
+        changeScene();
+    }
+    if (const std::optional<InspectVoxels> voxels = bake_->takeVoxels()) {
+        pane_.setVoxels(*voxels);
+        changeScene();
+    }
+    const bool bakes =
+        status_.phase == Phase::Baking || status_.phase == Phase::Paused || status_.phase == Phase::Done;
+    if (!bakes || session_->scene() == nullptr) return;
+    const bool another = askedBake_ != status_.bake;
+    if (viewEntries()[view_.view].voxels && (another || askedVoxels_ != view_.voxels)) {
+        askedVoxels_ = view_.voxels;
+        bake_->askVoxels(askedVoxels_);
+    }
+    if (std::optional<std::vector<uint32_t>> tiles = pane_.seenTiles())
+        bake_->setSeenTiles(std::move(*tiles));
+    const double time = now();
+    const bool moved = moved_ > tilesAsked_;
+    if (another || (moved && (time - moved_ > kRestsAfter || time - tilesAsked_ > kTilesEvery))) {
+        tilesAsked_ = time;
+        pane_.askTiles(look());
+    }
+    askedBake_ = status_.bake;
 }
 
 void Viewer::inspect() {
@@ -234,12 +309,13 @@ void Viewer::followCamera(double time) {
 }
 
 // What went wrong beside the main thread is logged: it is shown as well.
-void Viewer::followLog(double time) {
-    if (log_.count() == logSeen_) return;
+void Viewer::followLog() {
+    const uint64_t count = log_.count();
+    if (count == logSeen_) return;
     const std::vector<LogLine> lines = log_.linesSince(logSeen_);
-    logSeen_ += lines.size();
+    logSeen_ = count;
     for (const LogLine& line : lines)
-        if (line.level >= spdlog::level::err) ui_.messages().add(line.text, true, time);
+        if (line.level >= spdlog::level::err) ui_.messages().add(line.text, true, now());
     pacer_.input();
 }
 
@@ -256,7 +332,14 @@ PanelContext Viewer::context() {
             .budgetMs = desc_.budgetMs,
             .recording = capture_.recording(),
             .perform = [this](Action action, int argument) { perform(action, argument); },
-            .sceneChanged = [this] { changeScene(); }};
+            .sceneChanged = [this] { changeScene(); },
+            .edit = [this](const std::string& name, const Document& next) { edit(name, next); },
+            .endEdit =
+                [this] {
+                    edited_.clear();
+                    session_->endEdit();
+                },
+            .items = items_};
 }
 
 const PublishedMap* Viewer::map() const {
@@ -265,8 +348,18 @@ const PublishedMap* Viewer::map() const {
 }
 
 LightmapTexture Viewer::lightmap() const {
-    if (map() != nullptr) return bridge_->texture();
-    return {.size = session_->document().bake.size};
+    LightmapTexture texture{.size = session_->document().bake.size};
+    if (map() == nullptr) {
+        texture.version = kNoMapVersion;
+        return texture;
+    }
+    texture = bridge_->texture();
+    texture.version = mapVersion_;
+    return texture;
+}
+
+ScenePane::Look Viewer::look() const {
+    return {.camera = camera_.camera(), .state = view_, .lightmap = lightmap(), .map = map()};
 }
 
 // The picture of the scene, new or the last one, behind the panels.
@@ -274,11 +367,13 @@ void Viewer::drawScene(bool anew) {
     const float pixels = pixelsPerPoint();
     const glm::uvec2 window = window_.size();
     const auto toPixels = [&](float points) { return static_cast<uint32_t>(std::lround(points * pixels)); };
-    const glm::uvec2 corner(toPixels(area_.corner.x), window.y - std::min(window.y, toPixels(area_.corner.y + area_.size.y)));
-    const glm::uvec2 size = glm::max(glm::uvec2(toPixels(area_.size.x), toPixels(area_.size.y)), glm::uvec2(1));
+    const glm::uvec2 corner(toPixels(area_.corner.x),
+                            window.y - std::min(window.y, toPixels(area_.corner.y + area_.size.y)));
+    const glm::uvec2 size =
+        glm::max(glm::uvec2(toPixels(area_.size.x), toPixels(area_.size.y)), glm::uvec2(1));
     const bool resized = pane_.picture().width() != size.x || pane_.picture().height() != size.y;
     if (anew || resized) {
-        pane_.draw({.camera = camera_.camera(), .state = view_, .lightmap = lightmap(), .map = map()}, size);
+        pane_.draw(look(), size);
         ++figures_.drawn;
         sceneDirty_ = false;
     } else {
@@ -294,7 +389,7 @@ void Viewer::drawScene(bool anew) {
 
 void Viewer::frame(const Redraw& redraw) {
     const double begin = now();
-    if (!gui_.animates()) scale_ = window_.contentScale() * preferences_.uiScale;
+    if (!gui_.animates()) scale_ = window_.contentScale() / pixelsPerPoint() * preferences_.uiScale;
     gui_.begin(scale_);
     area_ = ui_.draw(context(), hidden_, scale_);
     const double drawnUi = now();
@@ -310,6 +405,11 @@ void Viewer::frame(const Redraw& redraw) {
     figures_.span("scene").cpu = 1e3 * (drawnScene - drawnUi);
     figures_.span("swap").cpu = 1e3 * (end - beforeSwap);
     figures_.addFrame(1e3 * (end - begin));
+    for (const gl::Timer::Pass& pass : pane_.endFrame()) {
+        FrameFigures::Span& span = figures_.span("drawing: " + pass.name);
+        span.cpu = pass.cpuMs;
+        span.gpu = pass.gpuMs;
+    }
     figures_.drawCalls = pane_.counts().drawn;
     figures_.culled = pane_.counts().culled;
     // A GPU's swap waits for the monitor, the CPU's draws.

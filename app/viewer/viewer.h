@@ -49,8 +49,11 @@ private:
     void followScene();
     void followBake(double time);
     void followCamera(double time);
-    void followLog(double time);
+    void followLog();
     void inspect();
+    void followInspected();
+    void followMap();
+    ScenePane::Look look() const;
     PanelContext context();
     void frame(const Redraw& redraw);
     void drawScene(bool anew);
@@ -72,6 +75,7 @@ private:
 
     // viewer_actions.cpp
     void perform(Action action, int argument);
+    void performUndo(Action action);
     void performFile(Action action);
     void performBake(Action action);
     void performView(Action action, int argument);
@@ -84,7 +88,8 @@ private:
     void captureFrame(double time);
     std::string captureFolder() const;
     void note(const std::string& text, bool bad = false);
-    void tell(const std::string& action) const;
+    void tell(const char* kind, const std::string& what) const; // a line for --log-actions
+    void edit(const std::string& name, const Document& next);
     std::string scenePath() const; // absolute, the key of bookmarks; "" without a scene
     std::vector<std::string> captionLines() const;
 
@@ -96,11 +101,13 @@ private:
     std::unique_ptr<LiveBake> bake_; // outlives OpenGL (live_bake.h)
     Window window_;
     Gui gui_;
+    bool software_; // OpenGL is drawn by the CPU
     ScenePane pane_;
     std::unique_ptr<Session> session_;
     std::unique_ptr<LightmapBridge> bridge_;
     Capture capture_;
     Ui ui_;
+    ui::ItemLog items_;
 
     ViewState view_;
     CameraControl camera_;
@@ -110,20 +117,25 @@ private:
     InspectRequest inspected_;
     std::vector<Material> materials_; // as drawn
     Ui::Area area_;                   // of the scene, in the last frame
-    bool software_ = false;           // OpenGL is drawn by the CPU
     bool sceneDirty_ = true, hidden_ = false, vsync_ = false;
     float scale_ = 1;
     bool shotWithUi_ = false; // of the next frame
-    double frameStart_ = 0; // of the last frame
-    double flown_ = 0;      // when the flight went on last
-    double moved_ = -1e9;   // when the camera moved last
-    double batchMs_ = 0;    // that the bake was told
+    double frameStart_ = 0;   // of the last frame
+    double flown_ = 0;        // when the flight went on last
+    double moved_ = -1e9;     // when the camera moved last
+    double batchMs_ = 0;      // that the bake was told
     uint64_t logSeen_ = 0;
-    std::string edited_; // the newest edit that was told
+    std::string edited_;     // name of the edit under way, "": none
+    std::string told_;       // content of the newest map, as it was told
+    glm::uvec2 toldSize_{0}; // of the window
+    uint32_t askedVoxels_ = 0;
+    uint64_t askedBake_ = 0; // that voxels and tiles were asked for
+    double tilesAsked_ = -1e9;
+    uint64_t mapVersion_ = 0;
     glm::dvec2 cursor_{0.0}, pressed_{0.0};
-    int button_ = 0;         // of the mouse, that drags
-    bool dragged_ = false;   // it went further than a click does
-    std::vector<int> keys_;  // of flight, that are held
+    int button_ = 0;        // of the mouse, that drags
+    bool dragged_ = false;  // it went further than a click does
+    std::vector<int> keys_; // of flight, that are held
     bool fast_ = false;
 };
 

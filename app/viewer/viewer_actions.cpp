@@ -31,11 +31,19 @@ void next(T& choice, size_t count) {
 
 } // namespace
 
-void Viewer::tell(const std::string& action) const {
-    if (desc_.logActions) std::fprintf(stderr, "action: %s\n", action.c_str());
+void Viewer::tell(const char* kind, const std::string& what) const {
+    if (desc_.logActions) std::fprintf(stderr, "%s: %s\n", kind, what.c_str());
+}
+
+void Viewer::edit(const std::string& name, const Document& next) {
+    if (name != edited_) tell("edit", name);
+    edited_ = name;
+    session_->edit(name, next);
+    pacer_.input();
 }
 
 void Viewer::note(const std::string& text, bool bad) {
+    if (bad) tell("error", text);
     ui_.messages().add(text, bad, now());
     pacer_.input();
 }
@@ -46,25 +54,25 @@ std::string Viewer::scenePath() const {
 }
 
 void Viewer::perform(Action action, int argument) {
-    tell(shortcutOf(action, argument).name);
+    tell("action", shortcutOf(action, argument).name);
     pacer_.input();
     switch (action) {
     case Action::Open:
     case Action::Export:
-    case Action::Watch: return performFile(action);
-    case Action::Quit: return window_.close();
+    case Action::Watch:
+        return performFile(action);
+    case Action::Quit:
+        return window_.close();
     case Action::Undo:
-        if (!session_->undo()) note("nothing to undo");
-        return;
     case Action::Redo:
-        if (!session_->redo()) note("nothing to make again");
-        return;
+        return performUndo(action);
     case Action::MakePass:
     case Action::Pause:
     case Action::Step:
-    case Action::Reset: return performBake(action);
+    case Action::Reset:
+        return performBake(action);
     case Action::Close:
-        if (!ui_.closeDialog()) bake_->abortPass();
+        if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
     case Action::View:
     case Action::UvTexture:
@@ -73,20 +81,37 @@ void Viewer::perform(Action action, int argument) {
     case Action::NextTone:
     case Action::Darker:
     case Action::Brighter:
-    case Action::AutomaticExposure: return performView(action, argument);
+    case Action::AutomaticExposure:
+        return performView(action, argument);
     case Action::FrameAll:
     case Action::FrameSelected:
     case Action::ResetCamera:
-    case Action::StoreBookmark: return performCamera(action);
+    case Action::StoreBookmark:
+        return performCamera(action);
     case Action::Screenshot:
     case Action::ScreenshotWithUi:
     case Action::Record:
-    case Action::Caption: return performCapture(action);
-    case Action::ReloadShaders: return reloadShaders();
-    case Action::Help: return ui_.toggleHelp();
-    case Action::HideUi: hidden_ = !hidden_; return;
-    case Action::Panel: return ui_.showPanel(static_cast<size_t>(argument));
+    case Action::Caption:
+        return performCapture(action);
+    case Action::ReloadShaders:
+        return reloadShaders();
+    case Action::Help:
+        return ui_.toggleHelp();
+    case Action::HideUi:
+        hidden_ = !hidden_;
+        return;
+    case Action::Panel:
+        return ui_.showPanel(static_cast<size_t>(argument));
     }
+}
+
+void Viewer::performUndo(Action action) {
+    const bool undo = action == Action::Undo;
+    const std::string name = undo ? session_->undoName() : session_->redoName();
+    edited_.clear();
+    if (!(undo ? session_->undo() : session_->redo()))
+        return note(undo ? "nothing to undo" : "nothing to make again");
+    tell(undo ? "undo" : "redo", name);
 }
 
 void Viewer::performFile(Action action) {
@@ -117,7 +142,7 @@ void Viewer::open(const std::string& path) {
 }
 
 void Viewer::exportLightmap(const std::string& path) {
-    tell("export " + path);
+    tell("export", path);
     if (!path.ends_with(".exr") && !path.ends_with(".png"))
         return note(path + ": a lightmap ends in .exr or .png", true);
     bake_->exportLightmap(path, session_->document().lightmap);
@@ -127,10 +152,14 @@ void Viewer::exportLightmap(const std::string& path) {
 void Viewer::performBake(Action action) {
     if (session_->scene() == nullptr) return note("there is no scene to bake", true);
     switch (action) {
-    case Action::MakePass: return bake_->makePass();
-    case Action::Step: return bake_->step();
-    case Action::Reset: return bake_->reset();
-    default: break;
+    case Action::MakePass:
+        return bake_->makePass();
+    case Action::Step:
+        return bake_->step();
+    case Action::Reset:
+        return bake_->reset();
+    default:
+        break;
     }
     if (status_.phase == BakeStatus::Phase::Paused)
         bake_->resume();
@@ -140,9 +169,15 @@ void Viewer::performBake(Action action) {
 
 void Viewer::performView(Action action, int argument) {
     switch (action) {
-    case Action::View: view_.view = static_cast<size_t>(argument); break;
-    case Action::UvTexture: view_.uv = !view_.uv; break;
-    case Action::Masked: view_.masked = !view_.masked; break;
+    case Action::View:
+        view_.view = static_cast<size_t>(argument);
+        break;
+    case Action::UvTexture:
+        view_.uv = !view_.uv;
+        break;
+    case Action::Masked:
+        view_.masked = !view_.masked;
+        break;
     case Action::NextFilter:
         next(view_.filter, filterNames().size());
         note("lightmap filter: " + filterNames()[static_cast<size_t>(view_.filter)]);
@@ -171,8 +206,7 @@ void Viewer::performCamera(Action action) {
     switch (action) {
     case Action::FrameAll:
         if (view_.uv) {
-            view_.uvCentre = glm::vec2(0.5f);
-            view_.uvZoom = 1;
+            view_.uvWindow = {};
         } else {
             camera_.frame(scene->geometry.bounds, aspect);
         }
@@ -187,8 +221,11 @@ void Viewer::performCamera(Action action) {
         camera_.frame(box, aspect);
         break;
     }
-    case Action::ResetCamera: camera_.reset(); break;
-    default: return storeBookmark();
+    case Action::ResetCamera:
+        camera_.reset();
+        break;
+    default:
+        return storeBookmark();
     }
     cameraMoved();
 }
@@ -196,7 +233,8 @@ void Viewer::performCamera(Action action) {
 void Viewer::storeBookmark() {
     std::vector<Bookmark>& marks = preferences_.bookmarks[scenePath()];
     const auto taken = [&](const std::string& name) {
-        return std::any_of(marks.begin(), marks.end(), [&](const Bookmark& mark) { return mark.name == name; });
+        return std::any_of(marks.begin(), marks.end(),
+                           [&](const Bookmark& mark) { return mark.name == name; });
     };
     size_t number = marks.size() + 1;
     while (taken(fmt::format("bookmark {}", number)))

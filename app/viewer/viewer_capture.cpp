@@ -29,9 +29,14 @@ void Viewer::performCapture(Action action) {
         pixels.caption = captionLines();
         return capture_.screenshot(std::move(pixels), captureFolder());
     }
-    case Action::ScreenshotWithUi: shotWithUi_ = true; return;
-    case Action::Caption: preferences_.caption = !preferences_.caption; return;
-    default: break;
+    case Action::ScreenshotWithUi:
+        shotWithUi_ = true;
+        return;
+    case Action::Caption:
+        preferences_.caption = !preferences_.caption;
+        return;
+    default:
+        break;
     }
     if (capture_.recording())
         capture_.stop(now());

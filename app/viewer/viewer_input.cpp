@@ -11,8 +11,8 @@
 namespace relume {
 namespace {
 
-constexpr double kClickSlack = 4; // [screen coordinates] that a hand moves while it clicks
-constexpr float kUvZoomStep = 0.85f, kUvNearest = 1.0f / 64.0f, kUvFarthest = 8.0f;
+constexpr double kClickSlack = 4;   // [screen coordinates] that a hand moves while it clicks
+constexpr float kUvZoomStep = 1.2f; // of one step of a wheel
 
 bool isFunctionKey(int key) {
     return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25;
@@ -21,13 +21,20 @@ bool isFunctionKey(int key) {
 // Directions of flight by places of the keyboard, so that they lie together on every layout.
 glm::ivec3 flightOf(int place) {
     switch (place) {
-    case GLFW_KEY_D: return {1, 0, 0};
-    case GLFW_KEY_A: return {-1, 0, 0};
-    case GLFW_KEY_E: return {0, 1, 0};
-    case GLFW_KEY_Q: return {0, -1, 0};
-    case GLFW_KEY_W: return {0, 0, 1};
-    case GLFW_KEY_S: return {0, 0, -1};
-    default: return {0, 0, 0};
+    case GLFW_KEY_D:
+        return {1, 0, 0};
+    case GLFW_KEY_A:
+        return {-1, 0, 0};
+    case GLFW_KEY_E:
+        return {0, 1, 0};
+    case GLFW_KEY_Q:
+        return {0, -1, 0};
+    case GLFW_KEY_W:
+        return {0, 0, 1};
+    case GLFW_KEY_S:
+        return {0, 0, -1};
+    default:
+        return {0, 0, 0};
     }
 }
 
@@ -43,20 +50,29 @@ void Viewer::handle(const std::vector<WindowEvent>& events) {
     for (const WindowEvent& event : events) {
         gui_.feed(event);
         switch (event.kind) {
-        case WindowEvent::Kind::Key: onKey(event); break;
-        case WindowEvent::Kind::Button: onButton(event); break;
-        case WindowEvent::Kind::Cursor: onCursor(event); break;
-        case WindowEvent::Kind::Scroll: onScroll(event); break;
+        case WindowEvent::Kind::Key:
+            onKey(event);
+            break;
+        case WindowEvent::Kind::Button:
+            onButton(event);
+            break;
+        case WindowEvent::Kind::Cursor:
+            onCursor(event);
+            break;
+        case WindowEvent::Kind::Scroll:
+            onScroll(event);
+            break;
         case WindowEvent::Kind::Drop:
             if (!event.paths.empty()) {
-                tell("drop " + event.paths.front());
+                tell("dropped", event.paths.front());
                 open(event.paths.front());
             }
             break;
         case WindowEvent::Kind::Focus:
             if (!event.pressed) keys_.clear(); // their releases go to another window
             break;
-        default: break;
+        default:
+            break;
         }
     }
 }
@@ -69,7 +85,7 @@ void Viewer::onKey(const WindowEvent& event) {
         const bool alone = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0;
         if (event.pressed && alone && !typing) {
             keys_.push_back(event.place);
-            if (!event.repeated) tell("fly");
+            if (!event.repeated) tell("action", "fly");
             return;
         }
     }
@@ -97,7 +113,7 @@ void Viewer::onButton(const WindowEvent& event) {
         camera_.end();
         const bool moved = glm::distance(event.at, pressed_) > kClickSlack;
         if (moved)
-            tell(dragName(event.code, event.mods));
+            tell("action", dragName(event.code, event.mods));
         else if (event.code == GLFW_MOUSE_BUTTON_LEFT)
             onClick(event);
         return;
@@ -124,8 +140,7 @@ void Viewer::onCursor(const WindowEvent& event) {
     const glm::dvec2 way = (event.at - (dragged_ ? before : pressed_)) / double(area_.size.y);
     dragged_ = true;
     if (view_.uv) {
-        const float shown = view_.uvZoom; // of the texture, over the picture's height
-        view_.uvCentre -= shown * glm::vec2(way);
+        view_.uvWindow = pan(view_.uvWindow, glm::vec2(way) * area_.size.y, area_.size);
         changeScene();
     } else if (camera_.move(static_cast<float>(way.x), static_cast<float>(way.y))) {
         cameraMoved();
@@ -136,13 +151,14 @@ void Viewer::onScroll(const WindowEvent& event) {
     if (!overScene(cursor_)) return;
     const auto steps = static_cast<float>(event.at.y);
     if (view_.uv) {
-        view_.uvZoom = std::clamp(view_.uvZoom * std::pow(kUvZoomStep, steps), kUvNearest, kUvFarthest);
+        view_.uvWindow =
+            zoom(view_.uvWindow, std::pow(kUvZoomStep, steps), glm::vec2(cursor_) - area_.corner, area_.size);
         changeScene();
     } else {
         camera_.zoomBy(steps);
         cameraMoved();
     }
-    tell("zoom");
+    tell("action", "zoom");
 }
 
 void Viewer::updateFlight() {
@@ -157,10 +173,23 @@ void Viewer::cameraMoved() {
     changeScene();
 }
 
-// Of an instance, or with Ctrl or in its own view of the patch to see from.
+// Selects an instance or, with Ctrl or in its own view, the patch to see from.
 void Viewer::onClick(const WindowEvent& event) {
-    (void)event;
-    (void)viewIndex("seen");
+    const glm::vec2 pixel = (glm::vec2(event.at) - area_.corner) * pixelsPerPoint();
+    const std::optional<Pick> pick = pane_.pick(look(), pixel);
+    const size_t seen = viewIndex("seen");
+    const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view_.view == seen;
+    if (patch && pick && pick->lightmapUv) {
+        const uint32_t size = session_->document().bake.size;
+        view_.seenTexel = pick->texel.y * size + pick->texel.x;
+        view_.view = seen;
+        tell("action", "see from " + std::to_string(*view_.seenTexel));
+    } else if (!patch && !view_.uv) {
+        const int instance = pick ? static_cast<int>(pick->instance) : -1;
+        view_.selected = instance == view_.selected ? -1 : instance;
+        tell("action", "select " + std::to_string(view_.selected));
+    }
+    changeScene();
 }
 
 } // namespace relume

@@ -12,35 +12,54 @@ constexpr int kShift = GLFW_MOD_SHIFT;
 
 ViewEntry ofScene(const char* name, const char* title, const char* tells, View view, int key, int mods = 0) {
     const bool reads = readsLightmap(view);
-    return {.name = name, .title = title, .tells = tells, .view = view, .readsMap = reads, .key = key,
+    return {.name = name,
+            .title = title,
+            .tells = tells,
+            .view = view,
+            .readsMap = reads,
+            .key = key,
             .mods = mods};
 }
 
 ViewEntry ofMap(const char* name, const char* title, const char* tells, MapContent content, View view,
                 int key, int mods = 0) {
-    return {.name = name, .title = title, .tells = tells, .view = view, .readsMap = true,
-            .content = content, .key = key, .mods = mods};
+    return {.name = name,
+            .title = title,
+            .tells = tells,
+            .view = view,
+            .readsMap = true,
+            .content = content,
+            .key = key,
+            .mods = mods};
 }
 
 std::vector<ViewEntry> makeEntries() {
-    constexpr View kColor = View::Lighting; // what the map holds, exposed
     return {
         ofScene("lit", "Lit", "albedo times lightmap, and emission", View::Lit, GLFW_KEY_1),
         ofScene("lighting", "Lighting", "the lightmap alone", View::Lighting, GLFW_KEY_2),
         ofScene("albedo", "Albedo", "what surfaces reflect", View::Albedo, GLFW_KEY_3),
-        ofMap("pos", "pos", "positions of the patches", MapContent::Position, kColor, GLFW_KEY_4),
-        ofMap("nrm", "nrm", "normals of the patches", MapContent::Normal, kColor, GLFW_KEY_5),
-        ofMap("mat", "mat", "albedo of the patches", MapContent::Material, kColor, GLFW_KEY_6),
-        ofMap("arf", "arf", "area of the patches", MapContent::Area, kColor, GLFW_KEY_7),
-        ofMap("ligIn", "ligIn", "light that the pass reads", MapContent::LigIn, kColor, GLFW_KEY_8),
-        ofMap("ligOut", "ligOut", "light that the pass has gathered", MapContent::LigOut, kColor, GLFW_KEY_9),
-        ofMap("error", "Error", "how far the light may still be off", MapContent::Error, kColor, GLFW_KEY_0),
-        ofMap("leaves", "Quad-tree", "leaves of the adaptive method", MapContent::Leaves, kColor, GLFW_KEY_1,
-              kShift),
+        ofMap("pos", "pos", "positions of the patches", MapContent::Position, View::InspectPosition,
+              GLFW_KEY_4),
+        ofMap("nrm", "nrm", "normals of the patches", MapContent::Normal, View::InspectNormal, GLFW_KEY_5),
+        ofMap("mat", "mat", "albedo of the patches", MapContent::Material, View::InspectRaw, GLFW_KEY_6),
+        ofMap("arf", "arf", "area of the patches", MapContent::Area, View::InspectHeat, GLFW_KEY_7),
+        ofMap("ligIn", "ligIn", "light that the pass reads", MapContent::LigIn, View::InspectColor,
+              GLFW_KEY_8),
+        ofMap("ligOut", "ligOut", "light that the pass has gathered", MapContent::LigOut, View::InspectColor,
+              GLFW_KEY_9),
+        ofMap("error", "Error", "how far the light may still be off", MapContent::Error, View::InspectHeat,
+              GLFW_KEY_0),
+        ofMap("leaves", "Quad-tree", "leaves of the adaptive method", MapContent::Leaves, View::InspectLeaves,
+              GLFW_KEY_1, kShift),
         ofMap("seen", "Visible from here", "patches that the clicked one sees, and its links",
-              MapContent::Seen, kColor, GLFW_KEY_2, kShift),
-        {.name = "voxels", .title = "Voxels", .tells = "what marching through voxels meets",
-         .view = View::Lit, .voxels = true, .key = GLFW_KEY_3, .mods = kShift},
+              MapContent::Seen, View::InspectMask, GLFW_KEY_2, kShift),
+        {.name = "voxels",
+         .title = "Voxels",
+         .tells = "what marching through voxels meets",
+         .view = View::Lit,
+         .voxels = true,
+         .key = GLFW_KEY_3,
+         .mods = kShift},
         ofScene("checker", "Patch checker", "the lightmap's texels", View::Checker, GLFW_KEY_4, kShift),
         ofScene("density", "Texel density", "texels per metre", View::Density, GLFW_KEY_5, kShift),
         ofScene("coverage", "Coverage", "patches, filled and empty texels", View::Coverage, GLFW_KEY_6,

@@ -13,9 +13,9 @@ struct ViewEntry {
     const char* title; // "Lit"
     const char* tells; // one line
     View view = View::Lit;
-    bool readsMap = false;                   // what is drawn comes from a published map ...
-    MapContent content = MapContent::Light;  // ... with this content
-    bool voxels = false;                     // drawn instead of the scene
+    bool readsMap = false;                  // what is drawn comes from a published map ...
+    MapContent content = MapContent::Light; // ... with this content
+    bool voxels = false;                    // drawn instead of the scene
     int key = 0, mods = 0;
 };
 

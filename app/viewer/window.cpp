@@ -26,6 +26,13 @@ std::string glfwReason() {
     return text != nullptr ? text : "unknown reason";
 }
 
+double readRefreshRate() {
+    constexpr double kUsual = 60; // what Xvfb, which tells 0, is taken for
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+    return mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : kUsual;
+}
+
 [[noreturn]] void failWithoutDisplay() {
     const std::string reason = glfwReason();
     const bool named = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
@@ -82,6 +89,7 @@ Window::Window(const Desc& desc) {
     gl::listenToDebugMessages();
     float scaleY = 1;
     glfwGetWindowContentScale(window_, &contentScale_, &scaleY);
+    refreshRate_ = readRefreshRate();
     installCallbacks();
 }
 
@@ -163,12 +171,6 @@ glm::uvec2 Window::extent() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
-}
-
-double Window::refreshRate() const {
-    constexpr double kUsual = 60; // what Xvfb, which tells 0, is taken for
-    const GLFWvidmode* mode = glfwGetVideoMode(glfwGetPrimaryMonitor());
-    return mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : kUsual;
 }
 
 void Window::setTitle(const std::string& title) {

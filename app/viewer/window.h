@@ -16,12 +16,12 @@ struct WindowEvent {
     Kind kind = Kind::Redraw;
     // Key: GLFW_KEY_ of the letter on the user's keyboard; Letter: Unicode; Button: GLFW_MOUSE_BUTTON_
     int code = 0;
-    int place = 0;         // Key: GLFW_KEY_ of the same place on a US keyboard
-    int scancode = 0;      // Key
-    int mods = 0;          // GLFW_MOD_
-    bool pressed = false;  // Key, Button; Focus, Enter: it came in
-    bool repeated = false; // Key: it is held
-    glm::dvec2 at{0.0};    // Button, Cursor: [screen coordinates]; Scroll: steps
+    int place = 0;                       // Key: GLFW_KEY_ of the same place on a US keyboard
+    int scancode = 0;                    // Key
+    int mods = 0;                        // GLFW_MOD_
+    bool pressed = false;                // Key, Button; Focus, Enter: it came in
+    bool repeated = false;               // Key: it is held
+    glm::dvec2 at{0.0};                  // Button, Cursor: [screen coordinates]; Scroll: steps
     std::vector<std::string> paths = {}; // Drop
 };
 
@@ -43,10 +43,10 @@ public:
     bool closing() const;
     void close();
     bool minimised() const;
-    glm::uvec2 size() const;   // [pixels], of what is drawn into
-    glm::uvec2 extent() const; // [screen coordinates]
+    glm::uvec2 size() const;                             // [pixels], of what is drawn into
+    glm::uvec2 extent() const;                           // [screen coordinates]
     float contentScale() const { return contentScale_; } // of text and controls
-    double refreshRate() const;                          // [1/s] of the monitor, 60 where unknown
+    double refreshRate() const { return refreshRate_; }  // [1/s] of the monitor, 60 where unknown
     void setTitle(const std::string& title);
     void setVsync(bool on);
 
@@ -61,6 +61,7 @@ private:
 
     GLFWwindow* window_ = nullptr;
     float contentScale_ = 1;
+    double refreshRate_ = 60;
     std::vector<WindowEvent> events_;
 };
 

@@ -11,8 +11,8 @@
 namespace relume {
 namespace {
 
-constexpr std::array<Method, 7> kMethods = {Method::Hybrid,   Method::Directional, Method::Pure,
-                                            Method::Static,   Method::MonteCarlo,  Method::Mipmapped,
+constexpr std::array<Method, 7> kMethods = {Method::Hybrid,  Method::Directional, Method::Pure,
+                                            Method::Static,  Method::MonteCarlo,  Method::Mipmapped,
                                             Method::Adaptive};
 constexpr std::array<uint32_t, 10> kSizes = {32, 64, 128, 256, 384, 512, 768, 1024, 1536, 2048};
 constexpr std::array<uint32_t, 6> kWindows = {1, 2, 4, 8, 16, 32};
@@ -37,7 +37,7 @@ bool released() {
 void BakePanel::drawMethod(bool& done) {
     SolverSettings& solver = draft_.bake.solver;
     bool rtrad = solver.transport.rtrad;
-    if (ImGui::Checkbox("RTRad preset", &rtrad)) {
+    if (ui::checkbox("RTRad preset", &rtrad)) {
         solver.transport.rtrad = rtrad;
         solver.transport.reflectivity = rtrad ? kRtradReflectivity : 1.0f;
         if (!rtrad) solver.transport.distanceFactor = 1.0f;
@@ -49,8 +49,8 @@ void BakePanel::drawMethod(bool& done) {
     ui::tip("The reference implementation to the letter, with its clamps");
     std::array<const char*, kMethods.size()> names{};
     std::transform(kMethods.begin(), kMethods.end(), names.begin(), methodName);
-    auto index = static_cast<size_t>(std::find(kMethods.begin(), kMethods.end(), solver.method) -
-                                     kMethods.begin());
+    auto index =
+        static_cast<size_t>(std::find(kMethods.begin(), kMethods.end(), solver.method) - kMethods.begin());
     if (ui::combo("Method", index, names)) {
         solver.method = kMethods[index];
         // What one method keeps the other has no use for.
@@ -94,12 +94,12 @@ void BakePanel::drawPairs(bool& done) {
     if (draft_.bake.solver.method != Method::Adaptive) return;
     auto threshold = static_cast<float>(pairs.threshold);
     constexpr float kLeast = 0.001f, kMost = 0.5f;
-    if (ImGui::SliderFloat("Threshold", &threshold, kLeast, kMost, "%.3f", ImGuiSliderFlags_Logarithmic))
+    if (ui::sliderFloat("Threshold", &threshold, kLeast, kMost, "%.3f", ImGuiSliderFlags_Logarithmic))
         pairs.threshold = threshold;
     done |= released();
     ui::tip("Difference up to which nodes are merged, relative to the mean light");
     auto ramp = static_cast<float>(pairs.thresholdRamp);
-    if (ImGui::SliderFloat("Threshold ramp", &ramp, 0.1f, 4.0f, "%.2f", ImGuiSliderFlags_Logarithmic))
+    if (ui::sliderFloat("Threshold ramp", &ramp, 0.1f, 4.0f, "%.2f", ImGuiSliderFlags_Logarithmic))
         pairs.thresholdRamp = ramp;
     done |= released();
     ui::tip("Factor on the threshold from pass to pass");
@@ -129,11 +129,11 @@ void BakePanel::drawLinks(bool& done) {
     ui::tip("Follow directions from one patch of so many by so many texels and interpolate");
     {
         const ui::Disabled disabled(draft_.bake.solver.method != Method::Hybrid);
-        done |= ImGui::Checkbox("Smooth", &links.smooth);
+        done |= ui::checkbox("Smooth", &links.smooth);
     }
     ui::tip("Hybrid: smooth the indirect light");
     ImGui::SameLine();
-    done |= ImGui::Checkbox("Footprint", &links.footprint);
+    done |= ui::checkbox("Footprint", &links.footprint);
     ui::tip("Read the mean light over what each direction stands for: less noise, but biased");
 }
 
@@ -153,27 +153,27 @@ void BakePanel::drawTracer(bool& done) {
     {
         const ui::Disabled disabled(voxels);
         int ratio = static_cast<int>(bake.voxels.ratio);
-        if (ImGui::SliderInt("Voxel ratio", &ratio, 0, kMostRatio))
+        if (ui::sliderInt("Voxel ratio", &ratio, 0, kMostRatio))
             bake.voxels.ratio = static_cast<uint32_t>(std::clamp(ratio, 0, static_cast<int>(kMostRatio)));
         done |= released();
         ui::tip("One sender in this many marches through voxels; 0: none, 1: all");
     }
     const ui::Disabled disabled(!voxels && bake.voxels.ratio == 0);
     done |= ui::combo("Voxels along an edge", bake.voxels.resolution, kVoxels);
-    done |= ImGui::Checkbox("Gather by shaders", &bake.solver.transport.deviceGather);
+    done |= ui::checkbox("Gather by shaders", &bake.solver.transport.deviceGather);
     ui::tip("Also where the device is the CPU, whose own loops are faster");
 }
 
 void BakePanel::drawTransport(bool& done) {
     TransportSettings& transport = draft_.bake.solver.transport;
-    ImGui::SliderFloat("Reflectivity", &transport.reflectivity, 0.0f, 10.0f, "%.2f",
-                       ImGuiSliderFlags_AlwaysClamp);
+    ui::sliderFloat("Reflectivity", &transport.reflectivity, 0.0f, 10.0f, "%.2f",
+                    ImGuiSliderFlags_AlwaysClamp);
     done |= released();
     if (ImGui::IsItemDeactivated()) draft_.lightmap.reflectivity = transport.reflectivity;
     ui::tip("Scales the albedo");
     const ui::Disabled disabled(!transport.rtrad);
-    ImGui::SliderFloat("Distance factor", &transport.distanceFactor, 0.0f, 2.0f, "%.2f",
-                       ImGuiSliderFlags_AlwaysClamp);
+    ui::sliderFloat("Distance factor", &transport.distanceFactor, 0.0f, 2.0f, "%.2f",
+                    ImGuiSliderFlags_AlwaysClamp);
     done |= released();
     ui::tip("RTRad preset only: it has no physical meaning");
 }
@@ -181,15 +181,15 @@ void BakePanel::drawTransport(bool& done) {
 void BakePanel::drawLightmap(bool& done) {
     done |= ui::combo("Size [texels]", draft_.bake.size, kSizes);
     done |= ui::number("Another size", draft_.bake.size);
-    done |= ImGui::Checkbox("Conservative", &draft_.bake.conservative);
+    done |= ui::checkbox("Conservative", &draft_.bake.conservative);
     ui::tip("Every texel that a triangle touches becomes a patch");
     ImGui::SameLine();
-    done |= ImGui::Checkbox("Sew seams", &draft_.lightmap.sew);
+    done |= ui::checkbox("Sew seams", &draft_.lightmap.sew);
     ui::tip("Fill the texels around charts");
     const ui::Disabled disabled(!draft_.lightmap.sew);
     int rings = static_cast<int>(draft_.lightmap.dilate);
     constexpr int kMostRings = 64;
-    if (ImGui::SliderInt("Rings of texels filled", &rings, 0, kMostRings))
+    if (ui::sliderInt("Rings of texels filled", &rings, 0, kMostRings))
         draft_.lightmap.dilate = static_cast<uint32_t>(std::clamp(rings, 0, kMostRings));
     done |= released();
 }
@@ -204,23 +204,21 @@ void BakePanel::drawStop(bool& done) {
     ui::tip("Stop when the remaining error is below this; 0: by passes and samples alone");
 }
 
-// Applies the draft unless it contradicts itself, and takes over what was changed elsewhere (undo) unless
-// something is being typed.
+// Applies the draft unless it contradicts itself.
 void BakePanel::settle(const PanelContext& context, bool done) {
-    const bool typing = ImGui::IsAnyItemActive();
-    if (done) {
-        problem_ = Session::problem(draft_.bake);
-        waiting_ = !problem_.empty();
-        if (!waiting_) {
-            context.session.edit("Bake settings", draft_);
-            context.session.endEdit();
-        }
-    }
-    if (!waiting_ && !typing) draft_ = context.session.document();
+    active_ = ImGui::IsAnyItemActive();
+    if (!done) return;
+    problem_ = Session::problem(draft_.bake);
+    waiting_ = !problem_.empty();
+    if (waiting_) return;
+    context.edit("Bake settings", draft_);
+    context.endEdit();
 }
 
 void BakePanel::draw(const PanelContext& context) {
-    if (!waiting_ && !ImGui::IsAnyItemActive()) draft_ = context.session.document();
+    // What was changed elsewhere (undo) is taken over, unless something is being typed or was until now: a
+    // field tells that it was left one frame later.
+    if (!waiting_ && !active_ && !ImGui::IsAnyItemActive()) draft_ = context.session.document();
     drawBakeProgress(context);
     bool done = false;
     ImGui::PushItemWidth(ImGui::GetFontSize() * -11.0f);
@@ -228,17 +226,17 @@ void BakePanel::draw(const PanelContext& context) {
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.6f, 0.3f, 1.0f));
         ImGui::TextWrapped("Not applied: %s", problem_.c_str());
         ImGui::PopStyleColor();
-        if (ImGui::Button("Back to what is baked")) waiting_ = false;
+        if (ui::button("Back to what is baked")) waiting_ = false;
     }
-    if (ImGui::CollapsingHeader("Method", ImGuiTreeNodeFlags_DefaultOpen)) drawMethod(done);
-    if (ImGui::CollapsingHeader("Lightmap", ImGuiTreeNodeFlags_DefaultOpen)) drawLightmap(done);
-    if (ImGui::CollapsingHeader("When to stop", ImGuiTreeNodeFlags_DefaultOpen)) drawStop(done);
-    if (ImGui::CollapsingHeader("Light transport")) drawTransport(done);
-    if (ImGui::CollapsingHeader("Rays")) drawTracer(done);
-    if (ImGui::CollapsingHeader("Work")) {
+    if (ui::header("Method", ImGuiTreeNodeFlags_DefaultOpen)) drawMethod(done);
+    if (ui::header("Lightmap", ImGuiTreeNodeFlags_DefaultOpen)) drawLightmap(done);
+    if (ui::header("When to stop", ImGuiTreeNodeFlags_DefaultOpen)) drawStop(done);
+    if (ui::header("Light transport")) drawTransport(done);
+    if (ui::header("Rays")) drawTracer(done);
+    if (ui::header("Work")) {
         auto budget = static_cast<float>(context.budgetMs);
         constexpr float kLeast = 1, kMost = 45; // [ms], a submit stays below 50
-        if (ImGui::SliderFloat("Batch [ms]", &budget, kLeast, kMost, "%.0f"))
+        if (ui::sliderFloat("Batch [ms]", &budget, kLeast, kMost, "%.0f"))
             context.budgetMs = std::clamp(budget, kLeast, kMost);
         ui::tip("Aim of one batch while the camera is still; a quarter of it while it moves. Batches change "
                 "no byte of the result");

@@ -22,8 +22,9 @@ private:
     void drawStop(bool& done);
     void settle(const PanelContext& context, bool done);
 
-    Document draft_;      // what the controls show
+    Document draft_;       // what the controls show
     bool waiting_ = false; // the draft contradicts itself and is not applied
+    bool active_ = false;  // a control was held or typed in when last drawn
     std::string problem_;
 };
 

@@ -13,12 +13,18 @@ using Phase = BakeStatus::Phase;
 
 const char* phaseName(Phase phase) {
     switch (phase) {
-    case Phase::Idle: return "nothing to bake";
-    case Phase::Preparing: return "preparing";
-    case Phase::Baking: return "baking";
-    case Phase::Paused: return "paused";
-    case Phase::Done: return "done";
-    case Phase::Failed: return "failed";
+    case Phase::Idle:
+        return "nothing to bake";
+    case Phase::Preparing:
+        return "preparing";
+    case Phase::Baking:
+        return "baking";
+    case Phase::Paused:
+        return "paused";
+    case Phase::Done:
+        return "done";
+    case Phase::Failed:
+        return "failed";
     }
     return "";
 }
@@ -26,7 +32,7 @@ const char* phaseName(Phase phase) {
 void button(const PanelContext& context, const char* label, Action action, bool enabled) {
     {
         const ui::Disabled disabled(!enabled);
-        if (ImGui::Button(label)) context.perform(action, 0);
+        if (ui::button(label)) context.perform(action, 0);
     }
     const Shortcut& shortcut = shortcutOf(action);
     ui::tip((shortcut.name + " (" + keyText(shortcut) + ")").c_str());
@@ -57,8 +63,8 @@ void drawBakeProgress(const PanelContext& context) {
         ui::row("State", phaseName(status.phase) + doing);
         const bool pairs = isPairMethod(status.settings.solver.method);
         if (pairs)
-            ui::row("Pass", fmt::format("{}, {:.0f} % of the next", progress.passes,
-                                        100.0 * progress.passFraction));
+            ui::row("Pass",
+                    fmt::format("{}, {:.0f} % of the next", progress.passes, 100.0 * progress.passFraction));
         else
             ui::row("Directions", fmt::format("{} per patch", progress.samples));
         ui::row("Error left", progress.error < 1.0 ? fmt::format("{:.3g}", progress.error) : "not known yet");

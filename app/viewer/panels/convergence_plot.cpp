@@ -13,7 +13,7 @@ constexpr float kHeightLines = 8; // of text
 constexpr double kLeastError = 1e-7;
 
 struct Axes {
-    ImVec2 low, high; // corners on screen: y grows downwards
+    ImVec2 low, high;                         // corners on screen: y grows downwards
     double seconds = 1, top = 0, bottom = -2; // exponents of ten
 
     ImVec2 at(double time, double error) const {
@@ -45,7 +45,8 @@ void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double ai
     const ImVec2 size(std::max(ImGui::GetContentRegionAvail().x, 4 * line), kHeightLines * line);
     ImGui::Dummy(size);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImU32 frame = ImGui::GetColorU32(ImGuiCol_FrameBg), text = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    const ImU32 frame = ImGui::GetColorU32(ImGuiCol_FrameBg),
+                text = ImGui::GetColorU32(ImGuiCol_TextDisabled);
     const ImU32 curve = ImGui::GetColorU32(ImGuiCol_PlotLines), grid = ImGui::GetColorU32(ImGuiCol_Border);
     const ImU32 goal = IM_COL32(110, 190, 110, 200);
     list->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, frame);

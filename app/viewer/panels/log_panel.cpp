@@ -6,7 +6,7 @@ namespace relume {
 
 void drawLogPanel(const PanelContext& context) {
     const std::vector<LogLine> lines = context.log.lines();
-    if (ImGui::Button("Copy")) {
+    if (ui::button("Copy")) {
         std::string all;
         for (const LogLine& line : lines)
             all += line.text + "\n";

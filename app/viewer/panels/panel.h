@@ -6,6 +6,7 @@
 #include "app/viewer/camera_control.h"
 #include "app/viewer/frame_figures.h"
 #include "app/viewer/log_buffer.h"
+#include "app/viewer/panels/item_log.h"
 #include "app/viewer/preferences.h"
 #include "app/viewer/shortcuts.h"
 #include "app/viewer/view_state.h"
@@ -27,6 +28,9 @@ struct PanelContext {
     bool recording = false;
     std::function<void(Action, int)> perform;
     std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
+    std::function<void(const std::string&, const Document&)> edit; // Session::edit, told to the log
+    std::function<void()> endEdit;
+    ui::ItemLog& items;
 };
 
 } // namespace relume

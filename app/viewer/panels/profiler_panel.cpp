@@ -48,8 +48,9 @@ void drawBake(const BakeStatus& status) {
     ui::row("Rays", fmt::format("{:.4g}", static_cast<double>(progress.rays)));
     ui::row("Saved by the cache", fmt::format("{:.4g}", static_cast<double>(progress.raysSaved)));
     ui::row("Pairs or links gathered", fmt::format("{:.4g}", static_cast<double>(progress.pairs)));
-    ui::row("Cache", fmt::format("{:.1f} MiB, {:.0f} % of a pass", static_cast<double>(progress.cacheBytes) / kMebi,
-                                 100.0 * progress.cachedShare));
+    ui::row("Cache",
+            fmt::format("{:.1f} MiB, {:.0f} % of a pass", static_cast<double>(progress.cacheBytes) / kMebi,
+                        100.0 * progress.cachedShare));
     if (status.deviceBytes > 0)
         ui::row("Device memory", fmt::format("{:.1f} MiB", static_cast<double>(status.deviceBytes) / kMebi));
     if (status.validationMessages > 0)
@@ -64,8 +65,8 @@ void drawBake(const BakeStatus& status) {
 } // namespace
 
 void drawProfilerPanel(const PanelContext& context) {
-    if (ImGui::CollapsingHeader("Frames", ImGuiTreeNodeFlags_DefaultOpen)) drawFrames(context.figures);
-    if (ImGui::CollapsingHeader("Bake", ImGuiTreeNodeFlags_DefaultOpen)) drawBake(context.status);
+    if (ui::header("Frames", ImGuiTreeNodeFlags_DefaultOpen)) drawFrames(context.figures);
+    if (ui::header("Bake", ImGuiTreeNodeFlags_DefaultOpen)) drawBake(context.status);
 }
 
 } // namespace relume

@@ -25,7 +25,7 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
     const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
     for (size_t i = 0; i < cameras.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Selectable((nameOf(cameras[i].name, "camera", i) + "###camera").c_str())) {
+        if (ui::selectable((nameOf(cameras[i].name, "camera", i) + "###camera").c_str())) {
             context.camera.set(cameraOfFile(cameras[i], scene.geometry.bounds));
             context.sceneChanged();
         }
@@ -46,16 +46,16 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
             }
             ui::tip("Forget this bookmark");
             ImGui::SameLine();
-            if (ImGui::Selectable((marks[i].name + "###bookmark").c_str())) {
+            if (ui::selectable((marks[i].name + "###bookmark").c_str())) {
                 context.camera.set(marks[i].camera);
                 context.sceneChanged();
             }
             ImGui::PopID();
         }
     }
-    if (ImGui::Button("Store bookmark")) context.perform(Action::StoreBookmark, 0);
+    if (ui::button("Store bookmark")) context.perform(Action::StoreBookmark, 0);
     ImGui::SameLine();
-    if (ImGui::Button("Reset camera")) context.perform(Action::ResetCamera, 0);
+    if (ui::button("Reset camera")) context.perform(Action::ResetCamera, 0);
 }
 
 void drawInstances(const PanelContext& context, const LoadedScene& scene) {
@@ -67,7 +67,7 @@ void drawInstances(const PanelContext& context, const LoadedScene& scene) {
             ImGui::PushID(i);
             const auto index = static_cast<size_t>(i);
             const std::string title = nameOf(instances[index].name, "instance", index) + "###instance";
-            if (ImGui::Selectable(title.c_str(), context.view.selected == i)) {
+            if (ui::selectable(title.c_str(), context.view.selected == i)) {
                 context.view.selected = context.view.selected == i ? -1 : i;
                 context.sceneChanged();
             }

@@ -53,7 +53,8 @@ void ScenePanel::drawStatistics(const LoadedScene& scene) {
         if (!info_) {
             ui::row("Triangles", fmt::format("{}", scene.prepared.mesh.triangleCount()));
         } else {
-            ui::row("Triangles", fmt::format("{} ({} alpha-masked)", info_->triangles, info_->maskedTriangles));
+            ui::row("Triangles",
+                    fmt::format("{} ({} alpha-masked)", info_->triangles, info_->maskedTriangles));
             const glm::vec3 extent = info_->high - info_->low;
             ui::row("Extent", fmt::format("{:.3g} x {:.3g} x {:.3g} m", extent.x, extent.y, extent.z));
             ui::row("Surface", fmt::format("{:.4g} m^2", info_->area));
@@ -76,28 +77,29 @@ void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
     Document next = context.session.document();
     Material& material = next.materials[index];
     const std::string name = nameOf(material.name, "material", index);
+    const ui::ItemLog::Scope scope(context.items, name);
     glm::vec3 base(material.baseColor);
     ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoAlpha;
-    if (ImGui::ColorEdit3("Base colour", &base.x, flags)) {
+    if (ui::colour("Base colour", &base.x, flags)) {
         material.baseColor = glm::vec4(glm::clamp(base, 0.0f, 1.0f), material.baseColor.a);
-        context.session.edit("Base colour of " + name, next);
+        context.edit("Base colour of " + name, next);
         context.sceneChanged();
     }
-    if (ImGui::IsItemDeactivatedAfterEdit()) context.session.endEdit();
+    if (ImGui::IsItemDeactivatedAfterEdit()) context.endEdit();
     EmissionParts parts = splitEmission(material.emission);
-    bool changed = ImGui::ColorEdit3("Emitted colour", &parts.colour.x, flags);
+    bool changed = ui::colour("Emitted colour", &parts.colour.x, flags);
     bool ended = ImGui::IsItemDeactivatedAfterEdit();
     constexpr float kStep = 0.01f, kLeastStep = 0.01f, kMost = 1e9f;
-    changed |= ImGui::DragFloat("Emission [cd/m^2]", &parts.strength,
-                                std::max(kStep * parts.strength, kLeastStep), 0.0f, kMost, "%.4g",
-                                ImGuiSliderFlags_AlwaysClamp);
+    changed |=
+        ui::dragFloat("Emission [cd/m^2]", &parts.strength, std::max(kStep * parts.strength, kLeastStep),
+                      0.0f, kMost, "%.4g", ImGuiSliderFlags_AlwaysClamp);
     ended |= ImGui::IsItemDeactivatedAfterEdit();
     if (changed) {
         material.emission = glm::max(parts.colour, 0.0f) * parts.strength;
-        context.session.edit("Emission of " + name, next);
+        context.edit("Emission of " + name, next);
         context.sceneChanged();
     }
-    if (ended) context.session.endEdit();
+    if (ended) context.endEdit();
 }
 
 void ScenePanel::drawMaterials(const PanelContext& context) {
@@ -112,7 +114,9 @@ void ScenePanel::drawMaterials(const PanelContext& context) {
         ImGui::SameLine();
         const std::string title = nameOf(material.name, "material", i) +
                                   (material.emission == glm::vec3(0.0f) ? "" : " (emits)") + "###material";
-        if (ImGui::TreeNode(title.c_str())) {
+        const bool open = ImGui::TreeNode(title.c_str());
+        ui::mark(title.c_str(), false);
+        if (open) {
             ImGui::PushItemWidth(ImGui::GetFontSize() * -9.0f);
             drawMaterial(context, i);
             ImGui::PopItemWidth();
@@ -129,12 +133,11 @@ void ScenePanel::draw(const PanelContext& context) {
         return;
     }
     measure(*scene, context.session.document().bake.size);
-    if (ImGui::CollapsingHeader("Materials", ImGuiTreeNodeFlags_DefaultOpen)) drawMaterials(context);
-    if (ImGui::CollapsingHeader("Cameras and bookmarks", ImGuiTreeNodeFlags_DefaultOpen))
-        drawCameras(context, *scene);
-    if (ImGui::CollapsingHeader("Instances")) drawInstances(context, *scene);
-    if (ImGui::CollapsingHeader("Lights")) drawLights(*scene);
-    if (ImGui::CollapsingHeader("Statistics", ImGuiTreeNodeFlags_DefaultOpen)) drawStatistics(*scene);
+    if (ui::header("Materials", ImGuiTreeNodeFlags_DefaultOpen)) drawMaterials(context);
+    if (ui::header("Cameras and bookmarks", ImGuiTreeNodeFlags_DefaultOpen)) drawCameras(context, *scene);
+    if (ui::header("Instances")) drawInstances(context, *scene);
+    if (ui::header("Lights")) drawLights(*scene);
+    if (ui::header("Statistics", ImGuiTreeNodeFlags_DefaultOpen)) drawStatistics(*scene);
 }
 
 } // namespace relume

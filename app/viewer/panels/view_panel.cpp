@@ -13,8 +13,8 @@
 namespace relume {
 namespace {
 
-constexpr float kMostExposure = 24;   // [EV] to either side that the slider reaches
-constexpr uint32_t kMostMip = 4;      // of ligIn and ligOut
+constexpr float kMostExposure = 24; // [EV] to either side that the slider reaches
+constexpr uint32_t kMostMip = 4;    // of ligIn and ligOut
 constexpr std::array<uint32_t, 4> kSamples = {0, 2, 4, 8};
 constexpr std::array<uint32_t, 4> kVoxels = {32, 64, 128, 256};
 
@@ -24,7 +24,7 @@ void drawViews(const PanelContext& context) {
     for (size_t i = 0; i < entries.size(); ++i) {
         ImGui::TableNextColumn();
         const Shortcut& shortcut = shortcutOf(Action::View, static_cast<int>(i));
-        if (ImGui::Selectable(entries[i].title, i == context.view.view))
+        if (ui::selectable(entries[i].title, i == context.view.view))
             context.perform(Action::View, static_cast<int>(i));
         ui::tip(fmt::format("{} ({})", entries[i].tells, keyText(shortcut)).c_str());
     }
@@ -37,15 +37,15 @@ bool drawContent(const PanelContext& context) {
     bool changed = false;
     if (entry.readsMap && hasMips(entry.content)) {
         int mip = static_cast<int>(view.mip);
-        changed |= ImGui::SliderInt("Mip", &mip, 0, kMostMip);
+        changed |= ui::sliderInt("Mip", &mip, 0, kMostMip);
         view.mip = static_cast<uint32_t>(std::clamp(mip, 0, static_cast<int>(kMostMip)));
         ui::tip("Means over 2^mip by 2^mip texels");
     }
     if (entry.content == MapContent::Leaves) {
         constexpr std::array<uint32_t, 6> kNodes = {2, 4, 8, 16, 32, 64};
         auto threshold = static_cast<float>(view.preview.threshold);
-        changed |= ImGui::SliderFloat("Threshold", &threshold, 0.001f, 0.5f, "%.3f",
-                                      ImGuiSliderFlags_Logarithmic);
+        changed |=
+            ui::sliderFloat("Threshold", &threshold, 0.001f, 0.5f, "%.3f", ImGuiSliderFlags_Logarithmic);
         view.preview.threshold = threshold;
         changed |= ui::combo("Largest node [texels]", view.preview.node, kNodes);
         ui::tip("Of the preview, where the method has no quad-tree of its own");
@@ -54,13 +54,13 @@ bool drawContent(const PanelContext& context) {
     const bool ranged = entry.content == MapContent::Error || entry.content == MapContent::Area;
     if (ranged && context.map != nullptr) {
         bool automatic = !view.high;
-        if (ImGui::Checkbox("Automatic range", &automatic)) {
+        if (ui::checkbox("Automatic range", &automatic)) {
             view.high = automatic ? std::nullopt : std::optional(context.map->high);
             changed = true;
         }
         float high = view.high.value_or(context.map->high);
         const ui::Disabled disabled(automatic);
-        if (ImGui::DragFloat("Bright end", &high, 0.01f * std::max(high, 1e-6f), 1e-9f, 1e9f, "%.3g")) {
+        if (ui::dragFloat("Bright end", &high, 0.01f * std::max(high, 1e-6f), 1e-9f, 1e9f, "%.3g")) {
             view.high = std::max(high, 1e-9f);
             changed = true;
         }
@@ -75,14 +75,14 @@ bool drawLight(const PanelContext& context) {
     ViewState& view = context.view;
     bool changed = false;
     bool automatic = !view.exposure;
-    if (ImGui::Checkbox("Automatic exposure", &automatic)) {
+    if (ui::checkbox("Automatic exposure", &automatic)) {
         view.exposure = automatic ? std::nullopt : std::optional(context.exposure);
         changed = true;
     }
     float exposure = view.exposure.value_or(context.exposure);
     {
         const ui::Disabled disabled(automatic);
-        if (ImGui::SliderFloat("Exposure [EV]", &exposure, -kMostExposure, kMostExposure, "%.2f")) {
+        if (ui::sliderFloat("Exposure [EV]", &exposure, -kMostExposure, kMostExposure, "%.2f")) {
             view.exposure = exposure;
             changed = true;
         }
@@ -108,11 +108,11 @@ void drawViewPanel(const PanelContext& context) {
     ImGui::Separator();
     ImGui::PushItemWidth(ImGui::GetFontSize() * -11.0f);
     bool changed = drawContent(context);
-    changed |= ImGui::Checkbox("As UV texture", &view.uv);
+    changed |= ui::checkbox("As UV texture", &view.uv);
     ImGui::SameLine();
     {
         const ui::Disabled disabled(!view.uv);
-        changed |= ImGui::Checkbox("Masked", &view.masked);
+        changed |= ui::checkbox("Masked", &view.masked);
         ui::tip("Leave out what lies between charts");
     }
     changed |= drawLight(context);
@@ -121,9 +121,9 @@ void drawViewPanel(const PanelContext& context) {
         context.preferences.samples = view.samples;
         changed = true;
     }
-    ImGui::Checkbox("VSync", &context.preferences.vsync);
-    ImGui::SliderFloat("Size of text", &context.preferences.uiScale, 0.75f, 2.5f, "%.2f",
-                       ImGuiSliderFlags_AlwaysClamp);
+    ui::checkbox("VSync", &context.preferences.vsync);
+    ui::sliderFloat("Size of text", &context.preferences.uiScale, 0.75f, 2.5f, "%.2f",
+                    ImGuiSliderFlags_AlwaysClamp);
     ImGui::PopItemWidth();
     if (changed) context.sceneChanged();
 }

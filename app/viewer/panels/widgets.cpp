@@ -13,11 +13,21 @@ void tip(const char* text) {
     ImGui::EndTooltip();
 }
 
+void mark(const char* label, bool framed) {
+    ItemLog* log = ItemLog::current();
+    if (log == nullptr || !ImGui::IsItemVisible()) return;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float width = framed ? ImGui::CalcItemWidth() : high.x - low.x;
+    log->add(label, {static_cast<int>(low.x + 0.5f * width), static_cast<int>(0.5f * (low.y + high.y))});
+}
+
 bool combo(const char* label, size_t& index, std::span<const char* const> names) {
     bool changed = false;
-    if (!ImGui::BeginCombo(label, index < names.size() ? names[index] : "")) return false;
+    const bool open = ImGui::BeginCombo(label, index < names.size() ? names[index] : "");
+    if (!open) mark(label, true);
+    if (!open) return false;
     for (size_t i = 0; i < names.size(); ++i) {
-        if (ImGui::Selectable(names[i], i == index) && i != index) {
+        if (selectable(names[i], i == index) && i != index) {
             index = i;
             changed = true;
         }
@@ -36,9 +46,11 @@ bool combo(const char* label, size_t& index, const std::vector<std::string>& nam
 
 bool combo(const char* label, uint32_t& value, std::span<const uint32_t> values) {
     bool changed = false;
-    if (!ImGui::BeginCombo(label, std::to_string(value).c_str())) return false;
+    const bool open = ImGui::BeginCombo(label, std::to_string(value).c_str());
+    if (!open) mark(label, true);
+    if (!open) return false;
     for (const uint32_t choice : values) {
-        if (ImGui::Selectable(std::to_string(choice).c_str(), choice == value) && choice != value) {
+        if (selectable(std::to_string(choice).c_str(), choice == value) && choice != value) {
             value = choice;
             changed = true;
         }
@@ -49,11 +61,13 @@ bool combo(const char* label, uint32_t& value, std::span<const uint32_t> values)
 
 bool number(const char* label, double& value, const char* format) {
     ImGui::InputDouble(label, &value, 0.0, 0.0, format);
+    mark(label, true);
     return ImGui::IsItemDeactivatedAfterEdit();
 }
 
 bool number(const char* label, uint32_t& value) {
     ImGui::InputScalar(label, ImGuiDataType_U32, &value);
+    mark(label, true);
     return ImGui::IsItemDeactivatedAfterEdit();
 }
 

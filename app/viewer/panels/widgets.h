@@ -2,14 +2,70 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <imgui.h>
 
+#include "app/viewer/panels/item_log.h"
+
 namespace relume::ui {
 
-/// A question mark's text when the last item is pointed at.
+/// Text that is shown when the last control is pointed at.
 void tip(const char* text);
+/// Tells ItemLog about the last control; framed: its label stands beside it.
+void mark(const char* label, bool framed);
+
+// ImGui's controls, told to ItemLog; arguments and results are theirs.
+template<typename... Rest>
+bool button(const char* label, Rest... rest) {
+    const bool result = ImGui::Button(label, rest...);
+    mark(label, false);
+    return result;
+}
+template<typename... Rest>
+bool checkbox(const char* label, Rest... rest) {
+    const bool result = ImGui::Checkbox(label, rest...);
+    mark(label, false);
+    return result;
+}
+template<typename... Rest>
+bool selectable(const char* label, Rest... rest) {
+    const bool result = ImGui::Selectable(label, rest...);
+    mark(label, false);
+    return result;
+}
+template<typename... Rest>
+bool header(const char* label, Rest... rest) {
+    const bool result = ImGui::CollapsingHeader(label, rest...);
+    mark(label, false);
+    return result;
+}
+template<typename... Rest>
+bool sliderFloat(const char* label, Rest... rest) {
+    const bool result = ImGui::SliderFloat(label, rest...);
+    mark(label, true);
+    return result;
+}
+template<typename... Rest>
+bool sliderInt(const char* label, Rest... rest) {
+    const bool result = ImGui::SliderInt(label, rest...);
+    mark(label, true);
+    return result;
+}
+template<typename... Rest>
+bool dragFloat(const char* label, Rest... rest) {
+    const bool result = ImGui::DragFloat(label, rest...);
+    mark(label, true);
+    return result;
+}
+template<typename... Rest>
+bool colour(const char* label, Rest... rest) {
+    const bool result = ImGui::ColorEdit3(label, rest...);
+    mark(label, true);
+    return result;
+}
+
 /// A list to choose from; true when the choice changed.
 bool combo(const char* label, size_t& index, std::span<const char* const> names);
 bool combo(const char* label, size_t& index, const std::vector<std::string>& names);
@@ -18,6 +74,7 @@ bool combo(const char* label, uint32_t& value, std::span<const uint32_t> values)
 /// A number that is typed; true when it was finished.
 bool number(const char* label, double& value, const char* format);
 bool number(const char* label, uint32_t& value);
+
 /// Greys out and disables what comes until it goes.
 class Disabled {
 public:
@@ -26,8 +83,9 @@ public:
     Disabled(const Disabled&) = delete;
     Disabled& operator=(const Disabled&) = delete;
 };
-/// A row of a two-column table.
-void row(const char* name, const std::string& value);
+
+/// A table of names and values: row() between beginRows(), where it returns true, and ImGui::EndTable().
 bool beginRows(const char* id);
+void row(const char* name, const std::string& value);
 
 } // namespace relume::ui

@@ -1,0 +1,149 @@
+#include "app/viewer/path_completion.h"
+#include "app/viewer/preferences.h"
+#include "assets/error.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PreferencesFile : public testing::Test {
+protected:
+    PreferencesFile() {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~PreferencesFile() override { fs::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+    const fs::path folder_ = fs::path(testing::TempDir()) / "relume_preferences";
+};
+
+TEST_F(PreferencesFile, ComesBackAsItWas) {
+    Preferences before;
+    before.width = 1000;
+    before.height = 700;
+    before.panelWidth = 250;
+    before.uiScale = 1.5f;
+    before.vsync = false;
+    before.caption = true;
+    before.samples = 8;
+    before.filter = LightmapFilter::Bicubic;
+    before.tone = ToneMap::Aces;
+    before.captureFolder = "shots";
+    before.recent = {"one.glb", "two.glb"};
+    Bookmark mark{"corner", {}};
+    mark.camera.eye = {1, 2, 3};
+    mark.camera.yfov = 0.5f;
+    before.bookmarks["one.glb"] = {mark};
+    writePreferences(path("new/folder/p.json"), before);
+    const Preferences after = readPreferences(path("new/folder/p.json"));
+    EXPECT_EQ(after.width, 1000u);
+    EXPECT_EQ(after.height, 700u);
+    EXPECT_EQ(after.panelWidth, 250);
+    EXPECT_EQ(after.uiScale, 1.5f);
+    EXPECT_FALSE(after.vsync);
+    EXPECT_TRUE(after.caption);
+    EXPECT_EQ(after.samples, 8u);
+    EXPECT_EQ(after.filter, LightmapFilter::Bicubic);
+    EXPECT_EQ(after.tone, ToneMap::Aces);
+    EXPECT_EQ(after.captureFolder, "shots");
+    EXPECT_EQ(after.recent, before.recent);
+    ASSERT_EQ(after.bookmarks.at("one.glb").size(), 1u);
+    EXPECT_EQ(after.bookmarks.at("one.glb").front().name, "corner");
+    EXPECT_EQ(after.bookmarks.at("one.glb").front().camera.eye, glm::vec3(1, 2, 3));
+    EXPECT_EQ(after.bookmarks.at("one.glb").front().camera.yfov, 0.5f);
+}
+
+TEST_F(PreferencesFile, BrokenOnesKeepTheDefaults) {
+    const Preferences defaults;
+    for (const char* text : {"", "{", "[]", "null", "17", "{\"window\": 3}", "\xff\xfe"}) {
+        write("broken.json", text);
+        const Preferences read = readPreferences(path("broken.json"));
+        EXPECT_EQ(read.width, defaults.width) << text;
+        EXPECT_TRUE(read.recent.empty()) << text;
+    }
+    EXPECT_EQ(readPreferences(path("missing.json")).width, defaults.width);
+}
+
+TEST_F(PreferencesFile, WhatIsWrongGoesAloneAndTheRestStays) {
+    write("p.json",
+          R"({"window": {"width": -5, "height": 900}, "uiScale": "big", "vsync": 1, "filter": "none",
+        "tone": "aces", "samples": -1, "recent": ["a.glb", 3, "b.glb"],
+        "bookmarks": {"a.glb": [{"name": "flat", "eye": [0,0,0], "target": [0,0,0]}, 7,
+                                {"name": "good", "eye": [0,0,5], "target": [0,0,0], "up": [0,2,0]}]}})");
+    const Preferences read = readPreferences(path("p.json"));
+    EXPECT_EQ(read.width, Preferences().width);
+    EXPECT_EQ(read.height, 900u);
+    EXPECT_EQ(read.uiScale, 1.0f);
+    EXPECT_TRUE(read.vsync);
+    EXPECT_EQ(read.filter, LightmapFilter::Bilinear);
+    EXPECT_EQ(read.tone, ToneMap::Aces);
+    EXPECT_FALSE(read.samples);
+    EXPECT_EQ(read.recent, (std::vector<std::string>{"a.glb", "b.glb"}));
+    ASSERT_EQ(read.bookmarks.at("a.glb").size(), 1u);
+    EXPECT_EQ(read.bookmarks.at("a.glb").front().name, "good");
+    EXPECT_EQ(read.bookmarks.at("a.glb").front().camera.up, glm::vec3(0, 1, 0));
+}
+
+TEST_F(PreferencesFile, AFolderThatCannotBeIsAnError) {
+    write("file", "x");
+    EXPECT_THROW(writePreferences(path("file/below/p.json"), {}), Error);
+}
+
+TEST(Preferences, RecentScenesAreNewestFirstAndOnce) {
+    Preferences preferences;
+    for (int i = 0; i < 20; ++i)
+        preferences.addRecent("/scenes/" + std::to_string(i) + ".glb");
+    EXPECT_EQ(preferences.recent.size(), Preferences::kMostRecent);
+    preferences.addRecent("/scenes/x/../15.glb");
+    EXPECT_EQ(preferences.recent.front(), "/scenes/15.glb");
+    EXPECT_EQ(std::count(preferences.recent.begin(), preferences.recent.end(), "/scenes/15.glb"), 1);
+}
+
+TEST_F(PreferencesFile, CompletionGoesAsFarAsThereIsOneWay) {
+    write("room_a.glb", "");
+    write("room_b.GLB", "");
+    write("room.txt", "");
+    write(".room_hidden.glb", "");
+    fs::create_directory(path("models"));
+    const std::vector<std::string> endings = {".glb"};
+    const PathCompletion rooms = completePath(path("r"), endings);
+    EXPECT_EQ(rooms.text, path("room_"));
+    EXPECT_EQ(rooms.matches, (std::vector<std::string>{path("room_a.glb"), path("room_b.GLB")}));
+    EXPECT_EQ(completePath(path("m"), endings).text, path("models/"));
+    EXPECT_EQ(completePath(path(""), endings).matches.size(), 3u);
+    const PathCompletion none = completePath(path("zzz"), endings);
+    EXPECT_TRUE(none.matches.empty());
+    EXPECT_EQ(none.text, path("zzz"));
+    EXPECT_EQ(completePath(path(".r"), endings).matches.size(), 1u);
+    EXPECT_TRUE(completePath("/no/such/folder/x", endings).matches.empty());
+}
+
+TEST_F(PreferencesFile, FreeNamesExistNowhere) {
+    EXPECT_EQ(freePath(path("map.exr")), path("map.exr"));
+    write("map.exr", "");
+    EXPECT_EQ(freePath(path("map.exr")), path("map_2.exr"));
+    write("map_2.exr", "");
+    EXPECT_EQ(freePath(path("map.exr")), path("map_3.exr"));
+    fs::create_symlink(path("nowhere"), path("map_3.exr")); // would be followed
+    EXPECT_EQ(freePath(path("map.exr")), path("map_4.exr"));
+}
+
+TEST(Home, IsExpandedForOneself) {
+    const char* home = std::getenv("HOME");
+    if (home == nullptr) GTEST_SKIP() << "HOME is not set";
+    EXPECT_EQ(expandHome("~/a"), std::string(home) + "/a");
+    EXPECT_EQ(expandHome("~other/a"), "~other/a");
+    EXPECT_EQ(expandHome("a/~"), "a/~");
+}
+
+} // namespace
+} // namespace relume
