@@ -35,14 +35,6 @@ Range rangeOf(const PatchValues& values, const PatchSet& patches) {
     return range;
 }
 
-// A power of two that brings the largest value to 1, where halves are fine; what is 1 itself stays so.
-float unitFor(const Range& range) {
-    if (!(range.largest > 0) || !std::isfinite(range.largest)) return 1.0f;
-    int exponent = 0;
-    const bool whole = std::frexp(range.largest, &exponent) == 0.5f;
-    return std::ldexp(1.0f, whole ? exponent - 1 : exponent);
-}
-
 RowRange rowsOf(const std::vector<TexelArea>& areas) {
     RowRange rows;
     for (const TexelArea& area : areas)
@@ -145,7 +137,8 @@ bool MapPublisher::publishLight() {
            .complete = live.complete,
            .unit = light_.publisher->unit(),
            .ambient = light_.publisher->mean(),
-           .radiance = light_.radiance});
+           .radiance = light_.radiance,
+           .changed = {}});
     shown_ = {};
     return true;
 }
@@ -165,7 +158,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     if (!slot) return false;
     const PatchValues values = inspect(request);
     const Range range = rangeOf(values, bake_->baker.patches());
-    const float unit = unitFor(range);
+    const float unit = unitFor(range.largest);
     inspected_.publisher->update({.values = vk::makeBuffer(device_, values, "inspected"),
                                   .chunks = inspected_.publisher->allChunks(),
                                   .unit = unit});
@@ -175,7 +168,8 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
            .unit = unit,
            .ambient = inspected_.publisher->mean(),
            .low = range.low,
-           .high = range.high});
+           .high = range.high,
+           .changed = {}});
     shown_ = request;
     inspectedVersion_ = live.version;
     inspectedAt_ = Clock::now();
@@ -220,7 +214,7 @@ PatchValues MapPublisher::leafColors(const PairSettings& preview) {
     const SolverSettings& solver = bake_->settings.solver;
     const PairSettings& own = solver.method == Method::Adaptive ? solver.pairs : preview;
     PatchValues leaves =
-        inspector_->leaves(inspector_->ligIn(), {.node = own.node, .threshold = own.threshold});
+        inspector_->leaves(inspector_->ligIn(), {.node = own.node, .threshold = static_cast<float>(own.threshold)});
     for (glm::vec4& leaf : leaves)
         leaf.r = 0.5f * std::log2(std::max(leaf.r, 1.0f));
     return leaves;
