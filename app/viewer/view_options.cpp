@@ -18,7 +18,7 @@ uint32_t parseEdge(const std::string& all, std::string_view part) {
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (error == std::errc() && end == part.data() + part.size() && value >= kLeastEdge && value <= kMostEdge)
         return value;
-    throw UsageError("--window: '" + all + "' is no size: write WIDTHxHEIGHT, each from " +
+    throw UsageError("--window-size: '" + all + "' is no size: write WIDTHxHEIGHT, each from " +
                      std::to_string(kLeastEdge) + " to " + std::to_string(kMostEdge));
 }
 
@@ -47,7 +47,7 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
         ->capture_default_str()
         ->check(CLI::IsMember({"auto", "shared", "copied"}));
     command.add_flag("--watch", o.watch, "Load the scene again whenever its file changes");
-    command.add_option("--window", o.window, "Size of the window (default: as last time)")->type_name("WxH");
+    command.add_option("--window-size", o.window, "Size of the window (default: as last time)")->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
     command.add_flag("--log-actions", o.logActions,
                      "Print each action on the standard error as it is done, for bug reports");
