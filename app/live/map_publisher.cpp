@@ -21,6 +21,12 @@ bool follows(MapContent content) {
            content == MapContent::Error;
 }
 
+// What is drawn as it is: colours, directions, marks.
+bool isPlain(MapContent content) {
+    return content == MapContent::Normal || content == MapContent::Material ||
+           content == MapContent::Leaves || content == MapContent::Seen;
+}
+
 struct Range {
     float low = 0, high = 0, largest = 0; // of R; the largest of all channels
 };
@@ -158,7 +164,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     if (!slot) return false;
     const PatchValues values = inspect(request);
     const Range range = rangeOf(values, bake_->baker.patches());
-    const float unit = unitFor(range.largest);
+    const float unit = isPlain(request.content) ? 1.0f : unitFor(range.largest);
     inspected_.publisher->update({.values = vk::makeBuffer(device_, values, "inspected"),
                                   .chunks = inspected_.publisher->allChunks(),
                                   .unit = unit});
