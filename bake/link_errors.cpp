@@ -52,6 +52,13 @@ void LinkSolver::resolve() {
         if (state_.sigma == before) break;
         sums = resolveOnce();
     }
+    learn(sums);
+    stale_ = false;
+    light_.clear();
+}
+
+// What sums over all patches say, and that there is a new result.
+void LinkSolver::learn(const shader::ResolveSums& sums) {
     state_.directVariance = sums.direct;
     state_.indirectVariance = sums.indirect + std::max(0.0f, sums.bias);
     state_.directAtCheck = state_.directRounds;
@@ -67,8 +74,6 @@ void LinkSolver::resolve() {
         const double iteration = settled ? 0.0 : state_.iterationError;
         progress_.error = std::sqrt(variance / (mean * mean) + iteration * iteration);
     }
-    stale_ = false;
-    light_.clear();
     if (!hasSolution()) {
         live_.all = true; // this result is without what has arrived since
         return;
@@ -141,17 +146,14 @@ void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
     if (!close) state_.sigma = best;
 }
 
-// What a look teaches about widths and variances must not decide what comes next: looking changes no byte.
-void LinkSolver::resolveForLook() {
-    const State before = state_;
-    resolve();
-    state_ = before;
-}
-
-// Within a round only some patches have its samples.
+// Within a round only some patches have its samples. What a look teaches about widths and variances must not
+// decide what comes next: looking changes no byte.
 const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0)
-        resolveForLook();
+    if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0) {
+        const State before = state_;
+        resolve();
+        state_ = before;
+    }
     if (light_.empty())
         light_ =
             vk::readBuffer<glm::vec4>(input_.device, buffers_.result, input_.patches.scene.patches.size());

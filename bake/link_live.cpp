@@ -39,15 +39,25 @@ bool LinkSolver::hasSolution() const {
     return state_.linkRounds > 0 || (hybrid_ && settings_.passes == 1 && state_.directRounds > 0);
 }
 
-// At a round's end: makes its result where a viewer waits for one and there is time.
+// At a round's end: makes its result where a viewer waits for one and there is time. Once: the width of
+// smoothing is what the look before said. light() and the end make theirs anew.
 void LinkSolver::look() {
-    if (!stale_ || !hasSolution() || !live_.asked) return;
+    const uint32_t rounds = state_.directRounds + state_.linkRounds;
+    if (!stale_ || !hasSolution() || !live_.asked || rounds == live_.rounds) return;
     const double pause = std::max(kLookSeconds, live_.cost / kLookShare);
     if (live_.resolves > 0 && secondsSince(live_.looked) < pause) return;
     live_.looked = Clock::now();
-    resolveForLook();
+    const State before = state_;
+    if (live_.sigma >= 0) state_.sigma = live_.sigma;
+    const shader::ResolveSums sums = resolveOnce();
+    learn(sums);
+    if (buffers_.rows) adaptSigma(sums);
+    live_.sigma = state_.sigma;
+    state_ = before;
     live_.cost = secondsSince(live_.looked);
+    live_.rounds = rounds;
     live_.asked = false;
+    light_.clear(); // within the next round this is the latest there is
 }
 
 LiveLight LinkSolver::liveLight() {

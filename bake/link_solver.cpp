@@ -64,6 +64,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     if (settings.links.footprint) {
         footprints_.emplace(input.device, patches);
         input.light.radiance = footprints_->makeRadiance(input.device);
+    } else if (input.light.radiance.size() != LightBuffers::lightBytes(patches)) { // another solver's nodes
+        input.light.radiance =
+            vk::Buffer(input.device, {.size = LightBuffers::lightBytes(patches), .name = "radiance"});
     }
     if (!gatherPass_.onCpu())
         buffers_.packed = vk::Buffer(

@@ -77,7 +77,7 @@ private:
     shader::ResolveSums resolveOnce();
     double coarseVariance(double patches);
     void adaptSigma(const shader::ResolveSums& sums);
-    void resolveForLook();
+    void learn(const shader::ResolveSums& sums);
     ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
     const std::vector<uint8_t>& seenOfStage() const;
 
@@ -122,6 +122,8 @@ private:
         bool complete = false, asked = true;
         Clock::time_point looked; // when the last look began
         double cost = 0;          // of it [s]
+        uint32_t rounds = 0;      // it was at
+        double sigma = -1;        // of smoothing for the next one [texels]; negative: the solver's
         bool undoable = false;    // what `undo` goes back to is there
     };
     Live live_;

@@ -35,9 +35,9 @@ private:
 class VoxelDraw {
 public:
     struct Desc {
-        std::span<const glm::vec3> centres; // [m], world space
-        glm::vec3 edge{1.0f};               // [m]
-        std::span<const glm::vec3> colors;  // as displayed, one for each; empty: by the faces' normals
+        std::span<const glm::vec3> centres;     // [m], world space
+        glm::vec3 edge{1.0f};                   // [m]
+        std::span<const glm::vec3> colors = {}; // as displayed, one for each; empty: by the faces' normals
     };
     explicit VoxelDraw(const Desc& desc); // throws Error when it does not fit
 

@@ -29,8 +29,8 @@ public:
     /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
     /// the alpha mode and the number of materials must be as they were.
     void updateMaterials(const Scene& scene);
-    /// Samples along the longer side of a texel's footprint, at most kAnisotropy; 1: none. A software device
-    /// draws textured scenes up to twice as fast without.
+    /// Samples along the longer side of what a pixel covers of a texture, at most kAnisotropy; 1: none, which
+    /// spares a software device a little of a textured scene's time and blurs its floors.
     void setAnisotropy(float samples);
 
     const std::vector<SceneDraw>& draws() const { return draws_; }

@@ -3,6 +3,7 @@
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
 #include "assets/log.h"
+#include "renderer/shader_types.h"
 
 #include <algorithm>
 #include <array>
@@ -251,12 +252,12 @@ void BakeLoop::logEnd() {
 void BakeLoop::applySeen() {
     if (!baker_ || seenTiles_.empty()) return;
     const TraceScene& scene = baker_->patches().scene;
-    const uint32_t tiles = (scene.size + shader::kTile - 1) / shader::kTile;
+    const uint32_t tiles = (scene.size + shader::kTileTexels - 1) / shader::kTileTexels;
     std::vector<uint8_t> seen(scene.chunkCount(), 0);
     for (const uint32_t tile : seenTiles_) {
-        const uint32_t left = tile % tiles * shader::kTile, top = tile / tiles * shader::kTile;
-        for (uint32_t y = top; y < std::min(top + shader::kTile, scene.size); ++y) {
-            for (uint32_t x = left; x < std::min(left + shader::kTile, scene.size); ++x) {
+        const uint32_t left = tile % tiles * shader::kTileTexels, top = tile / tiles * shader::kTileTexels;
+        for (uint32_t y = top; y < std::min(top + shader::kTileTexels, scene.size); ++y) {
+            for (uint32_t x = left; x < std::min(left + shader::kTileTexels, scene.size); ++x) {
                 const uint32_t patch = scene.texelToPatch[size_t{y} * scene.size + x];
                 if (patch != shader::kNoPatch) seen[patch / shader::kChunk] = 1;
             }

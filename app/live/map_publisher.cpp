@@ -21,6 +21,12 @@ bool follows(MapContent content) {
            content == MapContent::Error;
 }
 
+// What is drawn as it is: colours, directions, marks.
+bool isPlain(MapContent content) {
+    return content == MapContent::Normal || content == MapContent::Material ||
+           content == MapContent::Leaves || content == MapContent::Seen;
+}
+
 struct Range {
     float low = 0, high = 0, largest = 0; // of R; the largest of all channels
 };
@@ -33,14 +39,6 @@ Range rangeOf(const PatchValues& values, const PatchSet& patches) {
         range.largest = std::max({range.largest, std::abs(v.r), std::abs(v.g), std::abs(v.b)});
     }
     return range;
-}
-
-// A power of two that brings the largest value to 1, where halves are fine; what is 1 itself stays so.
-float unitFor(const Range& range) {
-    if (!(range.largest > 0) || !std::isfinite(range.largest)) return 1.0f;
-    int exponent = 0;
-    const bool whole = std::frexp(range.largest, &exponent) == 0.5f;
-    return std::ldexp(1.0f, whole ? exponent - 1 : exponent);
 }
 
 RowRange rowsOf(const std::vector<TexelArea>& areas) {
@@ -145,7 +143,8 @@ bool MapPublisher::publishLight() {
            .complete = live.complete,
            .unit = light_.publisher->unit(),
            .ambient = light_.publisher->mean(),
-           .radiance = light_.radiance});
+           .radiance = light_.radiance,
+           .changed = {}});
     shown_ = {};
     return true;
 }
@@ -165,7 +164,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     if (!slot) return false;
     const PatchValues values = inspect(request);
     const Range range = rangeOf(values, bake_->baker.patches());
-    const float unit = unitFor(range);
+    const float unit = isPlain(request.content) ? 1.0f : unitFor(range.largest);
     inspected_.publisher->update({.values = vk::makeBuffer(device_, values, "inspected"),
                                   .chunks = inspected_.publisher->allChunks(),
                                   .unit = unit});
@@ -175,7 +174,8 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
            .unit = unit,
            .ambient = inspected_.publisher->mean(),
            .low = range.low,
-           .high = range.high});
+           .high = range.high,
+           .changed = {}});
     shown_ = request;
     inspectedVersion_ = live.version;
     inspectedAt_ = Clock::now();
@@ -220,7 +220,7 @@ PatchValues MapPublisher::leafColors(const PairSettings& preview) {
     const SolverSettings& solver = bake_->settings.solver;
     const PairSettings& own = solver.method == Method::Adaptive ? solver.pairs : preview;
     PatchValues leaves =
-        inspector_->leaves(inspector_->ligIn(), {.node = own.node, .threshold = own.threshold});
+        inspector_->leaves(inspector_->ligIn(), {.node = own.node, .threshold = static_cast<float>(own.threshold)});
     for (glm::vec4& leaf : leaves)
         leaf.r = 0.5f * std::log2(std::max(leaf.r, 1.0f));
     return leaves;

@@ -48,7 +48,7 @@ FUNCTION vec3 toneAgx(vec3 linear) {
 }
 
 // toneAgx in sRGB encoding with one power instead of two. Where sRGB is linear, below 10 of 255, a square stands for the power of
-// 2.2: within 0.3 of one step of 8 bits.
+// 2.2: within 0.4 of one step of 8 bits.
 FUNCTION vec3 toneAgxAsSrgb(vec3 linear) {
     const float limit = 0.0727f; // its power of 2.2 is sRGB's limit, 0.0031308
     vec3 encoded = agxEncoded(linear);

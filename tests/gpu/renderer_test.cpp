@@ -3,9 +3,8 @@
 #include "bake/metrics.h"
 #include "renderer/picture.h"
 #include "shaders/shader_library.h"
-#include "tests/gpu/bake_scene.h"
-#include "tests/gpu/gl_environment.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/gpu/wall_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -19,63 +18,7 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 64;      // lightmap [texels]
-using Light = std::array<float, 4>; // R, G, B, coverage
-
-/// A lightmap of one value, or of two: the second from column `split` on.
-FloatImage lightmapOf(Light first, Light second, uint32_t split) {
-    FloatImage image{kSize, kSize, {}, {}, {}};
-    const char* channels[] = {"R", "G", "B", "coverage"};
-    for (size_t c = 0; c < 4; ++c) {
-        std::vector<float>& plane = image.add(channels[c]);
-        for (size_t i = 0; i < plane.size(); ++i)
-            plane[i] = i % kSize < split ? first[c] : second[c];
-    }
-    return image;
-}
-
-FloatImage lightmapOf(float light) {
-    const Light all = {light, light, light, 1.0f};
-    return lightmapOf(all, all, 0);
-}
-
-/// A wall of 2 m x 2 m in z = 0 that faces +z, its chart all of the lightmap; u runs along x.
-SceneMaker wall(const Material& material) {
-    SceneMaker maker(kSize);
-    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material), {kSize, kSize});
-    return maker;
-}
-
-Material grey(float albedo, float emission = 0.0f) {
-    Material material;
-    material.baseColor = glm::vec4(glm::vec3(albedo), 1.0f);
-    material.emission = glm::vec3(emission);
-    material.metallic = 0.0f;
-    return material;
-}
-
-/// One that sees just the wall, from the front (z > 0) or from behind.
-ViewCamera before(float z = 5.0f) {
-    ViewCamera camera;
-    camera.eye = {0, 0, z};
-    camera.halfHeight = 1.0f;
-    camera.znear = 0.1f;
-    camera.zfar = 10.0f;
-    return camera;
-}
-
-DrawSettings plain(View view = View::Lit, LightmapFilter filter = LightmapFilter::Bilinear) {
-    DrawSettings settings;
-    settings.view = view;
-    settings.filter = filter;
-    settings.tone = ToneMap::None;
-    settings.exposure = 0.0f;
-    return settings;
-}
-
-int encoded(double linear) {
-    return static_cast<int>(std::lround(255.0 * srgbFromLinear(linear)));
-}
+constexpr uint32_t kSize = kWallSize;
 
 void expectAll(const Picture& picture, int value) {
     for (uint32_t y = 0; y < picture.image.height; ++y)
@@ -234,8 +177,8 @@ TEST(Renderer, KnowsNoUnitOfLight) {
     DrawSettings settings = plain();
     settings.exposure.reset();
     for (const float unit : {1e-4f, 1.0f, 1e6f}) {
-        const Light dim = {0.1f * unit, 0.1f * unit, 0.1f * unit, 1},
-                    lit = {0.3f * unit, 0.3f * unit, 0.3f * unit, 1};
+        const LightTexel dim = {0.1f * unit, 0.1f * unit, 0.1f * unit, 1},
+                         lit = {0.3f * unit, 0.3f * unit, 0.3f * unit, 1};
         const FloatImage lightmap = lightmapOf(dim, lit, 32);
         const Picture picture = drawPicture({maker.scene(), &lightmap, before(), settings});
         EXPECT_NEAR(picture.pixel(8, 32).r, encoded(0.18 / std::sqrt(3.0)), 1) << unit;

@@ -1,4 +1,5 @@
 #include "app/heat_map.h"
+#include "renderer/shader_types.h"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,15 @@ TEST(HeatMap, GetsEverBrighter) {
     }
     EXPECT_EQ(heatColour(-1.0), glm::vec3(0.0f));
     EXPECT_EQ(heatColour(7.0), glm::vec3(1.0f));
+}
+
+// The viewer's scale is that of the pictures on disk.
+TEST(HeatMap, IsTheShadersScale) {
+    for (int i = 0; i <= 100; ++i) {
+        const glm::vec3 a = heatColour(i / 100.0), b = shader::heatColor(static_cast<float>(i) / 100.0f);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(a[c], b[c], 1e-4f) << i << " " << c;
+    }
 }
 
 TEST(HeatMap, EndsItsScaleAtARoundNumber) {

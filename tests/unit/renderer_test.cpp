@@ -29,6 +29,8 @@ TEST(SceneGeometry, DrawsEveryTriangleOnceAndSharesVertices) {
     bool doubleSided = false;
     for (const SceneDraw& draw : geometry.draws) {
         EXPECT_EQ(draw.firstIndex, next);
+        EXPECT_EQ(draw.mapped, shader::kMappedAll);
+        EXPECT_EQ(geometry.vertices[geometry.indices[draw.firstIndex]].instance, draw.instance);
         next += draw.indexCount;
         EXPECT_GE(draw.doubleSided, doubleSided); // behind the single-sided ones
         doubleSided = draw.doubleSided;

@@ -56,6 +56,25 @@ TEST(Tone, AgxFadesBrightColoursToWhite) {
     EXPECT_GT(bright.x, 0.5f * bright.z);
 }
 
+// The short cut of pictures: less than half a step of 8 bits away from both powers.
+TEST(Tone, AgxAsSrgbIsAgxEncoded) {
+    for (float ev = -16.0f; ev <= 8.0f; ev += 0.0625f) {
+        const glm::vec3 light = std::exp2(ev) * glm::vec3(1.0f, 0.4f, 0.05f);
+        const glm::vec3 expected = shader::srgbEncode(shader::toneAgx(light));
+        const glm::vec3 shown = shader::toneMapAsSrgb(light, shader::kToneAgx);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(shown[c], expected[c], 0.4 / 255) << ev << " " << c;
+    }
+}
+
+TEST(Tone, TheMetersCodeHoldsThirtyTwoEv) {
+    EXPECT_EQ(shader::meterCode(0.0f), 0.0f);
+    for (float ev = -19.5f; ev < 11.5f; ev += 0.3f)
+        EXPECT_NEAR(shader::meterLog2(shader::meterCode(std::exp2(ev))), ev, 1e-4f);
+    EXPECT_LT(shader::meterCode(1e30f), 255.0f);
+    EXPECT_GE(shader::meterCode(1.1e-6f), 1.0f);
+}
+
 TEST(Tone, LuminanceOfWhiteIsOne) {
     EXPECT_NEAR(shader::luminance(glm::vec3(1.0f)), 1.0f, 1e-6f);
 }

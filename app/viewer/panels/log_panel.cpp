@@ -1,5 +1,7 @@
 #include "app/viewer/panels/log_panel.h"
 
+#include "app/viewer/panels/widgets.h"
+
 #include <imgui.h>
 
 namespace relume {
