@@ -49,6 +49,8 @@ void setColours(ImGuiStyle& style) {
     style.Colors[ImGuiCol_Button] = ImVec4(0.26f, 0.27f, 0.30f, 1.0f);
     style.Colors[ImGuiCol_Header] = ImVec4(0.24f, 0.25f, 0.28f, 1.0f);
     style.Colors[ImGuiCol_Tab] = quiet;
+    style.Colors[ImGuiCol_TitleBgActive] = style.Colors[ImGuiCol_Header];
+    style.Colors[ImGuiCol_ResizeGrip] = quiet;
     for (const int colour :
          {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered, ImGuiCol_TabHovered})
         style.Colors[colour] = ImVec4(0.45f, 0.33f, 0.20f, 1.0f);

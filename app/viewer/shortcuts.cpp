@@ -30,7 +30,7 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::Reset, 0, GLFW_KEY_R, kCtrl, "Bake", "Reset"},
         {Action::Close, 0, GLFW_KEY_ESCAPE, 0, "Bake", "Close dialog or abort pass"},
         {Action::UvTexture, 0, GLFW_KEY_U, 0, "View", "As UV texture"},
-        {Action::Masked, 0, GLFW_KEY_M, 0, "View", "UV texture without what lies between charts"},
+        {Action::Masked, 0, GLFW_KEY_M, 0, "View", "UV texture masked"},
         {Action::NextFilter, 0, GLFW_KEY_F, kShift, "View", "Next lightmap filter"},
         {Action::NextTone, 0, GLFW_KEY_T, 0, "View", "Next tone mapping"},
         {Action::Darker, 0, GLFW_KEY_LEFT_BRACKET, 0, "View", "Darker"},
@@ -116,13 +116,13 @@ const std::vector<std::string>& panelNames() {
 const std::vector<MouseHint>& mouseHints() {
     static const std::vector<MouseHint> hints = {
         {"Orbit", "left drag"},
-        {"Pan", "middle drag, or Shift + left drag"},
+        {"Pan", "middle or Shift + left drag"},
         {"Zoom", "wheel"},
         {"Look around", "right drag"},
-        {"Fly", "W A S D, E up, Q down (Shift: faster)"},
+        {"Fly (Shift: faster)", "W A S D, E up, Q down"},
         {"Select an instance", "click"},
-        {"Visible from here", "Ctrl + click, or click in that view"},
-        {"Open a scene", "drop its file on the window"},
+        {"Visible from here", "Ctrl + click"},
+        {"Open a scene", "drop a file"},
     };
     return hints;
 }

@@ -204,10 +204,10 @@ void Ui::drawHelp() {
     if (!help_) return;
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5f * window.x, 0.5f * window.y}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(52.0f * ImGui::GetFontSize(), window.x),
+    ImGui::SetNextWindowSize({std::min(60.0f * ImGui::GetFontSize(), window.x),
                               std::min(40.0f * ImGui::GetFontSize(), 0.9f * window.y)});
     ImGui::Begin("All keys", &help_, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-    if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
+    if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
         for (const MouseHint& hint : mouseHints()) {
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(hint.how);

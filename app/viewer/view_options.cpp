@@ -47,7 +47,8 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
         ->capture_default_str()
         ->check(CLI::IsMember({"auto", "shared", "copied"}));
     command.add_flag("--watch", o.watch, "Load the scene again whenever its file changes");
-    command.add_option("--window-size", o.window, "Size of the window (default: as last time)")->type_name("WxH");
+    command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
+        ->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
     command.add_flag("--log-actions", o.logActions,
                      "Print each action on the standard error as it is done, for bug reports");

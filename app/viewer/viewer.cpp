@@ -121,6 +121,10 @@ Viewer::~Viewer() {
         preferences_.width = extent.x;
         preferences_.height = extent.y;
     }
+    savePreferences();
+}
+
+void Viewer::savePreferences() {
     preferences_.filter = view_.filter;
     preferences_.tone = view_.tone;
     try {
@@ -305,7 +309,7 @@ void Viewer::followCamera(double time) {
     updateFlight();
     if (camera_.fly(time - flown_)) cameraMoved();
     flown_ = time;
-    pacer_.animate(camera_.flying() || capture_.recording());
+    pacer_.animate(camera_.flying());
 }
 
 // What went wrong beside the main thread is logged: it is shown as well.
@@ -376,6 +380,7 @@ void Viewer::drawScene(bool anew) {
         pane_.draw(look(), size);
         ++figures_.drawn;
         sceneDirty_ = false;
+        recordDue_ = true;
     } else {
         ++figures_.repeated;
     }

@@ -43,6 +43,7 @@ public:
 private:
     // viewer.cpp
     void startBake();
+    void savePreferences();
     double now() const;
     double idleSeconds(double time) const;
     void follow(double time);
@@ -86,6 +87,7 @@ private:
     void reloadShaders();
     void storeBookmark();
     void captureFrame(double time);
+    void recordPicture(double time);
     std::string captureFolder() const;
     void note(const std::string& text, bool bad = false);
     void tell(const char* kind, const std::string& what) const; // a line for --log-actions
@@ -120,6 +122,7 @@ private:
     bool sceneDirty_ = true, hidden_ = false, vsync_ = false;
     float scale_ = 1;
     bool shotWithUi_ = false; // of the next frame
+    bool recordDue_ = false;  // the picture is not in the recording
     double frameStart_ = 0;   // of the last frame
     double flown_ = 0;        // when the flight went on last
     double moved_ = -1e9;     // when the camera moved last

@@ -240,6 +240,7 @@ void Viewer::storeBookmark() {
     while (taken(fmt::format("bookmark {}", number)))
         ++number;
     marks.push_back({fmt::format("bookmark {}", number), camera_.camera()});
+    savePreferences();
     note("stored " + marks.back().name);
 }
 

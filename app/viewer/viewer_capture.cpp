@@ -38,11 +38,21 @@ void Viewer::performCapture(Action action) {
     default:
         break;
     }
-    if (capture_.recording())
-        capture_.stop(now());
-    else
+    if (!capture_.recording()) {
         capture_.start(captureFolder(), now());
-    changeScene(); // the first frame
+        recordDue_ = true;
+        return changeScene(); // the first frame
+    }
+    if (recordDue_) recordPicture(now()); // came sooner than a video's next frame
+    capture_.stop(now());
+}
+
+void Viewer::recordPicture(double time) {
+    const gl::Framebuffer& picture = pane_.picture();
+    Pixels pixels = readPixels(picture.get(), picture.width(), picture.height());
+    pixels.caption = captionLines();
+    capture_.frame(std::move(pixels), time);
+    recordDue_ = false;
 }
 
 void Viewer::captureFrame(double time) {
@@ -51,11 +61,7 @@ void Viewer::captureFrame(double time) {
         const glm::uvec2 size = window_.size();
         capture_.screenshot(readPixels(0, size.x, size.y), captureFolder());
     }
-    if (!capture_.wants(time)) return;
-    const gl::Framebuffer& picture = pane_.picture();
-    Pixels pixels = readPixels(picture.get(), picture.width(), picture.height());
-    pixels.caption = captionLines();
-    capture_.frame(std::move(pixels), time);
+    if (recordDue_ && capture_.wants(time)) recordPicture(time);
 }
 
 } // namespace relume

@@ -16,9 +16,9 @@ void drawFrames(const FrameFigures& figures) {
     ImGui::PlotLines("##frames", figures.frames.data(), static_cast<int>(FrameFigures::kKept),
                      static_cast<int>(figures.next), title.c_str(), 0.0f, most,
                      {ImGui::GetContentRegionAvail().x, 5 * ImGui::GetTextLineHeight()});
-    ImGui::Text("%s", fmt::format("{} pictures of the scene, {} shown again; {} draws, {} culled",
-                                  figures.drawn, figures.repeated, figures.drawCalls, figures.culled)
-                          .c_str());
+    ImGui::TextWrapped("%s", fmt::format("{} pictures of the scene, {} shown again; {} draws, {} culled",
+                                         figures.drawn, figures.repeated, figures.drawCalls, figures.culled)
+                                 .c_str());
     if (!ImGui::BeginTable("spans", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
     ImGui::TableSetupColumn("Pass");
     ImGui::TableSetupColumn("CPU [ms]");

@@ -72,7 +72,10 @@ bool number(const char* label, uint32_t& value) {
 }
 
 bool beginRows(const char* id) {
-    return ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg);
+    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_RowBg)) return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch); // wraps
+    return true;
 }
 
 void row(const char* name, const std::string& value) {
