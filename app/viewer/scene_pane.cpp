@@ -64,6 +64,7 @@ DrawSettings ScenePane::settingsOf(const Look& look) {
     // RTRad's map has the albedo in it.
     if (settings.view == View::Lit && look.map != nullptr && look.map->radiance)
         settings.view = View::Lighting;
+    if (settings.view == View::InspectLeaves) settings.filter = LightmapFilter::Nearest; // they have edges
     const float unit = look.map != nullptr ? look.map->unit : 1.0f; // ranges are those of texels
     if (settings.view == View::InspectPosition) {
         settings.rangeLow = bounds_.low / unit;
