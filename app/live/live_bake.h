@@ -15,10 +15,10 @@ class BakeLoop;
 class LiveBake {
 public:
     struct Desc {
-        std::string device; // as vk::Device::Desc::select
+        std::string device = {}; // as vk::Device::Desc::select
         bool validation = false;
         DisplayMode display = DisplayMode::Auto;
-        DisplayHost host;
+        DisplayHost host = {};
         double batchMs = 8; // aim of one batch
     };
     /// Starts the thread. Where Vulkan is missing the status says so (Failed).

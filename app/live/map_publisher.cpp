@@ -143,8 +143,7 @@ bool MapPublisher::publishLight() {
            .complete = live.complete,
            .unit = light_.publisher->unit(),
            .ambient = light_.publisher->mean(),
-           .radiance = light_.radiance,
-           .changed = {}});
+           .radiance = light_.radiance});
     shown_ = {};
     return true;
 }
@@ -174,8 +173,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
            .unit = unit,
            .ambient = inspected_.publisher->mean(),
            .low = range.low,
-           .high = range.high,
-           .changed = {}});
+           .high = range.high});
     shown_ = request;
     inspectedVersion_ = live.version;
     inspectedAt_ = Clock::now();

@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <thread>
 
@@ -183,19 +184,18 @@ TEST_F(LiveBakeTest, AnotherMethodAndSizeKeepTheOldLightUntilTheirsIsThere) {
     std::vector<double> means;
     onMap_ = [&] { means.push_back(screen_.mean()); };
     BakeSettings settings = quickSettings();
-    settings.solver.method = Method::Directional;
-    settings.solver.error = 0.05;
-    start(settings);
-    ASSERT_TRUE(untilShown());
-    settings.size = 32;
-    start(settings);
-    ASSERT_TRUE(untilShown());
-    settings.solver.method = Method::Mipmapped;
+    settings.solver.method = Method::MonteCarlo;
     settings.solver.pairs.window = 2;
     start(settings);
     ASSERT_TRUE(untilShown());
+    settings.size = kSize / 2;
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    start(quickSettings());
+    ASSERT_TRUE(untilShown());
+    // Windows of pixels as coarse as these miss the shares of small shadows; black would be far away.
     for (const double mean : means)
-        EXPECT_NEAR(mean, before, 0.1 * before);
+        EXPECT_NEAR(mean, before, 0.2 * before);
 }
 
 TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
@@ -211,11 +211,15 @@ TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
     bake_.step();
     ASSERT_TRUE(until([&] { return bake_.status().progress.seconds > still; }));
     ASSERT_TRUE(untilPhase(Phase::Paused));
-    bake_.makePass();
-    ASSERT_TRUE(until([&] {
-        return bake_.status().phase == Phase::Paused &&
-               bake_.status().progress.passes + bake_.status().progress.samples > 0;
-    }));
+    // Hybrid's first pass is its direct light, which has no directions.
+    while (bake_.status().progress.samples == 0) {
+        const double before = bake_.status().progress.seconds;
+        bake_.makePass();
+        ASSERT_TRUE(until([&] {
+            const BakeStatus status = bake_.status();
+            return status.phase == Phase::Paused && status.progress.seconds > before;
+        }));
+    }
     const uint32_t samples = bake_.status().progress.samples;
     bake_.resume();
     ASSERT_TRUE(until([&] { return bake_.status().progress.samples > samples; }));

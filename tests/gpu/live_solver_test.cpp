@@ -64,7 +64,9 @@ public:
                         light_.begin() + static_cast<ptrdiff_t>(first));
         }
         EXPECT_EQ(live.changed, merged(live.changed));
-        if (looked_) EXPECT_EQ(live.version != version_, !live.changed.empty());
+        if (looked_) {
+            EXPECT_EQ(live.version != version_, !live.changed.empty());
+        }
         EXPECT_TRUE(live.complete || !complete_) << "complete, and then not";
         bool same = true;
         for (size_t i = 0; i < now.size(); ++i)
