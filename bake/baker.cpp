@@ -112,7 +112,8 @@ void Baker::makeTracers() {
     TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
     if (kind == TracerKind::Auto) kind = chooseTracer(device_.info(), why);
     const bool marches = usesVoxels(settings_);
-    spdlog::info("tracer: {} ({})", tracerName(kind), why);
+    tracerChoice_ = fmt::format("{} ({})", tracerName(kind), why);
+    spdlog::info("tracer: {}", tracerChoice_);
     if (marches) {
         spdlog::info("voxels: {} through {}^3 of them",
                      settings_.voxels.ratio > 1 ? fmt::format("1 sender in {}", settings_.voxels.ratio)

@@ -46,6 +46,8 @@ public:
     /// Error when its method cannot run: then there is none any more.
     void resetSolver(const SolverSettings& settings);
     Tracer& tracer() { return *tracer_; }
+    /// Its name and why it was taken: "embree (software device)".
+    const std::string& tracerChoice() const { return tracerChoice_; }
     const PatchSet& patches() const { return patches_; }
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }
@@ -75,6 +77,7 @@ private:
     std::unique_ptr<LightBuffers> light_;
     std::unique_ptr<Tracer> tracer_;
     std::unique_ptr<Solver> solver_;
+    std::string tracerChoice_;
     std::vector<PhaseTime> phases_;
     uint32_t invalid_ = 0;
 };

@@ -199,6 +199,7 @@ void BakeLoop::ready() {
     status_.doing.clear();
     status_.fraction = 1;
     status_.patches = baker_->patches().count;
+    status_.tracer = baker_->tracerChoice();
     applySeen();
     report(true);
 }
