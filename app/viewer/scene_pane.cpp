@@ -18,7 +18,7 @@ void ScenePane::setScene(const LoadedScene* scene) {
     voxels_.reset();
     exposures_.clear();
     if (scene == nullptr) return;
-    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->prepared.mesh);
+    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->geometry);
     bounds_ = scene->geometry.bounds;
     if (software_) gpu_->setAnisotropy(1.0f);
 }
