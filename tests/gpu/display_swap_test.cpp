@@ -3,6 +3,9 @@
 #include "app/viewer/lightmap_bridge.h"
 #include "assets/generate.h"
 #include "bake/publisher.h"
+#include "renderer/gl/framebuffer.h"
+#include "renderer/gl/program.h"
+#include "renderer/gl/vertex_array.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gl_environment.h"
 #include "tests/gpu/gpu_environment.h"
@@ -71,22 +74,47 @@ private:
     std::array<vk::SharedImage, Publisher::kSlots> images_;
 };
 
+GLuint compiled(GLenum stage, const char* source) {
+    const GLuint shader = glCreateShader(stage);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    return shader;
+}
+
 /// Pictures that are made of the map without waiting for the device, as a viewer's are, and looked at later.
 class Pictures {
 public:
-    Pictures() {
-        // Another format than the map's: the driver has to draw, which it puts off as long as it can.
+    Pictures() : program_(glCreateProgram()), empty_({.attributes = {}, .name = "pictures"}) {
         for (gl::Framebuffer& picture : pictures_)
             picture = gl::Framebuffer({.width = kSize, .height = kSize, .color = GL_RGBA32F, .name = "seen"});
-        GLuint name = 0;
-        glCreateFramebuffers(1, &name);
-        source_ = gl::Handle<gl::deleteFramebuffer>(name);
+        const std::array<GLuint, 2> shaders = {
+            compiled(GL_VERTEX_SHADER, "#version 450\n"
+                                       "void main() {\n"
+                                       "    float x = gl_VertexID == 1 ? 3.0 : -1.0;\n"
+                                       "    gl_Position = vec4(x, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
+                                       "}\n"),
+            compiled(GL_FRAGMENT_SHADER,
+                     "#version 450\n"
+                     "layout(binding = 0) uniform sampler2D map;\n"
+                     "layout(location = 0) out vec4 color;\n"
+                     "void main() { color = texelFetch(map, ivec2(gl_FragCoord.xy), 0); }\n")};
+        for (const GLuint shader : shaders)
+            glAttachShader(program_.get(), shader);
+        glLinkProgram(program_.get());
+        for (const GLuint shader : shaders)
+            glDeleteShader(shader);
     }
 
+    // The framebuffer stays bound: a software device then puts the drawing off until it is asked for it.
     void draw(const LightmapTexture& map, uint64_t n) {
-        glNamedFramebufferTexture(source_.get(), GL_COLOR_ATTACHMENT0, map.texture, 0);
-        glBlitNamedFramebuffer(source_.get(), picture(n).get(), 0, 0, kSize, kSize, 0, 0, kSize, kSize,
-                               GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        glBindFramebuffer(GL_FRAMEBUFFER, picture(n).get());
+        glViewport(0, 0, kSize, kSize);
+        glDisable(GL_DEPTH_TEST);
+        glDisable(GL_BLEND);
+        glBindTextureUnit(0, map.texture);
+        glUseProgram(program_.get());
+        glBindVertexArray(empty_.get());
+        glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
     /// Texels of picture n that are not n.
@@ -111,12 +139,13 @@ public:
 private:
     const gl::Framebuffer& picture(uint64_t n) const { return pictures_[n % pictures_.size()]; }
 
+    gl::Handle<gl::deleteProgram> program_;
+    gl::VertexArray empty_; // without vertices
     std::array<gl::Framebuffer, 2> pictures_;
-    gl::Handle<gl::deleteFramebuffer> source_;
     std::vector<glm::vec4> texels_;
 };
 
-/// The drawing thread: each picture is looked at when the next one has been drawn already.
+/// The drawing thread: each picture is looked at when the next map is there already.
 void expectNoTear(bool shared) {
     testContext();
     LightmapExchange exchange;
@@ -136,10 +165,11 @@ void expectNoTear(bool shared) {
         outOfOrder += bridge.map()->bake != newest + 1;
         newest = bridge.map()->bake;
         ++swaps;
-        // A frame does other things, too: time enough to write what is still to be read.
+        // A frame does other things, too. Meanwhile what the last picture reads must not be written: until
+        // now nobody but the bridge has asked the driver to draw it.
         if (newest % 4 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3));
-        pictures.draw(bridge.texture(), newest);
         if (newest > 1) torn += pictures.wrong(newest - 1) > 0;
+        pictures.draw(bridge.texture(), newest);
     }
     stop = true;
     thread.join();
