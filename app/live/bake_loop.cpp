@@ -64,6 +64,7 @@ void BakeLoop::run() {
         openDevice();
     } catch (const std::exception& error) {
         fail(error.what());
+        report(true); // no order need ever come
     }
     BakeOrders orders;
     while (takeOrders(orders)) {
@@ -119,7 +120,7 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
 }
 
 void BakeLoop::obey(BakeOrders& orders) {
-    if (!device_) return; // Failed, and it stays so
+    if (!maps_) return; // Failed, and it stays so
     if (orders.batchMs) desc_.batchMs = *orders.batchMs;
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
     if (orders.inspect) inspect_ = *orders.inspect;

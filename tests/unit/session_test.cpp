@@ -1,0 +1,273 @@
+// The session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, none runs.
+#include "app/live/session.h"
+
+#include "assets/error.h"
+#include "assets/log.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include <unistd.h>
+
+namespace relume {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+const std::string kScenes = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/";
+constexpr uint32_t kSize = 64;
+
+class SessionTest : public testing::Test {
+protected:
+    SessionTest() : folder_(fs::temp_directory_path() / ("relume_session_" + std::to_string(getpid()))) {
+        fs::create_directories(folder_);
+        fs::copy_file(kScenes + "cornell_small.glb", file(), fs::copy_options::overwrite_existing);
+    }
+    ~SessionTest() override { fs::remove_all(folder_); }
+
+    std::string file() const { return folder_ / "scene.glb"; }
+
+    /// Frames until it is so. Counts the scenes that came.
+    bool until(const std::function<bool()>& what, double seconds = 30) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        while (std::chrono::steady_clock::now() < end) {
+            loads_ += session_.update();
+            if (what()) return true;
+            std::this_thread::sleep_for(1ms);
+        }
+        return false;
+    }
+    bool untilLoaded() {
+        return until([&] { return !session_.loading(); });
+    }
+    void open() {
+        session_.open(file());
+        ASSERT_TRUE(untilLoaded());
+        ASSERT_NE(session_.scene(), nullptr);
+    }
+    /// Writes the scene file as an exporter does, with a newer time stamp.
+    void writeFile(const std::string& from) {
+        fs::copy_file(from, file(), fs::copy_options::overwrite_existing);
+        fs::last_write_time(file(), time_ += 2s);
+    }
+    void dim(float factor, const std::string& name = "Emission") {
+        Document next = session_.document();
+        for (Material& material : next.materials)
+            material.emission *= factor;
+        session_.edit(name, next);
+    }
+    float brightest() const {
+        float most = 0;
+        for (const Material& material : session_.document().materials)
+            most = std::max(most, material.emission.r);
+        return most;
+    }
+
+    static BakeRequest request() {
+        BakeRequest request;
+        request.bake.size = kSize;
+        return request;
+    }
+
+    fs::path folder_;
+    fs::file_time_type time_ = fs::file_time_type::clock::now();
+    LiveBake bake_{{.device = "a device that nobody has"}};
+    Session session_{bake_, request()};
+    int loads_ = 0;
+};
+
+TEST_F(SessionTest, UndoesAndRedoesEveryEditByName) {
+    open();
+    const float first = brightest();
+    ASSERT_GT(first, 0);
+    EXPECT_FALSE(session_.undo());
+    EXPECT_EQ(session_.undoName(), "");
+    dim(0.5f, "Emission");
+    session_.endEdit();
+    Document next = session_.document();
+    next.bake.solver.method = Method::MonteCarlo;
+    session_.edit("Method", next);
+    EXPECT_EQ(session_.undoName(), "Method");
+    EXPECT_EQ(session_.redoName(), "");
+    ASSERT_TRUE(session_.undo());
+    EXPECT_NE(session_.document().bake.solver.method, Method::MonteCarlo);
+    EXPECT_EQ(brightest(), 0.5f * first) << "one step at a time";
+    EXPECT_EQ(session_.undoName(), "Emission");
+    EXPECT_EQ(session_.redoName(), "Method");
+    ASSERT_TRUE(session_.undo());
+    EXPECT_EQ(brightest(), first);
+    EXPECT_FALSE(session_.undo());
+    ASSERT_TRUE(session_.redo());
+    ASSERT_TRUE(session_.redo());
+    EXPECT_FALSE(session_.redo());
+    EXPECT_EQ(session_.document().bake.solver.method, Method::MonteCarlo);
+    EXPECT_EQ(brightest(), 0.5f * first);
+}
+
+TEST_F(SessionTest, AnEditAfterUndoForgetsWhatWasUndone) {
+    open();
+    dim(0.5f, "A");
+    session_.endEdit();
+    dim(0.5f, "B");
+    ASSERT_TRUE(session_.undo());
+    dim(3.0f, "C");
+    EXPECT_FALSE(session_.redo());
+    EXPECT_EQ(session_.undoName(), "C");
+    session_.undo();
+    EXPECT_EQ(session_.undoName(), "A");
+}
+
+TEST_F(SessionTest, ADragIsOneStep) {
+    open();
+    const float first = brightest();
+    for (int i = 0; i < 10; ++i)
+        dim(0.9f, "Emission");
+    session_.endEdit();
+    const float dragged = brightest();
+    dim(0.5f, "Emission"); // another drag of the same slider
+    dim(0.5f, "Albedo");   // another slider, without an end in between
+    ASSERT_TRUE(session_.undo());
+    EXPECT_EQ(brightest(), 0.5f * dragged);
+    ASSERT_TRUE(session_.undo());
+    EXPECT_EQ(brightest(), dragged);
+    ASSERT_TRUE(session_.undo());
+    EXPECT_EQ(brightest(), first);
+    EXPECT_FALSE(session_.undo());
+    // After an undo the same name is another step.
+    ASSERT_TRUE(session_.redo());
+    dim(0.5f, "Emission");
+    ASSERT_TRUE(session_.undo());
+    EXPECT_EQ(brightest(), dragged);
+}
+
+TEST_F(SessionTest, ABadFileKeepsTheScene) {
+    open();
+    dim(0.5f);
+    const LoadedScene* scene = session_.scene();
+    const float edited = brightest();
+    std::ofstream(folder_ / "bad.glb") << "this is no scene";
+    for (const std::string& path : {(folder_ / "bad.glb").string(), (folder_ / "none.glb").string()}) {
+        session_.open(path);
+        EXPECT_EQ(session_.loadingPath(), path);
+        ASSERT_TRUE(untilLoaded());
+        EXPECT_NE(session_.lastError().find(fs::path(path).filename().string()), std::string::npos)
+            << session_.lastError();
+        EXPECT_EQ(session_.scene(), scene);
+        EXPECT_EQ(brightest(), edited);
+        EXPECT_EQ(session_.undoName(), "Emission");
+        session_.clearError();
+    }
+    EXPECT_EQ(loads_, 1);
+    // What is watched is still the good one.
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_EQ(session_.lastError(), "");
+}
+
+TEST_F(SessionTest, AnotherSceneForgetsEditsAndSteps) {
+    open();
+    dim(0.5f);
+    session_.open(kScenes + "cornell_geom.glb");
+    ASSERT_TRUE(untilLoaded());
+    EXPECT_EQ(loads_, 2);
+    EXPECT_FALSE(session_.sceneWasKept());
+    EXPECT_EQ(session_.undoName(), "");
+    EXPECT_EQ(session_.document().materials.size(), session_.scene()->prepared.scene.materials.size());
+}
+
+TEST_F(SessionTest, AFileThatIsWrittenTwiceIsReadTwice) {
+    open();
+    const uint64_t firstBake = session_.firstBake();
+    std::this_thread::sleep_for(50ms);
+    writeFile(kScenes + "cornell_small.glb");
+    EXPECT_FALSE(until([&] { return loads_ > 1; }, 2)) << "nobody watches";
+    session_.watchFile(true);
+    ASSERT_TRUE(until([&] { return loads_ == 2; })) << "written before it was watched";
+    EXPECT_TRUE(session_.sceneWasKept());
+    dim(0.5f);
+    const float edited = brightest();
+    session_.endEdit();
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 3; }));
+    EXPECT_EQ(brightest(), edited) << "an edit survives";
+    EXPECT_TRUE(session_.undo()) << "and its step";
+    EXPECT_GT(brightest(), edited);
+    EXPECT_EQ(session_.firstBake(), firstBake) << "it is the same scene";
+    EXPECT_FALSE(until([&] { return loads_ > 3; }, 2)) << "nothing was written";
+}
+
+TEST_F(SessionTest, AFileThatIsStillWrittenWaits) {
+    open();
+    session_.watchFile(true);
+    std::ofstream(file()) << "half of a sc";
+    int writes = 0;
+    auto next = std::chrono::steady_clock::now();
+    // For two seconds its time changes more often than it is looked at.
+    until(
+        [&] {
+            const auto now = std::chrono::steady_clock::now();
+            if (now < next) return false;
+            next = now + 100ms;
+            fs::last_write_time(file(), time_ += 1s);
+            return ++writes == 20;
+        },
+        10);
+    EXPECT_EQ(session_.lastError(), "") << "read too early";
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_EQ(session_.lastError(), "");
+}
+
+TEST_F(SessionTest, EditsOfAFileThatBecameAnotherGoByName) {
+    open();
+    dim(0.5f);
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_statue.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    const std::vector<Material>& own = session_.scene()->prepared.scene.materials;
+    ASSERT_EQ(session_.document().materials.size(), own.size());
+    for (size_t i = 0; i < own.size(); ++i)
+        EXPECT_EQ(session_.document().materials[i].name, own[i].name);
+}
+
+TEST_F(SessionTest, AnotherSizeLoadsTheSceneAnew) {
+    open();
+    dim(0.5f);
+    session_.endEdit();
+    const float edited = brightest();
+    Document next = session_.document();
+    next.bake.size = 2 * kSize;
+    session_.edit("Size", next);
+    EXPECT_TRUE(session_.loading());
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_EQ(session_.scene()->size, 2 * kSize);
+    EXPECT_TRUE(session_.sceneWasKept());
+    EXPECT_EQ(brightest(), edited);
+    ASSERT_TRUE(session_.undo());
+    ASSERT_TRUE(until([&] { return loads_ == 3; }));
+    EXPECT_EQ(session_.scene()->size, kSize);
+    EXPECT_EQ(session_.document().bake.size, kSize);
+    EXPECT_EQ(session_.undoName(), "Emission");
+}
+
+TEST_F(SessionTest, ASizeThatIsDraggedEndsWithTheLast) {
+    open();
+    for (const uint32_t size : {80u, 96u, 112u}) {
+        Document next = session_.document();
+        next.bake.size = size;
+        session_.edit("Size", next);
+    }
+    ASSERT_TRUE(untilLoaded());
+    EXPECT_EQ(session_.scene()->size, 112u);
+    EXPECT_EQ(session_.document().bake.size, 112u);
+}
+
+} // namespace
+} // namespace relume
