@@ -3,7 +3,7 @@
 #
 #   ./test.sh                          everything, release build
 #   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan
-#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), gpu (any Vulkan device), ui (Xvfb), bench
+#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), gpu, live (any Vulkan device), ui (Xvfb), bench
 #   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
 #
 # RELUME_WERROR=ON makes warnings errors.
