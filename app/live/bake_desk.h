@@ -80,7 +80,7 @@ struct BakeOrders {
         LightmapDesc lightmap;
     };
     std::optional<Start> start;
-    bool reset = false, abort = false;
+    bool reset = false, abort = false, reload = false;
     Run run = Run::Keep;
     std::optional<double> batchMs;
     std::optional<std::vector<uint32_t>> seenTiles;
