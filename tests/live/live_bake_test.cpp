@@ -84,6 +84,8 @@ private:
 
 class LiveBakeTest : public testing::Test {
 protected:
+    ~LiveBakeTest() override { bake_.stop(); } // before the screen's memory goes, which it writes
+
     bool until(const std::function<bool()>& what, double seconds = 60) {
         const auto end = Clock::now() + std::chrono::duration<double>(seconds);
         while (Clock::now() < end) {
