@@ -65,6 +65,8 @@ struct BakeStatus {
     uint32_t validationMessages = 0;
 };
 
+const char* phaseName(BakeStatus::Phase phase); // "baking"
+
 /// What a user asked for since the bake thread looked last. Of each kind the newest counts.
 struct BakeOrders {
     enum class Run { Keep, Resume, Pause, Pass, Step };
@@ -73,6 +75,7 @@ struct BakeOrders {
         std::vector<Material> materials;      // instead of the scene's own
         BakeSettings settings;
         bool keepLight = false; // what is shown stays until this bake has a solution with all bounces
+        uint32_t rings = 4;     // of texels filled around charts, on screen
         uint64_t number = 0;    // counts the bakes that were asked for
     };
     struct Export {

@@ -148,6 +148,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     settings_ = start.settings;
     settings_.solver.batchMs = desc_.batchMs;
     settings_.solver.live = true;
+    rings_ = start.rings;
     status_.bake = start.number;
     status_.settings = settings_;
     begin();
@@ -203,7 +204,11 @@ void BakeLoop::restart(bool keepLight) {
 }
 
 void BakeLoop::beginMaps(bool keepLight) {
-    maps_->begin({.baker = *baker_, .number = status_.bake, .keepLight = keepLight, .settings = settings_});
+    maps_->begin({.baker = *baker_,
+                  .number = status_.bake,
+                  .keepLight = keepLight,
+                  .rings = rings_,
+                  .settings = settings_});
 }
 
 void BakeLoop::begin() {

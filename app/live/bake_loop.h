@@ -53,6 +53,7 @@ private:
     Scene scene_;                             // with its edited materials
     const PreparedScene* prepared_ = nullptr; // that it came from; only its address counts
     BakeSettings settings_;
+    uint32_t rings_ = 4;           // of texels filled around charts, on screen
     std::unique_ptr<Baker> baker_; // of scene_
     BakeStatus status_;            // the desk's, as it will be
     BakeOrders::Run run_ = BakeOrders::Run::Resume;

@@ -43,6 +43,7 @@ struct PublishedMap {
     float unit = 1;          // [cd/m^2], [m], ...: a texel's 1.0
     glm::vec3 ambient{0.0f}; // mean of the patches, in the same unit as what a texel stands for
     float low = 0, high = 0; // range of the content's first channel, of all patches
+    bool filled = true;      // all around charts so far that no filter meets an empty texel
     bool radiance = false;   // Light holds RTRad's radiosity: albedo and emission are in it
     RowRange changed = {};   // since the map before
 };

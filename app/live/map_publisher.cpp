@@ -12,6 +12,8 @@ namespace {
 
 // Inspected quantities are gone through on the CPU: often enough to follow, seldom enough not to brake.
 constexpr double kInspectSeconds = 0.2;
+// Rings that the widest filter reaches beyond a chart [texels].
+constexpr uint32_t kFilterReach = 2;
 // Directions whose ends are shown as paths.
 constexpr uint32_t kPaths = 64;
 
@@ -75,11 +77,14 @@ void MapPublisher::choose() {
 }
 
 MapPublisher::Source MapPublisher::makeSource() const {
-    return {.publisher = std::make_unique<Publisher>(
-                device_, bake_->baker.patches(),
-                Publisher::Desc{.reflectivity = bake_->settings.solver.transport.reflectivity}),
+    const TransportSettings& transport = bake_->settings.solver.transport;
+    // RTRad's preset fills one ring.
+    const uint32_t rings = transport.rtrad ? std::min(bake_->rings, 1u) : bake_->rings;
+    const Publisher::Desc desc{.rings = rings, .reflectivity = transport.reflectivity};
+    return {.publisher = std::make_unique<Publisher>(device_, bake_->baker.patches(), desc),
             .bake = bake_->number,
-            .radiance = bake_->settings.solver.transport.rtrad};
+            .radiance = transport.rtrad,
+            .filled = rings >= kFilterReach};
 }
 
 void MapPublisher::begin(const Bake& bake) {
@@ -282,6 +287,7 @@ void MapPublisher::write(Source& source, uint32_t slot, PublishedMap map) {
     map.slot = slot;
     map.set = set_;
     map.bake = source.bake;
+    map.filled = source.filled;
     map.changed = rowsOf(areas);
     exchange_.publish(map);
     anyShown_ = true;

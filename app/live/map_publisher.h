@@ -31,6 +31,7 @@ public:
         Baker& baker;
         uint64_t number = 0;
         bool keepLight = false; // what is shown stays until there is a solution with all bounces
+        uint32_t rings = 4;     // of texels filled around charts
         const BakeSettings& settings;
     };
     void begin(const Bake& bake);
@@ -52,7 +53,7 @@ private:
     struct Source {
         std::unique_ptr<Publisher> publisher;
         uint64_t bake = 0;
-        bool radiance = false;
+        bool radiance = false, filled = true;
     };
     /// Images that the drawing thread may still have.
     struct FormerImages {

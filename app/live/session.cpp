@@ -147,7 +147,8 @@ void Session::startBake(bool keepLight) {
     const uint64_t bake = bake_.start({.scene = &scene_->prepared,
                                        .materials = document_.materials,
                                        .settings = document_.bake,
-                                       .keepLight = keepLight});
+                                       .keepLight = keepLight,
+                                       .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0});
     if (!keepLight) firstBake_ = bake;
 }
 

@@ -101,6 +101,7 @@ void Gui::feed(const WindowEvent& event) {
     const int state = event.repeated ? GLFW_REPEAT : event.pressed ? GLFW_PRESS : GLFW_RELEASE;
     switch (event.kind) {
     case WindowEvent::Kind::Key:
+        feedSeen();
         // A key that goes down and up between two frames would never have been down.
         if (!event.pressed && std::find(pressed_.begin(), pressed_.end(), event.place) != pressed_.end()) {
             releases_.push_back(event);
@@ -129,14 +130,20 @@ void Gui::feed(const WindowEvent& event) {
     }
 }
 
+// Never within a frame: what widgets see of modifiers must not change under them.
+void Gui::feedSeen() {
+    for (const WindowEvent& event : std::exchange(seen_, {}))
+        ImGui_ImplGlfw_KeyCallback(window_.handle(), event.place, event.scancode, GLFW_RELEASE, event.mods);
+}
+
 void Gui::begin(float scale) {
     setScale(scale);
+    feedSeen();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     pressed_.clear();
-    for (const WindowEvent& release : std::exchange(releases_, {}))
-        feed(release);
+    seen_ = std::exchange(releases_, {});
 }
 
 void Gui::end() {

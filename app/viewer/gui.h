@@ -26,11 +26,13 @@ public:
 
 private:
     void setScale(float scale);
+    void feedSeen();
 
     Window& window_;
     float scale_ = 0;
     std::vector<int> pressed_;          // keys, since the frame before
     std::vector<WindowEvent> releases_; // of such keys, which the next frame is to see held
+    std::vector<WindowEvent> seen_;     // of those that the last frame saw held
 };
 
 } // namespace relume

@@ -27,24 +27,6 @@ constexpr double kLimiterSlack = 1.05;
 
 constexpr double kTilesEvery = 0.2; // [s] while the camera moves
 
-const char* phaseName(Phase phase) {
-    switch (phase) {
-    case Phase::Idle:
-        return "idle";
-    case Phase::Preparing:
-        return "preparing";
-    case Phase::Baking:
-        return "baking";
-    case Phase::Paused:
-        return "paused";
-    case Phase::Done:
-        return "done";
-    case Phase::Failed:
-        return "failed";
-    }
-    return "";
-}
-
 const char* contentName(MapContent content) {
     for (const ViewEntry& entry : viewEntries())
         if (entry.readsMap && entry.content == content && content != MapContent::Light) return entry.name;

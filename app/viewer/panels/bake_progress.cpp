@@ -11,24 +11,6 @@ namespace {
 
 using Phase = BakeStatus::Phase;
 
-const char* phaseName(Phase phase) {
-    switch (phase) {
-    case Phase::Idle:
-        return "nothing to bake";
-    case Phase::Preparing:
-        return "preparing";
-    case Phase::Baking:
-        return "baking";
-    case Phase::Paused:
-        return "paused";
-    case Phase::Done:
-        return "done";
-    case Phase::Failed:
-        return "failed";
-    }
-    return "";
-}
-
 void button(const PanelContext& context, const char* label, Action action, bool enabled) {
     {
         const ui::Disabled disabled(!enabled);
