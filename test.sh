@@ -3,7 +3,8 @@
 #
 #   ./test.sh                          everything, release build
 #   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan
-#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), gpu (any Vulkan device), bench
+#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), gpu, live (any Vulkan device), ui (Xvfb), bench
+#                                      with preset tsan: thread
 #   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
 #
 # RELUME_WERROR=ON makes warnings errors.
@@ -15,7 +16,7 @@ label=${2:-all}
 shift $(($# < 2 ? $# : 2))
 case "$preset $label" in
     -* | *" -"*)
-        sed -n '2,9s/^# \{0,1\}//p' "$0"
+        sed -n '2,10s/^# \{0,1\}//p' "$0"
         exit 2
         ;;
 esac

@@ -65,11 +65,10 @@ GLuint SceneGpu::textureOf(const Scene& scene, const TextureRef& use, bool srgb)
     return slot.get();
 }
 
-SceneGpu::SceneGpu(const Scene& scene, const WorldMesh& mesh) {
-    SceneGeometry geometry = makeGeometry(scene, mesh);
-    draws_ = std::move(geometry.draws);
-    bounds_ = geometry.bounds;
-    medianDensity_ = geometry.medianDensity;
+SceneGpu::SceneGpu(const Scene& scene, const WorldMesh& mesh) : SceneGpu(scene, makeGeometry(scene, mesh)) {}
+
+SceneGpu::SceneGpu(const Scene& scene, const SceneGeometry& geometry)
+    : draws_(geometry.draws), bounds_(geometry.bounds), medianDensity_(geometry.medianDensity) {
     vertices_ = gl::Buffer::of<SceneVertex>(geometry.vertices, "scene vertices");
     indices_ = gl::Buffer::of<uint32_t>(geometry.indices, "scene indices");
     const std::array<gl::VertexAttribute, 8> attributes = {{

@@ -25,6 +25,8 @@ public:
     static constexpr float kAnisotropy = 8.0f;
 
     SceneGpu(const Scene& scene, const WorldMesh& mesh); // throws Error when it does not fit
+    /// Of a geometry that was made before, beside the thread that draws.
+    SceneGpu(const Scene& scene, const SceneGeometry& geometry);
 
     /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
     /// the alpha mode and the number of materials must be as they were.

@@ -52,6 +52,10 @@ public:
     /// True until what the exposure of the last picture should be is known and drawn: draw again soon.
     bool adapting() const;
 
+    /// What automatic exposure takes the next picture to ask for until it is measured, where Metering is
+    /// Async [EV]: so that a view that was seen before comes back without a jump.
+    void expectExposure(float exposure) { measured_ = exposure; }
+
     /// Of the next pictures; the driver's largest number where it has fewer.
     void setSamples(uint32_t samples);
     /// Compiles the programs in use again, from --shaders' folder. Throws Error and keeps them all when one

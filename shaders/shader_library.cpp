@@ -29,11 +29,6 @@ Folder& folder() {
     return instance;
 }
 
-std::string currentFolder() {
-    const std::lock_guard lock(folder().mutex);
-    return folder().path;
-}
-
 std::vector<Program> readPrograms(const std::string& path) {
     const std::string list = (std::filesystem::path(path) / "programs.txt").string();
     std::ifstream file(list);
@@ -71,8 +66,13 @@ std::vector<uint32_t> compileFrom(const std::string& path, const std::string& na
 
 } // namespace
 
+std::string shaderFolder() {
+    const std::lock_guard lock(folder().mutex);
+    return folder().path;
+}
+
 std::vector<uint32_t> shaderCode(const std::string& name) {
-    const std::string path = currentFolder();
+    const std::string path = shaderFolder();
     if (!path.empty()) return compileFrom(path, name);
     for (const EmbeddedShader& shader : embeddedShaders())
         if (name == shader.name) return {shader.code.begin(), shader.code.end()};
@@ -81,7 +81,7 @@ std::vector<uint32_t> shaderCode(const std::string& name) {
 }
 
 std::string shaderText(const std::string& path) {
-    const std::string root = currentFolder();
+    const std::string root = shaderFolder();
     if (!root.empty()) return readText((std::filesystem::path(root) / path).string(), "pictures need it");
     for (const EmbeddedText& text : embeddedTexts())
         if (path == text.path) return text.text;
@@ -92,7 +92,7 @@ std::string shaderText(const std::string& path) {
 
 std::vector<std::string> shaderNames() {
     std::vector<std::string> names;
-    const std::string path = currentFolder();
+    const std::string path = shaderFolder();
     if (path.empty())
         for (const EmbeddedShader& shader : embeddedShaders())
             names.emplace_back(shader.name);

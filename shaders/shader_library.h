@@ -22,5 +22,7 @@ std::string shaderText(const std::string& path);
 /// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the
 /// embedded code. Throws Error when the folder does not hold them.
 void setShaderFolder(const std::string& folder);
+/// "": the embedded code.
+std::string shaderFolder();
 
 } // namespace relume

@@ -26,8 +26,8 @@ struct DisplayHost {
 /// What is to be seen beside light, and how. Plain: main thread to bake thread.
 struct InspectRequest {
     MapContent content = MapContent::Light;
-    uint32_t mip = 0;     // of ligIn and ligOut, 0..4: means over 2^mip texels squared
-    uint32_t texel = 0;   // Seen: v * size + u of the chosen patch
+    uint32_t mip = 0;          // of ligIn and ligOut, 0..4: means over 2^mip texels squared
+    uint32_t texel = 0;        // Seen: v * size + u of the chosen patch
     PairSettings preview = {}; // Leaves, where the method has no quad-tree of its own
     bool operator==(const InspectRequest& other) const;
 };
@@ -80,7 +80,7 @@ struct BakeOrders {
         LightmapDesc lightmap;
     };
     std::optional<Start> start;
-    bool reset = false, abort = false;
+    bool reset = false, abort = false, reload = false;
     Run run = Run::Keep;
     std::optional<double> batchMs;
     std::optional<std::vector<uint32_t>> seenTiles;

@@ -4,6 +4,7 @@
 #include "app/solve.h"
 #include "assets/log.h"
 #include "renderer/shader_types.h"
+#include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <array>
@@ -105,8 +106,8 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
     std::unique_lock lock(desk_.mutex);
     const auto something = [&] {
         const BakeOrders& o = desk_.orders;
-        return o.quit || o.start || o.reset || o.abort || o.run != BakeOrders::Run::Keep || o.batchMs ||
-               o.seenTiles || o.inspect || o.voxels || !o.exports.empty();
+        return o.quit || o.start || o.reset || o.abort || o.reload || o.run != BakeOrders::Run::Keep ||
+               o.batchMs || o.seenTiles || o.inspect || o.voxels || !o.exports.empty();
     };
     if (status_.phase != Phase::Baking) {
         if (maps_ && maps_->owes())
@@ -126,6 +127,7 @@ void BakeLoop::obey(BakeOrders& orders) {
     if (orders.inspect) inspect_ = *orders.inspect;
     if (orders.start) prepare(*orders.start);
     if (!baker_) return;
+    if (orders.reload) reloadShaders();
     if (orders.reset) {
         begin();
         restart(true);
@@ -159,16 +161,37 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         scene_.materials = start.materials;
         WorldMesh mesh = start.scene->mesh;
         prepared_ = start.scene;
-        baker_ = std::make_unique<Baker>(*device_, scene_, std::move(mesh), settings_,
-                                         [this](const char* phase) { onPhase(phase); });
-        spdlog::info("{} patches", baker_->patches().count);
-        warnIfDark(scene_, baker_->patches());
-        beginMaps(start.keepLight);
+        makeBaker(std::move(mesh), start.keepLight);
     }
     {
         const std::lock_guard lock(desk_.mutex);
         desk_.held = nullptr;
     }
+    ready();
+}
+
+void BakeLoop::makeBaker(WorldMesh mesh, bool keepLight) {
+    baker_ = std::make_unique<Baker>(*device_, scene_, std::move(mesh), settings_,
+                                     [this](const char* phase) { onPhase(phase); });
+    spdlog::info("{} patches", baker_->patches().count);
+    warnIfDark(scene_, baker_->patches());
+    beginMaps(keepLight);
+}
+
+// All of them are compiled before anything is given up.
+void BakeLoop::reloadShaders() {
+    try {
+        for (const std::string& name : shaderNames())
+            shaderCode(name);
+    } catch (const Error& error) {
+        spdlog::error("{}", error.what());
+        return;
+    }
+    begin();
+    WorldMesh mesh = baker_->patches().scene.mesh;
+    maps_->end();
+    baker_.reset();
+    makeBaker(std::move(mesh), true);
     ready();
 }
 

@@ -26,6 +26,8 @@ private:
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
+    void makeBaker(WorldMesh mesh, bool keepLight);
+    void reloadShaders();
     void restart(bool keepLight);
     void beginMaps(bool keepLight);
     void begin();

@@ -44,7 +44,7 @@ struct PublishedMap {
     glm::vec3 ambient{0.0f}; // mean of the patches, in the same unit as what a texel stands for
     float low = 0, high = 0; // range of the content's first channel, of all patches
     bool radiance = false;   // Light holds RTRad's radiosity: albedo and emission are in it
-    RowRange changed = {};        // since the map before
+    RowRange changed = {};   // since the map before
 };
 
 /// Three slots of one size that the bake thread wants: images of its own to be imported, or plain memory.

@@ -40,7 +40,7 @@ uint64_t LiveBake::start(Start start) {
         // A start that was not taken up yet: light that was not to be kept then is not kept now.
         if (orders.start && !orders.start->keepLight) start.keepLight = false;
         orders.start = std::move(start);
-        orders.reset = orders.abort = false;
+        orders.reset = orders.abort = orders.reload = false;
         if (orders.run != BakeOrders::Run::Pause) orders.run = BakeOrders::Run::Resume;
     });
     return bakes_;
@@ -69,6 +69,10 @@ void LiveBake::abortPass() {
 
 void LiveBake::reset() {
     order([](BakeOrders& orders) { orders.reset = true; });
+}
+
+void LiveBake::reloadShaders() {
+    order([](BakeOrders& orders) { orders.reload = true; });
 }
 
 void LiveBake::setSeenTiles(std::vector<uint32_t> tiles) {

@@ -44,6 +44,9 @@ public:
     void step() { run(BakeOrders::Run::Step); } // one batch, then pauses
     void abortPass();                           // forgets the pass under way and pauses
     void reset();                               // begins the same bake again from no light
+    /// Begins again with the kernels as --shaders' folder has them now; where one does not compile the log
+    /// says so and all goes on as it was.
+    void reloadShaders();
     /// Tiles (8 x 8 texels, row by row) that the camera sees: they come first.
     void setSeenTiles(std::vector<uint32_t> tiles);
     void inspect(const InspectRequest& request);

@@ -217,8 +217,8 @@ PatchValues MapPublisher::inspect(const InspectRequest& request) {
 PatchValues MapPublisher::leafColors(const PairSettings& preview) {
     const SolverSettings& solver = bake_->settings.solver;
     const PairSettings& own = solver.method == Method::Adaptive ? solver.pairs : preview;
-    PatchValues leaves =
-        inspector_->leaves(inspector_->ligIn(), {.node = own.node, .threshold = static_cast<float>(own.threshold)});
+    PatchValues leaves = inspector_->leaves(
+        inspector_->ligIn(), {.node = own.node, .threshold = static_cast<float>(own.threshold)});
     for (glm::vec4& leaf : leaves)
         leaf.r = 0.5f * std::log2(std::max(leaf.r, 1.0f));
     return leaves;

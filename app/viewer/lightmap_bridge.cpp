@@ -117,6 +117,7 @@ LightmapTexture LightmapBridge::texture() const {
     texture.size = shown_->size;
     texture.ambient = map_->ambient;
     texture.unit = map_->unit;
+    texture.filled = !map_->radiance; // the RTRad preset fills one ring around charts only
     return texture;
 }
 

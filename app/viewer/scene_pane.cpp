@@ -16,8 +16,9 @@ void ScenePane::setScene(const LoadedScene* scene) {
     gpu_.reset(); // before the new one takes its memory
     lines_.reset();
     voxels_.reset();
+    exposures_.clear();
     if (scene == nullptr) return;
-    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->prepared.mesh);
+    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->geometry);
     bounds_ = scene->geometry.bounds;
     if (software_) gpu_->setAnisotropy(1.0f);
 }
@@ -82,6 +83,15 @@ void ScenePane::makeRenderer(uint32_t samples) {
     samples_ = samples;
 }
 
+// Views of light differ in brightness: each goes on with its own exposure.
+void ScenePane::recallExposure() {
+    if (light_ && !renderer_->adapting()) exposures_[drawnView_] = renderer_->exposure();
+    if (drawnView_ == shownView_) return;
+    drawnView_ = shownView_;
+    const auto known = exposures_.find(drawnView_);
+    if (known != exposures_.end()) renderer_->expectExposure(known->second);
+}
+
 void ScenePane::drawFlat(const Look& look, const DrawSettings& settings,
                          const SceneRenderer::Target& target) {
     if (!flat_) flat_ = std::make_unique<UvView>();
@@ -98,8 +108,8 @@ void ScenePane::draw(const Look& look, glm::uvec2 size) {
         picture_ = gl::Framebuffer({.width = size.x, .height = size.y, .name = "scene picture"});
     }
     const DrawSettings settings = settingsOf(look);
-    light_ = false;
     if (!gpu_) {
+        light_ = false;
         const std::array<float, 4> background = {settings.background.r, settings.background.g,
                                                  settings.background.b, 1.0f};
         glClearNamedFramebufferfv(picture_.get(), GL_COLOR, 0, background.data());
@@ -107,6 +117,8 @@ void ScenePane::draw(const Look& look, glm::uvec2 size) {
     }
     const SceneRenderer::Target target{.framebuffer = picture_.get(), .width = size.x, .height = size.y};
     makeRenderer(look.state.samples);
+    recallExposure();
+    light_ = false;
     if (look.state.uv) return drawFlat(look, settings, target);
     const ViewEntry& wanted = viewEntries()[look.state.view];
     light_ = showsLight(settings.view);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -59,6 +60,7 @@ private:
     DrawSettings settingsOf(const Look& look);
     void drawFlat(const Look& look, const DrawSettings& settings, const SceneRenderer::Target& target);
     void makeRenderer(uint32_t samples);
+    void recallExposure();
 
     bool software_ = false;
     std::unique_ptr<SceneRenderer> renderer_; // made when there is first something to draw
@@ -70,7 +72,9 @@ private:
     std::unique_ptr<LineDraw> lines_;
     std::unique_ptr<VoxelDraw> voxels_;
     gl::Framebuffer picture_;
-    size_t shownView_ = 0; // of viewEntries(): the newest whose content was there
+    std::map<size_t, float> exposures_; // that views asked for when drawn last [EV]
+    size_t drawnView_ = 0;              // of viewEntries(): in the last picture
+    size_t shownView_ = 0;              // of viewEntries(): the newest whose content was there
     uint32_t samples_ = 0;
     bool light_ = false; // the last picture shows light of the scene
 };

@@ -51,12 +51,6 @@ const char* contentName(MapContent content) {
     return "light";
 }
 
-bool drawnByCpu() {
-    const std::string context = gl::describeContext();
-    return context.find("llvmpipe") != std::string::npos || context.find("softpipe") != std::string::npos ||
-           context.find("SWR") != std::string::npos;
-}
-
 Window::Desc windowDesc(const ViewerDesc& desc, const Preferences& preferences) {
     return {.width = desc.width > 0 ? desc.width : preferences.width,
             .height = desc.height > 0 ? desc.height : preferences.height,
@@ -83,7 +77,7 @@ bool sameFactors(const std::vector<Material>& a, const std::vector<Material>& b)
 Viewer::Viewer(const ViewerDesc& desc)
     : desc_(desc), start_(Clock::now()), preferencesPath_(preferencesPath()),
       preferences_(preferencesPath_.empty() ? Preferences{} : readPreferences(preferencesPath_)),
-      window_(windowDesc(desc, preferences_)), gui_(window_), software_(drawnByCpu()), pane_(software_),
+      window_(windowDesc(desc, preferences_)), gui_(window_), software_(gl::isSoftware()), pane_(software_),
       items_(desc.logActions) {
     clearWindow(window_); // there at once, whatever takes its time below
     spdlog::info("window: {}", gl::describeContext());
@@ -243,7 +237,12 @@ void Viewer::followBake(double time) {
     if (bridge_->update()) followMap();
     inspect();
     followInspected();
-    if (pane_.adapting()) pacer_.newMap(); // the exposure follows
+    if (!pane_.adapting())
+        settling_ = false;
+    else if (settling_)
+        pacer_.sceneChanged(); // the user waits for it
+    else
+        pacer_.newMap();
     const bool moves = time - moved_ < kRestsAfter;
     const double wanted = moves ? std::max(kMovingShare * desc_.budgetMs, kLeastBatchMs) : desc_.budgetMs;
     if (wanted == batchMs_) return;

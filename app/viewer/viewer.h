@@ -60,7 +60,7 @@ private:
     void drawScene(bool anew);
     LightmapTexture lightmap() const;
     const PublishedMap* map() const;
-    void changeScene() { sceneDirty_ = true; }
+    void changeScene() { sceneDirty_ = settling_ = true; }
     float pixelsPerPoint() const;
 
     // viewer_input.cpp
@@ -88,6 +88,8 @@ private:
     void storeBookmark();
     void captureFrame(double time);
     void recordPicture(double time);
+    Pixels captionedPicture() const;
+    bool settled();
     std::string captureFolder() const;
     void note(const std::string& text, bool bad = false);
     void tell(const char* kind, const std::string& what) const; // a line for --log-actions
@@ -121,12 +123,15 @@ private:
     Ui::Area area_;                   // of the scene, in the last frame
     bool sceneDirty_ = true, hidden_ = false, vsync_ = false;
     float scale_ = 1;
-    bool shotWithUi_ = false; // of the next frame
-    bool recordDue_ = false;  // the picture is not in the recording
-    double frameStart_ = 0;   // of the last frame
-    double flown_ = 0;        // when the flight went on last
-    double moved_ = -1e9;     // when the camera moved last
-    double batchMs_ = 0;      // that the bake was told
+    enum class Shot { None, Plain, WithUi };
+    Shot shot_ = Shot::None; // that waits for a settled picture
+    int shotFrames_ = 0;     // for how many frames it has
+    bool settling_ = false;  // the exposure follows what the user did
+    bool recordDue_ = false; // the picture is not in the recording
+    double frameStart_ = 0;  // of the last frame
+    double flown_ = 0;       // when the flight went on last
+    double moved_ = -1e9;    // when the camera moved last
+    double batchMs_ = 0;     // that the bake was told
     uint64_t logSeen_ = 0;
     std::string edited_;     // name of the edit under way, "": none
     std::string told_;       // content of the newest map, as it was told

@@ -3,6 +3,7 @@
 #include "app/viewer/views.h"
 #include "assets/error.h"
 #include "assets/warnings.h"
+#include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -245,8 +246,11 @@ void Viewer::storeBookmark() {
 }
 
 void Viewer::reloadShaders() {
+    if (shaderFolder().empty())
+        return note("the shaders are built in: start with --shaders FOLDER, a copy of them");
     try {
         pane_.reload();
+        bake_->reloadShaders();
         note("shaders reloaded");
     } catch (const Error& error) {
         spdlog::error("{}", error.what()); // shown as well: followLog()

@@ -22,15 +22,10 @@ std::vector<std::string> Viewer::captionLines() const {
 
 void Viewer::performCapture(Action action) {
     switch (action) {
-    case Action::Screenshot: {
-        const gl::Framebuffer& picture = pane_.picture();
-        if (picture.get() == 0) return;
-        Pixels pixels = readPixels(picture.get(), picture.width(), picture.height());
-        pixels.caption = captionLines();
-        return capture_.screenshot(std::move(pixels), captureFolder());
-    }
+    case Action::Screenshot:
     case Action::ScreenshotWithUi:
-        shotWithUi_ = true;
+        shot_ = action == Action::Screenshot ? Shot::Plain : Shot::WithUi;
+        shotFrames_ = 0;
         return;
     case Action::Caption:
         preferences_.caption = !preferences_.caption;
@@ -47,19 +42,32 @@ void Viewer::performCapture(Action action) {
     capture_.stop(now());
 }
 
-void Viewer::recordPicture(double time) {
+Pixels Viewer::captionedPicture() const {
     const gl::Framebuffer& picture = pane_.picture();
     Pixels pixels = readPixels(picture.get(), picture.width(), picture.height());
     pixels.caption = captionLines();
-    capture_.frame(std::move(pixels), time);
+    return pixels;
+}
+
+void Viewer::recordPicture(double time) {
+    capture_.frame(captionedPicture(), time);
     recordDue_ = false;
 }
 
+// Whether the waiting screenshot shows what it will show in the end; not for ever, as new light keeps coming.
+bool Viewer::settled() {
+    constexpr int kMostFrames = 10;
+    if (!pane_.adapting() || ++shotFrames_ > kMostFrames) return true;
+    changeScene();
+    return false;
+}
+
 void Viewer::captureFrame(double time) {
-    if (shotWithUi_) {
-        shotWithUi_ = false;
+    if (shot_ != Shot::None && settled()) {
         const glm::uvec2 size = window_.size();
-        capture_.screenshot(readPixels(0, size.x, size.y), captureFolder());
+        capture_.screenshot(shot_ == Shot::Plain ? captionedPicture() : readPixels(0, size.x, size.y),
+                            captureFolder());
+        shot_ = Shot::None;
     }
     if (recordDue_ && capture_.wants(time)) recordPicture(time);
 }

@@ -228,7 +228,7 @@ void BakePanel::draw(const PanelContext& context) {
         ImGui::PopStyleColor();
         if (ui::button("Back to what is baked")) waiting_ = false;
     }
-    if (ui::header("Method", ImGuiTreeNodeFlags_DefaultOpen)) drawMethod(done);
+    if (ui::header("Gathering", ImGuiTreeNodeFlags_DefaultOpen)) drawMethod(done);
     if (ui::header("Lightmap", ImGuiTreeNodeFlags_DefaultOpen)) drawLightmap(done);
     if (ui::header("When to stop", ImGuiTreeNodeFlags_DefaultOpen)) drawStop(done);
     if (ui::header("Light transport")) drawTransport(done);
