@@ -23,6 +23,8 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr uint32_t kSize = 64;
+// The bake gets what time the machine has left, under a sanitizer a tenth of that [s].
+constexpr double kPatience = 240;
 
 PreparedScene cornell() {
     return prepareScene(
@@ -86,7 +88,7 @@ class LiveBakeTest : public testing::Test {
 protected:
     ~LiveBakeTest() override { bake_.stop(); } // before the screen's memory goes, which it writes
 
-    bool until(const std::function<bool()>& what, double seconds = 60) {
+    bool until(const std::function<bool()>& what, double seconds = kPatience) {
         const auto end = Clock::now() + std::chrono::duration<double>(seconds);
         while (Clock::now() < end) {
             if (screen_.update() && onMap_) onMap_();
