@@ -9,6 +9,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/unit/markup.h"
+#include "tests/temporary_folder.h"
 
 namespace relume {
 namespace {

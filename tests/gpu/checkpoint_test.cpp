@@ -5,6 +5,7 @@
 #include "bake/checkpoint.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

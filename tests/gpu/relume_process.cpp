@@ -83,24 +83,4 @@ ProcessResult runRelume(const std::vector<std::string>& arguments,
     return runProgram(RELUME_BINARY, arguments, onErr, killAfter);
 }
 
-TemporaryFolder::TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "relume_test_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw Error("mkdtemp failed for " + pattern);
-    path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
-    std::filesystem::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(path_))
-        names.push_back(entry.path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 } // namespace relume

@@ -22,19 +22,4 @@ ProcessResult runProgram(const std::string& program, const std::vector<std::stri
                          const std::function<int(const std::string& err)>& onErr = nullptr,
                          double killAfter = 0);
 
-/// A new folder under the system's temporary one; removed with all that is in it.
-class TemporaryFolder {
-public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::string path(const std::string& name) const { return path_ + "/" + name; }
-    /// Names of the files in it, sorted.
-    std::vector<std::string> files() const;
-
-private:
-    std::string path_;
-};
-
 } // namespace relume

@@ -3,6 +3,7 @@
 #include "assets/gltf.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

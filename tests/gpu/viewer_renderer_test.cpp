@@ -6,6 +6,7 @@
 #include "shaders/shader_library.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/gpu/wall_scene.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

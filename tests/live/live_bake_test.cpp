@@ -5,6 +5,7 @@
 #include "assets/generate.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

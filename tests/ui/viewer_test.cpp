@@ -5,6 +5,7 @@
 #include "tests/ui/file_drop.h"
 #include "tests/ui/viewer_process.h"
 #include "tests/ui/virtual_display.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

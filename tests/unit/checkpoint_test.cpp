@@ -2,6 +2,7 @@
 #include "assets/error.h"
 #include "bake/checkpoint.h"
 #include "bake/patches.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +11,6 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-
-#include <unistd.h>
 
 namespace relume {
 namespace {
@@ -74,9 +73,6 @@ private:
 
 class CheckpointFile : public testing::Test {
 protected:
-    CheckpointFile() { std::filesystem::create_directories(folder_); }
-    ~CheckpointFile() override { std::filesystem::remove_all(folder_); }
-
     std::string bytes() const {
         std::ifstream in(path_, std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
@@ -100,9 +96,8 @@ protected:
         return problem(key, solver);
     }
 
-    const std::string folder_ =
-        std::filesystem::temp_directory_path() / ("relume_checkpoint_" + std::to_string(getpid()));
-    const std::string path_ = folder_ + "/some.checkpoint";
+    const TemporaryFolder folder_;
+    const std::string path_ = folder_.path("some.checkpoint");
     const CheckpointKey key_ = {"1.2.3", "size=64 samples=16 smooth=1", 0x0123456789abcdefull};
 };
 
@@ -229,8 +224,8 @@ TEST_F(CheckpointFile, AFailureLeavesTheOlderOne) {
     } broken;
     EXPECT_THROW(saveCheckpoint(path_, key_, broken), Broken);
     EXPECT_EQ(bytes(), older);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
-    EXPECT_THROW(saveCheckpoint(folder_ + "/nowhere/file", key_, solver), Error);
+    EXPECT_EQ(folder_.files().size(), 1u);
+    EXPECT_THROW(saveCheckpoint(folder_.path("nowhere/file"), key_, solver), Error);
 }
 
 TEST(SceneFingerprint, KnowsWhatABakeReads) {

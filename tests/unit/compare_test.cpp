@@ -1,10 +1,10 @@
 #include "assets/float_image.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -22,26 +22,18 @@ struct Outcome {
 
 class CompareTest : public testing::Test {
 protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ =
-            fs::path(testing::TempDir()) / (std::string("relume-") + info->name() + std::to_string(getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     std::string image(const std::string& name, uint32_t size, float value) const {
         FloatImage image{size, size, {}, {}, {}};
         for (const char* channel : {"R", "G", "B"})
             image.add(channel).assign(size_t(size) * size, value);
-        const std::string path = (folder_ / name).string();
+        const std::string path = folder_.path(name);
         writeImage(path, image);
         return path;
     }
 
     /// Runs `relume compare` with these arguments.
     Outcome compare(const std::string& arguments) const {
-        const std::string errors = (folder_ / "errors.txt").string();
+        const std::string errors = folder_.path("errors.txt");
         FILE* pipe = popen((RELUME_BINARY " compare " + arguments + " 2>'" + errors + "'").c_str(), "r");
         if (!pipe) return {};
         Outcome outcome;
@@ -57,7 +49,7 @@ protected:
         return outcome;
     }
 
-    fs::path folder_;
+    const TemporaryFolder folder_;
 };
 
 TEST_F(CompareTest, PrintsATable) {
@@ -101,7 +93,7 @@ TEST_F(CompareTest, RefusesUnlikeSizes) {
 
 TEST_F(CompareTest, FailsOnMissingFilesAndArguments) {
     const std::string a = image("a.exr", 4, 1);
-    const Outcome missing = compare(a + " " + (folder_ / "none.exr").string());
+    const Outcome missing = compare(a + " " + folder_.path("none.exr"));
     EXPECT_EQ(missing.status, 1);
     EXPECT_NE(missing.errors.find("none.exr: no such file"), std::string::npos) << missing.errors;
     EXPECT_EQ(compare(a).status, 2);
@@ -134,7 +126,7 @@ TEST_F(CompareTest, ComparesUnderAMask) {
     FloatImage half{4, 4, {}, {}, {}};
     for (const char* channel : {"R", "G", "B"})
         half.add(channel) = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
-    const std::string mask = (folder_ / "mask.png").string();
+    const std::string mask = folder_.path("mask.png");
     writeImage(mask, half);
     const Outcome outcome = compare(a + " " + b + " --mask " + mask);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -149,12 +141,12 @@ TEST_F(CompareTest, ComparesUnderAMask) {
     EXPECT_EQ(empty.status, 1);
     EXPECT_NE(empty.errors.find("zero.exr: lets no covered texel through"), std::string::npos)
         << empty.errors;
-    EXPECT_EQ(compare(a + " " + b + " --mask " + (folder_ / "none.png").string()).status, 1);
+    EXPECT_EQ(compare(a + " " + b + " --mask " + folder_.path("none.png")).status, 1);
 }
 
 TEST_F(CompareTest, DrawsTheDifferences) {
     const std::string a = image("a.exr", 4, 0.75f), b = image("b.exr", 4, 0.5f);
-    const std::string png = (folder_ / "diff.png").string();
+    const std::string png = folder_.path("diff.png");
     const Outcome outcome = compare(a + " " + b + " --diff " + png);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     EXPECT_NE(outcome.errors.find("difference / mean of B from 0 (black) to 0.5 (white)"), std::string::npos)
@@ -172,8 +164,8 @@ TEST_F(CompareTest, DrawsTheDifferences) {
     EXPECT_EQ(compare(a + " " + image("c.exr", 4, 0) + " --diff " + png).status, 0);
     EXPECT_EQ(readImage(png).planes[0][5] > 0.1f, true);
 
-    EXPECT_EQ(compare(a + " " + b + " --diff " + (folder_ / "diff.exr").string()).status, 2);
-    const Outcome unwritable = compare(a + " " + b + " --diff " + (folder_ / "no" / "diff.png").string());
+    EXPECT_EQ(compare(a + " " + b + " --diff " + folder_.path("diff.exr")).status, 2);
+    const Outcome unwritable = compare(a + " " + b + " --diff " + folder_.path("no/diff.png"));
     EXPECT_EQ(unwritable.status, 1);
     EXPECT_EQ(unwritable.output, "");
     EXPECT_NE(unwritable.errors.find("diff.png"), std::string::npos) << unwritable.errors;

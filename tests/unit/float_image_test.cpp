@@ -2,13 +2,13 @@
 
 #include "assets/error.h"
 #include "assets/file_write.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,21 +26,10 @@ namespace fs = std::filesystem;
 
 class FloatImageTest : public testing::Test {
 protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ =
-            fs::path(testing::TempDir()) / (std::string("relume-") + info->name() + std::to_string(getpid()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
+    std::string at(const std::string& name) const { return folder_.path(name); }
+    size_t fileCount() const { return folder_.files().size(); }
 
-    std::string at(const std::string& name) const { return (folder_ / name).string(); }
-    size_t fileCount() const {
-        return size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
-
-    fs::path folder_;
+    const TemporaryFolder folder_;
 };
 
 std::string bytesOf(const std::string& path) {

@@ -1,5 +1,6 @@
 #include "assets/error.h"
 #include "assets/gltf.h"
+#include "tests/temporary_folder.h"
 
 #include <cmath>
 #include <cstring>
@@ -9,25 +10,19 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace relume {
 namespace {
 
 class GltfExport : public testing::Test {
 protected:
-    GltfExport() {
-        folder_ = std::filesystem::temp_directory_path() / ("relume_export_" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    ~GltfExport() override { std::filesystem::remove_all(folder_); }
-    std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    std::string file(const std::string& name) const { return folder_.path(name); }
     Scene roundTrip(const Scene& scene) const {
         saveGlb(scene, file("a.glb"));
         return loadGltf(file("a.glb"));
     }
 
-    std::filesystem::path folder_;
+    const TemporaryFolder folder_;
 };
 
 std::string bytesOf(const std::string& path) {
@@ -250,7 +245,7 @@ TEST_F(GltfExport, WritesTheSameBytesTwiceAndLeavesNoTemporaryFile) {
     saveGlb(twoInstances(), file("b.glb"));
     saveGlb(twoInstances(), file("b.glb")); // replaces
     EXPECT_EQ(bytesOf(file("a.glb")), bytesOf(file("b.glb")));
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
+    EXPECT_EQ(folder_.files().size(), 2u);
 }
 
 TEST_F(GltfExport, NamesTheFileItCannotWrite) {
@@ -263,7 +258,7 @@ TEST_F(GltfExport, NamesTheFileItCannotWrite) {
     }
     std::filesystem::create_directory(file("folder"));
     EXPECT_THROW(saveGlb(twoInstances(), file("folder")), Error);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+    EXPECT_EQ(folder_.files().size(), 1u);
 }
 
 TEST_F(GltfExport, RefusesAShearedTextureTransform) {

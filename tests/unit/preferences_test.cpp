@@ -1,6 +1,7 @@
 #include "app/viewer/path_completion.h"
 #include "app/viewer/preferences.h"
 #include "assets/error.h"
+#include "tests/temporary_folder.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -16,14 +17,9 @@ namespace fs = std::filesystem;
 
 class PreferencesFile : public testing::Test {
 protected:
-    PreferencesFile() {
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~PreferencesFile() override { fs::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string path(const std::string& name) const { return folder_.path(name); }
     void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-    const fs::path folder_ = fs::path(testing::TempDir()) / "relume_preferences";
+    const TemporaryFolder folder_;
 };
 
 TEST_F(PreferencesFile, ComesBackAsItWas) {

@@ -3,6 +3,7 @@
 
 #include "assets/error.h"
 #include "assets/log.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +12,6 @@
 #include <fstream>
 #include <functional>
 #include <thread>
-
-#include <unistd.h>
 
 namespace relume {
 namespace {
@@ -25,13 +24,11 @@ constexpr uint32_t kSize = 64;
 
 class SessionTest : public testing::Test {
 protected:
-    SessionTest() : folder_(fs::temp_directory_path() / ("relume_session_" + std::to_string(getpid()))) {
-        fs::create_directories(folder_);
+    SessionTest() {
         fs::copy_file(kScenes + "cornell_small.glb", file(), fs::copy_options::overwrite_existing);
     }
-    ~SessionTest() override { fs::remove_all(folder_); }
 
-    std::string file() const { return folder_ / "scene.glb"; }
+    std::string file() const { return folder_.path("scene.glb"); }
 
     /// Frames until it is so. Counts the scenes that came.
     bool until(const std::function<bool()>& what, double seconds = 30) {
@@ -75,7 +72,7 @@ protected:
         return request;
     }
 
-    fs::path folder_;
+    const TemporaryFolder folder_;
     fs::file_time_type time_ = fs::file_time_type::clock::now();
     LiveBake bake_{{.device = "a device that nobody has"}};
     Session session_{bake_, request()};
@@ -151,8 +148,8 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
     dim(0.5f);
     const LoadedScene* scene = session_.scene();
     const float edited = brightest();
-    std::ofstream(folder_ / "bad.glb") << "this is no scene";
-    for (const std::string& path : {(folder_ / "bad.glb").string(), (folder_ / "none.glb").string()}) {
+    std::ofstream(folder_.path("bad.glb")) << "this is no scene";
+    for (const std::string& path : {folder_.path("bad.glb"), folder_.path("none.glb")}) {
         session_.open(path);
         EXPECT_EQ(session_.loadingPath(), path);
         ASSERT_TRUE(untilLoaded());

@@ -7,6 +7,7 @@
 #include "app/viewer/shortcuts.h"
 #include "app/viewer/view_options.h"
 #include "app/viewer/views.h"
+#include "tests/temporary_folder.h"
 
 #include <cmath>
 #include <filesystem>
@@ -254,15 +255,13 @@ TEST(ViewOptions, WindowSizesAreChecked) {
 
 class CaptureName : public testing::Test {
 protected:
-    CaptureName() { fs::create_directories(folder_); }
-    ~CaptureName() override { fs::remove_all(folder_); }
-    const fs::path folder_ = fs::path(testing::TempDir()) / "relume_capture_names";
+    const TemporaryFolder folder_;
 };
 
 TEST_F(CaptureName, NoNumberComesTwice) {
     std::set<std::string> names;
     for (const char* ending : {".png", ".png", ".mp4", "", ".png"}) {
-        const std::string name = captureName(folder_.string(), ending);
+        const std::string name = captureName(folder_.path(), ending);
         EXPECT_TRUE(names.insert(fs::path(name).stem().string()).second) << name;
         std::ofstream(name) << "x";
     }
@@ -270,26 +269,26 @@ TEST_F(CaptureName, NoNumberComesTwice) {
 }
 
 TEST_F(CaptureName, FollowsTheHighestNumber) {
-    const std::string first = captureName(folder_.string(), ".png");
+    const std::string first = captureName(folder_.path(), ".png");
     ASSERT_TRUE(first.ends_with("_001.png"));
     std::ofstream(first.substr(0, first.size() - 7) + "1234.png") << "x";
-    EXPECT_TRUE(captureName(folder_.string(), ".png").ends_with("_1235.png"));
+    EXPECT_TRUE(captureName(folder_.path(), ".png").ends_with("_1235.png"));
 }
 
 TEST_F(CaptureName, ScreenshotsAreWrittenWithoutOverwriting) {
     {
         Capture capture;
         for (uint8_t shade : {0, 255})
-            capture.screenshot({2, 2, std::vector<uint8_t>(16, shade)}, folder_.string());
+            capture.screenshot({2, 2, std::vector<uint8_t>(16, shade)}, folder_.path());
     } // which waits for them
-    std::vector<fs::path> files(fs::directory_iterator{folder_}, fs::directory_iterator{});
+    std::vector<fs::path> files(fs::directory_iterator{folder_.path()}, fs::directory_iterator{});
     EXPECT_EQ(files.size(), 2u);
 }
 
 TEST_F(CaptureName, ARecordingHoldsWhatWasOnScreen) {
     {
         Capture capture;
-        capture.start(folder_.string(), 10.0);
+        capture.start(folder_.path(), 10.0);
         EXPECT_TRUE(capture.wants(10.0));
         capture.frame({4, 4, std::vector<uint8_t>(64, 40)}, 10.0);
         EXPECT_FALSE(capture.wants(10.01)); // sooner than the next frame of a video
@@ -298,7 +297,7 @@ TEST_F(CaptureName, ARecordingHoldsWhatWasOnScreen) {
         EXPECT_FALSE(capture.recording());
     }
     size_t entries = 0, frames = 0;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
         ++entries;
         if (!entry.is_directory()) continue;
         for ([[maybe_unused]] const fs::directory_entry& frame : fs::directory_iterator(entry.path()))
