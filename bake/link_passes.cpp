@@ -38,9 +38,10 @@ void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, cons
 
 } // namespace
 
-RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, bool software) {
+RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, uint32_t samples, bool software) {
     RoundShape shape;
-    const uint32_t wanted = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
+    const uint32_t filling = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
+    const uint32_t wanted = samples > 0 ? std::min(filling, samples) : filling;
     shape.links = std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
     shape.all = emitters <= kAllEmitters;
     shape.picks = shape.all ? emitters : shape.links / kPointsPerPick;

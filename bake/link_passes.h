@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// What one round takes of each patch: so many that a batch fills the device.
+/// What one round takes of each patch: so many that a batch fills the device, but no more than are asked for.
 struct RoundShape {
     uint32_t links = 16;  // directions per patch
     uint32_t picks = 0;   // of emitters, per patch; all of them where there are few
@@ -19,7 +19,8 @@ struct RoundShape {
     bool all = true;      // pick i is emitter i
     uint32_t targets() const { return picks * points; }
 };
-RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, bool software);
+/// samples: directions per patch in all, 0: what the error needs.
+RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, uint32_t samples, bool software);
 
 /// Buffers of the link methods. "Sums" hold each replicate's samples by themselves:
 /// vec4[kReplicates][patches].

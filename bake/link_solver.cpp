@@ -44,7 +44,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                     ? buildEmitters(input.scene, input.patches.scene.mesh, {.size = input.patches.scene.size})
                     : EmitterSet{}),
       shape_(chooseRoundShape(input.patches.count, static_cast<uint32_t>(emitters_.polygons.size()),
-                              input.device.info().software())),
+                              settings.links.samples, input.device.info().software())),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),

@@ -6,11 +6,14 @@
 #include "bake/metrics.h"
 #include "tests/gpu/gpu_environment.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -225,6 +228,18 @@ std::vector<TracerKind> tracersOfTestDevice() {
         if (tracerProblem(kind, testDevice().info()).empty()) kinds.push_back(kind);
     }
     return kinds;
+}
+
+void expectTracersAgree(const Scene& scene, BakeDesc desc, double tolerance) {
+    std::optional<Baked> first;
+    for (const TracerKind kind : tracersOfTestDevice()) {
+        desc.tracer = kind;
+        Baked baked = bakeScene(scene, desc);
+        if (!first)
+            first = std::move(baked);
+        else
+            EXPECT_LT(relativeError(baked.lighting, first->lighting), tolerance) << tracerName(kind);
+    }
 }
 
 Scene scaled(Scene scene, float factor) {

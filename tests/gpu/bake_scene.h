@@ -98,6 +98,9 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc);
 /// The tracers that run on the test device.
 std::vector<TracerKind> tracersOfTestDevice();
 
+/// That every tracer of the test device bakes what the first one does, within this relative error.
+void expectTracersAgree(const Scene& scene, BakeDesc desc, double tolerance);
+
 /// The scene with every instance blown up by `factor` about the origin.
 Scene scaled(Scene scene, float factor);
 

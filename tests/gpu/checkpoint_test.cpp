@@ -3,6 +3,7 @@
 #include "assets/generate.h"
 #include "assets/gltf.h"
 #include "bake/checkpoint.h"
+#include "bake/link_solver.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
@@ -120,17 +121,34 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runRelume(arguments, onErr, killAfter);
     }
+    /// A bake that gets the signal as soon as it solves.
+    ProcessResult interrupted(const Strings& arguments, int number) const {
+        bool sent = false;
+        return bake(arguments, [&](const std::string& err) {
+            if (sent || !contains(err, " patches\n")) return 0;
+            sent = true;
+            return number;
+        });
+    }
     /// Kills the bake so many times, at moments drawn from the whole of its duration, and lets it go on from
     /// what is there. Whenever it came to its end it must have written the same bytes.
-    void killAndResume(const Strings& method, uint32_t kills, uint32_t seed) const {
+    /// method: the arguments of a bake of so many samples or passes; raised, up to the most, until it takes
+    /// its time on this device.
+    void killAndResume(const std::function<Strings(uint32_t)>& method, uint32_t count, uint32_t most,
+                       uint32_t kills, uint32_t seed) const {
         using Clock = std::chrono::steady_clock;
-        const auto start = Clock::now();
-        Strings arguments = method;
-        arguments.insert(arguments.end(), {"-o", map_});
-        ASSERT_EQ(bake(arguments).status, 0);
-        const std::string expected = bytesOf(map_);
-        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-        std::filesystem::remove(map_);
+        Strings arguments;
+        std::string expected;
+        double seconds = 0;
+        for (; seconds < kLongEnough && count <= most; count *= 4) {
+            arguments = method(count);
+            arguments.insert(arguments.end(), {"-o", map_});
+            const auto start = Clock::now();
+            ASSERT_EQ(bake(arguments).status, 0);
+            seconds = std::chrono::duration<double>(Clock::now() - start).count();
+            expected = bytesOf(map_);
+            std::filesystem::remove(map_);
+        }
         arguments.insert(arguments.end(), {"--checkpoint", checkpoint_, "--checkpoint-every", "0.05"});
 
         std::mt19937 random(seed);
@@ -153,6 +171,8 @@ protected:
         EXPECT_GE(goneOn, kills / 4);
     }
 
+    static constexpr double kLongEnough = 1.5; // three times what starting takes [s]
+
     TemporaryFolder folder_;
     const std::string scene_ = folder_.path("box.glb"), map_ = folder_.path("map.exr"),
                       checkpoint_ = folder_.path("map.checkpoint");
@@ -161,11 +181,19 @@ protected:
 } // namespace
 
 TEST_F(ResumedCommand, TwentyKillsChangeNoByte) {
-    killAndResume({"--samples", "384"}, 20, 1);
+    killAndResume(
+        [](uint32_t samples) {
+            return Strings{"--samples", std::to_string(samples)};
+        },
+        384, LinkSolver::kMaxSamples, 20, 1);
 }
 
 TEST_F(ResumedCommand, KillsChangeNoByteOfPairs) {
-    killAndResume({"--method", "pure", "--passes", "3"}, 6, 2);
+    killAndResume(
+        [](uint32_t passes) {
+            return Strings{"--method", "pure", "--cache", "none", "--passes", std::to_string(passes)};
+        },
+        3, Solver::kMaxPasses, 6, 2);
 }
 
 TEST_F(ResumedCommand, AnInterruptLeavesACheckpointAndNothingElse) {
@@ -181,12 +209,7 @@ TEST_F(ResumedCommand, AnInterruptLeavesACheckpointAndNothingElse) {
                                               "--json",
                                               folder_.path("map.json"),
                                           });
-        bool sent = false;
-        const ProcessResult r = bake(arguments, [&](const std::string& err) {
-            if (sent || !contains(err, " patches\n")) return 0;
-            sent = true;
-            return number;
-        });
+        const ProcessResult r = interrupted(arguments, number);
         EXPECT_EQ(r.status, 1) << r.err;
         EXPECT_TRUE(r.err.ends_with("interrupted: go on with --resume " + checkpoint_ + "\n")) << r.err;
         EXPECT_EQ(folder_.files(), (Strings{"box.glb", "map.checkpoint"}));
@@ -202,12 +225,11 @@ TEST_F(ResumedCommand, AnInterruptLeavesACheckpointAndNothingElse) {
 }
 
 TEST_F(ResumedCommand, AFileOfSomethingElseIsRefusedInOneLine) {
-    ASSERT_EQ(
-        bake({"--samples", "128", "-o", map_, "--checkpoint", checkpoint_, "--checkpoint-every", "0.05"})
-            .status,
-        0);
+    const Strings same = {"--samples", "384"};
+    Strings first = same;
+    first.insert(first.end(), {"-o", map_, "--checkpoint", checkpoint_});
+    ASSERT_EQ(interrupted(first, SIGINT).status, 1);
     ASSERT_TRUE(std::filesystem::exists(checkpoint_));
-    std::filesystem::remove(map_);
     const auto refused = [&](const std::string& file, const Strings& more, const std::string& why) {
         Strings arguments = {"--quiet", "bake", scene_, "--size", "64", "-o", map_, "--resume", file};
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -217,22 +239,22 @@ TEST_F(ResumedCommand, AFileOfSomethingElseIsRefusedInOneLine) {
         EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << r.err;
         EXPECT_FALSE(std::filesystem::exists(map_));
     };
-    const Strings same = {"--samples", "128"};
     refused(folder_.path("none"), same, "No such file");
     refused(scene_, same, "is no checkpoint");
-    refused(checkpoint_, {"--samples", "256"}, "samples=128 there, samples=256 here");
-    refused(checkpoint_, {"--samples", "128", "--no-smooth"}, "smooth=1 there, smooth=0 here");
-    refused(checkpoint_, {"--samples", "128", "--footprint"}, "footprint=0 there, footprint=1 here");
-    refused(checkpoint_, {"--samples", "128", "--reflectivity", "0.5"}, "reflectivity=1 there");
-    refused(checkpoint_, {"--samples", "128", "--method", "directional"}, "method=hybrid there");
-    refused(checkpoint_, {"--samples", "128", "--tracer", "bvh"}, "tracer=");
+    refused(checkpoint_, {"--samples", "256"}, "samples=384 there, samples=256 here");
+    refused(checkpoint_, {"--samples", "384", "--no-smooth"}, "smooth=1 there, smooth=0 here");
+    refused(checkpoint_, {"--samples", "384", "--footprint"}, "footprint=0 there, footprint=1 here");
+    refused(checkpoint_, {"--samples", "384", "--reflectivity", "0.5"}, "reflectivity=1 there");
+    refused(checkpoint_, {"--samples", "384", "--method", "directional"}, "method=hybrid there");
+    const std::string other = tracerName(tracersOfTestDevice().back());
+    refused(checkpoint_, {"--samples", "384", "--tracer", other}, "tracer=");
     const std::string half = folder_.path("half");
     const std::string whole = bytesOf(checkpoint_);
     std::ofstream(half, std::ios::binary) << whole.substr(0, whole.size() / 2);
     refused(half, same, "is damaged");
     // What it is not about: batches, caches and where the result goes.
     EXPECT_EQ(
-        bake({"--samples", "128", "-o", folder_.path("map.png"), "--resume", checkpoint_, "--batch-ms", "3"})
+        bake({"--samples", "384", "-o", folder_.path("map.png"), "--resume", checkpoint_, "--batch-ms", "3"})
             .status,
         0);
     saveGlb(generateScene("octagon"), scene_);

@@ -94,6 +94,8 @@ protected:
         while (Clock::now() < end) {
             if (screen_.update() && onMap_) onMap_();
             if (what()) return true;
+            if (bake_.status().phase == BakeStatus::Phase::Failed && bake_.status().bake == newest_)
+                return false;
             std::this_thread::sleep_for(1ms);
         }
         return false;
@@ -206,7 +208,8 @@ TEST_F(LiveBakeTest, AnotherMethodAndSizeKeepTheOldLightUntilTheirsIsThere) {
 TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
     using Phase = BakeStatus::Phase;
     BakeSettings settings = quickSettings();
-    settings.solver.error = 0.002;
+    settings.solver.error =
+        testDevice().info().software() ? 0.002 : 0.0002; // so long that all is seen in time
     start(settings, false);
     bake_.pause();
     ASSERT_TRUE(untilPhase(Phase::Paused));
@@ -233,7 +236,7 @@ TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
     bake_.resume();
     ASSERT_TRUE(untilPhase(Phase::Done));
     const double error = bake_.status().progress.error;
-    EXPECT_LE(error, 0.002);
+    EXPECT_LE(error, settings.solver.error);
     bake_.reset();
     ASSERT_TRUE(until([&] { return bake_.status().phase == Phase::Baking; }));
     ASSERT_TRUE(untilPhase(Phase::Done));
