@@ -21,10 +21,29 @@ constexpr double kBesideGrid = 0.1;
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 // Smoothing is as wide as its error is small: widths that are tried [texels], and how often the model is
 // asked again with what the new width showed.
-constexpr double kSigmaStep = 0.1, kMostSigma = 4.0;
+constexpr double kSigmaStep = 0.1, kLeastSigma = 0.3, kMostSigma = 4.0;
+constexpr double kSigmaGrowth = 2.0; // per try
 constexpr uint32_t kSigmaTries = 3;
 // A width within this factor of the best one is left alone: the error hardly depends on it there.
 constexpr double kSigmaSlack = 1.25;
+
+// Of a Gaussian of this width that is sampled at whole texels [texels^2]: less than sigma^2 where it is
+// narrow, and nothing below the least width.
+double kernelVariance(double sigma) {
+    if (sigma < kLeastSigma) return 0.0;
+    double sum = 0.5, squares = 0.0; // of one half
+    for (int k = 1; k <= 4.0 * kMostSigma; ++k) {
+        const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
+        sum += weight;
+        squares += k * k * weight;
+    }
+    return squares / sum;
+}
+
+// Square of what smoothing leaves and adds.
+double smoothedError(const shader::ResolveSums& sums) {
+    return sums.indirect + std::max(0.0f, sums.bias);
+}
 
 } // namespace
 
@@ -46,10 +65,18 @@ void LinkSolver::check() {
 
 void LinkSolver::resolve() {
     shader::ResolveSums sums = resolveOnce();
+    double best = state_.sigma, least = smoothedError(sums);
     for (uint32_t tries = 1; tries < kSigmaTries && buffers_.rows; ++tries) {
         const double before = state_.sigma;
         adaptSigma(sums);
         if (state_.sigma == before) break;
+        sums = resolveOnce();
+        if (smoothedError(sums) >= least) continue;
+        best = state_.sigma;
+        least = smoothedError(sums);
+    }
+    if (state_.sigma != best) {
+        state_.sigma = best;
         sums = resolveOnce();
     }
     learn(sums);
@@ -60,7 +87,7 @@ void LinkSolver::resolve() {
 // What sums over all patches say, and that there is a new result.
 void LinkSolver::learn(const shader::ResolveSums& sums) {
     state_.directVariance = sums.direct;
-    state_.indirectVariance = sums.indirect + std::max(0.0f, sums.bias);
+    state_.indirectVariance = smoothedError(sums);
     state_.directAtCheck = state_.directRounds;
     state_.linksAtCheck = state_.linkRounds;
     progress_.error = 0;
@@ -122,24 +149,26 @@ shader::ResolveSums LinkSolver::resolveOnce() {
 
 // Of a smooth function the mean over a width sigma is off by sigma^2 times its curvature, and independent
 // noise falls with the area, 1 / (1 + a sigma^2): the squares of both, as measured at one width, tell the
-// best one.
+// best one. The bias found holds on where nothing is smoothed, which shows none.
 void LinkSolver::adaptSigma(const shader::ResolveSums& sums) {
-    const double s2 = state_.sigma * state_.sigma;
     if (!(sums.raw > 0.0f)) {
         state_.sigma = 0;
         return;
     }
-    // Where nothing was smoothed only the ideal Gaussian's share is known, and no bias: try a narrow one.
-    constexpr double kGaussian = 4.0 * std::numbers::pi;
+    constexpr double kGaussian = 4.0 * std::numbers::pi; // the ideal one's share, until it is measured
+    const double v = kernelVariance(state_.sigma);
+    if (v > 0) state_.curvature = std::max(0.0f, sums.bias) / (v * v);
     const double a =
-        s2 > 0 && sums.indirect > 0.0f ? std::max(0.0, sums.raw / sums.indirect - 1.0) / s2 : kGaussian;
-    const double b = s2 > 0 ? std::max(0.0f, sums.bias) / (s2 * s2) : sums.raw;
+        v > 0 && sums.indirect > 0.0f ? std::max(0.0, sums.raw / sums.indirect - 1.0) / v : kGaussian;
+    const double b = state_.curvature >= 0 ? state_.curvature : sums.raw;
     const auto error = [&](double sigma) {
-        const double t2 = sigma * sigma;
-        return sums.raw / (1.0 + a * t2) + b * t2 * t2;
+        const double t = kernelVariance(sigma);
+        return sums.raw / (1.0 + a * t) + b * t * t;
     };
+    // Far from the width that was measured the model says little.
+    const double most = std::min(kMostSigma, kSigmaGrowth * std::max(state_.sigma, kLeastSigma));
     double best = 0;
-    for (double sigma = kSigmaStep; sigma <= kMostSigma; sigma += kSigmaStep) {
+    for (double sigma = kLeastSigma; sigma <= most; sigma += kSigmaStep) {
         if (error(sigma) < error(best)) best = sigma;
     }
     const bool close = best < kSigmaSlack * state_.sigma && state_.sigma < kSigmaSlack * best;

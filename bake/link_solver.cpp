@@ -163,16 +163,21 @@ uint32_t LinkSolver::footprintSamples() const {
     return shape_.links * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
 }
 
+bool LinkSolver::linksDone() const {
+    return state_.linkRounds >= roundsWanted() || (hybrid_ && settings_.passes == 1);
+}
+
+bool LinkSolver::directDone() const {
+    return !hybrid_ || shape_.picks == 0 || state_.directRounds >= roundsWanted();
+}
+
 bool LinkSolver::enoughRounds() const {
-    const uint32_t wanted = roundsWanted();
-    const bool linksDone = state_.linkRounds >= wanted || (hybrid_ && settings_.passes == 1);
-    const bool directDone = shape_.picks == 0 || !hybrid_ || state_.directRounds >= wanted;
-    return linksDone && directDone;
+    return linksDone() && directDone();
 }
 
 bool LinkSolver::wantsDirect() const {
-    if (!hybrid_ || shape_.picks == 0) return false;
-    if (state_.directRounds == 0 || settings_.passes == 1) return true;
+    if (directDone()) return false;
+    if (state_.directRounds == 0 || linksDone()) return true;
     if (state_.linkRounds == 0) return false;
     if (settings_.links.samples > 0) return state_.directRounds <= state_.linkRounds;
     const double linkShare = static_cast<double>(senders_.size()) / input_.patches.chunkCount();

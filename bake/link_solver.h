@@ -49,7 +49,8 @@ private:
         double ratio = 0;                          // of the last two changes
         double iterationError = 1, directVariance = 0, indirectVariance = 0,
                coarseVariance = 0; // of the light, R, G and B of all patches together
-        double sigma = 2.0; // of smoothing [texels]; what suits the noise is learnt from the result itself
+        double sigma = 2.0;    // of smoothing [texels]; what suits the noise is learnt from the result itself
+        double curvature = -1; // of the light, squared: bias over width^4; negative: not known yet
         uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
         Settling settling;                            // of the first round, then of the result
     };
@@ -59,6 +60,8 @@ private:
     void begin(Stage stage);
     uint32_t roundsWanted() const;
     uint32_t footprintSamples() const;
+    bool linksDone() const;
+    bool directDone() const;
     bool enoughRounds() const;
     bool wantsDirect() const;
     void directBatch();

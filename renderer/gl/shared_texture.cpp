@@ -4,9 +4,6 @@
 #include "renderer/gl/errors.h"
 
 #include <spdlog/fmt/fmt.h>
-#include <fcntl.h>
-#include <linux/kcmp.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 namespace relume::gl {
@@ -15,23 +12,6 @@ namespace {
 bool canImport() {
     return epoxy_has_gl_extension("GL_EXT_memory_object") &&
            epoxy_has_gl_extension("GL_EXT_memory_object_fd");
-}
-
-bool sameFile(int a, int b) {
-    const pid_t self = getpid();
-    return syscall(SYS_kcmp, self, self, KCMP_FILE, a, b) == 0;
-}
-
-// Only a successful import owns the descriptor, but NVIDIA's driver (580.159) closes it in any case and opens
-// files of its own under the same number: closing that one leaves the process without memory on the device.
-// So the driver gets a duplicate, and of a refused one only what still is a duplicate is closed.
-bool importMemory(GLuint memory, const SharedTexture::Desc& desc) {
-    const int duplicate = fcntl(desc.fd, F_DUPFD_CLOEXEC, 0);
-    if (duplicate < 0) return false;
-    glImportMemoryFdEXT(memory, desc.memorySize, GL_HANDLE_TYPE_OPAQUE_FD_EXT, duplicate);
-    if (glGetError() == GL_NO_ERROR) return true;
-    if (sameFile(duplicate, desc.fd)) ::close(duplicate);
-    return false;
 }
 
 Error refusal(const SharedTexture::Desc& desc, const char* what) {
@@ -65,9 +45,11 @@ SharedTexture::SharedTexture(const Desc& desc) : width_(desc.width), height_(des
     memory_ = Handle<deleteMemoryObject>(memory);
     const GLint dedicated = GL_TRUE;
     glMemoryObjectParameterivEXT(memory, GL_DEDICATED_MEMORY_OBJECT_EXT, &dedicated);
-    const bool imported = importMemory(memory, desc);
-    ::close(desc.fd);
-    if (!imported) throw refusal(desc, "the memory is refused");
+    glImportMemoryFdEXT(memory, desc.memorySize, GL_HANDLE_TYPE_OPAQUE_FD_EXT, desc.fd);
+    if (glGetError() != GL_NO_ERROR) {
+        ::close(desc.fd); // only a successful import owns it
+        throw refusal(desc, "the memory is refused");
+    }
     glCreateTextures(GL_TEXTURE_2D, 1, &texture);
     texture_ = Handle<deleteTexture>(texture);
     glTextureParameteri(texture, GL_TEXTURE_TILING_EXT, GL_OPTIMAL_TILING_EXT);

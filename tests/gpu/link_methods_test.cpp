@@ -1,5 +1,6 @@
 // Directional and hybrid: closed forms, the pure method, and what must not change a byte.
 #include "assets/generate.h"
+#include "bake/link_solver.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
@@ -246,6 +247,32 @@ TEST(Hybrid, ManyEmittersAddUp) {
         }
     }
     EXPECT_NEAR(sum / exactSum, 1.0, 0.005);
+}
+
+// Also where so little is left that smoothing would do harm.
+TEST(Hybrid, TheErrorToldFallsToTheOneAskedFor) {
+    const double asked = 0.001;
+    const auto baker =
+        makeBaker(generateScene("cornell_small"),
+                  {.size = 32, .passes = 0, .error = asked, .method = Method::Hybrid, .smooth = true});
+    Solver& solver = baker->solver();
+    double least = 1;
+    while (!solver.done()) {
+        solver.step();
+        const double error = solver.progress().error;
+        ASSERT_LT(error, 1.5 * least) << solver.progress().samples << " samples";
+        least = std::min(least, error);
+    }
+    EXPECT_TRUE(solver.progress().converged);
+    EXPECT_LE(solver.progress().error, asked);
+}
+
+TEST(Hybrid, AnErrorOutOfReachEndsWithTheMostSamples) {
+    const Baked baked =
+        bakeScene(generateScene("cornell_small"),
+                  {.size = 12, .passes = 0, .error = 1e-7, .method = Method::Hybrid, .smooth = true});
+    EXPECT_EQ(baked.progress.samples, LinkSolver::kMaxSamples);
+    EXPECT_FALSE(baked.progress.converged);
 }
 
 } // namespace relume

@@ -288,9 +288,11 @@ TEST(Display, ADeviceThatOpenGlDoesNotKnowIsCopiedFrom) {
     EXPECT_EQ(forced.bake().status().doing, why) << "a scene changes nothing";
 }
 
-// Descriptors without memory behind them.
+// Descriptors without memory behind them. NVIDIA's driver (580.159) refuses them, and then also the process'
+// next memory.
 TEST(Display, WhatOpenGlCannotImportIsRefused) {
     if (!canShare()) GTEST_SKIP() << "images cannot be shared";
+    if (!testDevice().info().software()) GTEST_SKIP() << "the driver would refuse memory after it";
     LightmapExchange exchange;
     MapOffer offer{.set = 1, .size = kSize, .shared = true, .memorySize = kSize * kSize * 8};
     for (int& fd : offer.fds)
