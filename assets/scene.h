@@ -78,17 +78,36 @@ struct Camera {
     float znear = 0.01f, zfar = 0.0f; // [m], zfar 0: infinite
 };
 
-enum class LightType : uint32_t { Point, Spot, Directional };
+enum class LightType : uint32_t { Point, Spot, Directional, Rectangle, Disc };
 
-/// KHR_lights_punctual. Shines along the transform's -Z.
+/// A light without geometry, which nothing sees and which blocks nothing. Point, spot and directional lights
+/// are those of KHR_lights_punctual, shining along the transform's -Z, with an extent that softens their
+/// shadows. Rectangles and discs lie in the transform's XY plane around its origin and shine from the side of
+/// its -Z, alike in all directions.
 struct Light {
     std::string name;
     LightType type = LightType::Point;
-    glm::mat4 transform{1.0f};
-    glm::vec3 color{1.0f};                                   // linear
-    float intensity = 1.0f;                                  // [cd], directional: [lux]
-    float range = 0.0f;                                      // [m], 0: infinite
-    float innerConeAngle = 0.0f, outerConeAngle = 0.785398f; // [rad]
+    glm::mat4 transform{1.0f}; // light to world; its scale means nothing
+    glm::vec3 color{1.0f};     // linear
+    float intensity = 1.0f;    // point, spot: [cd]; directional: [lux]; rectangle, disc: [cd/m^2]
+    float range = 0.0f;        // point, spot: [m], 0: infinite
+    float innerConeAngle = 0.0f, outerConeAngle = 0.785398f; // spot: from the axis [rad]
+    float radius = 0.0f; // point, spot: of a sphere that shines [m], 0: none; disc: of the disc [m]
+    float angle = 0.0f;  // directional: across the disc in the sky that it comes from [rad], 0: one direction
+    glm::vec2 size{1.0f}; // rectangle: along X and Y [m]
+    int node = -1;        // of the file, whose light it is; -1: the file has it not
+};
+
+/// What is seen where nothing else is: one radiance, or an equirectangular picture. Its row 0 is the zenith
+/// (+Y), and its middle column lies in -Z, so that +X is to the right of it.
+struct Sky {
+    glm::vec3 radiance{0.0f};       // [cd/m^2]; of a picture: factor on it
+    float rotation = 0.0f;          // of the picture about +Y, counter-clockwise from above [rad]
+    std::string file;               // of the picture, "" for none
+    uint32_t width = 0, height = 0; // of the picture
+    std::vector<glm::vec3> pixels;  // [height][width] [cd/m^2], linear
+
+    bool shines() const { return radiance != glm::vec3(0.0f); }
 };
 
 /// A scene as the file tells it, with the node hierarchy resolved to world transforms. No GPU, no lightmap
@@ -102,6 +121,7 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<Camera> cameras;
     std::vector<Light> lights;
+    Sky sky;
     std::vector<std::string> warnings; // what of the file is not supported or was mended, one line each
 };
 
