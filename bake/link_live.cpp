@@ -84,7 +84,7 @@ std::vector<ChunkRange> LinkSolver::showUnfinished() {
     const std::vector<ChunkRange> all = {{0, input_.patches.chunkCount()}};
     VkCommandBuffer cmd = commands_.begin();
     if (live_.all) {
-        const bool bounces = inLinks || hasSolution() || !hybrid_;
+        const bool bounces = inLinks || hasSolution() || !hasDirect();
         recordCopy(cmd, bounces ? light.ligIn : buffers_.direct, buffers_.result, all);
         vk::barrier(cmd);
     }

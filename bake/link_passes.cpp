@@ -2,6 +2,7 @@
 
 #include "bake/footprint.h"
 #include "bake/host_gather.h"
+#include "bake/lamp_light.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -65,14 +66,15 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     }
     batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
     const uint64_t targetCount = uint64_t{desc.shape.targets()} * batchChunks * kChunk;
-    if (desc.hybrid && targetCount > 0) {
+    if (desc.direct)
+        directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
+    if (desc.points) {
         const uint64_t words = (desc.shape.targets() + kTargetsPerWord - 1) / kTargetsPerWord;
         targets = vk::Buffer(device, {.size = vec4s(targetCount), .name = "points on emitters"});
         picks = vk::Buffer(device, {.size = vec4s(uint64_t{desc.shape.picks} * batchChunks * kChunk),
                                     .name = "picked emitters"});
         bits = vk::Buffer(device,
                           {.size = words * batchChunks * kChunk * sizeof(uint32_t), .name = "seen points"});
-        directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
     }
     const uint64_t chunkBytes = uint64_t{desc.shape.links} * kChunk * sizeof(uint32_t);
     const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
@@ -100,7 +102,7 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
     const uint64_t batch = std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
     // Of the largest round shape: what a small scene takes does not matter.
     const uint64_t perChunk = kChunk * (kAllEmitters * kLeastSamples * sizeof(glm::vec4) + 128);
-    const uint64_t sums = kReplicates * (1 + (hybrid ? 1 : 0) + (hybrid && settings.links.smooth ? 1 : 0));
+    const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with lamps
     const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint64_t scale = settings.links.indirectScale, receivers = count / scale;
@@ -113,7 +115,7 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
     const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
     const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
     return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
-           footprint + batch * perChunk;
+           footprint + batch * perChunk + LampLight::bytes(chunkCount, software);
 }
 
 void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -155,7 +157,7 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                                         : nullptr;
     gatherLinks(*pool_, {.links = work.links->as<uint32_t>() + work.linksOffset,
                          .radiance = light.radiance.as<glm::vec4>(),
-                         .direct = work.hybrid && !coarse ? buffers.direct.as<glm::vec4>() : nullptr,
+                         .direct = work.direct && !coarse ? buffers.direct.as<glm::vec4>() : nullptr,
                          .ligOut = coarse ? nullptr : light.ligOut.as<glm::vec4>(),
                          .sums = sums,
                          .firstChunk = work.range.first,
@@ -182,7 +184,7 @@ void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, cons
                                                    : 0;
     const shader::LinkPush push{.links = work.address(),
                                 .packed = buffers.packed.address(),
-                                .direct = work.hybrid && !coarse ? buffers.direct.address() : 0,
+                                .direct = work.direct && !coarse ? buffers.direct.address() : 0,
                                 .ligOut = coarse ? 0 : light.ligOut.address(),
                                 .sums = sums,
                                 .firstChunk = work.range.first,
@@ -212,7 +214,7 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
                                        const LinkBuffers& buffers, const Work& work) const {
     const shader::InterpolatePush push{.taps = buffers.taps.address(),
                                        .coarse = buffers.coarseSums.address(),
-                                       .direct = work.hybrid ? buffers.direct.address() : 0,
+                                       .direct = work.direct ? buffers.direct.address() : 0,
                                        .ligOut = light.ligOut.address(),
                                        .sums = work.accumulate ? buffers.linkSums.address() : 0,
                                        .coarseDistances =
@@ -227,9 +229,9 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
 }
 
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                                   bool hybrid, uint32_t samples) const {
+                                   bool direct, uint32_t samples) const {
     const shader::ComposePush push{.sums = buffers.linkSums.address(),
-                                   .direct = hybrid ? buffers.direct.address() : 0,
+                                   .direct = direct ? buffers.direct.address() : 0,
                                    .light = light.ligIn.address(),
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};

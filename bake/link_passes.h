@@ -48,7 +48,8 @@ struct LinkBuffers {
     struct Desc {
         const EmitterSet& emitters;
         RoundShape shape;
-        bool hybrid = false;
+        bool points = false; // on emitters
+        bool direct = false; // of any kind
         bool smooth = false;
         const CoarsePatches* coarse = nullptr;
         uint64_t linkBytes = 0; // at most, for links that later bounces gather again
@@ -90,7 +91,7 @@ public:
         uint64_t linksOffset = 0;  // of range.first [links]
         VkDeviceAddress nodes = 0; // PyramidNode[], of recordDistances: links may be nodes
         uint32_t samples = 0;      // per patch
-        bool hybrid = false;       // direct light is added to ligOut
+        bool direct = false;       // direct light is added to ligOut
         bool accumulate = false;   // add to linkSums
         bool distances = false;    // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
@@ -110,7 +111,7 @@ public:
                            const Work& work) const;
     /// ligIn = direct light and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                       bool hybrid, uint32_t samples) const;
+                       bool direct, uint32_t samples) const;
     /// direct, as DirectPass left it after so many rounds.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds) const;

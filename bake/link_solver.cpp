@@ -1,6 +1,7 @@
 #include "bake/link_solver.h"
 
 #include "bake/directions.h"
+#include "bake/point_trace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,13 +46,15 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                     : EmitterSet{}),
       shape_(chooseRoundShape(input.patches.count, static_cast<uint32_t>(emitters_.polygons.size()),
                               settings.links.samples, input.device.info().software())),
+      lamps_(input.device, input.scene, input.patches, shape_.links),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
       buffers_(input.device, input.patches,
                {.emitters = emitters_,
                 .shape = shape_,
-                .hybrid = hybrid_,
+                .points = shape_.picks > 0,
+                .direct = hasDirect(),
                 .smooth = hybrid_ && settings.links.smooth,
                 .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
                 .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
@@ -168,7 +171,7 @@ bool LinkSolver::linksDone() const {
 }
 
 bool LinkSolver::directDone() const {
-    return !hybrid_ || shape_.picks == 0 || state_.directRounds >= roundsWanted();
+    return !hasDirect() || state_.directRounds >= roundsWanted();
 }
 
 bool LinkSolver::enoughRounds() const {
@@ -186,7 +189,7 @@ bool LinkSolver::wantsDirect() const {
         return variance * then / (now * now * cost);
     };
     return gain(state_.directVariance, state_.directAtCheck, state_.directRounds,
-                kSegmentCost * shape_.targets()) >
+                kSegmentCost * (shape_.targets() + lamps_.rays())) >
            gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, shape_.links * linkShare);
 }
 
@@ -207,38 +210,37 @@ uint32_t LinkSolver::chunksOfStage() const {
 }
 
 void LinkSolver::directBatch() {
-    const ChunkRange range = nextRange(directRate_, buffers_.batchChunks);
+    const uint32_t most =
+        lamps_.empty() ? buffers_.batchChunks : std::min(buffers_.batchChunks, lamps_.batchChunks());
+    const ChunkRange range = nextRange(directRate_, most);
     const auto start = Clock::now();
-    const SegmentWork work{.firstChunk = range.first,
-                           .chunkCount = range.count,
-                           .targetCount = shape_.targets(),
-                           .targets = &buffers_.targets,
-                           .bits = &buffers_.bits,
-                           .rays = &buffers_.rays};
-    VkCommandBuffer cmd = commands_.begin();
-    directPass_.recordSamples(cmd, input_.light, buffers_, shape_, range, state_.directRounds);
-    vk::barrier(cmd);
-    double cpuTrace = 0;
-    if (input_.tracer.onCpu()) {
-        vk::hostBarrier(cmd);
-        commands_.run();
-        cmd = commands_.begin();
-        const auto traceStart = Clock::now();
-        input_.tracer.segments(cmd, work);
-        cpuTrace = secondsSince(traceStart);
+    const PointTracer on{commands_, timestamps_, input_.tracer};
+    const auto note = [&](const PointTimes& times) {
+        progress_.traceSeconds += times.trace;
+        progress_.gatherSeconds += times.gather;
+    };
+    if (shape_.picks > 0) {
+        const SegmentWork work{.firstChunk = range.first,
+                               .chunkCount = range.count,
+                               .targetCount = shape_.targets(),
+                               .targets = &buffers_.targets,
+                               .bits = &buffers_.bits,
+                               .rays = &buffers_.rays};
+        const uint32_t round = state_.directRounds;
+        const auto samples = [&](VkCommandBuffer cmd) {
+            directPass_.recordSamples(cmd, input_.light, buffers_, shape_, range, round);
+        };
+        note(tracePoints(on, work, samples, [&](VkCommandBuffer cmd) {
+            directPass_.recordGather(cmd, input_.light, buffers_, shape_, range, round + 1);
+        }));
     }
-    timestamps_.reset(cmd);
-    timestamps_.mark(cmd, 0);
-    if (!input_.tracer.onCpu()) input_.tracer.segments(cmd, work);
-    vk::barrier(cmd);
-    timestamps_.mark(cmd, 1);
-    directPass_.recordGather(cmd, input_.light, buffers_, shape_, range, state_.directRounds + 1);
-    timestamps_.mark(cmd, 2);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    progress_.traceSeconds += input_.tracer.onCpu() ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
-    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
+    for (uint32_t group = 0; group < lamps_.groups(); ++group) {
+        const LampLight::Work work{.group = group, .round = state_.directRounds, .range = range};
+        const auto samples = [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, input_.light, work); };
+        note(tracePoints(on, lamps_.segments(work, buffers_.rays), samples, [&](VkCommandBuffer cmd) {
+            lamps_.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
+        }));
+    }
     directRate_ = updatedRate(directRate_, range.count, directRate_ * batchMs_, secondsSince(start));
     order_.finish(range);
     if (settings_.live && !hasSolution()) live_.ranges.push_back(range);
@@ -275,7 +277,7 @@ void LinkSolver::beginBounce() {
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const uint32_t samples = counted ? 0 : state_.linkRounds * shape_.links;
-        gatherPass_.recordCompose(cmd, input_.light, buffers_, hybrid_, samples);
+        gatherPass_.recordCompose(cmd, input_.light, buffers_, hasDirect(), samples);
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
@@ -318,7 +320,7 @@ void LinkSolver::linkBatch() {
                                     .linksOffset = offset,
                                     .nodes = footprints_ ? footprints_->nodes() : 0,
                                     .samples = shape_.links,
-                                    .hybrid = hybrid_,
+                                    .direct = hasDirect(),
                                     .accumulate = state_.last,
                                     .range = range};
     if (gatherPass_.onCpu() && !input_.tracer.records() && !footprints_)
@@ -396,7 +398,7 @@ void LinkSolver::interpolate() {
         VkCommandBuffer cmd = commands_.begin();
         gatherPass_.recordInterpolate(cmd, input_.light, buffers_,
                                       {.samples = shape_.links,
-                                       .hybrid = hybrid_,
+                                       .direct = hasDirect(),
                                        .accumulate = state_.last,
                                        .distances = distances,
                                        .range = {first, std::min(kInterpolatedChunks, chunks - first)}});

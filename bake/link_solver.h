@@ -2,6 +2,7 @@
 
 #include "assets/clock.h"
 #include "bake/footprint.h"
+#include "bake/lamp_light.h"
 #include "bake/link_passes.h"
 #include "bake/settling.h"
 #include "bake/vk/commands.h"
@@ -64,6 +65,8 @@ private:
     bool directDone() const;
     bool enoughRounds() const;
     bool wantsDirect() const;
+    /// Direct light: of emitters, which hybrid samples, and of lamps.
+    bool hasDirect() const { return shape_.picks > 0 || !lamps_.empty(); }
     void directBatch();
     void linkBatch();
     void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
@@ -97,6 +100,7 @@ private:
     bool hybrid_;
     EmitterSet emitters_;
     RoundShape shape_;
+    LampLight lamps_;
     CoarsePatches coarse_; // empty: links start at all patches
     LinkBuffers buffers_;
     std::optional<Footprints> footprints_;

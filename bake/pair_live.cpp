@@ -50,6 +50,11 @@ void PairSolver::abortPass() {
     if (passBoundary()) return;
     countRays();
     progress_.passFraction = 0;
+    if (!lampsDone()) {
+        clearCounters();
+        clearLamps();
+        return;
+    }
     state_.inPass = false;
     fresh_.assign(fresh_.size(), Fresh::LigIn);
 }

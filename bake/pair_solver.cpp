@@ -23,6 +23,8 @@ constexpr double kMaxGrowth = 4.0;
 constexpr uint64_t kCacheShare = 3;
 // Patches whose change one thread sums up at a time.
 constexpr uint32_t kMeasured = 1u << 16;
+// Per patch and round, to each lamp that has an extent: few enough for a batch to be short.
+constexpr uint32_t kLampRays = 16;
 
 } // namespace
 
@@ -36,12 +38,16 @@ uint64_t PairSolver::bytes(uint32_t chunkCount, bool software, const SolverSetti
         sizeof(shader::Patch) + sizeof(shader::PatchEdges) + sizeof(shader::Sender) + sizeof(glm::vec4);
     const uint64_t senders = list ? patches / (window * window) * kSender + patches * sizeof(uint32_t) : 0;
     const uint64_t live = settings.live ? patches * sizeof(glm::vec4) : 0;
-    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1) + live; // the host's copy
+    const uint64_t lamps =
+        patches * sizeof(glm::vec4) * (shader::kReplicates + 1) + LampLight::bytes(chunkCount, software);
+    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1) + live +
+           lamps; // the host's copy
 }
 
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
       settings_(settings), senders_(input, settings),
+      lamps_(device_, settings.transport.rtrad ? Scene{} : input.scene, patches_, kLampRays),
       bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
       gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_), commands_(device_),
       timestamps_(device_, 3), rows_(PairPlan::superCount(patches_.chunkCount())) {
@@ -52,6 +58,7 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
                               .symmetric = senders_.kind() == SenderKind::Patches};
     buffers_ = PairBuffers(device_, PairPlan::superBlocks(most), senders_.kind());
     rays_ = vk::Buffer(device_, {.size = 2 * kRayCounters * sizeof(uint32_t), .name = "ray counters"});
+    makeLamps();
 
     // RTRad starts from the emission itself, lighting from nothing.
     last_.assign(patches_.scene.patches.size(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
@@ -91,6 +98,11 @@ void PairSolver::makeCache() {
 void PairSolver::step() {
     if (done_) return;
     const auto start = Clock::now();
+    if (!lampsDone()) {
+        lampBatch();
+        progress_.seconds += secondsSince(start);
+        return;
+    }
     if (!state_.inPass) beginPass();
     Batch batch = cutBatch();
     if (!batch.supers.empty()) run(batch);
@@ -108,7 +120,10 @@ void PairSolver::step() {
 
 void PairSolver::beginPass() {
     VkCommandBuffer cmd = commands_.begin();
-    vkCmdFillBuffer(cmd, light_.ligOut.handle(), 0, VK_WHOLE_SIZE, 0);
+    if (lamps_.empty())
+        vkCmdFillBuffer(cmd, light_.ligOut.handle(), 0, VK_WHOLE_SIZE, 0);
+    else
+        recordCopy(cmd, direct_, light_.ligOut, {{0, patches_.chunkCount()}});
     vkCmdFillBuffer(cmd, rays_.handle(), 0, VK_WHOLE_SIZE, 0);
     radiancePass_.record(cmd, light_, settings_.transport);
     vk::barrier(cmd);
@@ -402,7 +417,13 @@ SolverState PairSolver::state() {
 }
 
 std::vector<StatePart> PairSolver::stateParts() {
-    return {part(device_, light_.ligIn), part(device_, light_.ligOut), part(device_, rays_), part(rows_)};
+    std::vector<StatePart> parts = {part(device_, light_.ligIn), part(device_, light_.ligOut),
+                                    part(device_, rays_), part(rows_)};
+    if (!lamps_.empty()) {
+        parts.push_back(part(device_, lampSums_));
+        parts.push_back(part(device_, direct_));
+    }
+    return parts;
 }
 
 void PairSolver::restore(const SolverState& state) {

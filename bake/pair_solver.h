@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bake/bits_cache.h"
+#include "bake/lamp_light.h"
 #include "bake/pair_plan.h"
 #include "bake/pair_senders.h"
 #include "bake/settling.h"
@@ -12,6 +13,8 @@ namespace relume {
 /// Where a pair method stands; with ligOut and the rows that are left all that a bake needs to go on at a
 /// super-block's border.
 struct PairState {
+    uint32_t lampRounds = 0;      // of direct light of lamps, before the first pass; finished
+    uint32_t lampChunk = 0;       // of the next one, the first chunk that is left
     uint32_t passes = 0;          // finished
     bool inPass = false;          // then:
     uint32_t row = 0, column = 0; // the next super-block; symmetric: in either order
@@ -40,7 +43,10 @@ public:
     void restore(const SolverState& state) override;
 
     void setPriority(std::vector<uint8_t> chunkSeen) override;
-    bool passBoundary() const override { return done_ || !state_.inPass; }
+    bool passBoundary() const override {
+        const bool inLamps = !lampsDone() && (state_.lampRounds > 0 || state_.lampChunk > 0);
+        return done_ || !(state_.inPass || inLamps);
+    }
     void abortPass() override;
     LiveLight liveLight() override;
 
@@ -60,6 +66,11 @@ private:
         double cost = 0; // expected [ms]
     };
     void makeCache();
+    void makeLamps();
+    void clearLamps();
+    void clearCounters();
+    bool lampsDone() const;
+    void lampBatch();
     void beginPass();
     void listSupers();
     Batch cutBatch();
@@ -90,7 +101,10 @@ private:
     Tracer& tracer_;
     SolverSettings settings_;
     PairSenders senders_;
-    bool bothEnds_; // RTRad's pairs of patches are traced from either end
+    LampLight lamps_;
+    vk::Buffer lampSums_, direct_; // vec4[kReplicates][patches]; vec4 per patch, which ligOut starts from
+    double lampRate_ = 0;          // [chunks/ms], 0: not measured yet
+    bool bothEnds_;                // RTRad's pairs of patches are traced from either end
     RadiancePass radiancePass_;
     GatherPass gatherPass_;
     FinishPass finishPass_;

@@ -14,6 +14,7 @@ using glm::uint;
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/emitters.glsl"
+#include "shaders/lib/lamps.glsl"
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/units.glsl"
 #include "shaders/lib/packed_light.glsl"
@@ -24,6 +25,7 @@ static_assert(sizeof(SuperBlock) == 56 && sizeof(Sender) == 12);
 static_assert(sizeof(OcclusionPush) <= 128 && sizeof(GatherPush) <= 128); // what every device takes
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
+static_assert(sizeof(Lamp) == 92 && sizeof(LampPush) <= 128);
 static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);
 static_assert(sizeof(PyramidNode) == 52);
 static_assert(sizeof(BvhNode) == 48 && sizeof(BvhTriangle) == 48);

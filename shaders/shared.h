@@ -115,6 +115,30 @@ struct EmitterPolygon {
 // EmitterNode::link: the first of two children that lie side by side, or the polygon of a leaf with this bit.
 CONST uint kEmitterLeaf = 0x80000000u;
 CONST uint kNoEmitter = 0xffffffffu;
+
+CONST uint kLampPoint = 0u; // or sphere
+CONST uint kLampSpot = 1u;
+CONST uint kLampSun = 2u;
+CONST uint kLampRectangle = 3u;
+CONST uint kLampDisc = 4u;
+CONST uint kLampSky = 5u;
+
+// What shines without geometry. Colour, size and place are apart: samples never depend on the colour.
+struct Lamp {
+    vec3 position; // [m], of its centre
+    uint type;     // kLamp...
+    vec3 axis;     // unit, where it shines to; sky: none
+    float radius;  // point, spot: of the sphere, disc: [m]; sun: sine of half the angle across
+    vec3 edgeU;    // rectangle: a side [m]; disc: unit, in its plane
+    float range;   // point, spot: [m]; 0: infinite
+    vec3 edgeV;    // edgeU x edgeV is along the axis
+    float coneScale;
+    vec3 color;       // point, spot: [cd]; sun: [lux]; rectangle, disc: [cd/m^2]; sky: factor on the picture, or [cd/m^2]
+    float coneOffset; // spot: the square of cosine * coneScale + coneOffset, clamped, is its share of colour
+    uint firstTarget; // of its group's
+    uint samples;     // per patch and round: 1, or a multiple of 2 * kReplicates
+    uint seed;
+};
 CONST uint kEmitterDepth = 48u; // inner nodes on the longest way down, at most
 
 // A node of the tree over the emitters; 0 is the root. Every normal below it is within the cone.
@@ -331,6 +355,26 @@ struct DirectPush {
     uint pickCount;
     uint pointCount;
     uint all;
+    uint patchCount;
+    float scale; // from the sum of all sums to the mean
+};
+struct LampPush {
+    ADDRESS patches;
+    ADDRESS lamps;     // Lamp[]
+    ADDRESS targets;   // vec4[chunkCount][targetCount][64]: end of the segment, and 0: not to be traced
+    ADDRESS bits;      // as SegmentPush
+    ADDRESS sums;      // vec4[kReplicates][patchCount], added to
+    ADDRESS direct;    // vec4[patchCount]: the mean so far
+    ADDRESS skyPixels; // vec4[height][width]: lib/sky.glsl
+    ADDRESS skyRows;   // float[height]
+    uvec2 skySize;     // 0: one radiance
+    float skyRotation; // [rad]
+    float reach;       // [m], out of the scene from anywhere in it
+    uint firstChunk;
+    uint firstLamp;
+    uint lampCount;   // of the group
+    uint targetCount; // of the group, per patch
+    uint round;
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };

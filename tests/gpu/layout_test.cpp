@@ -75,7 +75,7 @@ const std::map<std::string, size_t> kSizes = {
     SIZE_OF(ComposePush),      SIZE_OF(ChangePush),      SIZE_OF(ResolveSums),    SIZE_OF(SmoothPush),
     SIZE_OF(LinkDistancePush), SIZE_OF(PyramidNode),     SIZE_OF(PyramidPush),    SIZE_OF(FootprintPush),
     SIZE_OF(SuperBlock),       SIZE_OF(Sender),          SIZE_OF(CoarseTaps),     SIZE_OF(InterpolatePush),
-    SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(SuperBlock),     SIZE_OF(Sender)};
+    SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),           SIZE_OF(LampPush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.

@@ -1,0 +1,101 @@
+#include "bake/lamp_light.h"
+
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// Rays of one group, per patch: two words of bits. A lamp with more is a group by itself.
+constexpr uint32_t kGroupRays = 64;
+// Chunks of one batch: their targets are 64 KiB each.
+constexpr uint32_t kGpuBatch = 2048, kSoftwareBatch = 512;
+constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
+
+uint32_t wordsOf(uint32_t targets) {
+    return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
+}
+
+uint32_t mostChunks(uint32_t chunkCount, bool software) {
+    return std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
+}
+
+} // namespace
+
+LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, uint32_t samples)
+    : set_(buildLamps(scene, patches.scene.mesh, samples)) {
+    if (set_.empty()) return;
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < set_.lamps.size(); ++i) {
+        shader::Lamp& lamp = set_.lamps[i];
+        if (groups_.empty() || groups_.back().targets + lamp.samples > kGroupRays)
+            groups_.push_back({.first = i});
+        Group& group = groups_.back();
+        lamp.firstTarget = group.targets;
+        group.targets += lamp.samples;
+        ++group.count;
+        rays_ += lamp.samples;
+        most = std::max(most, group.targets);
+    }
+    batchChunks_ = mostChunks(patches.chunkCount(), device.info().software());
+    lamps_ = vk::makeBuffer(device, set_.lamps, "lamps");
+    skyPixels_ = vk::makeBuffer(device, set_.skyPixels, "sky");
+    skyRows_ = vk::makeBuffer(device, set_.skyRows, "rows of the sky");
+    const uint64_t places = uint64_t{batchChunks_} * kChunk;
+    targets_ = vk::Buffer(device, {.size = places * most * sizeof(glm::vec4), .name = "points on lamps"});
+    bits_ = vk::Buffer(device, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
+    samples_ = vk::ComputeProgram(device, "lamp_samples");
+    gather_ = vk::ComputeProgram(device, "lamp_gather");
+}
+
+uint64_t LampLight::bytes(uint32_t chunkCount, bool software) {
+    const uint64_t places = uint64_t{mostChunks(chunkCount, software)} * kChunk;
+    return places * (kGroupRays * sizeof(glm::vec4) + wordsOf(kGroupRays) * sizeof(uint32_t));
+}
+
+shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) const {
+    const Group& group = groups_[work.group];
+    return {.patches = light.patches.address(),
+            .lamps = lamps_.address(),
+            .targets = targets_.address(),
+            .bits = bits_.address(),
+            .skyPixels = skyPixels_.address(),
+            .skyRows = skyRows_.address(),
+            .skySize = set_.skySize,
+            .skyRotation = set_.skyRotation,
+            .reach = set_.reach,
+            .firstChunk = work.range.first,
+            .firstLamp = group.first,
+            .lampCount = group.count,
+            .targetCount = group.targets,
+            .round = work.round,
+            .patchCount = light.chunkCount * kChunk,
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+}
+
+void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
+    samples_.dispatch(cmd, push(light, work), work.range.count, groups_[work.group].count);
+}
+
+SegmentWork LampLight::segments(const Work& work, const vk::Buffer& rays) const {
+    return {.firstChunk = work.range.first,
+            .chunkCount = work.range.count,
+            .targetCount = groups_[work.group].targets,
+            .targets = &targets_,
+            .bits = &bits_,
+            .rays = &rays};
+}
+
+void LampLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
+                             const vk::Buffer& sums, const vk::Buffer& direct) const {
+    shader::LampPush p = push(light, work);
+    p.sums = sums.address();
+    p.direct = direct.address();
+    gather_.dispatch(cmd, p, work.range.count);
+}
+
+} // namespace relume

@@ -1,0 +1,61 @@
+// Light of a group of lamps, added to the replicates' sums. Where the whole lamp's unshadowed light is known, its samples tell
+// the share that is seen; else their mean is the light. One workgroup per chunk, one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/lamp_group.glsl"
+
+layout(local_size_x = 64) in;
+
+const uint kTargetsPerWord = 32u; // lib/segments.glsl
+
+uint chunk, lane;
+
+bool seen(uint target) {
+    uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
+    uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
+    return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
+}
+
+void main() {
+    chunk = gl_WorkGroupID.x;
+    lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
+    vec3 value[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
+    for (uint k = 0u; k < push.lampCount; ++k) {
+        Lamp l = loadLamp(k);
+        vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
+        for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
+        float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
+        for (uint s = 0u; s < l.samples; ++s) {
+            LampRay ray = lampRay(l, p, s);
+            bool reached = ray.traced && seen(l.firstTarget + s);
+            part[s % kReplicates] += ray.light;
+            all += ray.light.r;
+            if (!reached) continue;
+            partSeen[s % kReplicates] += ray.light;
+            visible += ray.light.r;
+        }
+        float whole = lampWhole(l, p), share = all > 0.0 ? visible / all : 0.0;
+        for (uint q = 0u; q < kReplicates; ++q) {
+            vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
+            if (l.samples == 1u) {
+                unit = partSeen[0];
+            } else if (whole >= 0.0) { // a ratio, and its residuals as in direct.comp
+                float residual = all > 0.0 ? float(kReplicates) * (partSeen[q].r - share * part[q].r) / all : 0.0;
+                unit = vec3(whole * (share + residual));
+            }
+            value[q] += l.color * unit;
+        }
+    }
+    if ((p.flags & kPatchSends) == 0u) return;
+    vec3 total = vec3(0.0);
+    Vec4s sums = Vec4s(push.sums);
+    for (uint q = 0u; q < kReplicates; ++q) {
+        vec3 s = sums.items[q * push.patchCount + index].rgb + value[q];
+        sums.items[q * push.patchCount + index] = vec4(s, 0.0);
+        total += s;
+    }
+    Vec4s(push.direct).items[index] = vec4(max(total * push.scale, 0.0), 1.0);
+}

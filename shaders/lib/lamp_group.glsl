@@ -1,0 +1,41 @@
+// What sampling a group of lamps and gathering their light share: both draw the same rays.
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+#include "lib/form_factor.glsl"
+#include "lib/lamps.glsl"
+layout(push_constant, scalar) uniform Push { LampPush push; };
+vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
+float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
+#include "lib/sky.glsl"
+
+// Keeps the numbers of lamps apart from those of directions and of emitters.
+const uint kLampSalt = 0x85ebca6bu;
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
+Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp + indexInGroup]; }
+
+struct LampRay {
+    vec3 target;
+    vec3 light; // unshadowed, per unit of the lamp's colour; the mean over a lamp's samples counts
+    bool traced;
+};
+
+LampRay lampRay(Lamp l, Patch p, uint s) {
+    uint number = push.round * l.samples + s, index = replicateIndex(number);
+    uint seed = hash32((replicateSeed(seedKey(p), number) ^ kLampSalt) + l.seed);
+    LampRay ray;
+    if (l.type == kLampSky) {
+        // With a picture in pairs, one by each way, that share their numbers.
+        uint turn = push.skySize.x > 0u ? index / 2u : index;
+        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, push.skySize, push.skyRotation);
+        ray.target = p.position + push.reach * sky.direction;
+        ray.light = sky.light;
+    } else {
+        LampSample point = lampSample(l, p, sobolPoint(index, seed), push.reach);
+        ray.target = point.target;
+        ray.light = vec3(point.factor);
+    }
+    // Below the geometric horizon it is hidden, and not asked for.
+    ray.traced = ray.light != vec3(0.0) && (p.flags & kPatchSends) != 0u && dot(ray.target - p.position, p.normal) > p.offset;
+    return ray;
+}

@@ -1,0 +1,91 @@
+// What shines without geometry: points, spheres, suns, rectangles and discs. Legal as GLSL and as C++ (namespace
+// relume::shader); after lib/form_factor.glsl and lib/sampling.glsl. Factors are lighting (irradiance / pi) per unit of the
+// lamp's colour; occlusion is the caller's.
+
+// Rays end this share of their length before a lamp: one that is fixed to a surface must not be hidden by it.
+CONST float kLampGap = 1e-4f;
+
+// KHR_lights_punctual: the recommended end at the range, and the spot's smooth edge. d: from the patch to the lamp [m].
+FUNCTION float lampFade(Lamp l, vec3 d) {
+    float distance2 = dot(d, d), fade = 1.0f;
+    if (l.range > 0.0f) {
+        float share = distance2 / (l.range * l.range);
+        fade = max(0.0f, 1.0f - share * share);
+    }
+    if (l.type != kLampSpot) return fade;
+    float cone = clamp(-dot(l.axis, d) / sqrt(max(distance2, 1e-30f)) * l.coneScale + l.coneOffset, 0.0f, 1.0f);
+    return fade * cone * cone;
+}
+
+// A direction within the cone around unit `axis` whose half angle has this squared sine, uniform in solid angle.
+FUNCTION vec3 coneDirection(vec3 axis, float sine2, vec2 u) {
+    vec3 c = cosineDirection(u); // whose x and y are uniform in the unit disc
+    float r2 = c.x * c.x + c.y * c.y;
+    float drop = r2 * sine2 / (1.0f + sqrt(1.0f - sine2)); // 1 - cosine
+    float scale = sqrt(drop * (2.0f - drop) / max(r2, 1e-30f));
+    return aroundNormal(axis, vec3(c.x * scale, c.y * scale, 1.0f - drop));
+}
+
+FUNCTION vec3 rectangleCorner(Lamp l, float u, float v) { return l.position + (u - 0.5f) * l.edgeU + (v - 0.5f) * l.edgeV; }
+
+// Of the whole lamp, unshadowed; negative where only samples tell. A sphere or sun that stands above the horizon as a whole
+// lights like its centre.
+FUNCTION float lampWhole(Lamp l, Patch p) {
+    if (l.type == kLampDisc || l.type == kLampSky) return -1.0f;
+    if (l.type == kLampRectangle)
+        return polygonFormFactor(p.position, p.shading, rectangleCorner(l, 0.0f, 0.0f), rectangleCorner(l, 1.0f, 0.0f),
+                                 rectangleCorner(l, 1.0f, 1.0f), rectangleCorner(l, 0.0f, 1.0f));
+    if (l.type == kLampSun) {
+        float c = -dot(p.shading, l.axis);
+        if (l.radius > 0.0f && abs(c) < l.radius) return -1.0f;
+        return kInvPi * max(c, 0.0f);
+    }
+    vec3 d = l.position - p.position;
+    float height = dot(p.shading, d), d2 = dot(d, d);
+    if (l.radius > 0.0f && abs(height) < l.radius) return -1.0f;
+    if (!(height > 0.0f)) return 0.0f;
+    return kInvPi * height / (d2 * sqrt(d2)) * lampFade(l, d);
+}
+
+struct LampSample {
+    vec3 target;  // end of the ray [m]
+    float factor; // its mean over u is the whole lamp's
+};
+
+// Uniform u in [0, 1)^2. reach: far outside the scene [m]. Not of the sky.
+FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
+    LampSample s;
+    s.target = l.position;
+    s.factor = 0.0f;
+    if (l.type == kLampSun) {
+        float sine2 = l.radius * l.radius;
+        vec3 w = coneDirection(-l.axis, sine2, u);
+        s.target = p.position + reach * w;
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (1.0f + sqrt(1.0f - sine2));
+        return s;
+    }
+    if (l.type == kLampRectangle || l.type == kLampDisc) {
+        float area = length(cross(l.edgeU, l.edgeV));
+        s.target = rectangleCorner(l, u.x, u.y);
+        if (l.type == kLampDisc) {
+            vec3 c = cosineDirection(u);
+            s.target = l.position + l.radius * (c.x * l.edgeU + c.y * l.edgeV);
+            area = 3.14159265f * l.radius * l.radius;
+        }
+        vec3 d = s.target - p.position;
+        float d2 = dot(d, d), received = dot(p.shading, d), sent = -dot(l.axis, d);
+        if (received > 0.0f && sent > 0.0f) s.factor = kInvPi * area * (received / d2) * (sent / d2);
+    } else {
+        vec3 d = l.position - p.position;
+        float d2 = dot(d, d), r2 = l.radius * l.radius;
+        if (!(d2 > 0.0f)) return s;
+        float sine2 = min(r2 / d2, 1.0f), away = sqrt(d2);
+        vec3 w = coneDirection(d / away, sine2, u);
+        float along = dot(w, d);
+        float within = r2 - (d2 - along * along);
+        s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(d2, r2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, d);
+    }
+    s.target += kLampGap * (p.position - s.target);
+    return s;
+}
