@@ -5,6 +5,8 @@
 #include "assets/error.h"
 #include "assets/log.h"
 
+#include <algorithm>
+
 namespace relume {
 namespace {
 
@@ -39,9 +41,14 @@ void warnIfDark(const Scene& scene, const PatchSet& patches) {
             patches.emission[i].r > 0 || patches.emission[i].g > 0 || patches.emission[i].b > 0;
         if (emits && (patches.scene.patches[i].flags & shader::kPatchSends) != 0) return;
     }
-    spdlog::warn("{}: nothing that has lightmap UVs emits, the lightmap will be black: give a material an "
-                 "emissive factor{}",
-                 scene.path, scene.lights.empty() ? "" : " (punctual lights are read but not baked)");
+    const bool lit = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+        return light.intensity > 0.0f && light.color != glm::vec3(0.0f);
+    });
+    if (lit || scene.sky.shines()) return;
+    spdlog::warn("{}: nothing that has lightmap UVs emits and no light shines, the lightmap will be black: "
+                 "add a light "
+                 "or give a material an emissive factor",
+                 scene.path);
 }
 
 void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher) {

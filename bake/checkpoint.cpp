@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/file_write.h"
+#include "bake/lamps.h"
 #include "bake/patches.h"
 
 #include <algorithm>
@@ -167,6 +168,10 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches) {
         hash.add(uint64_t{image.width} << 32 | image.height);
         hash.add(image.rgba);
     }
+    const LampSet lamps = buildLamps(scene, mesh, 1);
+    hash.add(lamps.lamps);
+    hash.add(lamps.skyPixels);
+    hash.add(&lamps.skyRotation, sizeof(lamps.skyRotation));
     return hash.value();
 }
 

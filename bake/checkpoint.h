@@ -17,7 +17,7 @@ struct CheckpointKey {
     uint64_t scene = 0;   // sceneFingerprint
 };
 
-/// A 64-bit hash of all that a bake reads from its scene: patches, triangles, materials and images.
+/// A 64-bit hash of all that a bake reads from its scene: patches, triangles, materials, images and lights.
 uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches);
 
 /// Writes where the solver stands, through a temporary file and piece by piece: memory for another copy of

@@ -59,6 +59,9 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     buffers_ = PairBuffers(device_, PairPlan::superBlocks(most), senders_.kind());
     rays_ = vk::Buffer(device_, {.size = 2 * kRayCounters * sizeof(uint32_t), .name = "ray counters"});
     makeLamps();
+    if (settings.transport.rtrad && !(input.scene.lights.empty() && !input.scene.sky.shines()))
+        spdlog::warn("the preset rtrad knows emissive materials only: {} lights are left out",
+                     input.scene.lights.size() + (input.scene.sky.shines() ? 1 : 0));
 
     // RTRad starts from the emission itself, lighting from nothing.
     last_.assign(patches_.scene.patches.size(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));

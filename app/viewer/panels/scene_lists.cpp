@@ -12,7 +12,19 @@ namespace relume {
 namespace {
 
 const char* typeName(LightType type) {
-    return type == LightType::Point ? "point" : type == LightType::Spot ? "spot" : "directional";
+    switch (type) {
+    case LightType::Point:
+        return "point";
+    case LightType::Spot:
+        return "spot";
+    case LightType::Directional:
+        return "directional";
+    case LightType::Rectangle:
+        return "rectangle";
+    case LightType::Disc:
+        return "disc";
+    }
+    return "";
 }
 
 } // namespace
@@ -79,10 +91,11 @@ void drawInstances(const PanelContext& context, const LoadedScene& scene) {
 
 void drawLights(const LoadedScene& scene) {
     const std::vector<Light>& lights = scene.prepared.scene.lights;
-    if (lights.empty()) ImGui::TextWrapped("The file has no punctual lights.");
+    if (lights.empty()) ImGui::TextWrapped("The file has no lights but emissive materials.");
     for (size_t i = 0; i < lights.size(); ++i) {
         const Light& light = lights[i];
-        const char* unit = light.type == LightType::Directional ? "lux" : "cd";
+        const bool area = light.type == LightType::Rectangle || light.type == LightType::Disc;
+        const char* unit = area ? "cd/m^2" : light.type == LightType::Directional ? "lux" : "cd";
         ImGui::BulletText("%s", fmt::format("{}: {}, {:.4g} {}", nameOf(light.name, "light", i),
                                             typeName(light.type), light.intensity, unit)
                                     .c_str());

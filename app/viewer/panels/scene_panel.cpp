@@ -40,6 +40,7 @@ void ScenePanel::measure(const LoadedScene& scene, uint32_t size) {
     copy.meshes = scene.prepared.scene.meshes;
     copy.instances = scene.prepared.scene.instances;
     copy.lights = scene.prepared.scene.lights;
+    copy.sky.radiance = scene.prepared.scene.sky.radiance;
     copy.warnings = scene.prepared.scene.warnings;
     measuring_ =
         std::async(std::launch::async, [copy = std::move(copy), size] { return inspectScene(copy, size); });
