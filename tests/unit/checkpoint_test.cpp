@@ -167,7 +167,7 @@ TEST_F(CheckpointFile, WhatIsNoneIsCalledSo) {
     EXPECT_TRUE(contains(problem(key_), "is empty")) << problem(key_);
     write("v/1\x01 some picture that is long enough to be a checkpoint");
     EXPECT_TRUE(contains(problem(key_), "is no checkpoint")) << problem(key_);
-    write("relume checkpoint 2\n and whatever its format will be");
+    write("relume checkpoint 1\n and whatever its format was");
     EXPECT_TRUE(contains(problem(key_), "another version")) << problem(key_);
     std::filesystem::remove(path_);
     std::filesystem::create_directory(path_);
