@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr float kNarrowestCone = 1e-3f; // [rad]; in a cone of 0 nothing is lit, a metre at 1 km is enough
+constexpr float kNarrowestCone = 1e-3f; // [rad]; one of 0 lights nothing, this one a metre at 1 km
 // Exporters write transforms to 6 or 7 digits.
 constexpr double kTransformTolerance = 1e-3; // of a unit axis [1], for what is told to the user
 constexpr double kSameTransform = 1e-6;      // of a unit axis [1], for what is kept as it is

@@ -48,8 +48,8 @@ void addTube(SceneBuilder& builder) {
     builder.add("Tube", tube.paint(lit).denser(2.5), {-1.31, 2.23, -kHalfZ + 0.07});
 }
 
-// Each gives 50 to 300 lux where it shines, the sun, low behind thin clouds, a patch of 500. Comments: what
-// such a lamp gives in all [lm].
+// Along its axis each gives 20 to 150 lux; the sun, low behind thin clouds, leaves a patch of 600 on the
+// floor. Comments: what such a lamp gives in all [lm].
 void addLights(SceneBuilder& builder) {
     Light bulb{.name = "Bulb", .type = LightType::Point};
     bulb.color = {1.0f, 0.76f, 0.50f};

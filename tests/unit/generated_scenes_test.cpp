@@ -319,7 +319,7 @@ TEST(Lamps, BalanceEachOther) {
         if (light.type == LightType::Disc) candela *= 3.14159265 * light.radius * light.radius;
         const double lux = candela / (hit.distance * hit.distance);
         EXPECT_GT(lux, 15.0) << light.name;
-        EXPECT_LT(lux, 400.0) << light.name;
+        EXPECT_LT(lux, 200.0) << light.name;
     }
 }
 
