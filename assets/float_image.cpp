@@ -3,6 +3,7 @@
 #include "assets/error.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
+#include "assets/radiance_hdr.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -36,18 +37,26 @@
 namespace relume {
 namespace {
 
-constexpr uint64_t kMostPixels = uint64_t(1) << 30; // 32768^2: a larger header is a broken file
 constexpr uint64_t kMostPacking = 65536; // pixels per byte; the best case of EXR's codecs is far below
 
-enum class Format { Exr, Png };
+enum class Format { Exr, Png, Hdr };
+enum class Access { Read, Write };
 
-Format formatOf(const std::string& path) {
+Format formatOf(const std::string& path, Access access) {
     std::string ending = std::filesystem::path(path).extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     if (ending == ".exr") return Format::Exr;
     if (ending == ".png") return Format::Png;
-    throw Error(path + ": unknown image ending '" + ending + "': use .exr or .png");
+    if (ending == ".hdr" && access == Access::Read) return Format::Hdr;
+    throw Error(path + ": unknown image ending '" + ending + "': use .exr or .png" +
+                (access == Access::Read ? ", or .hdr" : ""));
+}
+
+void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels) {
+    if (width * height <= mostPixels) return;
+    throw Error(path + ": has " + std::to_string(width) + " x " + std::to_string(height) +
+                " pixels, more than " + std::to_string(mostPixels >> 20) + " Mpixel: scale it down");
 }
 
 std::string readBytes(const std::string& path) {
@@ -97,16 +106,17 @@ private:
     uint64_t at_ = 0;
 };
 
-FloatImage readExr(const std::string& path, const std::string& bytes) {
+FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
     MemoryInput stream(path.c_str(), bytes);
     Imf::InputFile file(stream);
     const Imath::Box2i window = file.header().dataWindow();
     const uint64_t width = uint64_t(int64_t(window.max.x) - window.min.x + 1);
     const uint64_t height = uint64_t(int64_t(window.max.y) - window.min.y + 1);
-    if (width > kMostPixels || height > kMostPixels || width * height > kMostPixels ||
+    if (width > kMostImagePixels || height > kMostImagePixels || width * height > kMostImagePixels ||
         width * height / kMostPacking > bytes.size())
         throw std::runtime_error("its header claims " + std::to_string(width) + " x " +
                                  std::to_string(height));
+    checkPixels(path, width, height, mostPixels);
 
     FloatImage image;
     image.width = uint32_t(width);
@@ -176,11 +186,22 @@ std::string encodeExr(const std::string& path, const FloatImage& image, ExrType 
     return std::move(stream.bytes);
 }
 
-FloatImage readPng(const std::string& bytes) {
+FloatImage readHdr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
+    const RadianceHeader header = readRadianceHeader(bytes);
+    if (uint64_t(header.width) * header.height / kMostPacking > bytes.size())
+        throw std::runtime_error("its header claims " + std::to_string(header.width) + " x " +
+                                 std::to_string(header.height));
+    checkPixels(path, header.width, header.height, mostPixels);
+    return decodeRadiance(bytes, header);
+}
+
+FloatImage readPng(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
     if (bytes.size() > size_t(std::numeric_limits<int>::max())) throw std::runtime_error("too large");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
+    if (stbi_info_from_memory(data, size, &width, &height, &channels))
+        checkPixels(path, uint64_t(width), uint64_t(height), mostPixels);
     // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
     const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
@@ -219,11 +240,14 @@ double linearFromSrgb(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-FloatImage readImage(const std::string& path) {
-    const Format format = formatOf(path);
+FloatImage readImage(const std::string& path, uint64_t mostPixels) {
+    const Format format = formatOf(path, Access::Read);
     const std::string bytes = readBytes(path);
     try {
-        return format == Format::Exr ? readExr(path, bytes) : readPng(bytes);
+        if (format == Format::Hdr) return readHdr(path, bytes, mostPixels);
+        return format == Format::Exr ? readExr(path, bytes, mostPixels) : readPng(path, bytes, mostPixels);
+    } catch (const Error&) {
+        throw;
     } catch (const std::bad_alloc&) {
         throw Error(path + ": does not fit into memory: use a smaller image");
     } catch (const std::exception& error) {
@@ -265,7 +289,7 @@ void writeImage(const std::string& path, const FloatImage& image, ExrType type) 
     for (const std::vector<float>& plane : image.planes)
         ASSERT(plane.size() == size_t(image.width) * image.height);
     std::string bytes;
-    if (formatOf(path) == Format::Png) {
+    if (formatOf(path, Access::Write) == Format::Png) {
         bytes = encodePng(image, path);
     } else {
         try {
@@ -280,7 +304,7 @@ void writeImage(const std::string& path, const FloatImage& image, ExrType type) 
 }
 
 void checkWritable(const std::string& path, uint64_t bytes) {
-    formatOf(path);
+    formatOf(path, Access::Write);
     checkFileWritable(path, bytes);
 }
 

@@ -26,9 +26,13 @@ enum class ExrType { Float, Half };
 double srgbFromLinear(double linear);
 double linearFromSrgb(double encoded);
 
+/// 32768^2 pixels: a header that claims more is a broken file's.
+constexpr uint64_t kMostImagePixels = uint64_t(1) << 30;
+
 /// Reads an OpenEXR (all channels as float, the data window, string attributes; R, G, B, A first, then by
-/// name) or PNG (R, G, B decoded from sRGB to linear). Throws Error.
-FloatImage readImage(const std::string& path);
+/// name), PNG (R, G, B decoded from sRGB to linear) or Radiance picture (.hdr; R, G, B). Throws Error, also
+/// where it has more than `mostPixels`.
+FloatImage readImage(const std::string& path, uint64_t mostPixels = kMostImagePixels);
 
 /// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. Goes to a temporary
 /// name in the same folder first and is renamed, so an existing file is replaced whole or not at all. Equal

@@ -22,6 +22,7 @@ const std::vector<Entry>& entries() {
         {{"gallery", "rooms with pictures and plinths under many small coloured lights"}, generate::gallery},
         {{"octagon", "a textured octagonal room with coloured lights"}, generate::octagon},
         {{"atrium", "a two-storey court of columns and arches under a skylight"}, generate::atrium},
+        {{"lamps", "a room with one light of each kind, a window, sun and sky"}, generate::lamps},
     };
     return all;
 }

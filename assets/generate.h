@@ -12,7 +12,7 @@ struct SceneName {
     std::string description; // one line
 };
 
-/// The scenes the program can make, those in assets/scenes, in the order to list them.
+/// The scenes the program can make, those in assets/scenes and "lamps", in the order to list them.
 std::vector<SceneName> generatedSceneNames();
 
 /// Makes a scene: real-world metres, TEXCOORD_1 of all instances together one lightmap atlas, at least one

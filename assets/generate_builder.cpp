@@ -105,6 +105,16 @@ bool packCells(std::vector<PackedRect>& rects) {
     return true;
 }
 
+/// At `eye`, -Z towards `target`, X horizontal.
+glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
+    const glm::vec3 back = glm::normalize(eye - target);
+    const bool isVertical = back.x == 0.0f && back.z == 0.0f;
+    const glm::vec3 up = isVertical ? glm::vec3(0, 0, -back.y) : glm::vec3(0, 1, 0);
+    const glm::vec3 right = glm::normalize(glm::cross(up, back));
+    return glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0),
+                     glm::vec4(eye, 1));
+}
+
 } // namespace
 
 int SceneBuilder::paint(const std::string& name, const glm::vec3& color) {
@@ -140,13 +150,19 @@ void SceneBuilder::camera(const std::string& name, const glm::vec3& eye, const g
                           float yfovDegrees) {
     Camera camera;
     camera.name = name;
-    const glm::vec3 back = glm::normalize(eye - target);
-    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
-    camera.transform = glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0),
-                                 glm::vec4(back, 0), glm::vec4(eye, 1));
+    camera.transform = lookingAt(eye, target);
     camera.yfov = glm::radians(yfovDegrees);
     camera.znear = 0.02f;
     scene_.cameras.push_back(camera);
+}
+
+void SceneBuilder::light(Light light, const glm::vec3& position, const glm::vec3& target) {
+    light.transform = lookingAt(position, target);
+    scene_.lights.push_back(std::move(light));
+}
+
+void SceneBuilder::sky(const glm::vec3& radiance) {
+    scene_.sky.radiance = radiance;
 }
 
 // Finds the highest density at which all charts fit, turns their places into atlas coordinates.

@@ -29,6 +29,10 @@ public:
 
     void camera(const std::string& name, const glm::vec3& eye, const glm::vec3& target, float yfovDegrees);
 
+    /// A light at `position` that shines towards `target`; a rectangle's X axis is horizontal.
+    void light(Light light, const glm::vec3& position, const glm::vec3& target);
+    void sky(const glm::vec3& radiance); // [cd/m^2]
+
     /// The scene. Call once, last.
     Scene build();
 

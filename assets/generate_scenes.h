@@ -12,5 +12,6 @@ Scene cornellStatue();
 Scene gallery();
 Scene octagon();
 Scene atrium();
+Scene lamps();
 
 } // namespace relume::generate

@@ -14,8 +14,9 @@ namespace relume::gltf {
 /// What the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
-    tinygltf::Model model;        // without nodes and scenes: the parser is slow for very many
+    tinygltf::Model model;        // without nodes, scenes and lights: the parser is slow for very many
     nlohmann::json nodes, scenes; // arrays as in the file
+    nlohmann::json lights;        // the array of KHR_lights_punctual as in the file
     int defaultScene = 0;
     Scene scene;
     Warnings warnings;
@@ -39,6 +40,12 @@ void buildMeshes(Build& build);
 /// Fills Scene::instances, cameras and lights from the default scene's nodes, or all root nodes where there
 /// is no scene. Walks without recursion. Throws Error.
 void buildNodes(Build& build);
+
+/// Adds the lights of a node to Scene::lights: that of KHR_lights_punctual, and an area light of its extras.
+void addLights(Build& build, size_t node, const glm::mat4& world);
+
+/// Fills Scene::sky from the default scene's extras, its picture included. Throws Error.
+void buildSky(Build& build);
 
 /// A numeric member of an extension's JSON, `fallback` where it is missing.
 double numberOr(const tinygltf::Value& value, const char* key, double fallback);

@@ -56,6 +56,8 @@ private:
     void primitive(const json& value, const std::string& where) const;
     void node(const json& value, const std::string& where) const;
     void light(const json& node, const std::string& where) const;
+    void lights() const;
+    const json* own(const json& holder, const char* key, const std::string& where) const;
     void scene(const json& value, const std::string& where) const;
     void textureUse(const json& holder, const char* key, const std::string& where) const;
     void material(const json& value, const std::string& where) const;
@@ -273,6 +275,10 @@ void Checker::node(const json& value, const std::string& where) const {
     numbers(value, "scale", where, 3);
     numbers(value, "translation", where, 3);
     light(value, where);
+    if (const json* area = own(value, "areaLight", where)) {
+        text(*area, "name", where + ".extras.relume.areaLight");
+        text(*area, "type", where + ".extras.relume.areaLight");
+    }
     const json* children = member(value, "children");
     if (!children) return;
     if (!children->is_array()) fail(where + ".children is no array");
@@ -291,15 +297,43 @@ void Checker::light(const json& node, const std::string& where) const {
     const std::string here = where + ".extensions.KHR_lights_punctual";
     const int64_t value = integer(object(*use, here), "light", here);
     if (value < 0) fail(here + " names no light");
-    const json* lights = member(root_, "extensions");
-    for (const char* key : {"KHR_lights_punctual", "lights"})
-        lights = lights && lights->is_object() ? member(*lights, key) : nullptr;
-    const uint64_t entries = lights && lights->is_array() ? lights->size() : 0;
+    const json::json_pointer list("/extensions/KHR_lights_punctual/lights");
+    const uint64_t entries = root_.contains(list) ? root_[list].size() : 0;
     if (static_cast<uint64_t>(value) >= entries)
         fail(fmt::format("{} names light {}, but there are {}", here, value, entries));
 }
 
+void Checker::lights() const {
+    const json* extensions = member(root_, "extensions");
+    const json* used =
+        extensions ? member(object(*extensions, "extensions"), "KHR_lights_punctual") : nullptr;
+    if (!used) return;
+    const std::string here = "extensions.KHR_lights_punctual";
+    const json* list = member(object(*used, here), "lights");
+    if (!list) return;
+    if (!list->is_array()) fail(here + ".lights is no array");
+    for (size_t i = 0; i < list->size(); ++i) {
+        const std::string where = fmt::format("{}.lights[{}]", here, i);
+        const json& value = object((*list)[i], where);
+        text(value, "name", where);
+        text(value, "type", where);
+        if (const json* spot = member(value, "spot")) object(*spot, where + ".spot");
+        own(value, nullptr, where);
+    }
+}
+
+/// The member `key` of extras.relume. Others' extras may be anything; ours are objects, and hold objects.
+const json* Checker::own(const json& holder, const char* key, const std::string& where) const {
+    const json* extras = member(holder, "extras");
+    const json* ours = extras && extras->is_object() ? member(*extras, "relume") : nullptr;
+    if (!ours) return nullptr;
+    object(*ours, where + ".extras.relume");
+    const json* value = key ? member(*ours, key) : nullptr;
+    return value ? &object(*value, fmt::format("{}.extras.relume.{}", where, key)) : nullptr;
+}
+
 void Checker::scene(const json& value, const std::string& where) const {
+    if (const json* sky = own(value, "sky", where)) text(*sky, "file", where + ".extras.relume.sky");
     const json* nodes = member(value, "nodes");
     if (!nodes) return;
     if (!nodes->is_array()) fail(where + ".nodes is no array");
@@ -396,6 +430,7 @@ void Checker::run() const {
     each("bufferViews", &Checker::view);
     each("accessors", &Checker::accessor);
     each("meshes", &Checker::mesh);
+    lights();
     each("nodes", &Checker::node);
     each("scenes", &Checker::scene);
     index(root_, "scene", "the file", "scenes");

@@ -1,19 +1,19 @@
 #include "assets/gltf.h"
 
 #include "assets/error.h"
+#include "assets/file_write.h"
+#include "assets/float_image.h"
+#include "assets/gltf_light_json.h"
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 // Private to this file: tinygltf and others may bring the same functions.
 #define STB_IMAGE_WRITE_STATIC
@@ -48,7 +48,8 @@ enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIn
 
 class GlbWriter {
 public:
-    explicit GlbWriter(const Scene& scene) : scene_(scene) {
+    /// skyFile: of the sky's picture, from the folder of the file to be written.
+    GlbWriter(const Scene& scene, std::string skyFile) : scene_(scene), skyFile_(std::move(skyFile)) {
         const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
             streams_[i].stride = strides[i];
@@ -73,6 +74,7 @@ private:
     void use(const char* extension) { extensions_[extension] = true; }
 
     const Scene& scene_;
+    std::string skyFile_;
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
     std::vector<std::vector<uint8_t>> pngs_;
@@ -319,28 +321,14 @@ Json GlbWriter::addCamera(const Camera& camera) {
 }
 
 Json GlbWriter::addLight(const Light& light) {
-    Json out;
-    if (!light.name.empty()) out["name"] = light.name;
-    out["color"] = array(light.color);
-    out["intensity"] = light.intensity;
-    switch (light.type) {
-    case LightType::Directional:
-        out["type"] = "directional";
-        break;
-    case LightType::Point:
-        out["type"] = "point";
-        break;
-    case LightType::Spot:
-        out["type"] = "spot";
-        out["spot"]["innerConeAngle"] = light.innerConeAngle;
-        out["spot"]["outerConeAngle"] = light.outerConeAngle;
-        break;
-    }
-    if (light.range > 0.0f && light.type != LightType::Directional) out["range"] = light.range;
-    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
-    lights.push_back(std::move(out));
-    use("KHR_lights_punctual");
     Json node = nodeOf(light.name, light.transform);
+    if (gltf::isAreaLight(light.type)) {
+        node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
+        return node;
+    }
+    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back(gltf::punctualLightJson(light));
+    use("KHR_lights_punctual");
     node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
     return node;
 }
@@ -364,6 +352,8 @@ void GlbWriter::addNodes() {
         roots.push_back(i);
     Json root = Json::object();
     if (!nodes.empty()) root["nodes"] = std::move(roots);
+    if (scene_.sky.shines() || !skyFile_.empty())
+        root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
     json_["scenes"].push_back(std::move(root));
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);
 }
@@ -449,31 +439,39 @@ std::vector<uint8_t> GlbWriter::write() {
     return out;
 }
 
+// Where the sky's picture is from the folder of the file at `path`; one that is in memory alone is written
+// there.
+std::string placeSkyPicture(const Sky& sky, const std::string& path) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::path(path).parent_path();
+    std::error_code code;
+    if (sky.pixels.empty() || (!sky.file.empty() && fs::exists(sky.file, code))) {
+        if (sky.file.empty()) return "";
+        const fs::path relative = fs::relative(sky.file, folder.empty() ? "." : folder, code);
+        return (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
+    }
+    FloatImage image{sky.width, sky.height, {}, {}, {}};
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = sky.pixels[i][c];
+    }
+    const std::string name = fs::path(path).stem().string() + "_sky.exr";
+    writeImage((folder / name).string(), image);
+    return name;
+}
+
 } // namespace
 
 void saveGlb(const Scene& scene, const std::string& path) {
+    const std::string skyFile = placeSkyPicture(scene.sky, path);
     std::vector<uint8_t> bytes;
     try {
-        bytes = GlbWriter(scene).write();
+        bytes = GlbWriter(scene, skyFile).write();
     } catch (const Error& error) {
         throw Error(path + ": " + error.what());
     }
-    const std::string temporary = path + ".tmp" + std::to_string(getpid());
-    const auto fail = [&](const std::string& reason) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
-        throw Error(path + ": cannot be written (" + reason +
-                    "): choose a folder that exists, is writable and has space");
-    };
-    errno = 0;
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    if (!file) fail(std::strerror(errno));
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) fail(errno ? std::strerror(errno) : "write error");
-    std::error_code error;
-    std::filesystem::rename(temporary, path, error);
-    if (error) fail(error.message());
+    writeFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 } // namespace relume

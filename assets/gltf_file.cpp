@@ -165,4 +165,15 @@ std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json) {
     return bytes;
 }
 
+const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key) {
+    const nlohmann::json* value = &holder;
+    for (const char* step : {"extras", "relume", key}) {
+        if (!value->is_object()) return nullptr;
+        const auto found = value->find(step);
+        if (found == value->end()) return nullptr;
+        value = &*found;
+    }
+    return value;
+}
+
 } // namespace relume::gltf

@@ -25,4 +25,8 @@ File readFile(const std::string& path);
 /// The file's bytes with another JSON text in place of its own, same container.
 std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json);
 
+/// The member `key` of extras.relume, where files hold what glTF has no word for; nullptr where there is
+/// none.
+const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key);
+
 } // namespace relume::gltf

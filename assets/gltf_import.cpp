@@ -30,10 +30,19 @@ json takeArray(json& document, const char* section) {
     return taken;
 }
 
+json takeLights(json& document) {
+    const json::json_pointer extension("/extensions/KHR_lights_punctual");
+    if (!document.contains(extension)) return json::array();
+    json lights = takeArray(document[extension], "lights");
+    document["extensions"].erase("KHR_lights_punctual");
+    return lights;
+}
+
 /// Hands the parser all but what the checked JSON already tells as well.
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
+    build.lights = takeLights(file.json);
     build.defaultScene = file.json.value("scene", 0);
     file.json.erase("scene");
     const std::vector<uint8_t> bytes = withJson(file, file.json);
@@ -84,6 +93,7 @@ Scene loadGltf(const std::string& path) {
     gltf::buildMaterials(build);
     gltf::buildMeshes(build);
     gltf::buildNodes(build);
+    gltf::buildSky(build);
     if (build.scene.instances.empty())
         throw Error(
             fmt::format("{}: has no mesh with triangles in its scene: export it with its geometry", path));

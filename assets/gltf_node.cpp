@@ -5,7 +5,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace relume::gltf {
@@ -13,8 +12,6 @@ namespace relume::gltf {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kHalfPi = 1.57079632679489662;
 
 /// A node's member, nullptr where it has none.
 const json* member(const json& node, const char* key) {
@@ -90,37 +87,6 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
-float notNegative(double value) {
-    const float single = static_cast<float>(value);
-    return std::isfinite(single) && single > 0.0f ? single : 0.0f;
-}
-
-void addLight(Build& build, const tinygltf::Light& source, const std::string& node,
-              const glm::mat4& transform) {
-    const std::string where = "light " + quoted(source.name.empty() ? node : source.name);
-    Light light;
-    if (source.type == "spot") {
-        light.type = LightType::Spot;
-    } else if (source.type == "directional") {
-        light.type = LightType::Directional;
-    } else if (source.type != "point") {
-        build.warnings.add(where, fmt::format("has the unknown type {} and is ignored", quoted(source.type)));
-        return;
-    }
-    light.name = source.name.empty() ? node : source.name;
-    light.transform = transform;
-    for (int c = 0; c < 3; ++c)
-        if (source.color.size() == 3) light.color[c] = notNegative(source.color[static_cast<size_t>(c)]);
-    light.intensity = notNegative(source.intensity);
-    light.range = notNegative(source.range);
-    const double outer = std::clamp(source.spot.outerConeAngle, 1e-3, kHalfPi);
-    light.outerConeAngle = static_cast<float>(outer);
-    light.innerConeAngle = static_cast<float>(std::clamp(source.spot.innerConeAngle, 0.0, outer));
-    if (outer != source.spot.outerConeAngle || source.spot.innerConeAngle > outer)
-        build.warnings.add(where, "has cone angles out of range, they are clamped");
-    build.scene.lights.push_back(std::move(light));
-}
-
 std::vector<int> rootNodes(const Build& build) {
     std::vector<int> roots;
     if (!build.scenes.empty()) {
@@ -157,13 +123,11 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
             makeCamera(build.model.cameras[static_cast<size_t>(camera)], nameOf(node), world));
     if (member(node, "skin"))
         build.warnings.add(labelOf(node, index), "skins are not supported, the rest pose is used");
+    addLights(build, index, world);
     const json* extensions = member(node, "extensions");
-    if (!extensions) return;
-    if (member(*extensions, "EXT_mesh_gpu_instancing"))
+    if (extensions && member(*extensions, "EXT_mesh_gpu_instancing"))
         build.warnings.add(labelOf(node, index),
                            "EXT_mesh_gpu_instancing is not supported, one instance is used");
-    if (const json* light = member(*extensions, "KHR_lights_punctual"))
-        addLight(build, build.model.lights[(*light)["light"].get<size_t>()], nameOf(node), world);
 }
 
 } // namespace

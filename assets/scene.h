@@ -103,7 +103,7 @@ struct Light {
 struct Sky {
     glm::vec3 radiance{0.0f};       // [cd/m^2]; of a picture: factor on it
     float rotation = 0.0f;          // of the picture about +Y, counter-clockwise from above [rad]
-    std::string file;               // of the picture, "" for none
+    std::string file;               // path of the picture, "" for none
     uint32_t width = 0, height = 0; // of the picture
     std::vector<glm::vec3> pixels;  // [height][width] [cd/m^2], linear
 

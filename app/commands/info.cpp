@@ -1,10 +1,12 @@
 #include "app/command.h"
 #include "app/scene_info.h"
 #include "assets/gltf.h"
+#include "assets/warnings.h"
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -50,6 +52,69 @@ Json atlasJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
     return json;
 }
 
+const char* typeName(LightType type) {
+    switch (type) {
+    case LightType::Point:
+        return "point";
+    case LightType::Spot:
+        return "spot";
+    case LightType::Directional:
+        return "directional";
+    case LightType::Rectangle:
+        return "rectangle";
+    case LightType::Disc:
+        return "disc";
+    }
+    return "";
+}
+
+const char* unitName(LightType type) {
+    if (type == LightType::Directional) return "lux";
+    return type == LightType::Point || type == LightType::Spot ? "cd" : "cd/m^2";
+}
+
+Json lightJson(const Light& light) {
+    Json json = {{"name", light.name},
+                 {"type", typeName(light.type)},
+                 {"intensity", light.intensity},
+                 {"unit", unitName(light.type)},
+                 {"color", jsonOf(light.color)}};
+    if (light.type == LightType::Rectangle) json["size"] = jsonOf(light.size);
+    if (light.type == LightType::Directional) json["angleDegrees"] = glm::degrees(light.angle);
+    if (light.type == LightType::Disc) json["radius"] = light.radius;
+    if (light.type == LightType::Point || light.type == LightType::Spot) {
+        json["radius"] = light.radius;
+        json["range"] = light.range > 0.0f ? Json(light.range) : Json(nullptr);
+    }
+    if (light.type == LightType::Spot)
+        json["coneDegrees"] = {{"inner", glm::degrees(light.innerConeAngle)},
+                               {"outer", glm::degrees(light.outerConeAngle)}};
+    json["position"] =
+        light.type == LightType::Directional ? Json(nullptr) : jsonOf(glm::vec3(light.transform[3]));
+    json["direction"] = light.type == LightType::Point
+                            ? Json(nullptr)
+                            : jsonOf(glm::vec3(0.0f) - glm::vec3(light.transform[2]));
+    return json;
+}
+
+Json lightsJson(const Scene& scene) {
+    Json json = Json::array();
+    for (const Light& light : scene.lights)
+        json.push_back(lightJson(light));
+    return json;
+}
+
+Json skyJson(const Sky& sky) {
+    if (!sky.shines()) return nullptr;
+    Json json = {{"radiance", jsonOf(sky.radiance)}, {"picture", nullptr}};
+    if (!sky.pixels.empty())
+        json["picture"] = {{"file", sky.file},
+                           {"width", sky.width},
+                           {"height", sky.height},
+                           {"rotationDegrees", glm::degrees(sky.rotation)}};
+    return json;
+}
+
 void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
     const Json json = {{"scene", scene.path},
                        {"triangles", info.triangles},
@@ -59,7 +124,8 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                        {"instances", scene.instances.size()},
                        {"materials", scene.materials.size()},
                        {"textures", scene.textures.size()},
-                       {"lights", scene.lights.size()},
+                       {"lights", lightsJson(scene)},
+                       {"sky", skyJson(scene.sky)},
                        {"cameras", scene.cameras.size()},
                        {"bounds", {{"min", jsonOf(info.low)}, {"max", jsonOf(info.high)}}},
                        {"area", info.area},
@@ -75,7 +141,50 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
 }
 
 void line(const char* name, const std::string& value) {
-    std::printf("%-10s %s\n", name, value.c_str());
+    std::printf("%-11s %s\n", name, value.c_str());
+}
+
+std::string describe(const Light& light) {
+    std::string text = light.name.empty() ? "" : quoted(light.name) + ", ";
+    text += fmt::format("{:.6g} {}, colour ({:.4g}, {:.4g}, {:.4g})", light.intensity, unitName(light.type),
+                        light.color.r, light.color.g, light.color.b);
+    if (light.type == LightType::Spot)
+        text += fmt::format(", cone {:.4g} to {:.4g} degrees from the axis",
+                            glm::degrees(light.innerConeAngle), glm::degrees(light.outerConeAngle));
+    if (light.type == LightType::Rectangle)
+        text += fmt::format(", {:.4g} x {:.4g} m", light.size.x, light.size.y);
+    if (light.type == LightType::Directional && light.angle > 0.0f)
+        text += fmt::format(", {:.4g} degrees across", glm::degrees(light.angle));
+    if (light.radius > 0.0f) text += fmt::format(", radius {:.4g} m", light.radius);
+    if (light.range > 0.0f) text += fmt::format(", range {:.4g} m", light.range);
+    return text;
+}
+
+void printLights(const Scene& scene) {
+    std::string counts;
+    for (LightType type :
+         {LightType::Point, LightType::Spot, LightType::Directional, LightType::Rectangle, LightType::Disc}) {
+        const auto count = std::count_if(scene.lights.begin(), scene.lights.end(),
+                                         [type](const Light& light) { return light.type == type; });
+        if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, typeName(type));
+    }
+    line("lights", std::to_string(scene.lights.size()) + counts);
+    std::vector<Light> lights = scene.lights;
+    std::stable_sort(lights.begin(), lights.end(),
+                     [](const Light& a, const Light& b) { return a.type < b.type; });
+    for (const Light& light : lights)
+        line(typeName(light.type), describe(light));
+    const Sky& sky = scene.sky;
+    if (!sky.shines()) {
+        line("sky", "none");
+    } else if (sky.pixels.empty()) {
+        line("sky",
+             fmt::format("({:.6g}, {:.6g}, {:.6g}) cd/m^2", sky.radiance.r, sky.radiance.g, sky.radiance.b));
+    } else {
+        line("sky", fmt::format("{}, {} x {}, times ({:.6g}, {:.6g}, {:.6g}), turned by {:.4g} degrees",
+                                sky.file, sky.width, sky.height, sky.radiance.r, sky.radiance.g,
+                                sky.radiance.b, glm::degrees(sky.rotation)));
+    }
 }
 
 void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
@@ -83,7 +192,7 @@ void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
     line("triangles", fmt::format("{} ({} alpha-masked)", info.triangles, info.maskedTriangles));
     line("meshes", fmt::format("{} in {} instances", scene.meshes.size(), scene.instances.size()));
     line("materials", fmt::format("{}, {} textures", scene.materials.size(), scene.textures.size()));
-    line("lights", fmt::format("{}", scene.lights.size()));
+    printLights(scene);
     line("cameras", fmt::format("{}", scene.cameras.size()));
     line("bounds", fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m", info.low.x,
                                info.low.y, info.low.z, info.high.x, info.high.y, info.high.z));

@@ -259,8 +259,14 @@ GlbBuilder richScene() {
         b.bin.push_back(0);
     b.json["buffers"] = {{{"byteLength", b.bin.size()}}};
     b.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "spot"}, {"color", {1, 1, 1}}, {"spot", {{"outerConeAngle", .6}}}}};
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"},
+                                                              {"color", {1, 1, 1}},
+                                                              {"spot", {{"outerConeAngle", .6}}},
+                                                              {"extras", {{"relume", {{"radius", .1}}}}}}};
+    b.json["nodes"][0]["extras"]["relume"]["areaLight"] = {
+        {"type", "rectangle"}, {"color", {1, 1, 1}}, {"intensity", 2}, {"size", {1, 2}}};
+    b.json["scenes"][0]["extras"]["relume"]["sky"] = {
+        {"color", {1, 1, 1}}, {"intensity", 2}, {"rotation", 1}};
     return b;
 }
 

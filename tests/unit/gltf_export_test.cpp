@@ -164,9 +164,6 @@ TEST_F(GltfExport, KeepsCamerasAndLights) {
     const glm::mat4 view = glm::translate(glm::mat4(1.0f), {1, 2, 3});
     scene.cameras.push_back({"Main", view, true, 0.9f, 1.0f, 1.5f, 0.02f, 50.0f});
     scene.cameras.push_back({"Plan", view, false, 0.8f, 3.0f, 2.0f, 0.1f, 10.0f});
-    scene.lights.push_back({"Bulb", LightType::Point, view, {1, 0.5f, 0.25f}, 80.0f, 12.0f, 0.0f, 0.785398f});
-    scene.lights.push_back({"Beam", LightType::Spot, view, {1, 1, 1}, 9.0f, 0.0f, 0.2f, 0.4f});
-    scene.lights.push_back({"Sun", LightType::Directional, view, {1, 1, 0.5f}, 1e5f, 0.0f, 0.0f, 0.785398f});
     const Scene back = roundTrip(scene);
     ASSERT_EQ(back.cameras.size(), 2u);
     for (size_t i = 0; i < 2; ++i) {
@@ -184,20 +181,101 @@ TEST_F(GltfExport, KeepsCamerasAndLights) {
         EXPECT_EQ(a.znear, b.znear);
         EXPECT_EQ(a.zfar, b.zfar);
     }
-    ASSERT_EQ(back.lights.size(), 3u);
-    for (size_t i = 0; i < 3; ++i) {
-        const Light &a = scene.lights[i], &b = back.lights[i];
-        EXPECT_EQ(a.name, b.name);
-        EXPECT_EQ(a.type, b.type);
-        EXPECT_EQ(a.transform, b.transform);
-        EXPECT_EQ(a.color, b.color);
-        EXPECT_EQ(a.intensity, b.intensity);
-        EXPECT_EQ(a.range, b.range);
-        if (a.type == LightType::Spot) {
-            EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
-            EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
-        }
+}
+
+void expectSame(const Light& a, const Light& b) {
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.type, b.type);
+    EXPECT_EQ(a.transform, b.transform);
+    EXPECT_EQ(a.color, b.color);
+    EXPECT_EQ(a.intensity, b.intensity);
+    EXPECT_EQ(a.range, b.range);
+    EXPECT_EQ(a.innerConeAngle, b.innerConeAngle);
+    EXPECT_EQ(a.outerConeAngle, b.outerConeAngle);
+    EXPECT_EQ(a.radius, b.radius);
+    EXPECT_EQ(a.angle, b.angle);
+    EXPECT_EQ(a.size, b.size);
+}
+
+TEST_F(GltfExport, KeepsLightsToTheBit) {
+    Scene scene = twoInstances();
+    Light light;
+    light.transform = glm::rotate(glm::translate(glm::mat4(1.0f), {1, 2, 3}), 0.7f, glm::vec3(0.6f, 0, 0.8f));
+    light.color = {1, 0.3f, 0.1f};
+    light.intensity = 80.1f;
+    for (const char* name : {"Bulb", "Beam", "Sun", "Panel", "Disc", ""}) {
+        light.name = name;
+        light.type = static_cast<LightType>(scene.lights.size() % 5);
+        scene.lights.push_back(light);
     }
+    scene.lights[0].radius = 0.03f;
+    scene.lights[0].range = 12.1f;
+    scene.lights[1].innerConeAngle = 0.2f;
+    scene.lights[1].outerConeAngle = 1.57079637f; // half of pi, rounded up to a float
+    scene.lights[2].angle = 3.14159274f;
+    scene.lights[3].size = {1.2f, 0.3f};
+    scene.lights[4].radius = 0.15f;
+    scene.lights[4].intensity = 0.0f;
+    const Scene back = roundTrip(scene);
+    ASSERT_EQ(back.lights.size(), scene.lights.size());
+    for (size_t i = 0; i < back.lights.size(); ++i) {
+        SCOPED_TRACE(scene.lights[i].name);
+        expectSame(scene.lights[i], back.lights[i]);
+        EXPECT_EQ(back.lights[i].node, static_cast<int>(2 + i)); // behind the instances
+    }
+    EXPECT_TRUE(back.warnings.empty()) << back.warnings.front();
+    EXPECT_EQ(back.sky.radiance, glm::vec3(0.0f));
+}
+
+TEST_F(GltfExport, KeepsAConstantSkyToTheBit) {
+    Scene scene = twoInstances();
+    scene.sky.radiance = {117.1f, 1.0f / 3.0f, 250.7f};
+    scene.sky.rotation = 0.3f;
+    const Scene back = roundTrip(scene);
+    EXPECT_EQ(back.sky.radiance, scene.sky.radiance);
+    EXPECT_EQ(back.sky.rotation, scene.sky.rotation);
+    EXPECT_EQ(back.sky.file, "");
+    EXPECT_EQ(folder_.files().size(), 1u);
+}
+
+TEST_F(GltfExport, WritesASkyPictureWithoutAFileBesideTheScene) {
+    Scene scene = twoInstances();
+    scene.sky.radiance = glm::vec3(2.0f);
+    scene.sky.width = 4;
+    scene.sky.height = 2;
+    for (int i = 0; i < 8; ++i)
+        scene.sky.pixels.emplace_back(0.1f * float(i), float(i), 1e4f);
+    const Scene back = roundTrip(scene);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.glb", "a_sky.exr"}));
+    EXPECT_EQ(back.sky.file, file("a_sky.exr"));
+    EXPECT_EQ(back.sky.radiance, scene.sky.radiance);
+    EXPECT_EQ(back.sky.width, 4u);
+    EXPECT_EQ(back.sky.pixels, scene.sky.pixels);
+    EXPECT_TRUE(back.warnings.empty());
+}
+
+TEST_F(GltfExport, RefersToTheSkyPictureFromWhereItIsSaved) {
+    Scene scene = twoInstances();
+    scene.sky.radiance = glm::vec3(1.0f);
+    scene.sky.width = 2;
+    scene.sky.height = 1;
+    scene.sky.pixels = {{1, 2, 3}, {4, 5, 6}};
+    const Scene first = roundTrip(scene);
+    std::filesystem::create_directories(file("deep/er"));
+    saveGlb(first, file("deep/er/b.glb"));
+    EXPECT_EQ(std::filesystem::directory_iterator(file("deep/er"))->path().filename(), "b.glb"); // alone
+    const Scene second = loadGltf(file("deep/er/b.glb"));
+    EXPECT_TRUE(std::filesystem::equivalent(second.sky.file, file("a_sky.exr")));
+    EXPECT_EQ(second.sky.pixels, scene.sky.pixels);
+    // A folder that is moved with all that is in it still works.
+    std::filesystem::create_directories(file("elsewhere"));
+    for (const char* name : {"a_sky.exr", "deep"})
+        std::filesystem::rename(file(name), file("elsewhere/" + std::string(name)));
+    EXPECT_EQ(loadGltf(file("elsewhere/deep/er/b.glb")).sky.pixels, scene.sky.pixels);
+    // The picture is gone from its place, the pixels are not.
+    saveGlb(second, file("c.glb"));
+    EXPECT_EQ(loadGltf(file("c.glb")).sky.pixels, scene.sky.pixels);
+    EXPECT_TRUE(std::filesystem::exists(file("c_sky.exr")));
 }
 
 TEST_F(GltfExport, WidensIndicesOfALargeMesh) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace relume {
 namespace {
@@ -74,7 +75,7 @@ TEST(SceneInfo, SceneWithoutLightOrUvsIsDescribedAllTheSame) {
     EXPECT_EQ(info.triangles, 12u);
     EXPECT_FALSE(info.mapped);
     EXPECT_EQ(info.charts, 0u);
-    EXPECT_TRUE(warns(info, "no emitter and no light: it bakes to black"));
+    EXPECT_TRUE(warns(info, "no emitter, no light and no sky: it bakes to black"));
     EXPECT_TRUE(warns(info, "--unwrap"));
 }
 
@@ -96,6 +97,81 @@ TEST(InfoCommand, JsonHoldsTheAtlasMapping) {
     EXPECT_NE(table.find("density"), std::string::npos);
     EXPECT_THROW(run("info --size 0 " + path), CLI::ValidationError);
     EXPECT_THROW(run("info"), CLI::RequiredError);
+}
+
+TEST(SceneInfo, ASkyIsLightEnough) {
+    Scene scene = test::sceneOf(test::cube());
+    scene.sky.radiance = {0, 0, 1};
+    EXPECT_FALSE(warns(inspectScene(scene, 64), "bakes to black"));
+}
+
+TEST(InfoCommand, ListsLightsByTypeAndTheSky) {
+    Scene scene = test::sceneOf(test::square({0, 0}, {1, 1}));
+    Light light;
+    light.intensity = 2500;
+    for (const char* name : {"Disc", "Panel", "Sun", "Spot", "Bulb", ""}) {
+        light.name = name;
+        light.type = static_cast<LightType>(std::abs(4 - static_cast<int>(scene.lights.size())));
+        scene.lights.push_back(light);
+    }
+    scene.lights[0].radius = .15f;
+    scene.lights[1].size = {1.2f, .3f};
+    scene.lights[2].angle = .0093f;
+    scene.lights[3].innerConeAngle = .25f;
+    scene.lights[3].outerConeAngle = .5f;
+    scene.lights[4].radius = .03f;
+    scene.lights[4].range = 7;
+    scene.lights[4].color = {1, .75f, .5f};
+    scene.lights[4].transform[3] = {1, 2, 3, 1};
+    scene.sky.radiance = {150, 170, 200};
+    const std::string path = test::tempPath("lights.glb");
+    saveGlb(scene, path);
+    const std::string table = run("info " + path);
+    const std::string expected =
+        "lights      6: 1 point, 2 spot, 1 directional, 1 rectangle, 1 disc\n"
+        "point       'Bulb', 2500 cd, colour (1, 0.75, 0.5), radius 0.03 m, range 7 m\n"
+        "spot        'Spot', 2500 cd, colour (1, 1, 1), cone 14.32 to 28.65 degrees from the axis\n"
+        "spot        2500 cd, colour (1, 1, 1), cone 0 to 45 degrees from the axis\n"
+        "directional 'Sun', 2500 lux, colour (1, 1, 1), 0.5329 degrees across\n"
+        "rectangle   'Panel', 2500 cd/m^2, colour (1, 1, 1), 1.2 x 0.3 m\n"
+        "disc        'Disc', 2500 cd/m^2, colour (1, 1, 1), radius 0.15 m\n"
+        "sky         (150, 170, 200) cd/m^2\n";
+    EXPECT_NE(table.find(expected), std::string::npos) << table;
+
+    const json info = json::parse(run("info --json " + path));
+    ASSERT_EQ(info["lights"].size(), 6u); // in the file's order
+    EXPECT_EQ(info["lights"][0]["type"], "disc");
+    EXPECT_EQ(info["lights"][0]["unit"], "cd/m^2");
+    EXPECT_EQ(info["lights"][0]["direction"], json({0, 0, -1}));
+    EXPECT_FLOAT_EQ(info["lights"][1]["size"][0].get<float>(), 1.2f);
+    EXPECT_NEAR(info["lights"][2]["angleDegrees"].get<double>(), .53285, 1e-4);
+    EXPECT_NEAR(info["lights"][3]["coneDegrees"]["outer"].get<double>(), 28.6479, 1e-4);
+    EXPECT_EQ(info["lights"][4]["name"], "Bulb");
+    EXPECT_EQ(info["lights"][4]["intensity"], 2500);
+    EXPECT_EQ(info["lights"][4]["range"], 7);
+    EXPECT_EQ(info["lights"][4]["position"], json({1, 2, 3}));
+    EXPECT_EQ(info["lights"][5]["range"], nullptr);
+    EXPECT_EQ(info["sky"]["radiance"], json({150, 170, 200}));
+    EXPECT_EQ(info["sky"]["picture"], nullptr);
+}
+
+TEST(InfoCommand, DescribesTheSkysPicture) {
+    Scene scene = test::sceneOf(test::square({0, 0}, {1, 1}));
+    const std::string path = test::tempPath("sky.glb");
+    saveGlb(scene, path);
+    EXPECT_NE(run("info " + path).find("sky         none\n"), std::string::npos);
+    EXPECT_EQ(json::parse(run("info --json " + path))["sky"], nullptr);
+    scene.sky.radiance = glm::vec3(2.0f);
+    scene.sky.rotation = .5f;
+    scene.sky.width = 4;
+    scene.sky.height = 2;
+    scene.sky.pixels.assign(8, glm::vec3(1.0f));
+    saveGlb(scene, path);
+    EXPECT_NE(run("info " + path).find("sky_sky.exr, 4 x 2, times (2, 2, 2), turned by 28.65 degrees\n"),
+              std::string::npos);
+    const json sky = json::parse(run("info --json " + path))["sky"];
+    EXPECT_EQ(sky["picture"]["width"], 4);
+    EXPECT_NEAR(sky["picture"]["rotationDegrees"].get<double>(), 28.6479, 1e-4);
 }
 
 TEST(UnwrapCommand, WritesASceneThatCanBeBaked) {
