@@ -45,7 +45,7 @@ void addTube(SceneBuilder& builder) {
         lathe({{0.0, kHalfLength}, {kRadius, kHalfLength}, {kRadius, -kHalfLength}, {0.0, -kHalfLength}}, 16);
     // Its axis, Y, becomes X.
     tube.turn(glm::dmat3({0, -1, 0}, {1, 0, 0}, {0, 0, 1}));
-    builder.add("Tube", tube.paint(lit).denser(2.5), {-1.31, 2.23, -kHalfZ + 0.07});
+    builder.add("Tube", tube.paint(lit).denser(2.5), {-1.87, 2.23, -kHalfZ + 0.07});
 }
 
 // Along its axis each gives 20 to 150 lux; the sun, low behind thin clouds, leaves a patch of 600 on the
