@@ -116,14 +116,10 @@ struct EmitterPolygon {
 CONST uint kEmitterLeaf = 0x80000000u;
 CONST uint kNoEmitter = 0xffffffffu;
 
-CONST uint kLampPoint = 0u; // or sphere
-CONST uint kLampSpot = 1u;
-CONST uint kLampSun = 2u;
-CONST uint kLampRectangle = 3u;
-CONST uint kLampDisc = 4u;
-CONST uint kLampSky = 5u;
+// Lamp::type; a point may be a sphere.
+CONST uint kLampPoint = 0u, kLampSpot = 1u, kLampSun = 2u, kLampRectangle = 3u, kLampDisc = 4u, kLampSky = 5u;
 
-// What shines without geometry. Colour, size and place are apart: samples never depend on the colour.
+// What shines without geometry. Samples never depend on the colour.
 struct Lamp {
     vec3 position; // [m], of its centre
     uint type;     // kLamp...
@@ -133,8 +129,8 @@ struct Lamp {
     float range;   // point, spot: [m]; 0: infinite
     vec3 edgeV;    // edgeU x edgeV is along the axis
     float coneScale;
-    vec3 color;       // point, spot: [cd]; sun: [lux]; rectangle, disc: [cd/m^2]; sky: factor on the picture, or [cd/m^2]
-    float coneOffset; // spot: the square of cosine * coneScale + coneOffset, clamped, is its share of colour
+    vec3 color;       // [cd]; sun: [lux]; rectangle, disc, sky: [cd/m^2], or a factor on its picture
+    float coneOffset; // spot: its share is the square of cosine * coneScale + coneOffset, clamped
     uint firstTarget; // of its group's
     uint samples;     // per patch and round: 1, or a multiple of 2 * kReplicates
     uint seed;
