@@ -81,9 +81,9 @@ const std::map<std::string, size_t> kSizes = {
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
 size_t appendWords(const std::vector<Struct>& structs, const Struct& entry, size_t offset,
                    std::vector<size_t>& words) {
-    static const std::map<std::string, size_t> sizes = {{"float", 1}, {"int", 1},   {"uint", 1},
-                                                        {"vec2", 2},  {"vec3", 3},  {"vec4", 4},
-                                                        {"uvec3", 3}, {"uvec4", 4}, {"ADDRESS", 2}};
+    static const std::map<std::string, size_t> sizes = {
+        {"float", 1}, {"int", 1},   {"uint", 1},  {"vec2", 2},  {"vec3", 3},
+        {"vec4", 4},  {"uvec2", 2}, {"uvec3", 3}, {"uvec4", 4}, {"ADDRESS", 2}};
     for (const Member& member : entry.members) {
         const auto size = sizes.find(member.type);
         if (size == sizes.end()) {
@@ -121,6 +121,7 @@ void put(float x) { put(floatBitsToUint(x)); }
 void put(vec2 v) { put(v.x); put(v.y); }
 void put(vec3 v) { put(v.xy); put(v.z); }
 void put(vec4 v) { put(v.xyz); put(v.w); }
+void put(uvec2 v) { put(v.x); put(v.y); }
 void put(uvec3 v) { put(v.x); put(v.y); put(v.z); }
 void put(uvec4 v) { put(v.x); put(v.y); put(v.z); put(v.w); }
 void put(uint64_t x) { put(uint(x & 0xffffffffUL)); put(uint(x >> 32)); }
