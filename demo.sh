@@ -30,7 +30,7 @@ $relume bake "$scene" -o $out/lightmap.exr --picture $out/lightmap.png --json $o
 seconds=$(echo "$started $(date +%s.%N)" | awk '{ printf "%.1f", $2 - $1 }')
 
 $relume shot "$scene" -o $out/shot.png --lightmap $out/lightmap.exr --filter bicubic
-$relume timelapse "$scene" -o $out/convergence --overwrite --size 720x405 --lightmap-size 256 --error 0.02
+$relume timelapse "$scene" -o $out/convergence --overwrite --size 720x405 --lightmap-size 256 --error 0.005
 
 echo
 echo "Baked $scene in $seconds s:"
