@@ -24,6 +24,7 @@ namespace relume {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using gltf::jsonArray;
 
 static_assert(std::endian::native == std::endian::little,
               "glTF buffers are little-endian and written by memcpy");
@@ -94,14 +95,6 @@ int wrapCode(Wrap wrap) {
     return 10497;
 }
 
-template<class Vector>
-Json array(const Vector& v) {
-    Json out = Json::array();
-    for (int i = 0; i < v.length(); ++i)
-        out.push_back(v[i]);
-    return out;
-}
-
 Json nodeOf(const std::string& name, const glm::mat4& transform) {
     Json node = Json::object();
     if (!name.empty()) node["name"] = name;
@@ -142,8 +135,8 @@ Json GlbWriter::primitive(const Primitive& p) {
         low = glm::min(low, position);
         high = glm::max(high, position);
     }
-    json_["accessors"].back()["min"] = array(low);
-    json_["accessors"].back()["max"] = array(high);
+    json_["accessors"].back()["min"] = jsonArray(low);
+    json_["accessors"].back()["max"] = jsonArray(high);
     if (!p.normals.empty())
         attributes["NORMAL"] = addAccessor(kNormals, p.normals.data(), count, kFloat, "VEC3");
     if (!p.texCoord0.empty())
@@ -203,9 +196,9 @@ Json GlbWriter::textureInfo(const TextureRef& ref, const std::string& materialNa
     if (columnU.x * columnV.y - columnU.y * columnV.x < 0.0f) scaleV = -scaleV;
     const float rotation = scaleU > 0.0f ? std::atan2(-columnU.y, columnU.x) : 0.0f;
     Json transform;
-    transform["offset"] = array(glm::vec2(ref.transform[2]));
+    transform["offset"] = jsonArray(glm::vec2(ref.transform[2]));
     if (rotation != 0.0f) transform["rotation"] = rotation;
-    transform["scale"] = array(glm::vec2(scaleU, scaleV));
+    transform["scale"] = jsonArray(glm::vec2(scaleU, scaleV));
     info["extensions"]["KHR_texture_transform"] = std::move(transform);
     use("KHR_texture_transform");
     return info;
@@ -215,7 +208,7 @@ Json GlbWriter::material(const Material& m) {
     Json out;
     if (!m.name.empty()) out["name"] = m.name;
     Json pbr = Json::object();
-    if (m.baseColor != glm::vec4(1.0f)) pbr["baseColorFactor"] = array(m.baseColor);
+    if (m.baseColor != glm::vec4(1.0f)) pbr["baseColorFactor"] = jsonArray(m.baseColor);
     if (m.baseColorTexture.texture >= 0) pbr["baseColorTexture"] = textureInfo(m.baseColorTexture, m.name);
     if (m.metallic != 1.0f) pbr["metallicFactor"] = m.metallic;
     if (m.roughness != 1.0f) pbr["roughnessFactor"] = m.roughness;
@@ -229,7 +222,7 @@ Json GlbWriter::material(const Material& m) {
         int exponent = 0;
         std::frexp(brightest, &exponent);
         const float strength = brightest > 1.0f ? std::ldexp(1.0f, exponent) : 1.0f;
-        out["emissiveFactor"] = array(m.emission / strength);
+        out["emissiveFactor"] = jsonArray(m.emission / strength);
         if (strength != 1.0f) {
             out["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
             use("KHR_materials_emissive_strength");

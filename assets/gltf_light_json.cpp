@@ -10,20 +10,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template<class Vector>
-Json array(const Vector& v) {
-    Json out = Json::array();
-    for (int i = 0; i < v.length(); ++i)
-        out.push_back(v[i]);
-    return out;
-}
-
 /// What all lights have.
 Json lightJson(const Light& light, const char* type) {
     Json out;
     if (!light.name.empty()) out["name"] = light.name;
     out["type"] = type;
-    out["color"] = array(light.color);
+    out["color"] = jsonArray(light.color);
     out["intensity"] = light.intensity;
     return out;
 }
@@ -58,7 +50,7 @@ Json areaLightJson(const Light& light) {
     if (isDisc)
         out["radius"] = light.radius;
     else
-        out["size"] = array(light.size);
+        out["size"] = jsonArray(light.size);
     return out;
 }
 
@@ -67,7 +59,7 @@ Json skyJson(const Sky& sky, const std::string& file) {
     const glm::dvec3 radiance(sky.radiance);
     const double intensity = std::max({radiance.r, radiance.g, radiance.b});
     Json out;
-    out["color"] = array(intensity > 0.0 ? radiance / intensity : glm::dvec3(1.0));
+    out["color"] = jsonArray(intensity > 0.0 ? radiance / intensity : glm::dvec3(1.0));
     out["intensity"] = intensity;
     if (!file.empty()) out["file"] = file;
     if (sky.rotation != 0.0f) out["rotation"] = sky.rotation;

@@ -9,6 +9,15 @@
 // Lights and sky as glTF files hold them (see README.md), for whatever writes such files.
 namespace relume::gltf {
 
+/// A glm vector's numbers.
+template<class Vector>
+nlohmann::ordered_json jsonArray(const Vector& v) {
+    auto out = nlohmann::ordered_json::array();
+    for (int i = 0; i < v.length(); ++i)
+        out.push_back(v[i]);
+    return out;
+}
+
 /// Whether KHR_lights_punctual has no word for it, so that it goes into its node's extras.
 bool isAreaLight(LightType type);
 

@@ -1,5 +1,6 @@
 #include "app/command.h"
 #include "app/scene_info.h"
+#include "app/light_names.h"
 #include "assets/gltf.h"
 #include "assets/warnings.h"
 
@@ -52,32 +53,11 @@ Json atlasJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
     return json;
 }
 
-const char* typeName(LightType type) {
-    switch (type) {
-    case LightType::Point:
-        return "point";
-    case LightType::Spot:
-        return "spot";
-    case LightType::Directional:
-        return "directional";
-    case LightType::Rectangle:
-        return "rectangle";
-    case LightType::Disc:
-        return "disc";
-    }
-    return "";
-}
-
-const char* unitName(LightType type) {
-    if (type == LightType::Directional) return "lux";
-    return type == LightType::Point || type == LightType::Spot ? "cd" : "cd/m^2";
-}
-
 Json lightJson(const Light& light) {
     Json json = {{"name", light.name},
-                 {"type", typeName(light.type)},
+                 {"type", lightTypeName(light.type)},
                  {"intensity", light.intensity},
-                 {"unit", unitName(light.type)},
+                 {"unit", lightUnit(light.type)},
                  {"color", jsonOf(light.color)}};
     if (light.type == LightType::Rectangle) json["size"] = jsonOf(light.size);
     if (light.type == LightType::Directional) json["angleDegrees"] = glm::degrees(light.angle);
@@ -146,7 +126,7 @@ void line(const char* name, const std::string& value) {
 
 std::string describe(const Light& light) {
     std::string text = light.name.empty() ? "" : quoted(light.name) + ", ";
-    text += fmt::format("{:.6g} {}, colour ({:.4g}, {:.4g}, {:.4g})", light.intensity, unitName(light.type),
+    text += fmt::format("{:.6g} {}, colour ({:.4g}, {:.4g}, {:.4g})", light.intensity, lightUnit(light.type),
                         light.color.r, light.color.g, light.color.b);
     if (light.type == LightType::Spot)
         text += fmt::format(", cone {:.4g} to {:.4g} degrees from the axis",
@@ -166,14 +146,15 @@ void printLights(const Scene& scene) {
          {LightType::Point, LightType::Spot, LightType::Directional, LightType::Rectangle, LightType::Disc}) {
         const auto count = std::count_if(scene.lights.begin(), scene.lights.end(),
                                          [type](const Light& light) { return light.type == type; });
-        if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, typeName(type));
+        if (count > 0)
+            counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", count, lightTypeName(type));
     }
     line("lights", std::to_string(scene.lights.size()) + counts);
     std::vector<Light> lights = scene.lights;
     std::stable_sort(lights.begin(), lights.end(),
                      [](const Light& a, const Light& b) { return a.type < b.type; });
     for (const Light& light : lights)
-        line(typeName(light.type), describe(light));
+        line(lightTypeName(light.type), describe(light));
     const Sky& sky = scene.sky;
     if (!sky.shines()) {
         line("sky", "none");

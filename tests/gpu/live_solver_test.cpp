@@ -257,7 +257,8 @@ void expectCompleteIsNearTheEnd(const Scene& scene, BakeDesc desc) {
         if (display.complete()) means.push_back(display.mean(baker->patches()));
     }
     const double end = Display::meanOf(baker->solver().light(), baker->patches());
-    EXPECT_GT(means.size(), 1u) << methodName(desc.method); // not only at the end
+    EXPECT_GT(means.size(), testDevice().info().software() ? 2u : 1u)
+        << methodName(desc.method); // not only at the end
     for (const double mean : means)
         ASSERT_NEAR(mean, end, 0.02 * end) << methodName(desc.method);
 }

@@ -1,5 +1,6 @@
 #include "app/viewer/panels/scene_lists.h"
 
+#include "app/light_names.h"
 #include "app/viewer/panels/widgets.h"
 
 #include <filesystem>
@@ -9,26 +10,6 @@
 #include <imgui.h>
 
 namespace relume {
-namespace {
-
-const char* typeName(LightType type) {
-    switch (type) {
-    case LightType::Point:
-        return "point";
-    case LightType::Spot:
-        return "spot";
-    case LightType::Directional:
-        return "directional";
-    case LightType::Rectangle:
-        return "rectangle";
-    case LightType::Disc:
-        return "disc";
-    }
-    return "";
-}
-
-} // namespace
-
 std::string nameOf(const std::string& name, const char* kind, size_t index) {
     return name.empty() ? fmt::format("{} {}", kind, index) : name;
 }
@@ -94,10 +75,8 @@ void drawLights(const LoadedScene& scene) {
     if (lights.empty()) ImGui::TextWrapped("The file has no lights but emissive materials.");
     for (size_t i = 0; i < lights.size(); ++i) {
         const Light& light = lights[i];
-        const bool area = light.type == LightType::Rectangle || light.type == LightType::Disc;
-        const char* unit = area ? "cd/m^2" : light.type == LightType::Directional ? "lux" : "cd";
         ImGui::BulletText("%s", fmt::format("{}: {}, {:.4g} {}", nameOf(light.name, "light", i),
-                                            typeName(light.type), light.intensity, unit)
+                                            lightTypeName(light.type), light.intensity, lightUnit(light.type))
                                     .c_str());
     }
 }
