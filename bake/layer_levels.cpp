@@ -1,8 +1,6 @@
 // Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
 #include "bake/layer_solver.h"
 
-#include "assets/log.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -120,11 +118,6 @@ void LayerSolver::finishLevel() {
     }
     layer.converged = layer.level == lastLevel() || (settings_.error > 0 && layer.error <= settings_.error) ||
                       layer.light <= 0;
-    spdlog::info("layer '{}': {} direct, {} link rounds: error {:.2g} (direct {:.2g}, indirect {:.2g}, bounces {:.2g}), {} bounces, sigma {:.1f}, {:.2f} s",
-                  layer.source.name, layer.level.directRounds, layer.level.linkRounds, layer.error,
-                  std::sqrt(layer.directVariance / (3.0 * layer.count)) / (layer.light / (3.0 * layer.count)),
-                  std::sqrt(layer.indirectVariance / (3.0 * layer.count)) / (layer.light / (3.0 * layer.count)),
-                  layer.iterationError, work.bounce, layer.width.sigma, progress_.seconds);
     layer.redo.reset();
     if (layer.before) archive(std::move(layer.before));
     progress_.samples = std::max(progress_.samples, layer.level.linkRounds * linksOfRound_);
