@@ -142,8 +142,9 @@ void BakeLoop::obey(BakeOrders& orders) {
 
 // Light of another scene is of no use, light of the same one stays until there is better.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
-    const bool sameScene =
-        baker_ && start.scene == prepared_ && sameSurfaces(start.edits.materials, scene_.materials);
+    const bool sameScene = baker_ && start.scene == prepared_ &&
+                           sameSurfaces(start.edits.materials, scene_.materials) &&
+                           start.edits.lights == scene_.lights && start.edits.sky == scene_.sky;
     const bool solverOnly = sameScene && preparation(start.settings) == preparation(settings_);
     settings_ = start.settings;
     settings_.solver.batchMs = desc_.batchMs;
