@@ -75,6 +75,21 @@ void Viewer::perform(Action action, int argument) {
     case Action::Close:
         if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
+    case Action::AddLight:
+    case Action::DuplicateLight:
+    case Action::DeleteLight:
+    case Action::NextLight:
+    case Action::SoloLight:
+    case Action::MuteLight:
+    case Action::LightStrength:
+    case Action::NudgeLight:
+        return performLight(action, argument);
+    case Action::Gizmo:
+        view_.gizmo = static_cast<GizmoMode>(argument);
+        return;
+    case Action::LightIcons:
+        view_.lightIcons = !view_.lightIcons;
+        return;
     case Action::View:
     case Action::UvTexture:
     case Action::Masked:
