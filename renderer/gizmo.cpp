@@ -158,6 +158,15 @@ std::vector<GizmoShape> gizmoShapes(const GizmoPlace& place) {
     return std::move(builder.shapes);
 }
 
+glm::vec2 gripOf(const GizmoShape& shape) {
+    const bool ring = !shape.filled && shape.points.size() > 2;
+    if (ring) return shape.points[shape.points.size() / 2]; // its front
+    glm::vec2 sum(0.0f);
+    for (const glm::vec2& point : shape.points)
+        sum += point;
+    return sum / static_cast<float>(shape.points.size());
+}
+
 glm::vec3 gizmoColor(GizmoHandle handle) {
     constexpr std::array<glm::vec3, 3> kColors = {
         {{0.9f, 0.25f, 0.25f}, {0.35f, 0.8f, 0.25f}, {0.3f, 0.5f, 1.0f}}};

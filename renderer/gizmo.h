@@ -29,6 +29,8 @@ struct GizmoShape {
 };
 /// What is to be drawn, from back to front. Empty: behind the eye.
 std::vector<GizmoShape> gizmoShapes(const GizmoPlace& place);
+/// A point to take hold of it.
+glm::vec2 gripOf(const GizmoShape& shape);
 /// As displayed.
 glm::vec3 gizmoColor(GizmoHandle handle);
 /// What is near enough to a point to be taken hold of.

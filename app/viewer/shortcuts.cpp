@@ -48,6 +48,8 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::Gizmo, static_cast<int>(GizmoMode::Translate), GLFW_KEY_T, 0, "Light", "Move by the gizmo"},
         {Action::Gizmo, static_cast<int>(GizmoMode::Rotate), GLFW_KEY_R, 0, "Light", "Turn by the gizmo"},
         {Action::LightIcons, 0, GLFW_KEY_I, 0, "View", "Light icons"},
+        {Action::Wipe, 0, GLFW_KEY_B, 0, "View", "A/B wipe"},
+        {Action::StoreReference, 0, GLFW_KEY_B, kShift, "View", "Store the light as B"},
         {Action::UvTexture, 0, GLFW_KEY_U, 0, "View", "As UV texture"},
         {Action::Masked, 0, GLFW_KEY_M, 0, "View", "UV texture masked"},
         {Action::NextFilter, 0, GLFW_KEY_F, kShift, "View", "Next lightmap filter"},

@@ -29,6 +29,8 @@ enum class Action : uint8_t {
     NudgeLight,    // argument: 1, 2, 3 along the picture's right, up and forward, less than 0 against it
     Gizmo,         // argument: a GizmoMode
     LightIcons,
+    Wipe,
+    StoreReference,
     View, // argument: of viewEntries()
     UvTexture,
     Masked,

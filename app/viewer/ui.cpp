@@ -34,6 +34,8 @@ bool isChecked(const PanelContext& context, const Shortcut& shortcut) {
         return !context.view.exposure;
     case Action::LightIcons:
         return context.view.lightIcons;
+    case Action::Wipe:
+        return context.view.wipe;
     case Action::Gizmo:
         return static_cast<int>(context.view.gizmo) == shortcut.argument;
     case Action::Record:

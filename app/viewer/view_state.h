@@ -25,6 +25,9 @@ struct ViewState {
     bool lightIcons = true;
     GizmoMode gizmo = GizmoMode::Translate; // of a selected lamp
 
+    bool wipe = false;   // left of the line: the reference
+    float wipeAt = 0.5f; // the line, as a share of the picture's width
+
     bool uv = false; // the lightmap as a flat picture
     bool masked = true;
     UvWindow uvWindow;

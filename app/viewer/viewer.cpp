@@ -176,6 +176,9 @@ void Viewer::followScene() {
         view_.seenTexel.reset();
         view_.light.reset();
         lightDrag_.reset();
+        newestEdit_.clear();
+        editedAt_ = now();
+        ownReference_ = false;
         if (!session_->sceneWasKept()) {
             ViewCamera camera = scene.view;
             const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
@@ -222,6 +225,7 @@ void Viewer::followBake(double time) {
         pacer_.statusChanged();
     status_ = std::move(status);
     if (bridge_->update()) followMap();
+    followBadge(time);
     inspect();
     followInspected();
     if (!pane_.adapting())
@@ -382,6 +386,7 @@ void Viewer::frame(const Redraw& redraw) {
     gui_.begin(scale_);
     area_ = ui_.draw(context(), hidden_, scale_);
     drawLightOverlay();
+    drawProgress();
     const double drawnUi = now();
     const bool anew = redraw.scene || sceneDirty_;
     drawScene(anew);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/live/session.h"
+#include "app/viewer/bake_badge.h"
 #include "app/viewer/camera_control.h"
 #include "app/viewer/capture.h"
 #include "app/viewer/gui.h"
@@ -77,6 +78,15 @@ private:
     void updateFlight();
     void cameraMoved();
 
+    // viewer_progress.cpp
+    void followBadge(double time);
+    void beforeEdit(const std::string& name, const std::string& underWay);
+    void performWipe(Action action);
+    bool showsWipe() const;
+    bool overWipe(const glm::dvec2& at) const;
+    void dragWipe(const glm::dvec2& at);
+    void drawProgress();
+
     // viewer_lights.cpp
     LightStage stage() const;
     bool showsLights() const;
@@ -93,6 +103,7 @@ private:
     void dragLight(const glm::dvec2& at);
     void endLightDrag();
     void onDragKey(const WindowEvent& event);
+    void tellLightPlaces();
     void drawLightOverlay();
 
     // viewer_actions.cpp
@@ -138,6 +149,11 @@ private:
     CameraControl camera_;
     LightList lights_;
     std::optional<GizmoDrag> lightDrag_;
+    BakeBadge badge_;
+    std::string newestEdit_; // its name, "": none since the scene came
+    double editedAt_ = 0, convergedAt_ = 0;
+    bool ownReference_ = false; // B is what the user stored, and stays
+    bool wipeDrag_ = false;
     FrameFigures figures_;
     RedrawPacer pacer_;
     BakeStatus status_;

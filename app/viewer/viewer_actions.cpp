@@ -38,6 +38,7 @@ void Viewer::tell(const char* kind, const std::string& what) const {
 
 void Viewer::edit(const std::string& name, const Document& next) {
     if (name != edited_) tell("edit", name);
+    beforeEdit(name, edited_);
     edited_ = name;
     session_->edit(name, next);
     pacer_.input();
@@ -87,6 +88,9 @@ void Viewer::perform(Action action, int argument) {
     case Action::Gizmo:
         view_.gizmo = static_cast<GizmoMode>(argument);
         return;
+    case Action::Wipe:
+    case Action::StoreReference:
+        return performWipe(action);
     case Action::LightIcons:
         view_.lightIcons = !view_.lightIcons;
         return;
@@ -125,6 +129,7 @@ void Viewer::performUndo(Action action) {
     const bool undo = action == Action::Undo;
     const std::string name = undo ? session_->undoName() : session_->redoName();
     edited_.clear();
+    if (!name.empty()) beforeEdit((undo ? "undo of " : "redo of ") + name, "");
     if (!(undo ? session_->undo() : session_->redo()))
         return note(undo ? "nothing to undo" : "nothing to make again");
     tell(undo ? "undo" : "redo", name);

@@ -113,6 +113,10 @@ bool Viewer::overScene(const glm::dvec2& at) const {
 
 void Viewer::onButton(const WindowEvent& event) {
     cursor_ = event.at;
+    if (wipeDrag_) {
+        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) wipeDrag_ = false;
+        return;
+    }
     if (lightDrag_) {
         if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) endLightDrag();
         return;
@@ -128,6 +132,10 @@ void Viewer::onButton(const WindowEvent& event) {
         return;
     }
     if (camera_.dragging() || !overScene(event.at)) return;
+    if (event.code == GLFW_MOUSE_BUTTON_LEFT && overWipe(event.at)) {
+        wipeDrag_ = true;
+        return;
+    }
     if (event.code == GLFW_MOUSE_BUTTON_LEFT && pressLights(event.at)) return;
     button_ = event.code;
     pressed_ = event.at;
@@ -144,6 +152,7 @@ void Viewer::onButton(const WindowEvent& event) {
 void Viewer::onCursor(const WindowEvent& event) {
     const glm::dvec2 before = cursor_;
     cursor_ = event.at;
+    if (wipeDrag_) return dragWipe(event.at);
     if (lightDrag_) return dragLight(event.at);
     // A click that trembles is no drag: it would leave the camera a little beside.
     if (!camera_.dragging() || area_.size.y <= 0) return;

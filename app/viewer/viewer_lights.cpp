@@ -1,7 +1,9 @@
 #include "app/viewer/viewer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -72,6 +74,10 @@ void Viewer::followLights() {
     for (size_t i = 0; i < shown.size(); ++i)
         if (lights[i] && !shines[i]) shown[i].emission = glm::vec3(0.0f);
     showMaterials(std::move(shown));
+    SkySettings sky = session_->document().edits.sky;
+    if (!session_->document().mix.shines({Kind::Sky, 0, 0})) sky.radiance = glm::vec3(0.0f);
+    pane_.setSky(sky);
+    changeScene();
     pacer_.input();
 }
 
@@ -246,8 +252,33 @@ void Viewer::onDragKey(const WindowEvent& event) {
     dragLight(cursor_);
 }
 
+// Where one can click icons and take hold of the gizmo.
+void Viewer::tellLightPlaces() {
+    constexpr std::array<const char*, 8> kHandles = {"", "X", "Y", "Z", "YZ", "ZX", "XY", "Screen"};
+    const LightStage now = stage();
+    const auto add = [&](const char* name, const glm::vec2& point) {
+        items_.add(name, glm::ivec2(glm::round(area_.corner + point)));
+    };
+    {
+        const ui::ItemLog::Scope scope(items_, "Icons");
+        for (const LightSource& source : lights_.sources()) {
+            if (source.key.kind != Kind::Lamp) continue;
+            const Light& light = now.edits.lights[source.key.index];
+            const auto place = project(now.screen, glm::vec3(light.transform[3]));
+            if (place) add(source.name.c_str(), *place);
+        }
+    }
+    const ui::ItemLog::Scope scope(items_, "Gizmo");
+    const std::optional<GizmoPlace> place = gizmoOf(now);
+    GizmoHandle before = GizmoHandle::None;
+    for (const GizmoShape& shape : place ? gizmoShapes(*place) : std::vector<GizmoShape>())
+        if (shape.handle != std::exchange(before, shape.handle))
+            add(kHandles[static_cast<size_t>(shape.handle)], gripOf(shape));
+}
+
 void Viewer::drawLightOverlay() {
     if (!showsLights()) return;
+    if (desc_.logActions) tellLightPlaces();
     GizmoHandle held = lightDrag_ ? lightDrag_->handle() : GizmoHandle::None;
     const std::optional<GizmoPlace> place = gizmoOf(stage());
     if (!lightDrag_ && place && !camera_.dragging() && overScene(cursor_))

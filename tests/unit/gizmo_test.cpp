@@ -172,6 +172,9 @@ TEST(Gizmo, IsOfOneSizeAndHeldWhereItIsSeen) {
         EXPECT_EQ(gizmoAt(place, {400.0f, 300.0f}), GizmoHandle::Screen);
         EXPECT_EQ(gizmoAt(place, {20.0f, 20.0f}), GizmoHandle::None);
     }
+    const GizmoPlace place{viewFrom({3, 2, 3}, glm::vec3(0.0f)), glm::vec3(0.0f), GizmoMode::Rotate};
+    for (const GizmoShape& shape : gizmoShapes(place))
+        EXPECT_EQ(gizmoAt(place, gripOf(shape)), shape.handle);
     const GizmoPlace behind{viewFrom(glm::vec3(0.0f), {0, 0, -1}), {0, 0, 3}, GizmoMode::Rotate};
     EXPECT_TRUE(gizmoShapes(behind).empty());
 }
