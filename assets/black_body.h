@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include <glm/glm.hpp>
+
+namespace relume {
+
+constexpr float kLowestTemperature = 1000.0f, kHighestTemperature = 15000.0f; // [K]
+
+/// Colour of a black body, linear sRGB with its largest channel at 1; what sRGB has not (below 1900 K) is cut
+/// off. The temperature [K] is clamped to the range above.
+glm::vec3 blackBody(float kelvin);
+
+/// The black body whose colour is nearest to another one.
+struct NearestBody {
+    float kelvin = 0.0f;
+    float off = 0.0f; // largest difference of a channel, as a share of the largest channel
+};
+/// color: linear, of any brightness. None: black, or no number.
+std::optional<NearestBody> nearestBlackBody(const glm::vec3& color);
+
+} // namespace relume
