@@ -335,6 +335,9 @@ Json GlbWriter::addLight(const Light& light) {
         out["spot"]["innerConeAngle"] = light.innerConeAngle;
         out["spot"]["outerConeAngle"] = light.outerConeAngle;
         break;
+    case LightType::Rectangle:
+    case LightType::Disc:
+        break;
     }
     if (light.range > 0.0f && light.type != LightType::Directional) out["range"] = light.range;
     Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
@@ -356,7 +359,8 @@ void GlbWriter::addNodes() {
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
-        nodes.push_back(addLight(light));
+        if (light.type != LightType::Rectangle && light.type != LightType::Disc)
+            nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
     Json roots = Json::array();
