@@ -1,6 +1,7 @@
 #include "assets/gltf_build.h"
 
 #include "assets/error.h"
+#include "assets/gltf_node.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -29,29 +30,6 @@ int indexOr(const json& node, const char* key, int fallback) {
 
 double at(const json& array, int i) {
     return array[static_cast<size_t>(i)].get<double>();
-}
-
-glm::dmat4 localTransform(const json& node) {
-    glm::dmat4 local(1.0);
-    if (const json* matrix = member(node, "matrix")) {
-        for (int i = 0; i < 16; ++i)
-            local[i / 4][i % 4] = at(*matrix, i);
-        // An affine transform's last row; exporters round it.
-        for (int c = 0; c < 4; ++c)
-            local[c][3] = c == 3 ? 1.0 : 0.0;
-        return local;
-    }
-    if (const json* rotation = member(node, "rotation")) {
-        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
-        const double length = glm::length(q);
-        if (length > 0.0) local = glm::mat4_cast(q / length);
-    }
-    if (const json* scale = member(node, "scale"))
-        for (int c = 0; c < 3; ++c)
-            local[c] *= at(*scale, c);
-    if (const json* translation = member(node, "translation"))
-        local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
-    return local;
 }
 
 bool finite(const glm::mat4& m) {
@@ -95,8 +73,8 @@ float notNegative(double value) {
     return std::isfinite(single) && single > 0.0f ? single : 0.0f;
 }
 
-void addLight(Build& build, const tinygltf::Light& source, const std::string& node,
-              const glm::mat4& transform) {
+void addLight(Build& build, const tinygltf::Light& source, size_t index, const glm::mat4& transform) {
+    const std::string node = nameOf(build.nodes[index]);
     const std::string where = "light " + quoted(source.name.empty() ? node : source.name);
     Light light;
     if (source.type == "spot") {
@@ -109,6 +87,7 @@ void addLight(Build& build, const tinygltf::Light& source, const std::string& no
     }
     light.name = source.name.empty() ? node : source.name;
     light.transform = transform;
+    light.node = static_cast<int>(index);
     for (int c = 0; c < 3; ++c)
         if (source.color.size() == 3) light.color[c] = notNegative(source.color[static_cast<size_t>(c)]);
     light.intensity = notNegative(source.intensity);
@@ -119,22 +98,6 @@ void addLight(Build& build, const tinygltf::Light& source, const std::string& no
     if (outer != source.spot.outerConeAngle || source.spot.innerConeAngle > outer)
         build.warnings.add(where, "has cone angles out of range, they are clamped");
     build.scene.lights.push_back(std::move(light));
-}
-
-std::vector<int> rootNodes(const Build& build) {
-    std::vector<int> roots;
-    if (!build.scenes.empty()) {
-        const json* nodes = member(build.scenes[static_cast<size_t>(build.defaultScene)], "nodes");
-        return nodes ? nodes->get<std::vector<int>>() : roots;
-    }
-    std::vector<bool> isChild(build.nodes.size());
-    for (const json& node : build.nodes)
-        if (const json* children = member(node, "children"))
-            for (const json& child : *children)
-                isChild[child.get<size_t>()] = true;
-    for (size_t i = 0; i < isChild.size(); ++i)
-        if (!isChild[i]) roots.push_back(static_cast<int>(i));
-    return roots;
 }
 
 void addNode(Build& build, size_t index, const glm::mat4& world) {
@@ -150,6 +113,7 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
         if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
         instance.mesh = mesh;
         instance.transform = world;
+        instance.node = static_cast<int>(index);
         build.scene.instances.push_back(std::move(instance));
     }
     if (camera >= 0)
@@ -163,10 +127,49 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
         build.warnings.add(labelOf(node, index),
                            "EXT_mesh_gpu_instancing is not supported, one instance is used");
     if (const json* light = member(*extensions, "KHR_lights_punctual"))
-        addLight(build, build.model.lights[(*light)["light"].get<size_t>()], nameOf(node), world);
+        addLight(build, build.model.lights[(*light)["light"].get<size_t>()], index, world);
 }
 
 } // namespace
+
+glm::dmat4 localTransform(const json& node) {
+    glm::dmat4 local(1.0);
+    if (const json* matrix = member(node, "matrix")) {
+        for (int i = 0; i < 16; ++i)
+            local[i / 4][i % 4] = at(*matrix, i);
+        // An affine transform's last row; exporters round it.
+        for (int c = 0; c < 4; ++c)
+            local[c][3] = c == 3 ? 1.0 : 0.0;
+        return local;
+    }
+    if (const json* rotation = member(node, "rotation")) {
+        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
+        const double length = glm::length(q);
+        if (length > 0.0) local = glm::mat4_cast(q / length);
+    }
+    if (const json* scale = member(node, "scale"))
+        for (int c = 0; c < 3; ++c)
+            local[c] *= at(*scale, c);
+    if (const json* translation = member(node, "translation"))
+        local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
+    return local;
+}
+
+std::vector<int> rootNodes(const json& nodes, const json& scenes, int defaultScene) {
+    std::vector<int> roots;
+    if (!scenes.empty()) {
+        const json* listed = member(scenes[static_cast<size_t>(defaultScene)], "nodes");
+        return listed ? listed->get<std::vector<int>>() : roots;
+    }
+    std::vector<bool> isChild(nodes.size());
+    for (const json& node : nodes)
+        if (const json* children = member(node, "children"))
+            for (const json& child : *children)
+                isChild[child.get<size_t>()] = true;
+    for (size_t i = 0; i < isChild.size(); ++i)
+        if (!isChild[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
 
 void buildNodes(Build& build) {
     struct Visit {
@@ -174,7 +177,7 @@ void buildNodes(Build& build) {
         glm::dmat4 parent;
     };
     std::vector<Visit> stack;
-    const std::vector<int> roots = rootNodes(build);
+    const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.defaultScene);
     std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         stack.push_back({*root, glm::dmat4(1.0)});
