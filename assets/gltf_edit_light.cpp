@@ -57,7 +57,7 @@ std::span<const float> span(const glm::vec3& v) {
 
 /// Cones of at most a right angle, the inner one inside the outer one as glTF has it.
 void writeCones(const FileEdit& edit, EditedJson& entry, const Light& light, const Light* before) {
-    const std::string where = "a light";
+    const std::string where = "light " + quoted(light.name);
     const bool opened = !before || before->outerConeAngle != light.outerConeAngle;
     if (opened) {
         EditedJson& outer = make(edit, entry, {"spot", "outerConeAngle"}, where);
@@ -119,7 +119,7 @@ void LightEdit::requireGood(const Light& light) const {
 }
 
 void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light* before) const {
-    const std::string where = "a light";
+    const std::string where = "light " + quoted(light.name);
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) {
         if (light.name.empty()) {
@@ -149,8 +149,10 @@ void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light
     }
 }
 
-void LightEdit::writeArea(EditedJson& node, const Light& light, const Light* before) const {
-    EditedJson& area = make(edit_, node, {"extras", "relume", "areaLight"}, "a node");
+void LightEdit::writeArea(int index, const Light& light, const Light* before) const {
+    EditedJson& node = edit_.json["nodes"][static_cast<size_t>(index)];
+    const std::string where = fmt::format("nodes[{}]", index);
+    EditedJson& area = make(edit_, node, {"extras", "relume", "areaLight"}, where);
     if (area.is_null()) area = EditedJson::object();
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) area["name"] = light.name;
@@ -184,9 +186,8 @@ EditedJson& LightEdit::ownLight(int node) {
 }
 
 void LightEdit::write(int node, const Light& light, const Light* before) {
-    const auto json = [&]() -> EditedJson& { return edit_.json["nodes"][static_cast<size_t>(node)]; };
     if (isArea(light)) {
-        writeArea(json(), light, before);
+        writeArea(node, light, before);
     } else if (before) {
         writePunctual(ownLight(node), light, before);
     } else {
@@ -197,7 +198,8 @@ void LightEdit::write(int node, const Light& light, const Light* before) {
         if (!lights.is_array()) edit_.fail("the file's list of lights is no array");
         lights.push_back(std::move(entry));
         users_.push_back(1);
-        make(edit_, json(), {"extensions", kPunctual, "light"}, "a node") = users_.size() - 1;
+        make(edit_, edit_.json["nodes"][static_cast<size_t>(node)], {"extensions", kPunctual, "light"},
+             fmt::format("nodes[{}]", node)) = users_.size() - 1;
         useExtension(edit_, kPunctual);
     }
 }

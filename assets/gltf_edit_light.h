@@ -27,7 +27,7 @@ private:
     EditedJson& ownLight(int node);
     void write(int node, const Light& light, const Light* before);
     void writePunctual(EditedJson& entry, const Light& light, const Light* before) const;
-    void writeArea(EditedJson& node, const Light& light, const Light* before) const;
+    void writeArea(int node, const Light& light, const Light* before) const;
     void requireGood(const Light& light) const;
     bool holds(int node, bool area) const;
 

@@ -42,6 +42,17 @@ bool carries(EditedJson& node, Carried carried) {
     return false;
 }
 
+/// Whether two things go to the same place. Of a light only place and direction count: its transform need
+/// not have the scale of the node.
+bool together(const Move& a, const Move& b) {
+    if (a.to == b.to) return true;
+    constexpr double kNear = 1e-6; // relative, of floats that went through a few products
+    const glm::dvec3 difference = glm::dvec3(a.to[3]) - glm::dvec3(b.to[3]);
+    if (glm::length(difference) > kNear * glm::length(glm::dvec3(a.to[3]))) return false;
+    const glm::dmat3 from = frame(glm::dmat3(glm::mat3(a.to))), to = frame(glm::dmat3(glm::mat3(b.to)));
+    return glm::length(from[0] - to[0]) <= kNear && glm::length(from[2] - to[2]) <= kNear;
+}
+
 /// Whether all that a node carries moves, and to the same place, so that the node itself can.
 bool movesWhole(EditedJson& node, const std::map<Carried, Move>& moves) {
     if (node.contains("camera")) return false;
@@ -49,7 +60,7 @@ bool movesWhole(EditedJson& node, const std::map<Carried, Move>& moves) {
     for (const Carried carried : {Carried::Instance, Carried::Light, Carried::AreaLight})
         if (carries(node, carried) && !moves.contains(carried)) return false;
     return std::all_of(moves.begin(), moves.end(),
-                       [&](const auto& move) { return move.second.to == moves.begin()->second.to; });
+                       [&](const auto& move) { return together(move.second, moves.begin()->second); });
 }
 
 /// Calls `visit` with the target of each animation channel that has one.

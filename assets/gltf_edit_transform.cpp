@@ -4,9 +4,9 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 namespace relume::gltf {
 
@@ -37,12 +37,11 @@ glm::dvec3 translationOf(const TransformEdit& edit, const glm::dvec3& was) {
             best[i] = shortest(whole[i], [&](double v) { return float(v) == float(whole[i]); });
     }
     // Digits are tried for all three at once, as a rotated parent mixes them.
-    for (int digits = 1; digits <= 9; ++digits) {
-        for (int i = 0; i < 3; ++i) {
-            if (!moves[static_cast<size_t>(i)]) continue;
-            const double unit = std::pow(10.0, digits);
-            local[i] = std::abs(whole[i]) < 1e6 ? std::round(whole[i] * unit) / unit : best[i];
-        }
+    constexpr int kDecimals = 12; // a picometre; what is smaller gets the digits of a float
+    for (int decimals = 1; decimals <= kDecimals; ++decimals) {
+        const double unit = std::pow(10.0, decimals);
+        for (int i = 0; i < 3; ++i)
+            if (moves[static_cast<size_t>(i)]) local[i] = std::round(whole[i] * unit) / unit;
         if (reaches(edit, local)) return local;
     }
     return best;
@@ -57,7 +56,7 @@ void setTranslation(EditedJson& node, const glm::dvec3& value, const glm::dvec3&
     EditedJson& place = node["translation"];
     if (place.is_null()) place = {0.0, 0.0, 0.0};
     for (int i = 0; i < 3; ++i)
-        if (value[i] != was[i]) place[static_cast<size_t>(i)] = value[i];
+        if (value[i] != was[i]) place[static_cast<size_t>(i)] = value[i] + 0.0; // not -0
 }
 
 void setRotation(EditedJson& node, const glm::dmat3& rotation, const nlohmann::json& was) {
@@ -131,11 +130,6 @@ void writeMatrix(EditedJson& node, const glm::dmat4& local) {
     setNumbers(node["matrix"], values);
 }
 
-/// The axes of a light in a node whose scale stays.
-glm::dmat3 scaled(const glm::dmat3& axes, const glm::dvec3& scale) {
-    return {axes[0] * scale[0], axes[1] * scale[1], axes[2] * scale[2]};
-}
-
 } // namespace
 
 bool invertible(const glm::dmat4& transform) {
@@ -168,43 +162,33 @@ bool editTransform(EditedJson& node, const nlohmann::json& was, const TransformE
     const glm::dmat4 old = localTransform(was);
     const glm::dvec3 translation = translationOf(edit, glm::dvec3(old[3]));
     const bool turned = glm::mat3(edit.from) != glm::mat3(edit.to);
-    const bool isMatrix = was.contains("matrix");
-    glm::dmat4 local = old;
-    if (turned) {
-        const glm::dmat3 linear = glm::inverse(glm::dmat3(edit.parent)) * glm::dmat3(glm::mat3(edit.to));
-        if (!isMatrix) {
-            const glm::dvec3 oldScale = scaleOf(was);
-            glm::dvec3 scale = oldScale;
-            glm::dmat3 rotation;
-            if (edit.rigid) {
-                glm::dmat3 axes = linear;
-                for (int i = 0; i < 3; ++i)
-                    if (scale[i] < 0.0) axes[i] = -axes[i];
-                rotation = frame(axes);
-            } else if (!split(linear, rotation, scale)) {
-                if (!edit.mayBeMatrix) return false;
-                local = glm::dmat4(linear);
-                local[3] = glm::dvec4(translation, 1.0);
-                writeMatrix(node, local);
-                return true;
-            }
-            setRotation(node, frame(rotation), was);
-            setScale(node, scale, oldScale);
-        } else if (edit.rigid) {
-            glm::dvec3 scale;
-            for (int i = 0; i < 3; ++i)
-                scale[i] = glm::length(old[i]);
-            local = glm::dmat4(scaled(frame(linear), scale));
-        } else {
-            local = glm::dmat4(linear);
-        }
-    }
+    const glm::dmat3 linear = glm::inverse(glm::dmat3(edit.parent)) * glm::dmat3(glm::mat3(edit.to));
+    glm::dmat4 local(linear);
     local[3] = glm::dvec4(translation, 1.0);
-    if (isMatrix) {
+    if (was.contains("matrix")) {
+        if (!turned || edit.rigid) {
+            const glm::dmat3 axes = turned ? frame(linear) : glm::dmat3(old);
+            for (int i = 0; i < 3; ++i)
+                local[i] = glm::dvec4(turned ? axes[i] * glm::length(old[i]) : axes[i], 0.0);
+        }
         writeMatrix(node, local);
-    } else {
-        setTranslation(node, translation, glm::dvec3(old[3]));
+        return true;
     }
+    if (turned) {
+        const glm::dvec3 oldScale = scaleOf(was);
+        glm::dvec3 scale = oldScale;
+        glm::dmat3 rotation = linear;
+        if (edit.rigid) {
+            for (int i = 0; i < 3; ++i)
+                if (scale[i] < 0.0) rotation[i] = -rotation[i];
+        } else if (!split(linear, rotation, scale)) {
+            if (edit.mayBeMatrix) writeMatrix(node, local);
+            return edit.mayBeMatrix;
+        }
+        setRotation(node, frame(rotation), was);
+        setScale(node, scale, oldScale);
+    }
+    setTranslation(node, translation, glm::dvec3(old[3]));
     return true;
 }
 

@@ -161,6 +161,24 @@ TEST_F(GltfEditNode, ALightLeavesANodeThatCarriesMore) {
     EXPECT_EQ(jsonOf(path)["nodes"].size(), 2u); // its node is its own now
 }
 
+TEST_F(GltfEditNode, ALightThatMovesWithItsObjectStaysInItsNode) {
+    LitScene scene;
+    scene.json["nodes"][0]["extensions"]["KHR_lights_punctual"] = {{"light", scene.light(kPoint)}};
+    scene.json["nodes"][0]["scale"] = {2, 2, 2};
+    const std::string path = write(scene);
+    const glm::mat4 move = glm::rotate(glm::translate(glm::mat4(1.0f), {1, 2, 3}), 0.7f, glm::vec3(1, 1, 0));
+    const Scene before = loadGltf(path);
+    save(path, [&](Scene& s) {
+        s.instances[0].transform = move * s.instances[0].transform;
+        // A light's transform may come without scale.
+        s.lights[0].transform = move;
+    });
+    const json file = jsonOf(path);
+    EXPECT_EQ(file["nodes"].size(), 1u);
+    EXPECT_EQ(file["nodes"][0]["scale"], json({2, 2, 2}));
+    expectNear(loadGltf(path).instances[0].transform, move * before.instances[0].transform);
+}
+
 TEST_F(GltfEditNode, AnObjectMovesWithoutItsChildren) {
     LitScene scene;
     json& nodes = scene.json["nodes"];
@@ -275,6 +293,44 @@ TEST_F(GltfEditNode, LightsAreAddedToAFileWithoutAny) {
     EXPECT_EQ(lightOf(back, "Sun").type, LightType::Directional);
 }
 
+TEST_F(GltfEditNode, AreaLightsAreEditedInTheirNode) {
+    const std::string path = write(LitScene());
+    const Scene first = loadGltf(path);
+    Scene now = first;
+    now.lights.resize(1);
+    now.lights[0].name = "Panel";
+    now.lights[0].type = LightType::Rectangle;
+    now.lights[0].node = saveEditedGltf(path, first, now, path).lights[0];
+    const json added = jsonOf(path);
+    json expected = added;
+    Scene edited = now;
+    edited.lights[0].color = {1, 0.2f, 1};
+    edited.lights[0].size.y = 0.3f;
+    edited.lights[0].transform = glm::translate(glm::mat4(1.0f), {0, 2.2f, 0});
+    saveEditedGltf(path, now, edited, path);
+    json& area = expected["nodes"][1]["extras"]["relume"]["areaLight"];
+    area["color"][1] = 0.2;
+    area["size"][1] = 0.3;
+    expected["nodes"][1]["translation"] = {0, 2.2, 0};
+    EXPECT_EQ(jsonOf(path), expected);
+
+    Scene disc = edited;
+    disc.lights[0].type = LightType::Disc;
+    disc.lights[0].radius = 0.5f;
+    saveEditedGltf(path, edited, disc, path);
+    area["type"] = "disc";
+    area["radius"] = 0.5;
+    area.erase("size");
+    EXPECT_EQ(jsonOf(path), expected);
+
+    Scene point = disc;
+    point.lights[0].type = LightType::Point;
+    EXPECT_EQ(saveEditedGltf(path, disc, point, path).lights[0], 1);
+    EXPECT_FALSE(jsonOf(path)["nodes"][1].contains("extras"));
+    EXPECT_EQ(loadGltf(path).lights[0].type, LightType::Point);
+    EXPECT_EQ(loadGltf(path).lights[0].transform[3].y, 2.2f);
+}
+
 /// Three lights on three entries.
 LitScene three() {
     LitScene scene;
@@ -371,9 +427,9 @@ TEST_F(GltfEditNode, ExtrasThatAreNoObjectAreNamed) {
     const std::string path = write(scene);
     const std::string message =
         messageOf([&] { save(path, [](Scene& s) { s.lights[1].type = LightType::Disc; }); });
-    EXPECT_EQ(message,
-              path +
-                  ": a node.extras is no object, so that nothing can be kept in it: remove it from the file");
+    EXPECT_EQ(
+        message,
+        path + ": nodes[2].extras is no object, so that nothing can be kept in it: remove it from the file");
 }
 
 } // namespace

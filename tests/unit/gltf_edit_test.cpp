@@ -180,6 +180,21 @@ TEST_F(GltfEdit, TheSkyIsInTheDefaultScenesExtras) {
     EXPECT_EQ(scenes[0], builder.json["scenes"][0]);
 }
 
+TEST_F(GltfEdit, ABrighterSkyKeepsItsColor) {
+    const std::string path = write(everything());
+    const Scene first = loadGltf(path);
+    Scene blue = first;
+    blue.sky.radiance = {0.5f, 0.7f, 1.25f};
+    saveEditedGltf(path, first, blue, path);
+    Scene bright = blue;
+    bright.sky.radiance *= 8.0f;
+    saveEditedGltf(path, blue, bright, path);
+    const json sky = jsonOf(path)["scenes"][0]["extras"]["relume"]["sky"];
+    EXPECT_EQ(sky, json({{"color", {0.4, 0.56, 1}}, {"intensity", 10}}));
+    saveEditedGltf(path, bright, first, path);
+    EXPECT_EQ(jsonOf(path)["scenes"][0]["extras"], json::object({{"mood", "calm"}}));
+}
+
 TEST_F(GltfEdit, AFileWithoutScenesGetsOneForItsSkyOnly) {
     LitScene builder = everything();
     builder.json.erase("scenes");
