@@ -171,12 +171,12 @@ void editMaterials(FileEdit& edit, const std::vector<Material>& before, const st
                                 "of {}",
                                 target, edit.file.path));
     for (size_t i = 0; i < after.size(); ++i) {
-        EditedJson& material = edit.json["materials"][i];
+        const auto material = [&]() -> EditedJson& { return edit.json["materials"][i]; };
         const std::string where = fmt::format("materials[{}]", i);
         const std::string thing = fmt::format("material {} has ", quoted(after[i].name));
         if (before[i].emission != after[i].emission) {
             requireFinite(target, thing + "an emission", after[i].emission);
-            editEmission(edit, material, before[i].emission, after[i].emission, where);
+            editEmission(edit, material(), before[i].emission, after[i].emission, where);
         }
         if (before[i].baseColor != after[i].baseColor) {
             const glm::vec4 color = after[i].baseColor;
@@ -184,7 +184,7 @@ void editMaterials(FileEdit& edit, const std::vector<Material>& before, const st
                 if (!(color[c] >= 0.0f && color[c] <= 1.0f))
                     throw Error(fmt::format("{}: {}a base colour of {}: give numbers from 0 to 1", target,
                                             thing, color[c]));
-            editBaseColor(edit, material, color, where);
+            editBaseColor(edit, material(), color, where);
         }
     }
 }
