@@ -97,8 +97,8 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
     gltf::check(file);
     gltf::requireSameKind(file, target);
     const std::string_view text = gltf::jsonText(file);
-    const gltf::EditedJson was = gltf::EditedJson::parse(text);
-    gltf::FileEdit edit{file, was};
+    gltf::FileEdit edit(file);
+    const gltf::EditedJson was = edit.json;
     EditedNodes nodes;
     try {
         nodes = gltf::apply(edit, before, after, target);

@@ -22,6 +22,13 @@ double rounded(double value, int digits) {
 
 } // namespace
 
+FileEdit::FileEdit(const File& source) : file(source), json(EditedJson::parse(jsonText(source))) {
+    const std::string_view text = jsonText(source);
+    for (const char* sign : {"KHR_animation_pointer", "KHR_interactivity", "\"/nodes/", "\"\\/nodes\\/",
+                             "\"/extensions/", "\"\\/extensions\\/"})
+        hasPointers = hasPointers || text.find(sign) != std::string_view::npos;
+}
+
 void FileEdit::fail(const std::string& what) const {
     throw Error(fmt::format("{}: {}: the file is damaged, export it again", file.path, what));
 }
@@ -106,14 +113,6 @@ void dropExtension(FileEdit& edit, const std::string& name) {
             if ((*names)[i] == name) names->erase(i);
         if (names->empty()) erase(edit.json, {section});
     }
-}
-
-bool hasPointers(const File& file) {
-    const std::string_view text = jsonText(file);
-    for (const char* sign : {"KHR_animation_pointer", "KHR_interactivity", "\"/nodes/", "\"\\/nodes\\/",
-                             "\"/extensions/", "\"\\/extensions\\/"})
-        if (text.find(sign) != std::string_view::npos) return true;
-    return false;
 }
 
 } // namespace relume::gltf

@@ -19,6 +19,11 @@ using JsonPath = std::vector<const char*>; // keys from object to object
 struct FileEdit {
     const File& file; // as it was, checked
     EditedJson json;  // as it is to be
+    /// Whether the file may name its parts by JSON pointers, as KHR_animation_pointer does: then what they
+    /// may name must not be renumbered.
+    bool hasPointers = false;
+
+    explicit FileEdit(const File& source);
 
     /// Throws the Error for something in the file that has another type than glTF gives it.
     [[noreturn]] void fail(const std::string& what) const;
@@ -49,9 +54,5 @@ void setNumbers(EditedJson& place, std::span<const float> values);
 /// Adds to extensionsUsed; takes away from it and from extensionsRequired.
 void useExtension(FileEdit& edit, const std::string& name);
 void dropExtension(FileEdit& edit, const std::string& name);
-
-/// Whether the file may name its parts by JSON pointers, as KHR_animation_pointer does: then what they may
-/// name must not be renumbered.
-bool hasPointers(const File& file);
 
 } // namespace relume::gltf

@@ -264,7 +264,7 @@ std::vector<int> LightEdit::apply(const std::vector<Light>& before, const std::v
 }
 
 void LightEdit::dropUnused() {
-    if (unused_.empty() || hasPointers(edit_.file)) return;
+    if (unused_.empty() || edit_.hasPointers) return;
     std::sort(unused_.begin(), unused_.end(), std::greater<>());
     unused_.erase(std::unique(unused_.begin(), unused_.end()), unused_.end());
     EditedJson& extension = *find(edit_.json, {"extensions", kPunctual});

@@ -78,7 +78,7 @@ void eachTarget(Json& root, Visit visit) {
 }
 
 bool isAnimated(FileEdit& edit, int node) {
-    bool found = hasPointers(edit.file);
+    bool found = edit.hasPointers;
     eachTarget(edit.json, [&](EditedJson& target) {
         found = found || (target["node"] == node && target.value("path", "") != "weights");
     });
@@ -249,7 +249,7 @@ bool carriesNothing(const EditedJson& node) {
 }
 
 void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates) {
-    if (candidates.empty() || hasUnknownExtensions(edit) || hasPointers(edit.file)) return;
+    if (candidates.empty() || hasUnknownExtensions(edit) || edit.hasPointers) return;
     std::sort(candidates.begin(), candidates.end());
     EditedJson& nodes = edit.json["nodes"];
     for (; !candidates.empty() && nodes.size() > 1; candidates.pop_back()) {
