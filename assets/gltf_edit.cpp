@@ -37,9 +37,10 @@ void requireSameKind(const File& file, const std::string& target) {
                             target, file.path, kind));
 }
 
-/// Adds what has to move; `nodes` gets the node of each instance of `after`.
-void moveInstances(const NodeTree& tree, const Scene& before, const Scene& after, const std::string& target,
-                   Moves& moves, std::vector<int>& nodes) {
+/// Adds what has to move; returns the node of each instance of `after`.
+std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const Scene& after,
+                               const std::string& target, Moves& moves) {
+    std::vector<int> nodes;
     std::map<int, const Instance*> known;
     for (const Instance& instance : before.instances)
         known[instance.node] = &instance;
@@ -59,6 +60,7 @@ void moveInstances(const NodeTree& tree, const Scene& before, const Scene& after
                                         target, quoted(instance.name)));
         moves[instance.node][Carried::Instance] = {instance.name, from, to};
     }
+    return nodes;
 }
 
 /// Makes all changes in the JSON.
@@ -70,7 +72,7 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
     editSky(edit, before.sky, after.sky, target);
     LightEdit lights(edit, tree, target);
     nodes.lights = lights.apply(before.lights, after.lights, moves);
-    moveInstances(tree, before, after, target, moves, nodes.instances);
+    nodes.instances = moveInstances(tree, before, after, target, moves);
     const auto children = moveCarried(edit, tree, moves);
     for (size_t i = 0; i < nodes.lights.size(); ++i) {
         const LightType type = after.lights[i].type;

@@ -62,6 +62,7 @@ private:
     Container items(size_t at) const;
     void findUnit(size_t root);
     std::string indentOf(size_t begin, size_t end) const;
+    std::string lineIndent(size_t at) const;
     std::string laidOut(const Json& value, const std::string& indent) const;
 
     void value(Span span, const Json& before, const Json& after, std::string& out) const;
@@ -126,6 +127,14 @@ std::string Patcher::indentOf(size_t begin, size_t end) const {
     return line == std::string_view::npos ? std::string() : std::string(space.substr(line + 1));
 }
 
+/// The indentation of the line that a place is in.
+std::string Patcher::lineIndent(size_t at) const {
+    if (!lines_) return {}; // all of the file may be one line
+    const size_t line = text_.rfind('\n', at);
+    const size_t begin = line == std::string_view::npos ? 0 : line + 1;
+    return std::string(text_.substr(begin, skipSpace(begin) - begin));
+}
+
 /// How the file is laid out is read from its first member.
 void Patcher::findUnit(size_t root) {
     if (text_[root] != '{' && text_[root] != '[') return;
@@ -164,9 +173,7 @@ void Patcher::value(Span span, const Json& before, const Json& after, std::strin
             out.resize(size);
         }
     }
-    const size_t line = text_.rfind('\n', span.begin);
-    const size_t lineBegin = line == std::string_view::npos ? 0 : line + 1;
-    out += laidOut(after, std::string(text_.substr(lineBegin, skipSpace(lineBegin) - lineBegin)));
+    out += laidOut(after, lineIndent(span.begin));
 }
 
 bool Patcher::object(const Container& old, const Json& before, const Json& after, std::string& out) const {
