@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// Where what was edited is in the written file: the node of each light and instance of `after`, -1 for an
-/// instance that the file has not.
+/// Where the lights and instances of `after` are in the written file: their nodes, which `after` needs to be
+/// the `before` of the next edit.
 struct EditedNodes {
     std::vector<int> lights, instances;
 };
