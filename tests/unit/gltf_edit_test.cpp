@@ -162,6 +162,22 @@ TEST_F(GltfEdit, EmissionIsAFactorUpToOneAndAStrengthAbove) {
     EXPECT_EQ(jsonOf(path)["materials"][0], json::object({{"name", "A"}}));
 }
 
+/// The list of extensions, new in the file, once moved the material away while it was written.
+TEST_F(GltfEdit, AMaterialIsEditedWhileExtensionsAreAdded) {
+    LitScene builder;
+    builder.json["materials"] = json::array({{{"name", "A"}}});
+    const std::string path = write(builder);
+    save(path, [](Scene& scene) {
+        scene.materials[0].emission = {7, 3, 0.1f};
+        scene.materials[0].baseColor = {0.1f, 0.2f, 0.3f, 0.4f};
+        scene.lights.push_back({});
+    });
+    const Scene back = loadGltf(path);
+    EXPECT_EQ(back.materials[0].emission, glm::vec3(7, 3, 0.1f));
+    EXPECT_EQ(back.materials[0].baseColor, glm::vec4(0.1f, 0.2f, 0.3f, 0.4f));
+    EXPECT_EQ(back.lights.size(), 1u);
+}
+
 TEST_F(GltfEdit, TheSkyIsInTheDefaultScenesExtras) {
     LitScene builder = everything();
     builder.json["scenes"].push_back({{"name", "Other"}});
