@@ -66,6 +66,7 @@ struct Instance {
     std::string name; // of the node
     int mesh = -1;
     glm::mat4 transform{1.0f}; // object to world
+    int node = -1;             // of the file
 };
 
 struct Camera {
