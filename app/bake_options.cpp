@@ -68,6 +68,11 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
     }
+    if (o.layers && solver.method != Method::Hybrid)
+        throw UsageError("--layers: only with --method hybrid, others do not tell lights apart");
+    if (o.layers && (o.indirectScale > 1 || o.footprint || o.directions == "lec"))
+        throw UsageError("--layers: not with --indirect-scale, --footprint or --directions lec");
+    solver.layers.on = o.layers;
     solver.links.samples = o.samples;
     solver.links.smooth = !o.noSmooth;
     solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
@@ -157,6 +162,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->check(CLI::IsMember({"rtrad"}));
     command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
         ->check(CLI::Range(0.0, 2.0));
+    command.add_flag("--layers", o.layers,
+                     "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
+                     "that 'relume mix' weighs anew");
     command.add_flag("--half", o.half, "Write 16-bit floats");
     addCheckpointOptions(command, o);
     command.add_option("--json", o.json, "Write statistics to this file, - for standard output");

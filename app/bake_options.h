@@ -32,6 +32,7 @@ struct BakeOptions {
     uint32_t samples = 0;       // 0: not given
     uint32_t indirectScale = 0; // 0: not given
     bool noSmooth = false, footprint = false;
+    bool layers = false;
     PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
     bool deviceGather = false;

@@ -37,10 +37,10 @@ std::string describeSettings(const BakeSettings& settings) {
     const auto& [size, conservative, tracer, voxels, solver] = settings;
     const auto& [resolution, ratio] = voxels;
     const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
-    const auto& [method, pairs, links, cache, transport, passes, error, batchMs, live] = solver;
-    return fmt::format("size={} passes={} error={} method={} conservative={} voxels={} voxel-ratio={}{}{}",
-                       size, passes, error, methodName(method), conservative ? 1 : 0,
-                       marches ? resolution : 0, ratio, describe(transport),
+    const auto& [method, layers, pairs, links, cache, transport, passes, error, batchMs, live] = solver;
+    return fmt::format("size={} passes={} error={} method={}{} conservative={} voxels={} voxel-ratio={}{}{}",
+                       size, passes, error, methodName(method), layers.on ? " layers=1" : "",
+                       conservative ? 1 : 0, marches ? resolution : 0, ratio, describe(transport),
                        isPairMethod(method) ? describe(method, pairs) : describe(links));
 }
 

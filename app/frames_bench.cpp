@@ -157,7 +157,7 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
     FramesReport report;
     {
         Loop loop(desc, scene, *bake);
-        bake->start({.scene = &scene, .materials = scene.scene.materials, .settings = request.bake});
+        bake->start({.scene = &scene, .edits = editsOf(scene.scene), .settings = request.bake});
         waitFor(*bake, loop, [](const LiveBake&, const Loop& l) { return l.complete(); });
         constexpr int kWarmUp = 10; // frames: shaders are compiled when they are first used
         for (int i = 0; i < kWarmUp; ++i)

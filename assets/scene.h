@@ -66,6 +66,7 @@ struct Instance {
     std::string name; // of the node
     int mesh = -1;
     glm::mat4 transform{1.0f}; // object to world
+    bool hidden = false;       // left out: blocks no light, receives and sends none
     int node = -1;             // of the file
 };
 
@@ -97,14 +98,22 @@ struct Light {
     float angle = 0.0f;  // directional: across the disc in the sky that it comes from [rad], 0: one direction
     glm::vec2 size{1.0f}; // rectangle: along X and Y [m]
     int node = -1;        // of the file, whose light it is; -1: the file has it not
+
+    bool operator==(const Light&) const = default;
+};
+
+/// What users set of a sky.
+struct SkySettings {
+    glm::vec3 radiance{0.0f}; // [cd/m^2]; of a picture: factor on it
+    float rotation = 0.0f;    // of the picture about +Y, counter-clockwise from above [rad]
+    std::string file;         // path of the picture, "" for none
+
+    bool operator==(const SkySettings&) const = default;
 };
 
 /// What is seen where nothing else is: one radiance, or an equirectangular picture. Its row 0 is the zenith
 /// (+Y), and its middle column lies in -Z, so that +X is to the right of it.
-struct Sky {
-    glm::vec3 radiance{0.0f};       // [cd/m^2]; of a picture: factor on it
-    float rotation = 0.0f;          // of the picture about +Y, counter-clockwise from above [rad]
-    std::string file;               // path of the picture, "" for none
+struct Sky : SkySettings {
     uint32_t width = 0, height = 0; // of the picture
     std::vector<glm::vec3> pixels;  // [height][width] [cd/m^2], linear
 

@@ -168,7 +168,7 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches) {
         hash.add(uint64_t{image.width} << 32 | image.height);
         hash.add(image.rgba);
     }
-    const LampSet lamps = buildLamps(scene, mesh, 1);
+    const LampSet lamps = buildLamps(scene, mesh, {.samples = 1});
     hash.add(lamps.lamps);
     hash.add(lamps.skyPixels);
     hash.add(&lamps.skyRotation, sizeof(lamps.skyRotation));

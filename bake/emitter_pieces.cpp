@@ -35,7 +35,8 @@ constexpr uint32_t kOpaque = 0xffffffffu;
 /// The emission of one material, per texture coordinates.
 class EmissionTexture {
 public:
-    EmissionTexture(const Scene& scene, const Material& material) : material_(material) {
+    EmissionTexture(const Scene& scene, const Material& material, bool unit)
+        : factor_(unit ? glm::vec3(1.0f) : material.emission) {
         for (uint32_t i = 0; i < 256; ++i)
             linear_[i] = static_cast<float>(linearFromSrgb(i / 255.0));
         if (material.emissionTexture.texture >= 0) {
@@ -65,8 +66,7 @@ public:
             const auto alpha = static_cast<float>(on(surface.alpha));
             if (!maskTexels_.alphaSolid({uv, uv, uv, alpha, alpha, alpha, 0}, mask_, 0.0f, 0.0f)) return {};
         }
-        const glm::dvec3 factor(material_.emission);
-        return image_ ? factor * sample(on(surface.emissionUv)) : factor;
+        return image_ ? factor_ * sample(on(surface.emissionUv)) : factor_;
     }
     /// Texels that an edge of the surface's (s, t) spans, of the finer texture.
     double texels(const EmitterSurface& surface, glm::dvec2 edge) const {
@@ -106,7 +106,7 @@ private:
                         glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x), f.y);
     }
 
-    const Material& material_;
+    glm::dvec3 factor_; // [cd/m^2]
     const Texture* texture_ = nullptr;
     const Image* image_ = nullptr;
     bool isMasked_ = false;
@@ -128,13 +128,14 @@ struct Sampled {
 
 class Splitter {
 public:
-    Splitter(const Scene& scene, const std::vector<EmitterSurface>& surfaces) : surfaces_(surfaces) {
+    Splitter(const Scene& scene, const std::vector<EmitterSurface>& surfaces, bool unit)
+        : surfaces_(surfaces) {
         std::vector<int> textureOf(scene.materials.size(), -1);
         for (const EmitterSurface& s : surfaces) {
             int& index = textureOf[s.material];
             if (index < 0) {
                 index = static_cast<int>(textures_.size());
-                textures_.emplace_back(scene, scene.materials[s.material]);
+                textures_.emplace_back(scene, scene.materials[s.material], unit);
             }
             texture_.push_back(static_cast<size_t>(index));
         }
@@ -290,8 +291,9 @@ bool variesOverSurface(const Material& material) {
     return material.emissionTexture.texture >= 0 || material.alphaMode == AlphaMode::Mask;
 }
 
-PieceList splitEmission(const Scene& scene, const std::vector<EmitterSurface>& surfaces, uint32_t maxPieces) {
-    return Splitter(scene, surfaces).split(maxPieces);
+PieceList splitEmission(const Scene& scene, const std::vector<EmitterSurface>& surfaces, uint32_t maxPieces,
+                        bool unit) {
+    return Splitter(scene, surfaces, unit).split(maxPieces);
 }
 
 } // namespace relume

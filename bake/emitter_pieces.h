@@ -35,8 +35,10 @@ struct PieceList {
 /// Splits surfaces whose emission a texture or a mask varies into pieces of about one radiance: until it
 /// spreads by less than 3 % of the brightest radiance of all, or the piece is smaller than two texels; the
 /// coarsest first. Emission is sampled from the full-size texture, bilinear unless the texture says nearest;
-/// holes of masks as the tracers' alpha test has them. The mean is right for each piece.
-PieceList splitEmission(const Scene& scene, const std::vector<EmitterSurface>& surfaces, uint32_t maxPieces);
+/// holes of masks as the tracers' alpha test has them. The mean is right for each piece. unit: as if all
+/// emission factors were 1.
+PieceList splitEmission(const Scene& scene, const std::vector<EmitterSurface>& surfaces, uint32_t maxPieces,
+                        bool unit = false);
 
 /// Whether the emission of this material may differ from place to place.
 bool variesOverSurface(const Material& material);

@@ -37,6 +37,9 @@ public:
 
 private:
     bool emits(uint32_t triangle) const;
+    glm::vec3 factorOf(const Material& material) const {
+        return desc_.only ? glm::vec3(1.0f) : material.emission;
+    }
     glm::dvec3 at(uint32_t corner) const { return mesh_.positions[corner]; }
     glm::dvec3 front(uint32_t triangle) const; // normal times twice the area
     double texelSize(uint32_t triangle) const;
@@ -62,6 +65,7 @@ private:
 bool EmitterBuilder::emits(uint32_t triangle) const {
     const uint32_t material = mesh_.material[triangle];
     if (material >= scene_.materials.size()) return false; // glTF's default one
+    if (desc_.only) return material == desc_.only->material && mesh_.instance[triangle] == desc_.only->index;
     const glm::vec3 emission = scene_.materials[material].emission;
     return emission.r > 0 || emission.g > 0 || emission.b > 0;
 }
@@ -204,7 +208,7 @@ void EmitterBuilder::addTriangle(uint32_t t) {
     p.c2 = p.c3 = mesh_.positions[3 * t + 2];
     p.area = static_cast<float>(0.5 * glm::length(front(t)));
     p.split = 1, p.shape = shader::kEmitterTriangle;
-    p.radiance = material.emission, p.triangle = t;
+    p.radiance = factorOf(material), p.triangle = t;
     add(p);
 }
 
@@ -222,12 +226,12 @@ void EmitterBuilder::addQuad(const Pair& pair) {
     const double second = glm::length(glm::cross(diagonal, at(pair.to) - at(pair.apex0)));
     p.split = static_cast<float>(first / (first + second));
     p.shape = pair.isParallelogram ? shader::kEmitterParallelogram : shader::kEmitterQuad;
-    p.radiance = material.emission, p.triangle = t;
+    p.radiance = factorOf(material), p.triangle = t;
     add(p);
 }
 
 void EmitterBuilder::addPieces() {
-    const PieceList list = splitEmission(scene_, surfaces_, desc_.maxPieces);
+    const PieceList list = splitEmission(scene_, surfaces_, desc_.maxPieces, desc_.only.has_value());
     for (const EmitterPiece& piece : list.pieces) {
         const EmitterSurface& s = surfaces_[piece.surface];
         const auto corner = [&](double a, double b) {
@@ -273,7 +277,7 @@ EmitterSet EmitterBuilder::build() {
     }
     addPieces();
     set_.nodes = buildLightTree(set_.polygons);
-    if (!set_.polygons.empty())
+    if (!set_.polygons.empty() && !desc_.only)
         spdlog::info("emitters: {} polygons of {} triangles", set_.polygons.size(), emitting_.size());
     return std::move(set_);
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "assets/world_mesh.h"
+#include "bake/light_source.h"
 #include "bake/shader_types.h"
 
 namespace relume {
@@ -19,6 +21,8 @@ struct EmitterSet {
 struct EmitterDesc {
     uint32_t size = 512;         // lightmap edge [texels]: how far rays end above a surface
     uint32_t maxPieces = 32'768; // that textured emission may be split into, all surfaces together
+    /// Of this emitter alone, for an emission factor of 1.
+    std::optional<LightKey> only = std::nullopt;
 };
 
 /// Polygons for every emitting triangle of the mesh, whether or not it has a place in the lightmap. Two that

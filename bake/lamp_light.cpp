@@ -26,13 +26,29 @@ uint32_t mostChunks(uint32_t chunkCount, bool software) {
 
 } // namespace
 
-LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, uint32_t samples)
-    : set_(buildLamps(scene, patches.scene.mesh, samples)) {
+LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
+    : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
+      set_(buildLamps(scene, patches.scene.mesh, {.samples = desc.samples, .unit = desc.apart})),
+      skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
+      skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
+    group();
+}
+
+void LampLight::update(const Scene& scene) {
+    const bool skyShines = scene.sky.shines() && (set_.skyRows.empty() || set_.skyRows.back() > 0.0f);
+    set_.skyRotation = scene.sky.rotation;
+    set_.lamps = lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = desc_.apart});
+    group();
+}
+
+void LampLight::group() {
+    groups_.clear();
+    rays_ = 0;
     if (set_.empty()) return;
     uint32_t most = 0;
     for (uint32_t i = 0; i < set_.lamps.size(); ++i) {
         shader::Lamp& lamp = set_.lamps[i];
-        if (groups_.empty() || groups_.back().targets + lamp.samples > kGroupRays)
+        if (groups_.empty() || desc_.apart || groups_.back().targets + lamp.samples > kGroupRays)
             groups_.push_back({.first = i});
         Group& group = groups_.back();
         lamp.firstTarget = group.targets;
@@ -41,15 +57,17 @@ LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSe
         rays_ += lamp.samples;
         most = std::max(most, group.targets);
     }
-    batchChunks_ = mostChunks(patches.chunkCount(), device.info().software());
-    lamps_ = vk::makeBuffer(device, set_.lamps, "lamps");
-    skyPixels_ = vk::makeBuffer(device, set_.skyPixels, "sky");
-    skyRows_ = vk::makeBuffer(device, set_.skyRows, "rows of the sky");
+    lamps_ = vk::makeBuffer(device_, set_.lamps, "lamps");
+    if (room_ == 0) {
+        batchChunks_ = mostChunks(chunkCount_, device_.info().software());
+        samples_ = vk::ComputeProgram(device_, "lamp_samples");
+        gather_ = vk::ComputeProgram(device_, "lamp_gather");
+    }
+    if (most <= room_) return;
+    room_ = most;
     const uint64_t places = uint64_t{batchChunks_} * kChunk;
-    targets_ = vk::Buffer(device, {.size = places * most * sizeof(glm::vec4), .name = "points on lamps"});
-    bits_ = vk::Buffer(device, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
-    samples_ = vk::ComputeProgram(device, "lamp_samples");
-    gather_ = vk::ComputeProgram(device, "lamp_gather");
+    targets_ = vk::Buffer(device_, {.size = places * most * sizeof(glm::vec4), .name = "points on lamps"});
+    bits_ = vk::Buffer(device_, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
 }
 
 uint64_t LampLight::bytes(uint32_t chunkCount, bool software) {

@@ -12,12 +12,22 @@ namespace relume {
 /// batch of rays: for each group record samples, trace segments(), then gather.
 class LampLight {
 public:
-    /// samples: as buildLamps has it.
-    LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, uint32_t samples);
+    struct Desc {
+        uint32_t samples = 16; // as LampDesc has it
+        // Colours of 1 and a group for each lamp: that of Scene::lights[i] is group i, the sky's the last
+        // one.
+        bool apart = false;
+    };
+    LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc);
+
+    /// Lamps as they are now; sky picture and patches are the same as before. No batch may be under way.
+    void update(const Scene& scene);
 
     bool empty() const { return groups_.empty(); }
     uint32_t groups() const { return static_cast<uint32_t>(groups_.size()); }
-    uint32_t rays() const { return rays_; }               // per patch and round
+    uint32_t rays() const { return rays_; } // per patch and round, of all groups
+    uint32_t rays(uint32_t group) const { return groups_[group].targets; }
+    bool hasSky() const { return !set_.empty() && set_.lamps.back().type == shader::kLampSky; }
     uint32_t batchChunks() const { return batchChunks_; } // at most in one batch
     struct Work {
         uint32_t group = 0;
@@ -41,11 +51,16 @@ private:
         uint32_t first = 0, count = 0; // lamps
         uint32_t targets = 0;          // per patch
     };
+    void group();
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
 
+    const vk::Device& device_;
+    Desc desc_;
+    uint32_t chunkCount_;
     LampSet set_;
     std::vector<Group> groups_;
     uint32_t rays_ = 0, batchChunks_ = 0;
+    uint32_t room_ = 0;                      // targets per patch that there is memory for
     vk::Buffer lamps_, skyPixels_, skyRows_; // Lamp[], vec4[], float[]
     vk::Buffer targets_, bits_;              // of one batch
     vk::ComputeProgram samples_, gather_;

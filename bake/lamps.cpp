@@ -92,24 +92,34 @@ float reachOf(const WorldMesh& mesh) {
 
 } // namespace
 
-LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, uint32_t samples) {
-    LampSet set;
-    set.reach = reachOf(mesh);
-    for (size_t i = 0; i < scene.lights.size(); ++i) {
-        shader::Lamp lamp = makeLamp(scene.lights[i]);
-        if (lamp.color == glm::vec3(0.0f)) continue;
-        lamp.seed = static_cast<uint32_t>(i) + 1;
-        set.lamps.push_back(lamp);
+std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const LampDesc& desc) {
+    std::vector<shader::Lamp> lamps;
+    for (const Light& light : scene.lights) {
+        shader::Lamp lamp = makeLamp(light);
+        if (desc.unit) lamp.color = glm::vec3(1.0f);
+        if (lamp.color != glm::vec3(0.0f)) lamps.push_back(lamp);
     }
-    const bool picture = !scene.sky.pixels.empty();
-    if (scene.sky.shines() && (!picture || addPicture(set, scene.sky))) {
+    if (skyShines) {
         shader::Lamp lamp{};
         lamp.type = shader::kLampSky;
-        lamp.color = scene.sky.radiance;
-        set.lamps.push_back(lamp);
+        lamp.color = desc.unit ? glm::vec3(1.0f) : scene.sky.radiance;
+        lamps.push_back(lamp);
     }
-    for (shader::Lamp& lamp : set.lamps)
-        lamp.samples = hasExtent(lamp) ? samples : 1;
+    for (shader::Lamp& lamp : lamps) {
+        lamp.samples = hasExtent(lamp) ? desc.samples : 1;
+        // Kinds have numbers of their own. Lamps of a kind share them: a lamp's light must not depend on what
+        // other lamps there are.
+        lamp.seed = lamp.type + 1;
+    }
+    return lamps;
+}
+
+LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc) {
+    LampSet set;
+    set.reach = reachOf(mesh);
+    const bool picture = !scene.sky.pixels.empty();
+    const bool skyShines = scene.sky.shines() && (!picture || addPicture(set, scene.sky));
+    set.lamps = lampsOf(scene, skyShines, desc);
     return set;
 }
 

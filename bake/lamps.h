@@ -21,7 +21,13 @@ struct LampSet {
     bool empty() const { return lamps.empty(); }
 };
 
-/// samples: rays to each lamp that has an extent, per patch and round; a multiple of 2 * shader::kReplicates.
-LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, uint32_t samples);
+struct LampDesc {
+    uint32_t samples = 16; // rays to each lamp that has an extent, per patch and round; a multiple of 2 *
+                           // shader::kReplicates
+    bool unit = false;     // every lamp shines with colour 1, those of no intensity too
+};
+LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc);
+/// The lamps of such a set alone, whose sky is as it was made.
+std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const LampDesc& desc);
 
 } // namespace relume

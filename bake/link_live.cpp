@@ -48,11 +48,11 @@ void LinkSolver::look() {
     if (live_.resolves > 0 && secondsSince(live_.looked) < pause) return;
     live_.looked = Clock::now();
     const State before = state_;
-    if (live_.sigma >= 0) state_.sigma = live_.sigma;
-    const shader::ResolveSums sums = resolveOnce();
+    SmoothingWidth width = live_.width.value_or(state_.width);
+    const shader::ResolveSums sums = resolveOnce(buffers_.rows ? width.sigma : 0.0);
     learn(sums);
-    if (buffers_.rows) adaptSigma(sums);
-    live_.sigma = state_.sigma;
+    if (buffers_.rows) width.adapt(sums);
+    live_.width = width;
     state_ = before;
     live_.cost = secondsSince(live_.looked);
     live_.rounds = rounds;

@@ -1,11 +1,14 @@
 #include "bake/link_passes.h"
 
+#include "bake/chunk_dispatch.h"
+#include "bake/emitter_light.h"
 #include "bake/footprint.h"
 #include "bake/host_gather.h"
 #include "bake/lamp_light.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -15,45 +18,26 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// So few emitters are all sampled by every patch; of more, each patch picks some in every round.
-constexpr uint32_t kAllEmitters = 4;
-constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
 // A round's rays should fill a GPU: 4M are a few milliseconds there.
 constexpr uint32_t kGpuRays = 4u << 20;
 constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and round
-// Chunks of one submit at most: their targets are 16 KiB each for 16 points.
+// Chunks of one submit at most.
 constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
-constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
-constexpr uint32_t kMaxX = 32768;        // workgroups in x, below every device's limit
 
 uint64_t vec4s(uint64_t count) {
     return count * sizeof(glm::vec4);
 }
 
-template<typename Push>
-void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
-                    uint32_t chunks) {
-    const uint32_t x = std::min(chunks, kMaxX);
-    program.dispatch(cmd, push, x, (chunks + x - 1) / x);
-}
-
 } // namespace
 
-RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, uint32_t samples, bool software) {
-    RoundShape shape;
+uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software) {
     const uint32_t filling = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
     const uint32_t wanted = samples > 0 ? std::min(filling, samples) : filling;
-    shape.links = std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
-    shape.all = emitters <= kAllEmitters;
-    shape.picks = shape.all ? emitters : shape.links / kPointsPerPick;
-    shape.points = shape.all ? shape.links : kPointsPerPick;
-    return shape;
+    return std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
 }
 
 LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc)
-    : polygons(vk::makeBuffer(device, desc.emitters.polygons, "emitters")),
-      nodes(vk::makeBuffer(device, desc.emitters.nodes, "light tree")),
-      patchChart(vk::makeBuffer(device, patches.scene.patchChart, "chart of patch")),
+    : patchChart(vk::makeBuffer(device, patches.scene.patchChart, "chart of patch")),
       texelToPatch(vk::makeBuffer(device, patches.scene.texelToPatch, "texel to patch")) {
     const uint32_t chunks = patches.chunkCount();
     const uint64_t count = patches.scene.patches.size();
@@ -65,18 +49,9 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         coarseSums = vk::Buffer(device, {.size = vec4s(kReplicates * receiverCount), .name = "coarse sums"});
     }
     batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
-    const uint64_t targetCount = uint64_t{desc.shape.targets()} * batchChunks * kChunk;
     if (desc.direct)
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
-    if (desc.points) {
-        const uint64_t words = (desc.shape.targets() + kTargetsPerWord - 1) / kTargetsPerWord;
-        targets = vk::Buffer(device, {.size = vec4s(targetCount), .name = "points on emitters"});
-        picks = vk::Buffer(device, {.size = vec4s(uint64_t{desc.shape.picks} * batchChunks * kChunk),
-                                    .name = "picked emitters"});
-        bits = vk::Buffer(device,
-                          {.size = words * batchChunks * kChunk * sizeof(uint32_t), .name = "seen points"});
-    }
-    const uint64_t chunkBytes = uint64_t{desc.shape.links} * kChunk * sizeof(uint32_t);
+    const uint64_t chunkBytes = uint64_t{desc.linksOfRound} * kChunk * sizeof(uint32_t);
     const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
     keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, desc.linkBytes / chunkBytes));
     links = vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
@@ -99,9 +74,6 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
 uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
     const uint64_t count = uint64_t{chunkCount} * kChunk;
     const bool hybrid = settings.method == Method::Hybrid;
-    const uint64_t batch = std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
-    // Of the largest round shape: what a small scene takes does not matter.
-    const uint64_t perChunk = kChunk * (kAllEmitters * kLeastSamples * sizeof(glm::vec4) + 128);
     const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with lamps
     const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
@@ -115,38 +87,18 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
     const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
     const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
     return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
-           footprint + batch * perChunk + LampLight::bytes(chunkCount, software);
+           footprint + EmitterLight::bytes(chunkCount, software) + LampLight::bytes(chunkCount, software);
 }
 
-void DirectPass::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                               const RoundShape& shape, ChunkRange range, uint32_t round) const {
-    const shader::EmitterSamplesPush push{.patches = light.patches.address(),
-                                          .polygons = buffers.polygons.address(),
-                                          .nodes = buffers.nodes.address(),
-                                          .targets = buffers.targets.address(),
-                                          .picks = buffers.picks.address(),
-                                          .firstChunk = range.first,
-                                          .round = round,
-                                          .pickCount = shape.picks,
-                                          .pointCount = shape.points,
-                                          .all = shape.all ? 1u : 0u};
-    samples_.dispatch(cmd, push, range.count, shape.picks);
-}
-
-void DirectPass::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                              const RoundShape& shape, ChunkRange range, uint32_t rounds) const {
-    const shader::DirectPush push{.targets = buffers.targets.address(),
-                                  .picks = buffers.picks.address(),
-                                  .bits = buffers.bits.address(),
-                                  .sums = buffers.directSums.address(),
-                                  .direct = buffers.direct.address(),
-                                  .firstChunk = range.first,
-                                  .pickCount = shape.picks,
-                                  .pointCount = shape.points,
-                                  .all = shape.all ? 1u : 0u,
-                                  .patchCount = light.chunkCount * kChunk,
-                                  .scale = 1.0f / static_cast<float>(kReplicates * rounds)};
-    gather_.dispatch(cmd, push, range.count);
+shader::ResolveSums sumsOf(const std::vector<shader::ResolveSums>& chunks) {
+    std::array<double, 6> total{};
+    for (const shader::ResolveSums& s : chunks) {
+        const std::array<float, 6> terms = {s.light, s.direct, s.indirect, s.raw, s.bias, s.count};
+        for (size_t k = 0; k < total.size(); ++k)
+            total[k] += terms[k];
+    }
+    const auto f = [&](size_t k) { return static_cast<float>(total[k]); };
+    return {f(0), f(1), f(2), f(3), f(4), f(5)};
 }
 
 void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers,
@@ -157,8 +109,8 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                                         : nullptr;
     gatherLinks(*pool_, {.links = work.links->as<uint32_t>() + work.linksOffset,
                          .radiance = light.radiance.as<glm::vec4>(),
-                         .direct = work.direct && !coarse ? buffers.direct.as<glm::vec4>() : nullptr,
-                         .ligOut = coarse ? nullptr : light.ligOut.as<glm::vec4>(),
+                         .direct = work.direct && !coarse ? work.direct->as<glm::vec4>() : nullptr,
+                         .ligOut = coarse || !work.output ? nullptr : light.ligOut.as<glm::vec4>(),
                          .sums = sums,
                          .firstChunk = work.range.first,
                          .chunkCount = work.range.count,
@@ -184,8 +136,8 @@ void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, cons
                                                    : 0;
     const shader::LinkPush push{.links = work.address(),
                                 .packed = buffers.packed.address(),
-                                .direct = work.direct && !coarse ? buffers.direct.address() : 0,
-                                .ligOut = coarse ? 0 : light.ligOut.address(),
+                                .direct = work.direct && !coarse ? work.direct->address() : 0,
+                                .ligOut = coarse || !work.output ? 0 : light.ligOut.address(),
                                 .sums = sums,
                                 .firstChunk = work.range.first,
                                 .chunkCount = work.range.count,
@@ -214,7 +166,7 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
                                        const LinkBuffers& buffers, const Work& work) const {
     const shader::InterpolatePush push{.taps = buffers.taps.address(),
                                        .coarse = buffers.coarseSums.address(),
-                                       .direct = work.direct ? buffers.direct.address() : 0,
+                                       .direct = work.direct ? work.direct->address() : 0,
                                        .ligOut = light.ligOut.address(),
                                        .sums = work.accumulate ? buffers.linkSums.address() : 0,
                                        .coarseDistances =

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "bake/coarse_patches.h"
-#include "bake/emitters.h"
 #include "bake/light_buffers.h"
 #include "bake/solver.h"
 #include "bake/vk/program.h"
@@ -11,25 +10,16 @@
 
 namespace relume {
 
-/// What one round takes of each patch: so many that a batch fills the device, but no more than are asked for.
-struct RoundShape {
-    uint32_t links = 16;  // directions per patch
-    uint32_t picks = 0;   // of emitters, per patch; all of them where there are few
-    uint32_t points = 16; // on each picked emitter
-    bool all = true;      // pick i is emitter i
-    uint32_t targets() const { return picks * points; }
-};
-/// samples: directions per patch in all, 0: what the error needs.
-RoundShape chooseRoundShape(uint32_t patches, uint32_t emitters, uint32_t samples, bool software);
+/// Directions per patch that one round takes: so many that a batch fills the device, but no more than are
+/// asked for. samples: directions per patch in all, 0: what the error needs.
+uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software);
 
 /// Buffers of the link methods. "Sums" hold each replicate's samples by themselves:
 /// vec4[kReplicates][patches].
 struct LinkBuffers {
-    vk::Buffer polygons, nodes; // EmitterPolygon, EmitterNode
     vk::Buffer patchChart, texelToPatch;
-    vk::Buffer targets, picks, bits; // of one batch of direct light
-    vk::Buffer links;                // uint[chunk][links of a round][64], of the first keptChunks chunks
-    vk::Buffer linksStaging;         // of one batch beyond these
+    vk::Buffer links;        // uint[chunk][links of a round][64], of the first keptChunks chunks
+    vk::Buffer linksStaging; // of one batch beyond these
     vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
@@ -46,10 +36,8 @@ struct LinkBuffers {
     uint32_t receiverCount = 0;             // padding included; 0: all patches are receivers
 
     struct Desc {
-        const EmitterSet& emitters;
-        RoundShape shape;
-        bool points = false; // on emitters
-        bool direct = false; // of any kind
+        uint32_t linksOfRound = 16;
+        bool direct = false; // direct light is sampled
         bool smooth = false;
         const CoarsePatches* coarse = nullptr;
         uint64_t linkBytes = 0; // at most, for links that later bounces gather again
@@ -58,21 +46,8 @@ struct LinkBuffers {
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 };
 
-/// Direct light: draws points on emitters, and adds the light of those that a tracer's segments reach.
-class DirectPass {
-public:
-    explicit DirectPass(const vk::Device& device)
-        : samples_(device, "emitter_samples"), gather_(device, "direct") {}
-    /// Writes targets and picks of a round. Barriers are the caller's, here and below.
-    void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                       const RoundShape& shape, ChunkRange range, uint32_t round) const;
-    /// Reads bits; adds to directSums and updates direct. rounds: finished ones, this one included.
-    void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                      const RoundShape& shape, ChunkRange range, uint32_t rounds) const;
-
-private:
-    vk::ComputeProgram samples_, gather_;
-};
+/// Of all chunks.
+shader::ResolveSums sumsOf(const std::vector<shader::ResolveSums>& chunks);
 
 /// Light over links: the mean of what the links' patches send, and of direct light, to ligOut. Where only
 /// receivers of a coarser grid have links: first to coarseSums, cleared before, then by interpolation to
@@ -88,12 +63,13 @@ public:
           compose_(device, "compose") {}
     struct Work {
         const vk::Buffer* links = nullptr;
-        uint64_t linksOffset = 0;  // of range.first [links]
-        VkDeviceAddress nodes = 0; // PyramidNode[], of recordDistances: links may be nodes
-        uint32_t samples = 0;      // per patch
-        bool direct = false;       // direct light is added to ligOut
-        bool accumulate = false;   // add to linkSums
-        bool distances = false;    // of recordInterpolate: those of recordDistances are spread, too
+        uint64_t linksOffset = 0;           // of range.first [links]
+        VkDeviceAddress nodes = 0;          // PyramidNode[], of recordDistances: links may be nodes
+        uint32_t samples = 0;               // per patch
+        const vk::Buffer* direct = nullptr; // vec4 per patch, added to ligOut
+        bool output = true;                 // to ligOut
+        bool accumulate = false;            // add to linkSums
+        bool distances = false;             // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
         VkDeviceAddress address() const { return links->address() + linksOffset * sizeof(uint32_t); }
     };
@@ -112,7 +88,7 @@ public:
     /// ligIn = direct light and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        bool direct, uint32_t samples) const;
-    /// direct, as DirectPass left it after so many rounds.
+    /// direct, as it was after so many rounds.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds) const;
 
@@ -141,7 +117,7 @@ public:
         uint32_t directRounds = 0; // in directSums; 0: no direct light
         float sigma = 0;           // of smoothing [texels], 0: none
     };
-    /// result and ResolveSums per chunk in chunkSums.
+    /// result and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
 

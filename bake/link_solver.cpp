@@ -37,29 +37,33 @@ double updatedRate(double rate, double chunks, double wanted, double seconds) {
     return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
 }
 
+EmitterLight makeEmitters(const SolverInput& input, bool hybrid, uint32_t links) {
+    const PatchSet& patches = input.patches;
+    EmitterLight light(input.device, patches, links);
+    light.setGroups({hybrid ? buildEmitters(input.scene, patches.scene.mesh, {.size = patches.scene.size})
+                            : EmitterSet{}});
+    return light;
+}
+
 } // namespace
 
 LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     : input_(input), settings_(settings), hybrid_(settings.method == Method::Hybrid),
-      emitters_(hybrid_
-                    ? buildEmitters(input.scene, input.patches.scene.mesh, {.size = input.patches.scene.size})
-                    : EmitterSet{}),
-      shape_(chooseRoundShape(input.patches.count, static_cast<uint32_t>(emitters_.polygons.size()),
-                              settings.links.samples, input.device.info().software())),
-      lamps_(input.device, input.scene, input.patches, shape_.links),
+      linksOfRound_(
+          relume::linksOfRound(input.patches.count, settings.links.samples, input.device.info().software())),
+      emitters_(makeEmitters(input, hybrid_, linksOfRound_)),
+      lamps_(input.device, input.scene, input.patches, {.samples = linksOfRound_}),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
       buffers_(input.device, input.patches,
-               {.emitters = emitters_,
-                .shape = shape_,
-                .points = shape_.picks > 0,
+               {.linksOfRound = linksOfRound_,
                 .direct = hasDirect(),
                 .smooth = hybrid_ && settings.links.smooth,
                 .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
                 .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
-      radiancePass_(input.device), directPass_(input.device), gatherPass_(input.device, settings.transport),
-      resolvePass_(input.device), commands_(input.device), timestamps_(input.device, 3),
+      radiancePass_(input.device), gatherPass_(input.device, settings.transport), resolvePass_(input.device),
+      commands_(input.device), timestamps_(input.device, 3),
       order_(std::max(input.patches.chunkCount(), coarse_.chunkCount())) {
     batchMs_ = settings.batchMs;
     settings_.transport.reflectedOnly = hybrid_;
@@ -94,7 +98,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
     if (settings.live && !buffers_.rows)
         undo_ = vk::Buffer(input.device, {.size = buffers_.linkSums.size(), .name = "sums before the round"});
-    const uint64_t kept = uint64_t{buffers_.keptChunks} * shape_.links * kChunk * sizeof(uint32_t);
+    const uint64_t kept = uint64_t{buffers_.keptChunks} * linksOfRound_ * kChunk * sizeof(uint32_t);
     progress_.cacheBytes = kept;
     traced_.assign(buffers_.keptChunks, 0);
     progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / static_cast<double>(senders_.size());
@@ -104,7 +108,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
 // round: a set that is broken off is less even.
 void LinkSolver::makeDisc() {
     const uint32_t rounds = settings_.links.samples > 0 ? roundsWanted() : 1;
-    discCount_ = rounds * shape_.links / shader::kReplicates;
+    discCount_ = rounds * linksOfRound_ / shader::kReplicates;
     std::vector<glm::vec2> points;
     points.reserve(discCount_);
     for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(discCount_)))
@@ -156,14 +160,14 @@ void LinkSolver::begin(Stage stage) {
 
 uint32_t LinkSolver::roundsWanted() const {
     const uint32_t limit = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
-    return (limit + shape_.links - 1) / shape_.links;
+    return (limit + linksOfRound_ - 1) / linksOfRound_;
 }
 
 // Each direction stands for its share of the whole result. Where the error decides how many there will be,
 // for that of what is there so far: the mean over rounds of something that falls as 1 / rounds falls to
 // nothing, too.
 uint32_t LinkSolver::footprintSamples() const {
-    return shape_.links * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
+    return linksOfRound_ * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
 }
 
 bool LinkSolver::linksDone() const {
@@ -189,8 +193,8 @@ bool LinkSolver::wantsDirect() const {
         return variance * then / (now * now * cost);
     };
     return gain(state_.directVariance, state_.directAtCheck, state_.directRounds,
-                kSegmentCost * (shape_.targets() + lamps_.rays())) >
-           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, shape_.links * linkShare);
+                kSegmentCost * (emitters_.rays(0) + lamps_.rays())) >
+           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, linksOfRound_ * linkShare);
 }
 
 ChunkRange LinkSolver::nextRange(double chunksPerMs, uint32_t most) const {
@@ -210,8 +214,8 @@ uint32_t LinkSolver::chunksOfStage() const {
 }
 
 void LinkSolver::directBatch() {
-    const uint32_t most =
-        lamps_.empty() ? buffers_.batchChunks : std::min(buffers_.batchChunks, lamps_.batchChunks());
+    const uint32_t batch = std::min(buffers_.batchChunks, emitters_.batchChunks());
+    const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
     const ChunkRange range = nextRange(directRate_, most);
     const auto start = Clock::now();
     const PointTracer on{commands_, timestamps_, input_.tracer};
@@ -219,19 +223,11 @@ void LinkSolver::directBatch() {
         progress_.traceSeconds += times.trace;
         progress_.gatherSeconds += times.gather;
     };
-    if (shape_.picks > 0) {
-        const SegmentWork work{.firstChunk = range.first,
-                               .chunkCount = range.count,
-                               .targetCount = shape_.targets(),
-                               .targets = &buffers_.targets,
-                               .bits = &buffers_.bits,
-                               .rays = &buffers_.rays};
-        const uint32_t round = state_.directRounds;
-        const auto samples = [&](VkCommandBuffer cmd) {
-            directPass_.recordSamples(cmd, input_.light, buffers_, shape_, range, round);
-        };
-        note(tracePoints(on, work, samples, [&](VkCommandBuffer cmd) {
-            directPass_.recordGather(cmd, input_.light, buffers_, shape_, range, round + 1);
+    if (emitters_.rays(0) > 0) {
+        const EmitterLight::Work work{.group = 0, .round = state_.directRounds, .range = range};
+        const auto samples = [&](VkCommandBuffer cmd) { emitters_.recordSamples(cmd, input_.light, work); };
+        note(tracePoints(on, emitters_.segments(work, buffers_.rays), samples, [&](VkCommandBuffer cmd) {
+            emitters_.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
         }));
     }
     for (uint32_t group = 0; group < lamps_.groups(); ++group) {
@@ -276,7 +272,7 @@ void LinkSolver::beginBounce() {
     VkCommandBuffer cmd = commands_.begin();
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
-        const uint32_t samples = counted ? 0 : state_.linkRounds * shape_.links;
+        const uint32_t samples = counted ? 0 : state_.linkRounds * linksOfRound_;
         gatherPass_.recordCompose(cmd, input_.light, buffers_, hasDirect(), samples);
         vk::barrier(cmd);
     }
@@ -302,15 +298,15 @@ void LinkSolver::linkBatch() {
     const uint32_t room = kept ? alike : buffers_.batchChunks;
     const ChunkRange range =
         trace ? nextRange(traceRate_, std::min(room, buffers_.batchChunks)) : nextRange(gatherRate_, room);
-    const uint64_t offset = kept ? uint64_t{range.first} * shape_.links * kChunk : 0; // [words]
+    const uint64_t offset = kept ? uint64_t{range.first} * linksOfRound_ * kChunk : 0; // [words]
     const vk::Buffer& links = kept ? buffers_.links : buffers_.linksStaging;
     const auto start = Clock::now();
     const ClosestWork closest{.receivers = coarse_.count > 0 ? &buffers_.receivers : nullptr,
                               .receiversHost = coarse_.count > 0 ? coarse_.receivers.data() : nullptr,
                               .firstChunk = range.first,
                               .chunkCount = range.count,
-                              .firstSample = state_.linkRounds * shape_.links,
-                              .sampleCount = shape_.links,
+                              .firstSample = state_.linkRounds * linksOfRound_,
+                              .sampleCount = linksOfRound_,
                               .rotation = settings_.links.rotation,
                               .disc = disc_ ? &disc_ : nullptr,
                               .discCount = discCount_,
@@ -319,8 +315,8 @@ void LinkSolver::linkBatch() {
     const LinkGatherPass::Work work{.links = &links,
                                     .linksOffset = offset,
                                     .nodes = footprints_ ? footprints_->nodes() : 0,
-                                    .samples = shape_.links,
-                                    .direct = hasDirect(),
+                                    .samples = linksOfRound_,
+                                    .direct = hasDirect() ? &buffers_.direct : nullptr,
                                     .accumulate = state_.last,
                                     .range = range};
     if (gatherPass_.onCpu() && !input_.tracer.records() && !footprints_)
@@ -330,7 +326,7 @@ void LinkSolver::linkBatch() {
     double& rate = trace ? traceRate_ : gatherRate_;
     rate = updatedRate(rate, range.count, rate * batchMs_, secondsSince(start));
     const auto first = senders_.begin() + range.first;
-    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * shape_.links;
+    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
     (trace ? progress_.rays : progress_.raysSaved) += count;
     if (kept) std::fill_n(known, range.count, uint8_t{1});
     progress_.pairs += count;
@@ -370,7 +366,7 @@ void LinkSolver::linksBySubmit(const ClosestWork* closest, const LinkGatherPass:
                                   .links = work.address(),
                                   .firstChunk = work.range.first,
                                   .chunkCount = work.range.count,
-                                  .sampleCount = shape_.links,
+                                  .sampleCount = linksOfRound_,
                                   .samples = footprintSamples()});
         vk::barrier(cmd);
     }
@@ -397,8 +393,8 @@ void LinkSolver::interpolate() {
     for (uint32_t first = 0; first < chunks; first += kInterpolatedChunks) {
         VkCommandBuffer cmd = commands_.begin();
         gatherPass_.recordInterpolate(cmd, input_.light, buffers_,
-                                      {.samples = shape_.links,
-                                       .direct = hasDirect(),
+                                      {.samples = linksOfRound_,
+                                       .direct = hasDirect() ? &buffers_.direct : nullptr,
                                        .accumulate = state_.last,
                                        .distances = distances,
                                        .range = {first, std::min(kInterpolatedChunks, chunks - first)}});
@@ -428,7 +424,7 @@ void LinkSolver::endBounce() {
     } else
         state_.iterationError = 0; // what more bounces would add is not asked for
     ++state_.linkRounds;
-    progress_.samples = state_.linkRounds * shape_.links;
+    progress_.samples = state_.linkRounds * linksOfRound_;
     stale_ = true;
     state_.stage = Stage::Plan;
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "assets/clock.h"
+#include "bake/emitter_light.h"
 #include "bake/footprint.h"
 #include "bake/lamp_light.h"
 #include "bake/link_passes.h"
 #include "bake/settling.h"
+#include "bake/smoothing_width.h"
 #include "bake/vk/commands.h"
 
 #include <optional>
@@ -50,8 +52,7 @@ private:
         double ratio = 0;                          // of the last two changes
         double iterationError = 1, directVariance = 0, indirectVariance = 0,
                coarseVariance = 0; // of the light, R, G and B of all patches together
-        double sigma = 2.0;    // of smoothing [texels]; what suits the noise is learnt from the result itself
-        double curvature = -1; // of the light, squared: bias over width^4; negative: not known yet
+        SmoothingWidth width;
         uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
         Settling settling;                            // of the first round, then of the result
     };
@@ -66,7 +67,7 @@ private:
     bool enoughRounds() const;
     bool wantsDirect() const;
     /// Direct light: of emitters, which hybrid samples, and of lamps.
-    bool hasDirect() const { return shape_.picks > 0 || !lamps_.empty(); }
+    bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     void directBatch();
     void linkBatch();
     void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
@@ -80,9 +81,8 @@ private:
     void measureChange();
     void check();
     void resolve();
-    shader::ResolveSums resolveOnce();
+    shader::ResolveSums resolveOnce(double sigma);
     double coarseVariance(double patches);
-    void adaptSigma(const shader::ResolveSums& sums);
     void learn(const shader::ResolveSums& sums);
     ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
     const std::vector<uint8_t>& seenOfStage() const;
@@ -98,8 +98,8 @@ private:
     const SolverInput input_;
     SolverSettings settings_;
     bool hybrid_;
-    EmitterSet emitters_;
-    RoundShape shape_;
+    uint32_t linksOfRound_;
+    EmitterLight emitters_; // one group; hybrid's
     LampLight lamps_;
     CoarsePatches coarse_; // empty: links start at all patches
     LinkBuffers buffers_;
@@ -107,7 +107,6 @@ private:
     vk::Buffer disc_; // vec2[discCount_] of DirectionSet::Lec
     uint32_t discCount_ = 0;
     RadiancePass radiancePass_;
-    DirectPass directPass_;
     LinkGatherPass gatherPass_;
     ResolvePass resolvePass_;
     vk::Commands commands_;
@@ -127,11 +126,11 @@ private:
         std::vector<ChunkRange> ranges;   // of the unfinished bounce, not in result yet
         uint32_t resolves = 0, shown = 0; // results with a solution; as of the last call
         bool complete = false, asked = true;
-        Clock::time_point looked; // when the last look began
-        double cost = 0;          // of it [s]
-        uint32_t rounds = 0;      // it was at
-        double sigma = -1;        // of smoothing for the next one [texels]; negative: the solver's
-        bool undoable = false;    // what `undo` goes back to is there
+        Clock::time_point looked;            // when the last look began
+        double cost = 0;                     // of it [s]
+        uint32_t rounds = 0;                 // it was at
+        std::optional<SmoothingWidth> width; // for the next one; else the solver's
+        bool undoable = false;               // what `undo` goes back to is there
     };
     Live live_;
     vk::Buffer undo_;             // vec4[kReplicates][patches]; none where `rows` serves

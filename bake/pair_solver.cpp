@@ -47,7 +47,7 @@ uint64_t PairSolver::bytes(uint32_t chunkCount, bool software, const SolverSetti
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
       settings_(settings), senders_(input, settings),
-      lamps_(device_, settings.transport.rtrad ? Scene{} : input.scene, patches_, kLampRays),
+      lamps_(device_, settings.transport.rtrad ? Scene{} : input.scene, patches_, {.samples = kLampRays}),
       bothEnds_(settings.transport.rtrad && senders_.kind() == SenderKind::Patches), radiancePass_(device_),
       gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_), commands_(device_),
       timestamps_(device_, 3), rows_(PairPlan::superCount(patches_.chunkCount())) {

@@ -1,5 +1,6 @@
 #include "bake/solver.h"
 
+#include "bake/layer_solver.h"
 #include "bake/link_solver.h"
 #include "bake/pair_solver.h"
 
@@ -23,6 +24,8 @@ constexpr std::array<Name, 7> kNames = {{{Method::Pure, "pure"},
 
 // Of the free device memory that bits and links may take if nothing else is said.
 constexpr double kCacheShare = 1.0 / 3.0;
+// And layers.
+constexpr double kLayerShare = 1.0 / 3.0;
 
 } // namespace
 
@@ -87,7 +90,11 @@ std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSetting
     if (complete.cache.bytes == 0)
         complete.cache.bytes =
             static_cast<uint64_t>(kCacheShare * static_cast<double>(input.device.freeMemory()));
+    if (complete.layers.bytes == 0)
+        complete.layers.bytes =
+            static_cast<uint64_t>(kLayerShare * static_cast<double>(input.device.freeMemory()));
     if (isPairMethod(settings.method)) return std::make_unique<PairSolver>(input, complete);
+    if (settings.layers.on) return std::make_unique<LayerSolver>(input, complete);
     return std::make_unique<LinkSolver>(input, complete);
 }
 

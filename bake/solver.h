@@ -69,8 +69,15 @@ struct CacheSettings {
     bool keepsLinks() const { return kind == Kind::Auto || kind == Kind::Links; }
 };
 
+/// Of hybrid: one layer per light (bake/layer_solver.h).
+struct LayerSettings {
+    bool on = false;
+    uint64_t bytes = 0; // of layers, at most; 0: a third of the free device memory
+};
+
 struct SolverSettings {
     Method method = Method::Pure;
+    LayerSettings layers;
     PairSettings pairs;
     LinkSettings links;
     CacheSettings cache;

@@ -6,19 +6,12 @@
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { SmoothPush push; };
 #include "lib/smoothing.glsl"
+#include "lib/replicates.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer SumsList { ResolveSums items[]; };
 
 layout(local_size_x = 64) in;
 
 shared ResolveSums terms[kChunk];
-
-// Variance of the mean of the replicates, added over R, G and B.
-float spread(vec3 v[kReplicates]) {
-    vec3 mean = 0.25 * (v[0] + v[1] + v[2] + v[3]);
-    float sum = 0.0;
-    for (uint q = 0u; q < kReplicates; ++q) sum += dot(v[q] - mean, v[q] - mean);
-    return sum / float(kReplicates * (kReplicates - 1u));
-}
 
 void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;

@@ -329,157 +329,6 @@ struct RadiancePush {
     uint all;       // 1: chunks without light count as senders too
     uint reflected; // 1: without emission
 };
-struct EmitterSamplesPush {
-    ADDRESS patches;
-    ADDRESS polygons; // EmitterPolygon[]
-    ADDRESS nodes;    // EmitterNode[]
-    ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
-    ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
-    uint firstChunk;
-    uint round;
-    uint pickCount;
-    uint pointCount; // per pick, a multiple of kReplicates
-    uint all;        // 1: pick i is emitter i; 0: picks are drawn
-};
-struct DirectPush {
-    ADDRESS targets;
-    ADDRESS picks;
-    ADDRESS bits;
-    ADDRESS sums;   // vec4[kReplicates][patchCount]
-    ADDRESS direct; // vec4[patchCount]: the mean so far
-    uint firstChunk;
-    uint pickCount;
-    uint pointCount;
-    uint all;
-    uint patchCount;
-    float scale; // from the sum of all sums to the mean
-};
-struct LampPush {
-    ADDRESS patches;
-    ADDRESS lamps;     // Lamp[]
-    ADDRESS targets;   // vec4[chunkCount][targetCount][64]: end of the segment, and 0: not to be traced
-    ADDRESS bits;      // as SegmentPush
-    ADDRESS sums;      // vec4[kReplicates][patchCount], added to
-    ADDRESS direct;    // vec4[patchCount]: the mean so far
-    ADDRESS skyPixels; // vec4[height][width]: lib/sky.glsl
-    ADDRESS skyRows;   // float[height]
-    uvec2 skySize;     // 0: one radiance
-    float skyRotation; // [rad]
-    float reach;       // [m], out of the scene from anywhere in it
-    uint firstChunk;
-    uint firstLamp;
-    uint lampCount;   // of the group
-    uint targetCount; // of the group, per patch
-    uint round;
-    uint patchCount;
-    float scale; // from the sum of all sums to the mean
-};
-struct LinkPush {
-    ADDRESS links;  // uint[chunkCount][sampleCount][64]
-    ADDRESS packed; // uvec2[], radiance by packLight
-    ADDRESS direct; // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut; // vec4[]; 0: not written
-    ADDRESS sums;   // vec4[kReplicates][patchCount], added to; 0: not
-    uint firstChunk;
-    uint chunkCount;
-    uint sampleCount; // a multiple of kReplicates
-    uint patchCount;
-};
-struct PackPush {
-    ADDRESS radiance; // vec4[count]
-    ADDRESS packed;   // uvec2[count]
-    uint count;
-};
-struct LinkDistancePush {
-    ADDRESS patches;
-    ADDRESS links;     // uint[chunkCount][sampleCount][64]
-    ADDRESS receivers; // Patch[] that the links start at: patches, or of a coarser grid
-    ADDRESS nodes;     // PyramidNode[], what links from patchCount on mean
-    ADDRESS distances; // float[], per receiver [m]
-    uint firstChunk;
-    uint chunkCount;
-    uint sampleCount;
-    uint patchCount;
-};
-struct PyramidPush {
-    ADDRESS nodes;    // PyramidNode[]
-    ADDRESS radiance; // vec4[]: read below, written at patchCount + node
-    uint firstNode;
-    uint nodeCount;
-    uint patchCount;
-};
-struct FootprintPush {
-    ADDRESS patches;
-    ADDRESS receivers; // Patch[] that the links start at
-    ADDRESS steps;     // uvec2[]: of each patch and node its parent and the bits of that one's size
-    ADDRESS links;     // uint[chunkCount][sampleCount][64], patches become nodes
-    uint firstChunk;
-    uint chunkCount;
-    uint sampleCount;
-    uint samples; // of each receiver that the result is of
-};
-struct InterpolatePush {
-    ADDRESS taps;            // CoarseTaps[]
-    ADDRESS coarse;          // vec4[kReplicates][receiverCount], this bounce's sums over links
-    ADDRESS direct;          // vec4[] added to ligOut; 0: nothing
-    ADDRESS ligOut;          // vec4[]
-    ADDRESS sums;            // vec4[kReplicates][patchCount], added to; 0: not
-    ADDRESS coarseDistances; // float[receiverCount] [m]
-    ADDRESS distances;       // float[patchCount], written; 0: not
-    uint firstChunk;
-    uint chunkCount;
-    uint patchCount;
-    uint receiverCount;
-    float scale; // from the sum of all sums to the mean
-};
-struct CoarseErrorPush {
-    ADDRESS neighbours; // CoarseNeighbours[]
-    ADDRESS sums;       // vec4[kReplicates][patchCount]
-    ADDRESS chunkSums;  // vec4[chunkCount]
-    uint chunkCount;    // of receivers
-    uint patchCount;
-    float scale; // from a replicate's sum to its mean
-};
-struct ComposePush {
-    ADDRESS sums;
-    ADDRESS direct; // 0: nothing
-    ADDRESS light;  // vec4[], written
-    uint patchCount;
-    float scale; // from the sum of all sums to the mean
-};
-struct ChangePush {
-    ADDRESS patches;
-    ADDRESS ligIn;
-    ADDRESS ligOut;
-    ADDRESS sums; // vec4[chunkCount]
-    uint chunkCount;
-};
-// Over a chunk's patches: light and variances of the mean, R, G and B together.
-struct ResolveSums {
-    float light;
-    float direct;   // variance
-    float indirect; // variance
-    float raw;      // variance, not smoothed
-    float bias;     // squares of what smoothing moves, less what noise explains of it
-    float count;
-};
-struct SmoothPush {
-    ADDRESS patches;
-    ADDRESS patchChart;
-    ADDRESS texelToPatch;
-    ADDRESS sums;       // vec4[kReplicates][patchCount], of links
-    ADDRESS rows;       // vec4[kReplicates][patchCount], smoothed along rows
-    ADDRESS directSums; // vec4[kReplicates][patchCount]; 0: none
-    ADDRESS result;     // vec4[patchCount]: lighting, standard error
-    ADDRESS chunkSums;  // ResolveSums[chunkCount]
-    ADDRESS distances;  // float[patchCount] [m], of what lights a patch
-    uint chunkCount;
-    uint patchCount;
-    uint size;                // lightmap edge [texels]
-    uint reach;               // [texels], 0: no smoothing
-    float sigma;              // [texels]
-    float scale, directScale; // from a replicate's sum to its mean
-};
 // What is shown is copied in regions of kRegion x kRegion texels: 32 KiB of halves each.
 CONST uint kRegion = 64u;
 struct PublishPush {
@@ -539,5 +388,9 @@ struct CitMaterial {
     int emissionTexture;
     int metallicTexture;
 };
+
+// Beside this file, as C++ and GLSL see different roots.
+#include "shared_links.h"
+#include "shared_layers.h"
 
 #endif

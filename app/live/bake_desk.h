@@ -11,7 +11,9 @@
 
 #include "app/live/lightmap_exchange.h"
 #include "app/prepare.h"
+#include "assets/scene_edits.h"
 #include "bake/baker.h"
+#include "bake/light_source.h"
 
 namespace relume {
 
@@ -72,7 +74,8 @@ struct BakeOrders {
     enum class Run { Keep, Resume, Pause, Pass, Step };
     struct Start {
         const PreparedScene* scene = nullptr; // read by the thread until it holds it no more
-        std::vector<Material> materials;      // instead of the scene's own
+        SceneEdits edits;                     // of the scene
+        LightMix mix = {};
         BakeSettings settings;
         bool keepLight = false; // what is shown stays until this bake has a solution with all bounces
         uint32_t rings = 4;     // of texels filled around charts, on screen

@@ -143,7 +143,7 @@ void BakeLoop::obey(BakeOrders& orders) {
 // Light of another scene is of no use, light of the same one stays until there is better.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
     const bool sameScene =
-        baker_ && start.scene == prepared_ && sameSurfaces(start.materials, scene_.materials);
+        baker_ && start.scene == prepared_ && sameSurfaces(start.edits.materials, scene_.materials);
     const bool solverOnly = sameScene && preparation(start.settings) == preparation(settings_);
     settings_ = start.settings;
     settings_.solver.batchMs = desc_.batchMs;
@@ -159,7 +159,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         maps_->end();
         baker_.reset(); // before the new one takes its memory
         scene_ = start.scene->scene;
-        scene_.materials = start.materials;
+        applyEdits(scene_, start.edits);
         WorldMesh mesh = start.scene->mesh;
         prepared_ = start.scene;
         makeBaker(std::move(mesh), start.keepLight);

@@ -106,7 +106,7 @@ void Session::keepEdits(std::vector<Material>& materials) {
     const bool sameNames = std::equal(materials.begin(), materials.end(), before.begin(), before.end(),
                                       [](const Material& a, const Material& b) { return a.name == b.name; });
     for (size_t i = 0; i < before.size(); ++i) {
-        const Material& edited = document_.materials[i];
+        const Material& edited = document_.edits.materials[i];
         if (edited.baseColor == before[i].baseColor && edited.emission == before[i].emission) continue;
         const auto same = sameNames ? materials.begin() + static_cast<std::ptrdiff_t>(i)
                                     : std::find_if(materials.begin(), materials.end(),
@@ -126,12 +126,14 @@ void Session::forgetSteps() {
 
 void Session::take(std::unique_ptr<LoadedScene> scene) {
     kept_ = keepLoading_ && scene_ != nullptr;
-    std::vector<Material> materials = scene->prepared.scene.materials;
-    if (kept_)
-        keepEdits(materials);
-    else
+    SceneEdits edits = editsOf(scene->prepared.scene);
+    if (kept_) {
+        keepEdits(edits.materials);
+    } else {
         forgetSteps();
-    document_.materials = std::move(materials);
+        document_.mix = {};
+    }
+    document_.edits = std::move(edits);
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
     prepare_.path = loadingPath_;
@@ -145,7 +147,8 @@ void Session::dropFormer() {
 void Session::startBake(bool keepLight) {
     if (!scene_ || scene_->size != document_.bake.size) return; // its new atlas is on its way
     const uint64_t bake = bake_.start({.scene = &scene_->prepared,
-                                       .materials = document_.materials,
+                                       .edits = document_.edits,
+                                       .mix = document_.mix,
                                        .settings = document_.bake,
                                        .keepLight = keepLight,
                                        .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0});

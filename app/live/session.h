@@ -26,7 +26,8 @@ struct LoadedScene {
 
 /// What a user edits, and what undo restores.
 struct Document {
-    std::vector<Material> materials; // as the scene's, edited
+    SceneEdits edits; // of the scene
+    LightMix mix;
     BakeSettings bake;
     LightmapDesc lightmap; // of exports
 };

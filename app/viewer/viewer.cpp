@@ -199,8 +199,8 @@ void Viewer::followScene() {
         ui_.messages().add(session_->lastError(), true, now()); // which the log has told
         session_->clearError();
     }
-    if (session_->scene() != nullptr && !sameFactors(materials_, session_->document().materials)) {
-        materials_ = session_->document().materials;
+    if (session_->scene() != nullptr && !sameFactors(materials_, session_->document().edits.materials)) {
+        materials_ = session_->document().edits.materials;
         pane_.setMaterials(materials_);
         changeScene();
     }

@@ -1,5 +1,5 @@
-// Every struct of shaders/shared.h lies in memory as C++ has it: a kernel made from the file's own text reads
-// element 1 of an array of each and writes its members out, word by word.
+// Every struct of shaders/shared*.h lies in memory as C++ has it: a kernel made from the file's own text
+// reads element 1 of an array of each and writes its members out, word by word.
 #include "bake/shader_types.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
@@ -47,7 +47,11 @@ std::vector<std::string> readTokens(const std::string& path) {
 }
 
 std::vector<Struct> readStructs() {
-    const std::vector<std::string> tokens = readTokens(kShaderFolder + "/shared.h");
+    std::vector<std::string> tokens;
+    for (const char* file : {"/shared.h", "/shared_links.h", "/shared_layers.h"}) {
+        const std::vector<std::string> more = readTokens(kShaderFolder + file);
+        tokens.insert(tokens.end(), more.begin(), more.end());
+    }
     std::vector<Struct> structs;
     for (size_t i = 0; i + 2 < tokens.size(); ++i) {
         if (tokens[i] != "struct") continue;
@@ -75,7 +79,8 @@ const std::map<std::string, size_t> kSizes = {
     SIZE_OF(ComposePush),      SIZE_OF(ChangePush),      SIZE_OF(ResolveSums),    SIZE_OF(SmoothPush),
     SIZE_OF(LinkDistancePush), SIZE_OF(PyramidNode),     SIZE_OF(PyramidPush),    SIZE_OF(FootprintPush),
     SIZE_OF(SuperBlock),       SIZE_OF(Sender),          SIZE_OF(CoarseTaps),     SIZE_OF(InterpolatePush),
-    SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),           SIZE_OF(LampPush)};
+    SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),           SIZE_OF(LampPush),
+    SIZE_OF(LayerDirectPush),  SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),    SIZE_OF(LayerMixPush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.

@@ -102,7 +102,8 @@ public:
         return false;
     }
     void start(const BakeSettings& settings, bool keepLight = true) {
-        newest_ = bake_.start({&scene, materials, settings, keepLight});
+        newest_ =
+            bake_.start({.scene = &scene, .edits = edits, .settings = settings, .keepLight = keepLight});
     }
     /// That the newest bake is done and its last map is there.
     bool untilShown() {
@@ -119,7 +120,7 @@ public:
     }
 
     const PreparedScene scene = cornell();
-    std::vector<Material> materials = scene.scene.materials;
+    SceneEdits edits = editsOf(scene.scene);
     std::function<void()> onFrame;
 
 private:
@@ -219,7 +220,7 @@ TEST(Display, SharedAndCopiedShowTheSamePixels) {
         ASSERT_TRUE(display.untilShown());
         own.push_back(look(display, renderer, gpu));
         // An edit comes over what the slots hold already.
-        for (Material& material : display.materials)
+        for (Material& material : display.edits.materials)
             material.emission *= 0.25f;
         display.start(quickSettings());
         ASSERT_TRUE(display.untilShown());

@@ -111,11 +111,12 @@ protected:
                until([&, start = Clock::now()] { return Clock::now() - start > 50ms; });
     }
     void start(const BakeSettings& settings, bool keepLight = true) {
-        newest_ = bake_.start({&scene_, materials_, settings, keepLight});
+        newest_ =
+            bake_.start({.scene = &scene_, .edits = edits_, .settings = settings, .keepLight = keepLight});
     }
 
     PreparedScene scene_ = cornell();
-    std::vector<Material> materials_ = scene_.scene.materials;
+    SceneEdits edits_ = editsOf(scene_.scene);
     LiveBake bake_{{.validation = true}};
     Screen screen_{bake_.exchange()};
     std::function<void()> onMap_;
@@ -172,7 +173,7 @@ TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {
     ASSERT_GT(before, 0);
     std::vector<double> means;
     onMap_ = [&] { means.push_back(screen_.mean()); };
-    for (Material& material : materials_)
+    for (Material& material : edits_.materials)
         material.emission *= 0.5f;
     start(quickSettings());
     ASSERT_TRUE(untilShown());
@@ -282,7 +283,7 @@ TEST_F(LiveBakeTest, EndsWithinASecondWhateverItDoes) {
         {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_statue.glb", .size = 512});
     BakeSettings settings = quickSettings();
     settings.size = 512;
-    newest_ = bake_.start({&statue, statue.scene.materials, settings, false});
+    newest_ = bake_.start({.scene = &statue, .edits = editsOf(statue.scene), .settings = settings});
     ASSERT_TRUE(until([&] { return bake_.status().phase == BakeStatus::Phase::Preparing; }));
     const auto start = Clock::now();
     bake_.stop();

@@ -61,7 +61,7 @@ protected:
     }
     float brightest() const {
         float most = 0;
-        for (const Material& material : session_.document().materials)
+        for (const Material& material : session_.document().edits.materials)
             most = std::max(most, material.emission.r);
         return most;
     }
@@ -176,7 +176,7 @@ TEST_F(SessionTest, AnotherSceneForgetsEditsAndSteps) {
     EXPECT_EQ(loads_, 2);
     EXPECT_FALSE(session_.sceneWasKept());
     EXPECT_EQ(session_.undoName(), "");
-    EXPECT_EQ(session_.document().materials.size(), session_.scene()->prepared.scene.materials.size());
+    EXPECT_EQ(session_.document().edits.materials.size(), session_.scene()->prepared.scene.materials.size());
 }
 
 TEST_F(SessionTest, AFileThatIsWrittenTwiceIsReadTwice) {
@@ -229,9 +229,9 @@ TEST_F(SessionTest, EditsOfAFileThatBecameAnotherGoByName) {
     writeFile(kScenes + "cornell_statue.glb");
     ASSERT_TRUE(until([&] { return loads_ == 2; }));
     const std::vector<Material>& own = session_.scene()->prepared.scene.materials;
-    ASSERT_EQ(session_.document().materials.size(), own.size());
+    ASSERT_EQ(session_.document().edits.materials.size(), own.size());
     for (size_t i = 0; i < own.size(); ++i)
-        EXPECT_EQ(session_.document().materials[i].name, own[i].name);
+        EXPECT_EQ(session_.document().edits.materials[i].name, own[i].name);
 }
 
 TEST_F(SessionTest, AnotherSizeLoadsTheSceneAnew) {

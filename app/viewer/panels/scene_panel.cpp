@@ -76,7 +76,7 @@ void ScenePanel::drawStatistics(const LoadedScene& scene) {
 
 void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
     Document next = context.session.document();
-    Material& material = next.materials[index];
+    Material& material = next.edits.materials[index];
     const std::string name = nameOf(material.name, "material", index);
     const ui::ItemLog::Scope scope(context.items, name);
     glm::vec3 base(material.baseColor);
@@ -104,7 +104,7 @@ void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
 }
 
 void ScenePanel::drawMaterials(const PanelContext& context) {
-    const std::vector<Material>& materials = context.session.document().materials;
+    const std::vector<Material>& materials = context.session.document().edits.materials;
     for (size_t i = 0; i < materials.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const Material& material = materials[i];

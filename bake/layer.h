@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/light_source.h"
+#include "bake/smoothing_width.h"
+#include "bake/vk/buffer.h"
+
+namespace relume {
+
+/// What decides a light's pattern: where it is and which form it has, but neither intensity nor colour, nor
+/// what it is called.
+struct LightPattern {
+    LightKey::Kind kind = LightKey::Kind::Sky;
+    uint32_t instance = 0, material = 0; // Emitter
+    Light light;                         // Lamp: of no name and of white light of intensity 1
+    float rotation = 0;                  // Sky [rad]
+    std::string file;                    // Sky
+    uint64_t surfaces = 0;               // tells colours of surfaces apart
+
+    bool operator==(const LightPattern&) const = default;
+};
+LightPattern patternOf(const Scene& scene, const LightKey& key);
+
+/// How far a layer is: a pure function of the pattern, the geometry and the surfaces' colours.
+struct LayerLevel {
+    uint32_t directRounds = 0, linkRounds = 0;
+
+    bool operator==(const LayerLevel&) const = default;
+};
+
+/// One light's share of the lightmap, for a unit of its weight: direct light and all bounces.
+struct Layer {
+    LightPattern pattern;
+    LightSource source;          // as it is now; weight: with its switches, 0 where it is off
+    uint32_t group = 0;          // of the emitters' or of the lamps' direct light
+    vk::Buffer direct;           // vec4 per patch: lighting, variance of R, G and B together
+    vk::Buffer result;           // vec4 per patch: lighting, standard error
+    uint32_t directRounds = 0;   // in direct
+    LayerLevel level;            // of result; no rounds: there is none yet
+    SmoothingWidth width;        // of the last result
+    double light = 0, count = 0; // sums over patches, R, G and B together
+    double directVariance = 0, indirectVariance = 0, iterationError = 1;
+    double error = 1;               // relRMSE of result
+    std::optional<LayerLevel> redo; // it had been here, with other surfaces
+    bool converged = false;         // error below the aim, or all samples taken
+    std::unique_ptr<Layer> before;  // shown until there is a result
+
+    bool has() const { return level.linkRounds > 0 || level.directRounds > 0; }
+    /// What is to be seen of it: itself or the one before; nullptr: nothing.
+    const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }
+};
+
+} // namespace relume

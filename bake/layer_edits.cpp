@@ -1,0 +1,150 @@
+// Of LayerSolver: what an edit leaves as it was, and what it makes anew.
+#include "bake/layer_solver.h"
+
+#include "assets/error.h"
+#include "assets/log.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+using Kind = LightKey::Kind;
+
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+
+// Emitters' groups and lamps' are counted apart.
+uint32_t groupOf(const std::vector<LightKey>& emitters, const Scene& scene, const LightKey& key) {
+    if (key.kind == Kind::Lamp) return key.index;
+    if (key.kind == Kind::Sky) return static_cast<uint32_t>(scene.lights.size());
+    return static_cast<uint32_t>(std::find(emitters.begin(), emitters.end(), key) - emitters.begin());
+}
+
+} // namespace
+
+void LayerSolver::edit(const LightMix& mix) {
+    mix_ = mix;
+    edited_ = true;
+    weigh();
+}
+
+// Of those that stay what they are; what is not known yet comes with adopt().
+void LayerSolver::weigh() {
+    const std::vector<LightSource> sources = lightSources(input_.scene);
+    for (size_t i = 0; i < layers_.size(); ++i) {
+        Layer& layer = *layers_[i];
+        const auto now = std::find_if(sources.begin(), sources.end(), [&](const LightSource& source) {
+            return source.key == layer.source.key;
+        });
+        const glm::vec3 weight =
+            now != sources.end() && mix_.shines(now->key) ? now->weight : glm::vec3(0.0f);
+        if (weight == layer.source.weight) continue;
+        layer.source.weight = weight;
+        changed(i);
+    }
+    tellError();
+}
+
+std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) const {
+    const VkDeviceSize bytes = LightBuffers::lightBytes(input_.patches);
+    auto layer = std::make_unique<Layer>();
+    layer->pattern = pattern;
+    layer->direct = vk::Buffer(input_.device, {.size = bytes, .name = "direct light of a layer"});
+    layer->result = vk::Buffer(input_.device, {.size = bytes, .name = "layer"});
+    return layer;
+}
+
+// From those that are or were there; nullptr: none is like this.
+std::unique_ptr<Layer> LayerSolver::takeLayer(const LightPattern& pattern) {
+    for (std::vector<std::unique_ptr<Layer>>* from : {&layers_, &former_}) {
+        const auto found = std::find_if(from->begin(), from->end(), [&](const std::unique_ptr<Layer>& layer) {
+            return layer && layer->pattern == pattern;
+        });
+        if (found == from->end()) continue;
+        std::unique_ptr<Layer> layer = std::move(*found);
+        from->erase(found);
+        return layer;
+    }
+    return nullptr;
+}
+
+// Kept for an undo, as long as there is memory for it.
+void LayerSolver::archive(std::unique_ptr<Layer> layer) {
+    if (layer->before) archive(std::move(layer->before));
+    if (!layer->has()) return;
+    former_.push_back(std::move(layer));
+    const uint64_t each = 2 * LightBuffers::lightBytes(input_.patches);
+    while (!former_.empty() && (layers_.size() + former_.size()) * each > layerBytes_)
+        former_.erase(former_.begin());
+}
+
+void LayerSolver::updateEmitters(const std::vector<LightSource>& sources) {
+    std::vector<LightKey> keys;
+    for (const LightSource& source : sources)
+        if (source.key.kind == Kind::Emitter) keys.push_back(source.key);
+    if (keys == emitterKeys_) return;
+    const TraceScene& scene = input_.patches.scene;
+    std::vector<EmitterSet> sets;
+    for (const LightKey& key : keys)
+        sets.push_back(buildEmitters(input_.scene, scene.mesh, {.size = scene.size, .only = key}));
+    emitters_.setGroups(sets);
+    emitterKeys_ = std::move(keys);
+}
+
+void LayerSolver::adopt() {
+    edited_ = false;
+    const std::optional<LightPattern> working =
+        work_ ? std::optional(layers_[work_->layer]->pattern) : std::nullopt;
+    const std::vector<LightSource> sources = lightSources(input_.scene);
+    const uint64_t needed = sources.size() * 2 * LightBuffers::lightBytes(input_.patches);
+    if (needed > layerBytes_)
+        throw Error(fmt::format("layers of {} lights take {:.1f} GiB, {:.1f} may be taken: use a smaller "
+                                "lightmap, or bake without layers",
+                                sources.size(), static_cast<double>(needed) / kGiB,
+                                static_cast<double>(layerBytes_) / kGiB));
+    lamps_.update(input_.scene);
+    updateEmitters(sources);
+    std::vector<LightPattern> patterns;
+    for (const LightSource& source : sources) {
+        patterns.push_back(patternOf(input_.scene, source.key));
+        patterns.back().surfaces = surfaces_;
+    }
+    std::vector<std::unique_ptr<Layer>> next(sources.size());
+    for (size_t i = 0; i < sources.size(); ++i)
+        next[i] = takeLayer(patterns[i]);
+    for (size_t i = 0; i < sources.size(); ++i) {
+        if (next[i]) continue;
+        next[i] = makeLayer(patterns[i]);
+        const auto same =
+            std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
+                return layer->source.key == sources[i].key;
+            });
+        if (same == layers_.end()) continue;
+        next[i]->before = std::move(*same);
+        layers_.erase(same);
+    }
+    for (std::unique_ptr<Layer>& gone : layers_)
+        archive(std::move(gone));
+    layers_ = std::move(next);
+    for (size_t i = 0; i < sources.size(); ++i) {
+        Layer& layer = *layers_[i];
+        layer.source = sources[i];
+        if (!mix_.shines(layer.source.key)) layer.source.weight = glm::vec3(0.0f);
+        layer.group = groupOf(emitterKeys_, input_.scene, layer.source.key);
+    }
+    const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
+        return working && layer->pattern == *working;
+    });
+    if (work_ && found == layers_.end())
+        abortPass();
+    else if (work_)
+        work_->layer = static_cast<size_t>(found - layers_.begin());
+    restOf_.reset();
+    changed_.clear();
+    for (size_t i = 0; i < layers_.size(); ++i)
+        changed(i);
+    done_ = false;
+    tellError();
+}
+
+} // namespace relume

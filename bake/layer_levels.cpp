@@ -1,0 +1,146 @@
+// Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
+#include "bake/layer_solver.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace relume {
+namespace {
+
+// A segment towards a light costs about so much of a closest hit.
+constexpr double kSegmentCost = 0.3;
+// Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
+constexpr uint32_t kMostGrowth = 8;
+// Directions or points per patch beyond which no error is worth the time.
+constexpr uint32_t kMaxSamples = 65536;
+
+double strength(const glm::vec3& weight) {
+    return std::max({weight.r, weight.g, weight.b});
+}
+
+} // namespace
+
+LayerLevel LayerSolver::lastLevel() const {
+    const uint32_t samples = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
+    const uint32_t rounds = (samples + linksOfRound_ - 1) / linksOfRound_;
+    return {rounds, settings_.passes == 1 ? 0 : rounds};
+}
+
+// What a light that is moved shows at once.
+LayerLevel LayerSolver::firstLevel() const {
+    return {1, settings_.passes == 1 ? 0u : 1u};
+}
+
+// More of what takes away more of the variance for its cost. Costs are those of rays, whether or not links
+// are there already: the level must not depend on what was done before.
+LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
+    const LayerLevel now = layer.level, last = lastLevel();
+    if (settings_.error <= 0) return last;
+    const double off = layer.error / settings_.error;
+    const auto wanted = static_cast<uint32_t>(std::clamp(off * off, 2.0, double{kMostGrowth}));
+    const uint32_t growth = std::bit_floor(wanted);
+    const double direct =
+        layer.directVariance / (now.directRounds * kSegmentCost * std::max(1u, raysOf(layer)));
+    const double indirect = layer.indirectVariance / (std::max(1u, now.linkRounds) * linksOfRound_);
+    LayerLevel next = now;
+    const bool linksLeft = now.linkRounds < last.linkRounds,
+               directLeft = now.directRounds < last.directRounds;
+    if (directLeft && (direct > indirect || !linksLeft))
+        next.directRounds = std::min(last.directRounds, now.directRounds * growth);
+    else if (linksLeft)
+        next.linkRounds = std::min(last.linkRounds, now.linkRounds * growth);
+    return next;
+}
+
+// Those of which nothing is to be seen yet come first; of others the one whose error weighs most.
+std::optional<size_t> LayerSolver::nextLayer() const {
+    std::optional<size_t> worst;
+    double most = 0;
+    for (size_t i = 0; i < layers_.size(); ++i) {
+        const Layer& layer = *layers_[i];
+        if (strength(layer.source.weight) <= 0) continue;
+        if (!layer.has()) return i;
+        if (layer.converged) continue;
+        const double weighed = strength(layer.source.weight) * layer.light * layer.error;
+        if (worst && weighed <= most) continue;
+        worst = i;
+        most = weighed;
+    }
+    return worst;
+}
+
+shader::ResolveSums LayerSolver::resolve(uint32_t linkRounds, double sigma) {
+    VkCommandBuffer cmd = commands_.begin();
+    resolvePass_.record(cmd, input_.light, buffers_,
+                        {.size = input_.patches.scene.size,
+                         .samples = linkRounds * linksOfRound_,
+                         .sigma = static_cast<float>(sigma)});
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    return sumsOf(
+        vk::readBuffer<shader::ResolveSums>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()));
+}
+
+void LayerSolver::finishLevel() {
+    const Work work = *work_;
+    Layer& layer = *layers_[work.layer];
+    shader::ResolveSums sums{};
+    layer.width = {};
+    if (work.target.linkRounds > 0) {
+        distancesKnown_ = true;
+        const auto at = [&](double sigma) { return resolve(work.target.linkRounds, sigma); };
+        const bool first = work.target == firstLevel(); // which is in haste
+        sums = !buffers_.rows ? at(0.0) : first ? at(layer.width.sigma) : layer.width.settle(at);
+    }
+    VkCommandBuffer cmd = commands_.begin();
+    layerPass_.recordResult(cmd, input_.light, layer, work.target.linkRounds > 0 ? &buffers_.result : nullptr,
+                            buffers_.chunkSums);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    glm::dvec4 total(0.0);
+    for (const glm::vec4& sum :
+         vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()))
+        total += glm::dvec4(sum);
+    layer.level = work.target;
+    layer.light = total.x;
+    layer.count = total.z;
+    layer.directVariance = total.y;
+    layer.indirectVariance = smoothedVariance(sums);
+    layer.iterationError = settings_.passes > 0 ? 0.0 : work.iterationError * work.ratio; // one bounce more
+    layer.error = 0;
+    if (layer.light > 0) {
+        const double mean = layer.light / (3.0 * layer.count);
+        const double variance = (layer.directVariance + layer.indirectVariance) / (3.0 * layer.count);
+        layer.error = std::sqrt(variance / (mean * mean) + layer.iterationError * layer.iterationError);
+    }
+    layer.converged = layer.level == lastLevel() || (settings_.error > 0 && layer.error <= settings_.error) ||
+                      layer.light <= 0;
+    layer.redo.reset();
+    if (layer.before) archive(std::move(layer.before));
+    progress_.samples = std::max(progress_.samples, layer.level.linkRounds * linksOfRound_);
+    progress_.cacheBytes = links_.bytes();
+    changed(work.layer);
+    work_.reset();
+    tellError();
+}
+
+// Layers share links, so that their errors may have one sign.
+void LayerSolver::tellError() {
+    double light = 0, error = 0;
+    bool all = true, converged = true;
+    for (const std::unique_ptr<Layer>& layer : layers_) {
+        const double weight = strength(layer->source.weight);
+        if (weight <= 0) continue;
+        all = all && layer->has();
+        converged = converged && layer->converged;
+        light += weight * layer->light;
+        error += weight * layer->light * layer->error;
+    }
+    progress_.error = !all ? 1.0 : light > 0 ? error / light : 0.0;
+    progress_.converged = all && converged && (settings_.error <= 0 || progress_.error <= settings_.error);
+}
+
+} // namespace relume

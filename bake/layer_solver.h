@@ -1,0 +1,145 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "assets/clock.h"
+#include "bake/emitter_light.h"
+#include "bake/lamp_light.h"
+#include "bake/layer_passes.h"
+#include "bake/link_cache.h"
+#include "bake/link_passes.h"
+#include "bake/settling.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+
+/// The hybrid method light by light: each has a layer, its light for a unit of its weight with all bounces,
+/// and what is shown is the sum of weights times layers. A layer's level says how many rounds of samples of
+/// its direct light and of links it is made of; its bytes depend on nothing but that, its pattern, geometry
+/// and surfaces: not on weights, on other lights, or on what was edited before.
+class LayerSolver final : public Solver {
+public:
+    /// Throws Error.
+    LayerSolver(const SolverInput& input, const SolverSettings& settings);
+    ~LayerSolver() override;
+
+    void step() override;
+    /// The sum of all layers; w: at most the standard error.
+    const std::vector<glm::vec4>& light() override;
+    std::vector<float> errors() override;
+    void setPriority(std::vector<uint8_t> chunkSeen) override;
+    bool passBoundary() const override { return done_ || !work_; }
+    void abortPass() override;
+    LiveLight liveLight() override;
+    SolverState state() override;
+    std::vector<StatePart> stateParts() override;
+    void restore(const SolverState& state) override;
+
+    /// What the user sees and changes; valid until the next step() or edit().
+    const std::vector<std::unique_ptr<Layer>>& layers() const { return layers_; }
+    /// vec4 per patch of a layer's result, for a unit of its weight.
+    std::vector<glm::vec4> layerLight(const Layer& layer) const;
+
+    /// The scene's lights, its sky or switches are others now: the scene that the solver was made with has
+    /// been changed. Weights count at once; layers whose pattern changed are made anew once the first level
+    /// of the layer under way is through, so that a light that is dragged is seen.
+    void edit(const LightMix& mix);
+
+private:
+    enum class Stage : uint8_t { Direct, Bounces, Gather };
+    /// A layer on its way to the next level.
+    struct Work {
+        size_t layer = 0;
+        LayerLevel target;
+        Stage stage = Stage::Direct;
+        uint32_t round = 0;  // of samples, or of links that are gathered
+        uint32_t bounce = 0; // finished ones
+        double change = 0, ratio = 0, iterationError = 1;
+    };
+
+    // layer_solver.cpp
+    void plan();
+    void begin(size_t layer, LayerLevel target);
+    void directBatch();
+    template<typename Lights>
+    void directBatchOf(const Lights& lights, uint32_t group, ChunkRange range);
+    void endDirectRound();
+    void beginBounces();
+    void beginBounce();
+    void linkBatch();
+    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
+    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work);
+    void endBounce();
+    bool settled();
+    void beginGather();
+    bool wantsDistances() const;
+    void recordRadiance(VkCommandBuffer cmd);
+    void beginPass(VkCommandBuffer cmd);
+    uint32_t raysOf(const Layer& layer) const;
+    ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
+    void countRays();
+    uint32_t bouncesWanted() const; // before the last gather; 0: until they have settled
+
+    // layer_levels.cpp
+    void finishLevel();
+    shader::ResolveSums resolve(uint32_t linkRounds, double sigma);
+    std::optional<size_t> nextLayer() const;
+    LayerLevel firstLevel() const;
+    LayerLevel nextLevel(const Layer& layer) const;
+    LayerLevel lastLevel() const;
+    void tellError();
+
+    // layer_edits.cpp
+    void adopt();
+    void weigh();
+    std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
+    std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
+    void archive(std::unique_ptr<Layer> layer);
+    void updateEmitters(const std::vector<LightSource>& sources);
+
+    // layer_mix.cpp
+    uint32_t writeWeights(std::optional<size_t> without, std::optional<size_t> only);
+    void mix(const vk::Buffer& to);
+    void mixForViewer();
+    void changed(size_t layer);
+
+    const SolverInput input_;
+    SolverSettings settings_;
+    uint32_t linksOfRound_;
+    EmitterLight emitters_; // a group per emitter
+    LampLight lamps_;       // a group per lamp, the sky's the last one
+    LinkBuffers buffers_;
+    LinkCache links_;
+    RadiancePass radiancePass_;
+    LinkGatherPass gatherPass_;
+    ResolvePass resolvePass_;
+    LayerPass layerPass_;
+    vk::Commands commands_;
+    vk::Timestamps timestamps_;
+    ChunkOrder order_;                                       // of the pass under way
+    std::vector<uint8_t> seen_;                              // chunks that come first
+    std::vector<uint32_t> senders_;                          // patches that take part, per chunk
+    double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
+    bool distancesKnown_ = false;                            // of the first round's links
+
+    std::vector<std::unique_ptr<Layer>> layers_; // in the order of lightSources()
+    std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
+    uint64_t layerBytes_ = 0;                    // at most, of all of them
+    std::vector<LightKey> emitterKeys_;          // of emitters_' groups
+    uint64_t surfaces_ = 0;
+    std::optional<Work> work_;
+    LightMix mix_;
+    bool edited_ = false; // an edit waits to be adopted
+
+    vk::Buffer weights_;   // LayerWeight[]
+    vk::Buffer composite_; // vec4 per patch
+    vk::Buffer rest_;      // the composite without restOf_
+    std::optional<size_t> restOf_;
+    std::vector<size_t> changed_; // layers since the composite was made
+    bool stale_ = true;           // light_ is behind
+    std::vector<glm::vec4> light_;
+    uint64_t version_ = 0; // of what a viewer is shown
+};
+
+} // namespace relume

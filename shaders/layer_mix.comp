@@ -1,0 +1,21 @@
+// What is shown of layers: the sum of each one's light times its weight. Layers share their links, so that their errors may
+// have one sign: they are added as they are. One invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+layout(push_constant, scalar) uniform Push { LayerMixPush push; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Weights { LayerWeight items[]; };
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
+    if (index >= push.patchCount) return;
+    vec4 sum = push.base != 0ul ? Vec4s(push.base).items[index] : vec4(0.0);
+    for (uint i = 0u; i < push.layerCount; ++i) {
+        LayerWeight layer = Weights(push.layers).items[i];
+        vec4 light = Vec4s(layer.light).items[index];
+        sum += vec4(layer.weight * light.rgb, max(max(layer.weight.r, layer.weight.g), layer.weight.b) * light.w);
+    }
+    Vec4s(push.light).items[index] = sum;
+}
