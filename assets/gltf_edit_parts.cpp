@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 
 namespace relume::gltf {
 
@@ -44,14 +45,27 @@ EditedJson factors(const glm::vec3& color, double strength) {
     return list;
 }
 
-/// A strength that gives `color` with the factors there are.
-double strengthFor(const glm::vec3& color, const EditedJson& factors, double guess) {
-    return shortest(guess, [&](double strength) {
+/// What the importer makes of a sky's intensity; that of an emission's strength it keeps.
+double asFloat(double strength) {
+    return static_cast<float>(strength);
+}
+
+double asIs(double strength) {
+    return strength;
+}
+
+/// A strength that gives `color` with the factors there are, once it is read; none where roundings leave no
+/// such number.
+std::optional<double> strengthFor(const glm::vec3& color, const EditedJson& factors, double guess,
+                                  double (*read)(double)) {
+    const auto good = [&](double strength) {
         for (int c = 0; c < 3; ++c)
-            if (static_cast<float>(factors[static_cast<size_t>(c)].get<double>() * strength) != color[c])
+            if (float(factors[static_cast<size_t>(c)].get<double>() * read(strength)) != color[c])
                 return false;
         return true;
-    });
+    };
+    const double strength = shortest(guess, good);
+    return good(strength) ? std::optional(strength) : std::nullopt;
 }
 
 bool isColor(const EditedJson* json) {
@@ -76,9 +90,11 @@ void editEmission(FileEdit& edit, EditedJson& material, const glm::vec3& before,
     EditedJson* factor = find(material, {"emissiveFactor"});
     if (brightest > 1.0f) {
         if (strength && strength->is_number() && isColor(factor) && sameHue(before, after)) {
-            *strength = strengthFor(after, *factor,
-                                    strength->get<double>() * double(brightest) / double(largest(before)));
-            return;
+            const double guess = strength->get<double>() * double(brightest) / double(largest(before));
+            if (const auto found = strengthFor(after, *factor, guess, asIs)) {
+                *strength = *found;
+                return;
+            }
         }
         EditedJson& place = make(edit, material, path, where);
         setNumber(place, brightest);
@@ -211,14 +227,18 @@ void editSky(FileEdit& edit, const Sky& before, const Sky& after, const std::str
     if (!sky.is_object()) edit.fail("the sky in the scene's extras is no object");
     const float brightest = largest(after.radiance);
     EditedJson *color = find(sky, {"color"}), *intensity = find(sky, {"intensity"});
+    std::optional<double> brighter;
     if (recolored && isColor(color) && intensity && intensity->is_number() &&
-        sameHue(before.radiance, after.radiance)) {
-        *intensity = strengthFor(after.radiance, *color,
-                                 intensity->get<double>() * double(brightest) / largest(before.radiance));
+        sameHue(before.radiance, after.radiance))
+        brighter =
+            strengthFor(after.radiance, *color,
+                        intensity->get<double>() * double(brightest) / largest(before.radiance), asFloat);
+    if (brighter) {
+        *intensity = *brighter;
     } else if (recolored) {
         EditedJson& strength = sky["intensity"];
         setNumber(strength, brightest);
-        if (brightest > 0.0f) sky["color"] = factors(after.radiance, strength.get<double>());
+        if (brightest > 0.0f) sky["color"] = factors(after.radiance, asFloat(strength.get<double>()));
     }
     if (after.file.empty()) {
         sky.erase("file");

@@ -1,6 +1,7 @@
 #include "assets/gltf_edit.h"
 
 #include "assets/error.h"
+#include "assets/float_image.h"
 #include "tests/unit/edited_file.h"
 
 #include <gtest/gtest.h>
@@ -211,6 +212,19 @@ TEST_F(GltfEdit, ABrighterSkyKeepsItsColor) {
     EXPECT_EQ(jsonOf(path)["scenes"][0]["extras"], json::object({{"mood", "calm"}}));
 }
 
+/// The importer takes a sky's intensity as a float: colours written for a double were off by its last digit.
+TEST_F(GltfEdit, ASkyReturnsToTheLastDigit) {
+    const std::string path = write(everything());
+    glm::vec3 radiance(1.9f, 0.7f, 0.3f);
+    for (int i = 0; i < 50; ++i) {
+        radiance = glm::vec3(radiance.z * 1.37f, radiance.x, radiance.y) + 0.01f;
+        for (const float factor : {1.0f, 1.7f}) { // another colour, then the same one brighter
+            save(path, [&](Scene& scene) { scene.sky.radiance = radiance * factor; });
+            ASSERT_EQ(loadGltf(path).sky.radiance, radiance * factor) << i;
+        }
+    }
+}
+
 TEST_F(GltfEdit, AFileWithoutScenesGetsOneForItsSkyOnly) {
     LitScene builder = everything();
     builder.json.erase("scenes");
@@ -255,6 +269,10 @@ TEST_F(GltfEditBeside, UrisLeadFromAnotherFolderToTheSameFiles) {
     Scene after = before;
     after.lights[1].intensity = 7.5f;
     after.sky.file = folder_.path("my scene/dome.exr");
+    FloatImage dome{.width = 2, .height = 1, .channels = {}, .planes = {}, .attributes = {}};
+    for (const char* channel : {"R", "G", "B"})
+        dome.add(channel)[1] = 3.0f;
+    writeImage(after.sky.file, dome);
     saveEditedGltf(path_, before, after, target);
     const json copy = jsonOf(target);
     EXPECT_EQ(copy["buffers"][0]["uri"], "../my%20scene/parts/the%20100%25.bin");
@@ -263,6 +281,7 @@ TEST_F(GltfEditBeside, UrisLeadFromAnotherFolderToTheSameFiles) {
     EXPECT_EQ(copy["extensions"]["ACME_sounds"][1]["uri"], "../my%20scene/a/b.wav");
     EXPECT_EQ(copy["scenes"][0]["extras"]["relume"]["sky"]["file"], "../my scene/dome.exr");
     const Scene back = loadGltf(target);
+    EXPECT_EQ(back.sky.pixels.at(1), glm::vec3(3));
     EXPECT_EQ(back.lights[1].intensity, 7.5f);
     EXPECT_EQ(back.images.size(), 1u);
     EXPECT_EQ(back.meshes[0].primitives[0].positions, before.meshes[0].primitives[0].positions);
