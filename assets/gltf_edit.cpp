@@ -117,4 +117,14 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
     return nodes;
 }
 
+Scene partsOfEdits(const Scene& scene) {
+    Scene parts;
+    parts.path = scene.path;
+    parts.materials = scene.materials;
+    parts.instances = scene.instances;
+    parts.lights = scene.lights;
+    static_cast<SkySettings&>(parts.sky) = scene.sky;
+    return parts;
+}
+
 } // namespace relume

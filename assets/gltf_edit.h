@@ -29,7 +29,13 @@ struct EditedNodes {
 /// Temporary name, then rename. Throws Error, and leaves `target` as it was, where the source is no good
 /// file, is not the one that `before` came from, is a .glb and `target` a .gltf or the other way round, or
 /// where an edited value is not finite or out of glTF's range.
+///
+/// Of the two scenes nothing but materials, instances, lights, sky and path is looked at: partsOfEdits will
+/// do.
 EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const Scene& after,
                            const std::string& target);
+
+/// A copy of what saveEditedGltf looks at, without meshes, textures and pixels.
+Scene partsOfEdits(const Scene& scene);
 
 } // namespace relume
