@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     relume::addBakeCommand(app);
     relume::addShotCommand(app);
     relume::addTimelapseCommand(app);
+    relume::addEditCommand(app);
     relume::addInfoCommand(app);
     relume::addUnwrapCommand(app);
     relume::addSceneCommand(app);

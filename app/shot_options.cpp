@@ -1,12 +1,12 @@
 #include "app/shot_options.h"
 
+#include "app/typed_numbers.h"
 #include "assets/error.h"
 #include "assets/warnings.h"
 #include "renderer/good_view.h"
 #include "renderer/scene_geometry.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -17,33 +17,16 @@ namespace {
 
 constexpr uint32_t kMinEdge = 16, kMaxEdge = 16384; // of a picture [pixels]
 
-// All of `text` as a number that is finite.
-std::optional<float> parseNumber(std::string_view text) {
-    float value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
-}
-
 glm::vec3 parsePoint(const std::string& option, const std::string& text) {
-    glm::vec3 point(0.0f);
-    std::string_view rest = text;
-    for (int i = 0; i < 3; ++i) {
-        const size_t comma = i < 2 ? rest.find(',') : rest.size();
-        const std::optional<float> number =
-            comma == std::string_view::npos ? std::nullopt : parseNumber(rest.substr(0, comma));
-        if (!number) throw UsageError(option + ": '" + text + "' is no point: write x,y,z in metres");
-        point[i] = *number;
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-    }
-    return point;
+    const std::vector<float> numbers = typedNumbers(text, 3);
+    if (numbers.empty()) throw UsageError(option + ": '" + text + "' is no point: write x,y,z in metres");
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
 void parseSize(const std::string& text, ShotRequest& request) {
     const size_t cross = text.find('x');
     const auto edge = [&](std::string_view part) {
-        const std::optional<float> value = parseNumber(part);
+        const std::optional<float> value = typedNumber(part);
         const bool good = value && *value == std::floor(*value) && *value >= kMinEdge && *value <= kMaxEdge;
         if (!good) {
             throw UsageError("--size: '" + text + "' is no size: write WIDTHxHEIGHT in pixels, each from " +
@@ -131,7 +114,7 @@ ShotRequest resolvePictureOptions(const ShotOptions& o) {
     request.draw.tone = static_cast<ToneMap>(indexOf(toneNames(), o.tone));
     if (o.exposure != "auto") {
         constexpr float kMaxExposure = 64; // EV: a factor that floats hold with room to spare
-        request.draw.exposure = parseNumber(o.exposure);
+        request.draw.exposure = typedNumber(o.exposure);
         if (!request.draw.exposure || std::abs(*request.draw.exposure) > kMaxExposure)
             throw UsageError("--exposure: '" + o.exposure + "' is neither auto nor a number from -64 to 64");
     }

@@ -121,6 +121,8 @@ File readFile(const std::string& path) {
             throw Error(fmt::format(
                 "{}: is neither a GLB (wrong magic) nor a glTF JSON file: give a glTF 2.0 file", path));
     }
+    file.jsonBegin = begin;
+    file.jsonBytes = end - begin;
     const char* text = reinterpret_cast<const char*>(file.bytes.data());
     if (nestingDepth(text + begin, text + end) > kMaxDepth)
         throw Error(fmt::format("{}: its JSON is nested more than {} deep: export it without such extras",
@@ -174,6 +176,30 @@ const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key) {
         value = &*found;
     }
     return value;
+}
+
+std::string_view jsonText(const File& file) {
+    return {reinterpret_cast<const char*>(file.bytes.data()) + file.jsonBegin, file.jsonBytes};
+}
+
+std::string withJsonText(const File& file, std::string_view text) {
+    const std::string_view bytes(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+    std::string out(bytes.substr(0, file.jsonBegin));
+    out += text;
+    if (file.binary) {
+        if (text != jsonText(file)) out.append((4 - out.size() % 4) % 4, ' ');
+        const uint64_t length = readU32(file.bytes, 8) - file.jsonBytes + (out.size() - file.jsonBegin);
+        if (length > std::numeric_limits<uint32_t>::max())
+            throw Error(
+                fmt::format("{}: is larger than 4 GiB, which glTF cannot hold: split the scene", file.path));
+        const auto put = [&out](size_t offset, uint64_t value) {
+            for (size_t i = 0; i < 4; ++i)
+                out[offset + i] = static_cast<char>(value >> (8 * i));
+        };
+        put(8, length);
+        put(kHeaderBytes, out.size() - file.jsonBegin);
+    }
+    return out += bytes.substr(file.jsonBegin + file.jsonBytes);
 }
 
 } // namespace relume::gltf

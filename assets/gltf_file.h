@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -13,6 +14,8 @@ struct File {
     std::string path;           // as given by the user
     std::vector<uint8_t> bytes; // the whole file
     bool binary = false;        // GLB container
+    uint64_t jsonBegin = 0;     // where the JSON text begins in bytes
+    uint64_t jsonBytes = 0;     // its size, a GLB's padding included
     uint64_t chunkBegin = 0;    // where the GLB's binary chunk's data begins in bytes
     uint64_t chunkBytes = 0;    // size of the GLB's binary chunk, 0: none
     nlohmann::json json;
@@ -22,11 +25,19 @@ struct File {
 /// glTF 2.0, nested too deeply or no JSON.
 File readFile(const std::string& path);
 
-/// The file's bytes with another JSON text in place of its own, same container.
+/// The file's bytes with another JSON text in place of its own, same container; of a GLB's chunks only those
+/// that the parser wants.
 std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json);
 
 /// The member `key` of extras.relume, where files hold what glTF has no word for; nullptr where there is
 /// none.
 const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key);
+
+/// The file's JSON text. Lives as long as the file's bytes.
+std::string_view jsonText(const File& file);
+
+/// The file's bytes with another JSON text in place of its own, all else in it to the byte as it was. Throws
+/// Error where it gets too large.
+std::string withJsonText(const File& file, std::string_view text);
 
 } // namespace relume::gltf

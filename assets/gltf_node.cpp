@@ -1,6 +1,7 @@
 #include "assets/gltf_build.h"
 
 #include "assets/error.h"
+#include "assets/gltf_node.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -26,29 +27,6 @@ int indexOr(const json& node, const char* key, int fallback) {
 
 double at(const json& array, int i) {
     return array[static_cast<size_t>(i)].get<double>();
-}
-
-glm::dmat4 localTransform(const json& node) {
-    glm::dmat4 local(1.0);
-    if (const json* matrix = member(node, "matrix")) {
-        for (int i = 0; i < 16; ++i)
-            local[i / 4][i % 4] = at(*matrix, i);
-        // An affine transform's last row; exporters round it.
-        for (int c = 0; c < 4; ++c)
-            local[c][3] = c == 3 ? 1.0 : 0.0;
-        return local;
-    }
-    if (const json* rotation = member(node, "rotation")) {
-        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
-        const double length = glm::length(q);
-        if (length > 0.0) local = glm::mat4_cast(q / length);
-    }
-    if (const json* scale = member(node, "scale"))
-        for (int c = 0; c < 3; ++c)
-            local[c] *= at(*scale, c);
-    if (const json* translation = member(node, "translation"))
-        local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
-    return local;
 }
 
 bool finite(const glm::mat4& m) {
@@ -87,22 +65,6 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
-std::vector<int> rootNodes(const Build& build) {
-    std::vector<int> roots;
-    if (!build.scenes.empty()) {
-        const json* nodes = member(build.scenes[static_cast<size_t>(build.defaultScene)], "nodes");
-        return nodes ? nodes->get<std::vector<int>>() : roots;
-    }
-    std::vector<bool> isChild(build.nodes.size());
-    for (const json& node : build.nodes)
-        if (const json* children = member(node, "children"))
-            for (const json& child : *children)
-                isChild[child.get<size_t>()] = true;
-    for (size_t i = 0; i < isChild.size(); ++i)
-        if (!isChild[i]) roots.push_back(static_cast<int>(i));
-    return roots;
-}
-
 void addNode(Build& build, size_t index, const glm::mat4& world) {
     const json& node = build.nodes[index];
     if (!finite(world)) {
@@ -116,6 +78,7 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
         if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
         instance.mesh = mesh;
         instance.transform = world;
+        instance.node = static_cast<int>(index);
         build.scene.instances.push_back(std::move(instance));
     }
     if (camera >= 0)
@@ -132,13 +95,52 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
 
 } // namespace
 
+glm::dmat4 localTransform(const json& node) {
+    glm::dmat4 local(1.0);
+    if (const json* matrix = member(node, "matrix")) {
+        for (int i = 0; i < 16; ++i)
+            local[i / 4][i % 4] = at(*matrix, i);
+        // An affine transform's last row; exporters round it.
+        for (int c = 0; c < 4; ++c)
+            local[c][3] = c == 3 ? 1.0 : 0.0;
+        return local;
+    }
+    if (const json* rotation = member(node, "rotation")) {
+        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
+        const double length = glm::length(q);
+        if (length > 0.0) local = glm::mat4_cast(q / length);
+    }
+    if (const json* scale = member(node, "scale"))
+        for (int c = 0; c < 3; ++c)
+            local[c] *= at(*scale, c);
+    if (const json* translation = member(node, "translation"))
+        local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
+    return local;
+}
+
+std::vector<int> rootNodes(const json& nodes, const json& scenes, int defaultScene) {
+    std::vector<int> roots;
+    if (!scenes.empty()) {
+        const json* listed = member(scenes[static_cast<size_t>(defaultScene)], "nodes");
+        return listed ? listed->get<std::vector<int>>() : roots;
+    }
+    std::vector<bool> isChild(nodes.size());
+    for (const json& node : nodes)
+        if (const json* children = member(node, "children"))
+            for (const json& child : *children)
+                isChild[child.get<size_t>()] = true;
+    for (size_t i = 0; i < isChild.size(); ++i)
+        if (!isChild[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
 void buildNodes(Build& build) {
     struct Visit {
         int node;
         glm::dmat4 parent;
     };
     std::vector<Visit> stack;
-    const std::vector<int> roots = rootNodes(build);
+    const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.defaultScene);
     std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
         stack.push_back({*root, glm::dmat4(1.0)});

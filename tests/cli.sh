@@ -54,7 +54,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake shot timelapse info unwrap scene devices compare bench samples)
+verbs=(bake shot timelapse edit info unwrap scene devices compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -69,7 +69,7 @@ grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version
 expectUsageError
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
-for verb in bake shot timelapse info unwrap compare; do
+for verb in bake shot timelapse edit info unwrap compare; do
     expectUsageError "$verb" # the scene or the files are missing
     expectUsageError "$verb" --nosuchoption
 done
@@ -130,6 +130,15 @@ expectUsageError timelapse room.glb -o frames --at 1,2 --fps 5
 expectUsageError timelapse room.glb -o frames --view albedo
 expectUsageError timelapse room.glb -o frames.avi
 
+expectUsageError edit room.glb -o out.glb # no edit
+expectUsageError edit room.glb --set Lamp.intensity=1 # no -o
+expectUsageError edit room.glb -o out.glb --set Lamp.intensity=nan
+expectUsageError edit room.glb -o out.glb --set Lamp.brightness=1
+expectUsageError edit room.glb -o out.glb --move Lamp=1,2
+expectUsageError edit room.glb -o out.glb --add lantern
+
+expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp
+expectWorldError nosuchfolder edit missing.glb -o nosuchfolder/out.glb --delete Lamp
 expectWorldError missing.glb bake missing.glb -o room.exr
 expectWorldError missing.exr shot missing.glb -o shot.png --lightmap missing.exr
 expectWorldError nosuchfolder shot missing.glb -o nosuchfolder/shot.png
