@@ -37,7 +37,7 @@ constexpr std::array kRows = {
     Row{"color", Property::Color, Kind::Color, 0, 1,
         "give #rrggbb or r,g,b from 0 to 1, and what is brighter by the intensity"},
     Row{"temperature", Property::Temperature, Kind::Number, kLowestTemperature, kHighestTemperature,
-        "give kelvins from 1000 to 40000"},
+        "give kelvins from 1000 to 15000"},
     Row{"radius", Property::Radius, Kind::Number, 0, kMost, "give metres, 0 or more"},
     Row{"angle", Property::Angle, Kind::Number, 0, 180, "give degrees from 0 to 180"},
     Row{"size", Property::Size, Kind::Pair, 0, kMost, "give width,height in metres above 0"},

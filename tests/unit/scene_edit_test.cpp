@@ -273,7 +273,7 @@ TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
         {"Lamp.color=2,1,1",
          "usage: color 2,1,1 is out of range: give #rrggbb or r,g,b from 0 to 1, and what is "
          "brighter by the intensity"},
-        {"Lamp.temperature=500", "usage: temperature 500 is out of range: give kelvins from 1000 to 40000"},
+        {"Lamp.temperature=500", "usage: temperature 500 is out of range: give kelvins from 1000 to 15000"},
         {"spot.outer=95", "usage: outer 95 is out of range: give degrees from the axis, from 0.0573 to 90"},
         {"spot.outer=0", "usage: outer 0 is out of range: give degrees from the axis, from 0.0573 to 90"},
         {"spot.inner=60", "usage: the inner cone of 60 degrees is wider than the outer one of 45: make that "
