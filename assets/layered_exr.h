@@ -14,8 +14,9 @@ namespace relume {
 namespace layer_attribute {
 constexpr const char* kType = "relume:type"; // "point", ..., "emitter", "sky"
 constexpr const char* kUnit = "relume:unit"; // of the intensity
-// The light as its scene has it, in that unit and linear, as texts ("40", "1,0.5,0.2"): what `weight` was made
-// of, also where that is 0 because the light is off. Missing: the weight's brightest channel, and weight / that.
+// The light as its scene has it, in that unit and linear, as texts ("40", "1,0.5,0.2"): what `weight` was
+// made of, also where that is 0 because the light is off. Missing: the weight's brightest channel, and weight
+// / that.
 constexpr const char* kIntensity = "relume:intensity";
 constexpr const char* kColor = "relume:color";
 constexpr const char* kStale = "relume:stale"; // why the layer does not show the scene any more, one line

@@ -43,12 +43,12 @@ void printList(const LayeredImage& image) {
     for (const LayeredImage::Layer& layer : image.layers) {
         const glm::vec3 color = colorOf(layer);
         const std::string stale = attribute(layer, layer_attribute::kStale);
-        const std::string state = layer.weight == glm::vec3(0.0f) ? "off" : "";
+        std::string state = layer.weight == glm::vec3(0.0f) ? "off" : "";
+        if (!stale.empty()) state += (state.empty() ? "stale: " : ", stale: ") + stale;
         std::printf("%-24s %-12s %12.6g %-7s %-24s %s\n", layer.name.c_str(),
                     attribute(layer, layer_attribute::kType).c_str(), double(intensityOf(layer)),
                     attribute(layer, layer_attribute::kUnit).c_str(),
-                    fmt::format("{:.4g},{:.4g},{:.4g}", color.r, color.g, color.b).c_str(),
-                    stale.empty() ? state.c_str() : ("stale: " + stale).c_str());
+                    fmt::format("{:.4g},{:.4g},{:.4g}", color.r, color.g, color.b).c_str(), state.c_str());
     }
 }
 
