@@ -45,7 +45,7 @@ glm::vec3 withColor(const glm::vec3& radiance, const glm::vec3& color, const std
 /// A temperature is a way to say a colour.
 std::optional<glm::vec3> colorOf(const Setting& setting) {
     if (setting.property == Property::Color) return std::get<glm::vec3>(setting.value);
-    if (setting.property == Property::Temperature) return blackBodyColor(std::get<float>(setting.value));
+    if (setting.property == Property::Temperature) return blackBody(std::get<float>(setting.value));
     return std::nullopt;
 }
 

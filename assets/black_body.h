@@ -1,15 +1,23 @@
 #pragma once
 
+#include <optional>
+
 #include <glm/glm.hpp>
 
 namespace relume {
 
-// A dull glow, and beyond the bluest sky, where the colour hardly changes any more [K].
-constexpr float kColdestBlackBody = 1000.0f, kHottestBlackBody = 40000.0f;
+constexpr float kLowestTemperature = 1000.0f, kHighestTemperature = 15000.0f; // [K]
 
-/// The colour of a black body of this temperature [K], kColdestBlackBody to kHottestBlackBody: linear, with
-/// the primaries of sRGB, the brightest channel 1. What is outside their gamut (below 1900 K) has 0 for the
-/// channel that would be negative.
-glm::vec3 blackBodyColor(float kelvin);
+/// Colour of a black body, linear sRGB with its largest channel at 1; what sRGB has not (below 1900 K) is cut
+/// off. The temperature [K] is clamped to the range above.
+glm::vec3 blackBody(float kelvin);
+
+/// The black body whose colour is nearest to another one.
+struct NearestBody {
+    float kelvin = 0.0f;
+    float off = 0.0f; // largest difference of a channel, as a share of the largest channel
+};
+/// color: linear, of any brightness. None: black, or no number.
+std::optional<NearestBody> nearestBlackBody(const glm::vec3& color);
 
 } // namespace relume

@@ -63,7 +63,7 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bo
         sizeof(shader::Patch) + sizeof(shader::PatchEdges) + 5 * sizeof(glm::vec4) + 2 * sizeof(uint32_t);
     const auto chunks = static_cast<uint32_t>(texels / shader::kChunk + 1);
     // A software device's memory is the host's, which holds the patches and the light once more.
-    constexpr uint64_t kHostBytes = 144;
+    constexpr uint64_t kHostBytes = 180;
     const uint64_t solve =
         texels * (perPatch + (software ? kHostBytes : 0)) + solverBytes(chunks, software, settings.solver);
     constexpr uint64_t kBytesPerTriangle =
@@ -177,6 +177,15 @@ void Baker::resetSolver(const SolverSettings& settings) {
     solver_.reset(); // before the new one takes its memory
     settings_.solver = settings;
     solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
+}
+
+void Baker::updateMaterials() {
+    applyMaterials(patches_, scene_.materials);
+    const auto update = [&](const vk::Buffer& buffer, const std::vector<glm::vec4>& values) {
+        vk::upload(device_, buffer, values.data(), values.size() * sizeof(glm::vec4));
+    };
+    update(light_->albedo, patches_.albedo);
+    update(light_->emission, patches_.emission);
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

@@ -45,6 +45,9 @@ public:
     /// Another solver of the same patches, which starts from no light; `transport` must stay as it is. Throws
     /// Error when its method cannot run: then there is none any more.
     void resetSolver(const SolverSettings& settings);
+    /// Colours and strengths of materials as the scene has them now; not whether they are masked or emit at
+    /// all. For a solver that follows edits, which is to be told afterwards.
+    void updateMaterials();
     Tracer& tracer() { return *tracer_; }
     /// Its name and why it was taken: "embree (software device)".
     const std::string& tracerChoice() const { return tracerChoice_; }

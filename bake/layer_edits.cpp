@@ -5,6 +5,7 @@
 #include "assets/log.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace relume {
 namespace {
@@ -20,9 +21,20 @@ uint32_t groupOf(const std::vector<LightKey>& emitters, const Scene& scene, cons
     return static_cast<uint32_t>(std::find(emitters.begin(), emitters.end(), key) - emitters.begin());
 }
 
+// FNV-1a of all base colour factors.
+uint64_t surfacesOf(const Scene& scene) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (const Material& material : scene.materials) {
+        for (int k = 0; k < 3; ++k)
+            hash = (hash ^ std::bit_cast<uint32_t>(material.baseColor[k])) * 0x100000001b3u;
+    }
+    return hash;
+}
+
 } // namespace
 
 void LayerSolver::edit(const LightMix& mix) {
+    ASSERT(atRest() || surfacesOf(input_.scene) == surfaces_);
     mix_ = mix;
     edited_ = true;
     weigh();
@@ -78,6 +90,20 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
         former_.erase(former_.begin());
 }
 
+// Surfaces of other colours change bounces alone. The new layer goes as far as the one before was.
+void LayerSolver::keepDirect(const Layer& from, Layer& to) {
+    LightPattern alike = from.pattern;
+    alike.surfaces = to.pattern.surfaces;
+    if (!(alike == to.pattern) || from.directRounds == 0) return;
+    VkCommandBuffer cmd = commands_.begin();
+    const VkBufferCopy all{0, 0, from.direct.size()};
+    vkCmdCopyBuffer(cmd, from.direct.handle(), to.direct.handle(), 1, &all);
+    vk::barrier(cmd);
+    commands_.run();
+    to.directRounds = from.directRounds;
+    if (from.has()) to.redo = from.level;
+}
+
 void LayerSolver::updateEmitters(const std::vector<LightSource>& sources) {
     std::vector<LightKey> keys;
     for (const LightSource& source : sources)
@@ -102,6 +128,7 @@ void LayerSolver::adopt() {
                                 "lightmap, or bake without layers",
                                 sources.size(), static_cast<double>(needed) / kGiB,
                                 static_cast<double>(layerBytes_) / kGiB));
+    surfaces_ = surfacesOf(input_.scene);
     lamps_.update(input_.scene);
     updateEmitters(sources);
     std::vector<LightPattern> patterns;
@@ -120,6 +147,7 @@ void LayerSolver::adopt() {
                 return layer->source.key == sources[i].key;
             });
         if (same == layers_.end()) continue;
+        keepDirect(**same, *next[i]);
         next[i]->before = std::move(*same);
         layers_.erase(same);
     }

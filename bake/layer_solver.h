@@ -41,10 +41,13 @@ public:
     /// vec4 per patch of a layer's result, for a unit of its weight.
     std::vector<glm::vec4> layerLight(const Layer& layer) const;
 
-    /// The scene's lights, its sky or switches are others now: the scene that the solver was made with has
-    /// been changed. Weights count at once; layers whose pattern changed are made anew once the first level
-    /// of the layer under way is through, so that a light that is dragged is seen.
+    /// The scene's lights, its sky, the colours of its materials (Baker::updateMaterials) or switches are
+    /// others now: the scene that the solver was made with has been changed. Weights count at once; layers
+    /// whose pattern changed are made anew once the first level of the layer under way is through, so that a
+    /// light that is dragged is seen.
     void edit(const LightMix& mix);
+    /// Whether base colours may be changed now: no layer is on its way to its first level.
+    bool atRest() const { return !work_ || layers_[work_->layer]->has(); }
 
 private:
     enum class Stage : uint8_t { Direct, Bounces, Gather };
@@ -96,6 +99,7 @@ private:
     std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
     std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
     void archive(std::unique_ptr<Layer> layer);
+    void keepDirect(const Layer& from, Layer& to);
     void updateEmitters(const std::vector<LightSource>& sources);
 
     // layer_mix.cpp

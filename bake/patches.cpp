@@ -14,7 +14,7 @@ using shader::kChunk;
 using shader::kNoPatch;
 
 constexpr uint32_t kTile = 8;       // texels
-constexpr float kMaxAlbedo = 0.98f; // above, the iteration hardly ends (conventions.md)
+constexpr float kMaxAlbedo = 0.98f; // times the reflectivity: above, the iteration hardly ends (conventions.md)
 constexpr float kOffset = 1e-4f;    // of a texel's size, along the normal
 constexpr float kFloatError =
     8.0f * 0.5f * std::numeric_limits<float>::epsilon(); // of a coordinate after interpolation
@@ -50,8 +50,8 @@ TriangleFrame triangleFrame(const WorldMesh& mesh, uint32_t triangle, uint32_t s
 struct NewPatch {
     shader::Patch patch{};
     shader::PatchEdges edges{};
-    glm::vec4 albedo{0.0f}, emission{0.0f};
-    uint32_t chart = kNoChart;
+    glm::vec4 albedo{0.0f}, emission{0.0f}; // for factors of 1
+    uint32_t chart = kNoChart, material = 0;
 };
 
 struct ThinChart {
@@ -62,8 +62,8 @@ struct ThinChart {
 class Builder {
 public:
     Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
-        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad),
-          maxAlbedo_(kMaxAlbedo / std::max(desc.reflectivity, 1e-6f)) {
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad) {
+        if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
         materials_.emplace_back(); // glTF's default material
         set_.scene.mesh = std::move(mesh);
         set_.scene.size = group.size;
@@ -87,6 +87,7 @@ public:
         }
         while (set_.scene.patches.size() % kChunk != 0)
             add({});
+        applyMaterials(set_, scene_.materials);
         addBounds();
         addHitTriangles();
         addAlpha(); // after the hit triangles
@@ -141,8 +142,9 @@ private:
         set_.scene.patches.push_back(p.patch);
         set_.scene.patchChart.push_back(p.chart);
         set_.edges.push_back(p.edges);
-        set_.albedo.push_back(p.albedo);
-        set_.emission.push_back(p.emission);
+        set_.albedoPattern.push_back(p.albedo);
+        set_.emissionPattern.push_back(p.emission);
+        set_.material.push_back(p.material);
     }
 
     void addTile(uint32_t tileX, uint32_t tileY) {
@@ -178,8 +180,9 @@ private:
         p.edges = {frame.du * std::sqrt(scale), frame.dv * std::sqrt(scale)};
         fill(p, glm::vec3(group_.pos[texel]), glm::vec3(group_.nrm[texel]), frame.normal,
              glm::length(glm::cross(frame.du, frame.dv)) * scale, texel);
-        p.albedo = clampAlbedo(group_.mat[texel]);
+        p.albedo = group_.mat[texel];
         p.emission = group_.emission[texel];
+        p.material = set_.scene.mesh.material[triangle];
         return p;
     }
 
@@ -197,16 +200,16 @@ private:
         result.edges = {side, glm::cross(normal, side)};
         fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
              texel.y * group_.size + texel.x);
-        const Material& material = materials_[m.material[thin.triangle]];
+        result.material = m.material[thin.triangle];
+        const Material& material = materials_[result.material];
         const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
         const glm::vec4 surface =
             textureAt(material.metallicRoughnessTexture, m.metallicUv, thin.triangle, false);
         const float metallic = material.metallic * surface.b, roughness = material.roughness * surface.g;
         const float diffuse = 1.0f - metallic + 0.5f * metallic * roughness * roughness;
         const glm::vec4 base = textureAt(material.baseColorTexture, m.baseUv, thin.triangle, true);
-        result.albedo = clampAlbedo(material.baseColor * color * base * diffuse);
-        result.emission = glm::vec4(material.emission, 0.0f) *
-                          textureAt(material.emissionTexture, m.emissionUv, thin.triangle, true);
+        result.albedo = color * base * diffuse;
+        result.emission = textureAt(material.emissionTexture, m.emissionUv, thin.triangle, true);
         return result;
     }
 
@@ -249,7 +252,8 @@ private:
 
     void addBack(const NewPatch& front, uint32_t triangle, std::vector<NewPatch>& backs) const {
         const Material& material = materials_[set_.scene.mesh.material[triangle]];
-        const bool emits = front.emission.r > 0.0f || front.emission.g > 0.0f || front.emission.b > 0.0f;
+        const glm::vec3 emission = material.emission * glm::vec3(front.emission);
+        const bool emits = emission.r > 0.0f || emission.g > 0.0f || emission.b > 0.0f;
         if (rtrad_ || !material.doubleSided || !emits) return;
         NewPatch back = front;
         back.patch.normal = back.patch.shading = -front.patch.normal;
@@ -257,12 +261,6 @@ private:
         back.albedo = glm::vec4(0.0f);
         back.chart = kNoChart;
         backs.push_back(back);
-    }
-
-    glm::vec4 clampAlbedo(glm::vec4 albedo) {
-        if (rtrad_ || std::max({albedo.r, albedo.g, albedo.b}) <= maxAlbedo_) return albedo;
-        ++set_.clampedAlbedo;
-        return glm::min(albedo, glm::vec4(maxAlbedo_));
     }
 
     void addBounds() {
@@ -351,7 +349,6 @@ private:
     std::vector<Material> materials_;
     const TextureGroup& group_;
     const bool rtrad_;
-    const float maxAlbedo_; // whose product with the reflectivity is kMaxAlbedo
     PatchSet set_;
     std::vector<TriangleFrame> frames_;               // per triangle
     std::vector<float> areaScale_;                    // per chart
@@ -364,6 +361,25 @@ private:
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc) {
     Builder builder(scene, std::move(mesh), group, desc);
     return builder.build();
+}
+
+void applyMaterials(PatchSet& patches, const std::vector<Material>& materials) {
+    const size_t count = patches.albedoPattern.size();
+    std::vector<Material> all = materials;
+    all.emplace_back(); // glTF's default material
+    patches.albedo.resize(count);
+    patches.emission.resize(count);
+    patches.clampedAlbedo = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const Material& material = all[patches.material[i]];
+        glm::vec4 albedo = material.baseColor * patches.albedoPattern[i];
+        if (!patches.scene.rtrad && std::max({albedo.r, albedo.g, albedo.b}) > patches.maxAlbedo) {
+            ++patches.clampedAlbedo;
+            albedo = glm::min(albedo, glm::vec4(patches.maxAlbedo));
+        }
+        patches.albedo[i] = albedo;
+        patches.emission[i] = glm::vec4(material.emission, 0.0f) * patches.emissionPattern[i];
+    }
 }
 
 uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {

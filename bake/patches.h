@@ -19,6 +19,9 @@ struct PatchSet {
     std::vector<shader::ChunkBounds> bounds; // per chunk
     std::vector<glm::vec4> albedo;           // a unused
     std::vector<glm::vec4> emission;         // [cd/m^2], a unused
+    std::vector<glm::vec4> albedoPattern, emissionPattern; // the same for factors of 1
+    std::vector<uint32_t> material; // into Scene::materials; materials.size(): the default one
+    float maxAlbedo = 1.0f;         // that albedo is clamped to
     uint32_t count = 0;                      // patches without padding
     uint32_t clampedAlbedo = 0;              // patches whose albedo times reflectivity was above 0.98
 
@@ -33,6 +36,9 @@ struct PatchDesc {
 /// Takes over the mesh. rtrad: shading normals for everything, no offsets, no back sides, no area correction,
 /// albedo as it is. Throws Error when no texel is covered.
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc);
+
+/// Sets albedo and emission to these factors times the patterns.
+void applyMaterials(PatchSet& patches, const std::vector<Material>& materials);
 
 /// Marks patches as lying inside something (kPatchSends cleared): those whose links meet more backs than
 /// fronts, two of five links at least. links: [chunk][sample][64]. Returns how many.

@@ -67,7 +67,7 @@ Publisher::Publisher(const vk::Device& device, const PatchSet& patches, const De
     : device_(device), size_(patches.scene.size), chunkCount_(patches.chunkCount()),
       chunksAtOnce_(
           std::min(device.info().software() ? kChunksPerSubmitSoftware : kChunksPerSubmit, chunkCount_)),
-      rings_(patches.scene.rtrad ? std::min(desc.rings, 1u) : desc.rings),
+      rings_(patches.scene.rtrad ? std::min(desc.rings, 1u) : desc.rings), reflectivity_(desc.reflectivity),
       unit_(unitFor(brightestLighting(patches, desc.reflectivity))),
       scatter_(device, "publish", {patches.scene.rtrad ? 1u : 0u}), sum_(device, "publish_sum"),
       commands_(device), texels_(device, {.size = uint64_t{size_} * size_ * kTexelBytes, .name = "texels"}),
@@ -95,6 +95,10 @@ Publisher::Publisher(const vk::Device& device, const PatchSet& patches, const De
     vkCmdFillBuffer(cmd, texels_.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     commands_.run();
+}
+
+void Publisher::updateUnit(const PatchSet& patches) {
+    unit_ = unitFor(brightestLighting(patches, reflectivity_));
 }
 
 void Publisher::update(const Update& update) {

@@ -41,6 +41,8 @@ public:
     uint32_t size() const { return size_; } // [texels]
     /// For lighting, however often it bounces between these patches [cd/m^2].
     float unit() const { return unit_; }
+    /// The same patches emit or reflect otherwise now.
+    void updateUnit(const PatchSet& patches);
     /// Every chunk, for Update::chunks.
     std::span<const uint32_t> allChunks() const { return allChunks_; }
 
@@ -76,7 +78,7 @@ private:
     uint32_t size_, chunkCount_;
     uint32_t chunksAtOnce_; // in one submit
     uint32_t rings_;
-    float unit_ = 1.0f;
+    float reflectivity_ = 1.0f, unit_ = 1.0f;
     vk::ComputeProgram scatter_, sum_;
     vk::Commands commands_;
     vk::Buffer texels_;         // uvec2 per texel: what is shown

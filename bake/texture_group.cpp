@@ -86,8 +86,8 @@ std::vector<shader::CitMaterial> citMaterials(const Scene& scene, TextureArray& 
     materials.emplace_back(); // glTF's default material
     std::vector<shader::CitMaterial> result;
     for (const Material& m : materials) {
-        result.push_back({.baseColor = m.baseColor,
-                          .emission = m.emission,
+        result.push_back({.baseColor = glm::vec4(1.0f, 1.0f, 1.0f, m.baseColor.a), // masks need it
+                          .emission = glm::vec3(1.0f),
                           .metallic = m.metallic,
                           .roughness = m.roughness,
                           .alphaCutoff = m.alphaMode == AlphaMode::Mask ? m.alphaCutoff : 0.0f,

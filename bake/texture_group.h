@@ -15,8 +15,8 @@ struct TextureGroup {
     uint32_t size = 0;               // [texels]
     std::vector<glm::vec4> pos;      // [m], a = 1: a patch
     std::vector<glm::vec4> nrm;      // unit, shading
-    std::vector<glm::vec4> mat;      // albedo
-    std::vector<glm::vec4> emission; // [cd/m^2]
+    std::vector<glm::vec4> mat;      // albedo for a base colour factor of 1
+    std::vector<glm::vec4> emission; // for an emission factor of 1 cd/m^2
     std::vector<uint32_t> triangle;  // 1 + index in the WorldMesh
 };
 

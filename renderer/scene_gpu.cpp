@@ -31,6 +31,18 @@ gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb) {
     return made;
 }
 
+gl::Texture makeSkyPicture(const Sky& sky) {
+    // What half floats cannot hold would be infinite, which no tone mapping brings back.
+    constexpr float kMostHalf = 65504.0f;
+    std::vector<glm::vec3> pixels = sky.pixels;
+    for (glm::vec3& pixel : pixels)
+        pixel = glm::min(pixel, kMostHalf);
+    gl::Texture made({.width = sky.width, .height = sky.height, .format = GL_RGB16F, .name = "sky"});
+    made.upload(GL_RGB, GL_FLOAT, pixels.data());
+    glTextureParameteri(made.get(), GL_TEXTURE_WRAP_S, GL_REPEAT); // all around
+    return made;
+}
+
 bool canFilterAnisotropically() {
     return epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
            epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic");
@@ -98,7 +110,16 @@ SceneGpu::SceneGpu(const Scene& scene, const SceneGeometry& geometry)
                              .data = materials.data(),
                              .flags = GL_DYNAMIC_STORAGE_BIT,
                              .name = "materials"});
+    sky_ = scene.sky;
+    skyFile_ = sky_.file;
+    if (!scene.sky.pixels.empty()) skyPicture_ = makeSkyPicture(scene.sky);
     setAnisotropy(kAnisotropy);
+}
+
+void SceneGpu::updateSky(const SkySettings& sky) {
+    if (sky_ == sky) return;
+    sky_ = sky;
+    version_ = newVersion();
 }
 
 void SceneGpu::updateMaterials(const Scene& scene) {

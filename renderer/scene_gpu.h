@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,12 +32,16 @@ public:
     /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
     /// the alpha mode and the number of materials must be as they were.
     void updateMaterials(const Scene& scene);
+    /// The sky as it is set now. Another picture than the scene had when this was made is not drawn.
+    void updateSky(const SkySettings& sky);
     /// Samples along the longer side of what a pixel covers of a texture, at most kAnisotropy; 1: none, which
     /// spares a software device a little of a textured scene's time and blurs its floors.
     void setAnisotropy(float samples);
 
     const std::vector<SceneDraw>& draws() const { return draws_; }
     const MaterialTextures& textures(uint32_t material) const { return textures_[material]; }
+    const SkySettings& sky() const { return sky_; }
+    GLuint skyPicture() const { return sky_.file == skyFile_ ? skyPicture_.get() : 0; } // 0: one radiance
     const Box& bounds() const { return bounds_; }
     float medianDensity() const { return medianDensity_; } // as SceneGeometry has it
     const gl::VertexArray& vertexArray() const { return vertexArray_; }
@@ -52,7 +57,10 @@ private:
     gl::Buffer vertices_, indices_, materials_;
     gl::VertexArray vertexArray_;
     std::map<std::pair<int, bool>, gl::Texture> loaded_; // by Scene::textures and whether it is sRGB
-    std::vector<MaterialTextures> textures_;             // the default material's last
+    SkySettings sky_;
+    std::string skyFile_; // whose picture this is:
+    gl::Texture skyPicture_;
+    std::vector<MaterialTextures> textures_; // the default material's last
     uint64_t version_ = newVersion();
 };
 

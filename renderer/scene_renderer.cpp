@@ -16,9 +16,11 @@ constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLig
                 kMeterScale = 7, kMedianDensity = 8, kExposure = 9, kUnit = 10, kRangeLow = 11,
                 kRangeHigh = 12;
 constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye = 3;
+constexpr GLint kSkyAhead = 0, kSkyAcross = 1, kSkyAbove = 2, kSkySize = 3, kSkyRadiance = 4,
+                kSkyRotation = 5;
 constexpr GLuint kLightmapUnit = 3;
 // Keys of programs; those of the scene are below.
-constexpr uint32_t kLineProgram = 1u << 30, kVoxelProgram = 1u << 31;
+constexpr uint32_t kSkyProgram = 1u << 29, kLineProgram = 1u << 30, kVoxelProgram = 1u << 31;
 
 constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
 
@@ -188,6 +190,42 @@ void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
     }
 }
 
+// Behind everything: where the depth is still what it was cleared to.
+void SceneRenderer::drawSky(const Frame& frame, const Pass& pass) {
+    const SkySettings& sky = frame.scene.sky();
+    if (frame.settings.view != View::Lit || sky.radiance == glm::vec3(0.0f)) return;
+    const GLuint picture = frame.scene.skyPicture();
+    const auto tone = static_cast<uint32_t>(frame.settings.tone);
+    const gl::Program& program =
+        programs_.get(kSkyProgram | tone << 1 | (picture != 0 ? 1u : 0u), [&]() -> gl::Program::Desc {
+            return {.vertex = "gl/screen.vert",
+                    .fragment = "gl/sky.frag",
+                    .definitions = {"PICTURE=" + std::to_string(picture != 0 ? 1 : 0),
+                                    "TONE=" + std::to_string(tone) + "u"},
+                    .name = "sky"};
+        });
+    const ViewCamera& camera = frame.camera;
+    const glm::vec2 size(surface().width(), surface().height());
+    const float above = camera.halfHeight > 0.0f ? 0.0f : std::tan(0.5f * camera.yfov);
+    program.set(kSkyAhead, forward(camera));
+    program.set(kSkyAcross, above * size.x / size.y * right(camera));
+    program.set(kSkyAbove, above * glm::cross(right(camera), forward(camera)));
+    program.set(kSkySize, size);
+    program.set(kSkyRadiance, sky.radiance);
+    program.set(kSkyRotation, sky.rotation);
+    program.set(kMeterScale, pass.meterScale);
+    program.set(kExposure, std::exp2(pass.exposure));
+    program.use();
+    glBindTextureUnit(0, picture);
+    glBindVertexArray(empty_.get());
+    glDisable(GL_CULL_FACE);
+    glDepthFunc(GL_GEQUAL);
+    glDepthMask(GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+}
+
 void SceneRenderer::drawVoxels(const Frame& frame, const Pass& pass) {
     const gl::Program& program = programs_.get(kVoxelProgram, []() -> gl::Program::Desc {
         return {.vertex = "gl/voxel.vert", .fragment = "gl/voxel.frag", .definitions = {}, .name = "voxels"};
@@ -244,6 +282,7 @@ void SceneRenderer::render(const Frame& frame, float exposure) {
         drawVoxels(frame, pass);
     else
         drawScene(frame, pass);
+    if (frame.voxels == nullptr) drawSky(frame, pass);
     if (frame.lines != nullptr) drawLines(frame, pass);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);

@@ -92,6 +92,7 @@ private:
     void render(const Frame& frame, float exposure);
     void resolve();
     void drawScene(const Frame& frame, const Pass& pass);
+    void drawSky(const Frame& frame, const Pass& pass);
     void drawVoxels(const Frame& frame, const Pass& pass);
     void drawLines(const Frame& frame, const Pass& pass);
     const gl::Program& sceneProgram(const Frame& frame, const SceneDraw& draw);

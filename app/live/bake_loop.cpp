@@ -1,5 +1,6 @@
 #include "app/live/bake_loop.h"
 
+#include "app/bake_settings.h"
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
 #include "assets/log.h"
@@ -47,6 +48,25 @@ bool sameSurfaces(const std::vector<Material>& a, const std::vector<Material>& b
     });
 }
 
+// Whether what differs between the materials is followed without making patches anew.
+bool sameForPatches(const std::vector<Material>& a, const std::vector<Material>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Material& x, const Material& y) {
+        const bool shines = x.emission != glm::vec3(0.0f), shone = y.emission != glm::vec3(0.0f);
+        return x.baseColor.a == y.baseColor.a && (shines == shone || !x.doubleSided);
+    });
+}
+
+// What a layer for each light can be made of.
+bool canHaveLayers(const SolverSettings& s) {
+    return s.method == Method::Hybrid && !s.transport.rtrad && s.links.indirectScale == 1 &&
+           !s.links.footprint && s.links.directions == DirectionSet::Sobol;
+}
+
+bool sameEdits(const SceneEdits& a, const SceneEdits& b) {
+    return sameSurfaces(a.materials, b.materials) && a.lights == b.lights && a.sky == b.sky &&
+           a.placements == b.placements;
+}
+
 // Where the CPU bakes, pictures come first: its threads get what time is left. They inherit it from this one.
 void yieldToOthers() {
     const sched_param none{};
@@ -71,6 +91,7 @@ void BakeLoop::run() {
     while (takeOrders(orders)) {
         try {
             obey(orders);
+            if (waiting_ && (!layered() || layered()->atRest())) prepare(*std::exchange(waiting_, {}));
             if (status_.phase == Phase::Baking) stepSolver();
             publish();
         } catch (const Cancelled&) {
@@ -140,14 +161,48 @@ void BakeLoop::obey(BakeOrders& orders) {
     exportAll(orders);
 }
 
+LayerSolver* BakeLoop::layered() const {
+    return baker_ ? dynamic_cast<LayerSolver*>(&baker_->solver()) : nullptr;
+}
+
+// Whether layers go on with what they have.
+bool BakeLoop::onlyLights(const BakeOrders::Start& start) const {
+    BakeSettings wanted = start.settings;
+    wanted.solver.layers = settings_.solver.layers;
+    return layered() && start.scene == prepared_ && describeSettings(wanted) == describeSettings(settings_) &&
+           wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
+           wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
+           editsOf(scene_).placements == start.edits.placements &&
+           sameForPatches(start.edits.materials, scene_.materials);
+}
+
+// The solver keeps what is still right. A pass under way reads colours of surfaces: they change between two.
+void BakeLoop::followEdit(const BakeOrders::Start& start) {
+    const bool recoloured = !sameSurfaces(start.edits.materials, scene_.materials);
+    if (recoloured && !layered()->atRest()) {
+        waiting_ = start;
+        return;
+    }
+    applyEdits(scene_, start.edits);
+    if (recoloured) baker_->updateMaterials();
+    layered()->edit(start.mix);
+    status_.bake = start.number;
+    maps_->edited(start.number);
+    if (status_.phase == Phase::Done) status_.phase = Phase::Baking;
+    const std::lock_guard lock(desk_.mutex);
+    desk_.held = nullptr;
+}
+
 // Light of another scene is of no use, light of the same one stays until there is better.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
-    const bool sameScene =
-        baker_ && start.scene == prepared_ && sameSurfaces(start.edits.materials, scene_.materials);
+    waiting_.reset();
+    if (onlyLights(start)) return followEdit(start);
+    const bool sameScene = baker_ && start.scene == prepared_ && sameEdits(start.edits, editsOf(scene_));
     const bool solverOnly = sameScene && preparation(start.settings) == preparation(settings_);
     settings_ = start.settings;
     settings_.solver.batchMs = desc_.batchMs;
     settings_.solver.live = true;
+    settings_.solver.layers.on = canHaveLayers(settings_.solver);
     rings_ = start.rings;
     status_.bake = start.number;
     status_.settings = settings_;
@@ -160,10 +215,12 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         baker_.reset(); // before the new one takes its memory
         scene_ = start.scene->scene;
         applyEdits(scene_, start.edits);
-        WorldMesh mesh = start.scene->mesh;
+        const bool moved = editsOf(start.scene->scene).placements != start.edits.placements;
+        WorldMesh mesh = moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh;
         prepared_ = start.scene;
         makeBaker(std::move(mesh), start.keepLight);
     }
+    if (layered()) layered()->edit(start.mix);
     {
         const std::lock_guard lock(desk_.mutex);
         desk_.held = nullptr;

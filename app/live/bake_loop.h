@@ -6,6 +6,7 @@
 #include "app/live/live_bake.h"
 #include "app/live/map_publisher.h"
 #include "assets/clock.h"
+#include "bake/layer_solver.h"
 
 namespace relume {
 
@@ -26,6 +27,9 @@ private:
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
+    bool onlyLights(const BakeOrders::Start& start) const;
+    void followEdit(const BakeOrders::Start& start);
+    LayerSolver* layered() const;
     void makeBaker(WorldMesh mesh, bool keepLight);
     void reloadShaders();
     void restart(bool keepLight);
@@ -50,8 +54,9 @@ private:
     LiveBake::Desc desc_;
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<MapPublisher> maps_;
-    Scene scene_;                             // with its edited materials
-    const PreparedScene* prepared_ = nullptr; // that it came from; only its address counts
+    Scene scene_;                              // with its edited materials
+    const PreparedScene* prepared_ = nullptr;  // that it came from; only its address counts
+    std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
     BakeSettings settings_;
     uint32_t rings_ = 4;           // of texels filled around charts, on screen
     std::unique_ptr<Baker> baker_; // of scene_

@@ -1,5 +1,6 @@
 #include "app/live/map_publisher.h"
 
+#include "assets/error.h"
 #include "assets/log.h"
 #include "bake/vk/buffer.h"
 
@@ -99,7 +100,19 @@ void MapPublisher::begin(const Bake& bake) {
     next_ = makeSource();
     changed_.clear();
     drawnVersion_ = 0;
+    edited_ = false;
     inspectedVersion_ = 0;
+}
+
+void MapPublisher::edited(uint64_t number) {
+    ASSERT(bake_);
+    bake_->number = number;
+    edited_ = true;
+    for (Source* source : {&light_, &next_}) {
+        if (!source->publisher || (source == &light_ && next_.publisher)) continue;
+        source->bake = number;
+        source->publisher->updateUnit(bake_->baker.patches());
+    }
 }
 
 // Texels that were drawn stay; what they were made of goes.
@@ -126,7 +139,8 @@ bool MapPublisher::publish(const InspectRequest& request) {
 bool MapPublisher::publishLight() {
     LiveLight live;
     if (bake_) live = askSolver();
-    const bool fresh = live.light && live.version != drawnVersion_ && (live.complete || !bake_->keepLight);
+    const bool fresh =
+        live.light && (live.version != drawnVersion_ || edited_) && (live.complete || !bake_->keepLight);
     const bool stale = anyShown_ && shown_.content != MapContent::Light && light_.publisher;
     if (!fresh && !stale) return false;
     const Publisher& publisher = *(fresh && next_.publisher ? next_ : light_).publisher;
@@ -134,6 +148,7 @@ bool MapPublisher::publishLight() {
     if (!slot) return false;
     if (fresh && next_.publisher) light_ = std::exchange(next_, {});
     if (fresh) {
+        edited_ = false;
         std::vector<uint32_t> chunks;
         for (const ChunkRange& range : changed_) {
             for (uint32_t c = range.first; c < range.first + range.count; ++c)

@@ -35,6 +35,9 @@ public:
         const BakeSettings& settings;
     };
     void begin(const Bake& bake);
+    /// The bake goes on with another number, its lights or surfaces edited: a map of it follows, whether or
+    /// not anything is to be seen of that.
+    void edited(uint64_t number);
     void end();
 
     /// Publishes what was asked for, where there is something new and a slot to write. True when it did.
@@ -87,6 +90,7 @@ private:
     Source light_, next_, inspected_; // next_: takes light_'s place once there is a solution
     std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
     uint64_t drawnVersion_ = 0;       // of the solver's light, in light_; 0: none of this bake
+    bool edited_ = false;             // since the newest map
     bool owes_ = false;
     InspectRequest shown_; // by the newest map
     bool anyShown_ = false;

@@ -134,6 +134,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene) {
         document_.mix = {};
     }
     document_.edits = std::move(edits);
+    ++changes_;
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
     prepare_.path = loadingPath_;
@@ -153,6 +154,7 @@ void Session::startBake(bool keepLight) {
                                        .keepLight = keepLight,
                                        .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0});
     if (!keepLight) firstBake_ = bake;
+    newestBake_ = bake;
 }
 
 void Session::edit(const std::string& name, const Document& next) {
@@ -168,9 +170,19 @@ void Session::edit(const std::string& name, const Document& next) {
     apply(next);
 }
 
+void Session::cancelEdit() {
+    if (!open_ || done_ == 0 || done_ != steps_.size()) return;
+    const Document before = std::move(steps_.back().before);
+    steps_.pop_back();
+    done_ = steps_.size();
+    open_ = false;
+    apply(before);
+}
+
 void Session::apply(const Document& next) {
     const bool resized = next.bake.size != document_.bake.size;
     document_ = next;
+    ++changes_;
     // Charts are packed for a size: another one is another atlas.
     if (resized && scene_)
         open(prepare_.path, true);

@@ -57,10 +57,16 @@ public:
     void clearError() { lastError_.clear(); }
 
     const Document& document() const { return document_; }
+    /// Another number whenever the document is another one.
+    uint64_t changes() const { return changes_; }
+    /// Number of the bake that follows the document: maps of earlier ones show what was before.
+    uint64_t newestBake() const { return newestBake_; }
     /// Sets the document and bakes it. `name` is shown by undo ("Emission of Lamp"). Edits with the same name
     /// one after the other become one step until endEdit(): those of a dragged slider.
     void edit(const std::string& name, const Document& next);
     void endEdit() { open_ = false; }
+    /// Takes back the edit that endEdit() has not ended yet, as if it had not been.
+    void cancelEdit();
     bool undo(); // false: nothing left
     bool redo();
     /// Of the edit that undo or redo would take back or make again, "" for none.
@@ -101,7 +107,7 @@ private:
     std::vector<Step> steps_;
     size_t done_ = 0;   // steps before it are done, the others undone
     bool open_ = false; // the last step may still grow
-    uint64_t loads_ = 0, firstBake_ = 0;
+    uint64_t loads_ = 0, firstBake_ = 0, newestBake_ = 0, changes_ = 0;
 
     using FileTime = std::optional<std::filesystem::file_time_type>;
     static FileTime fileTime(const std::string& path);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace relume {
 namespace {
@@ -17,6 +18,7 @@ void ScenePane::setScene(const LoadedScene* scene) {
     lines_.reset();
     voxels_.reset();
     exposures_.clear();
+    reference_.reset();
     if (scene == nullptr) return;
     gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->geometry);
     bounds_ = scene->geometry.bounds;
@@ -27,6 +29,52 @@ void ScenePane::setMaterials(const std::vector<Material>& materials) {
     Scene factors;
     factors.materials = materials;
     if (gpu_) gpu_->updateMaterials(factors);
+}
+
+void ScenePane::setSky(const SkySettings& sky) {
+    if (gpu_) gpu_->updateSky(sky);
+}
+
+bool ScenePane::storeReference(const Look& look) {
+    if (look.map == nullptr || look.map->content != MapContent::Light || look.lightmap.texture == 0)
+        return false;
+    const LightmapTexture& shown = look.lightmap;
+    if (!reference_ || reference_->copy.width() != shown.size) {
+        reference_.reset(); // before the new one takes its memory
+        reference_ = std::make_unique<Reference>();
+        reference_->copy = gl::Texture(
+            {.width = shown.size, .height = shown.size, .format = GL_RGBA16F, .name = "reference lightmap"});
+    }
+    const auto edge = static_cast<GLsizei>(shown.size);
+    glCopyImageSubData(shown.texture, GL_TEXTURE_2D, 0, 0, 0, 0, reference_->copy.get(), GL_TEXTURE_2D, 0, 0,
+                       0, 0, edge, edge, 1);
+    reference_->lightmap = shown;
+    reference_->lightmap.texture = reference_->copy.get();
+    reference_->lightmap.version = newVersion();
+    reference_->radiance = look.map->radiance;
+    return true;
+}
+
+// Exposed as the other half, so that nothing but light differs.
+void ScenePane::drawReference(const Look& look, const DrawSettings& settings) {
+    const uint32_t width = picture_.width(), height = picture_.height();
+    if (!referenceRenderer_)
+        referenceRenderer_ = std::make_unique<SceneRenderer>(samples_, SceneRenderer::Metering::Async);
+    referenceRenderer_->setSamples(samples_);
+    if (referencePicture_.get() == 0 || referencePicture_.width() != width ||
+        referencePicture_.height() != height) {
+        referencePicture_ = {};
+        referencePicture_ = gl::Framebuffer({.width = width, .height = height, .name = "reference picture"});
+    }
+    DrawSettings exposed = settings;
+    exposed.exposure = renderer_->exposure();
+    referenceRenderer_->draw(
+        {.scene = *gpu_, .lightmap = reference_->lightmap, .camera = look.camera, .settings = exposed},
+        {.framebuffer = referencePicture_.get(), .width = width, .height = height});
+    const auto right = static_cast<GLint>(std::lround(look.state.wipeAt * static_cast<float>(width)));
+    const auto top = static_cast<GLint>(height);
+    glBlitNamedFramebuffer(referencePicture_.get(), picture_.get(), 0, 0, right, top, 0, 0, right, top,
+                           GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 void ScenePane::setPaths(const InspectPaths& paths) {
@@ -44,6 +92,7 @@ void ScenePane::setVoxels(const InspectVoxels& voxels) {
 
 void ScenePane::reload() {
     if (renderer_) renderer_->reload();
+    if (referenceRenderer_) referenceRenderer_->reload();
     if (flat_) flat_->reload();
     if (picker_) picker_->reload();
     tiles_.reload();
@@ -129,6 +178,10 @@ void ScenePane::draw(const Look& look, glm::uvec2 size) {
                      .lines = settings.view == View::InspectMask ? lines_.get() : nullptr,
                      .voxels = wanted.voxels ? voxels_.get() : nullptr},
                     target);
+    const bool same = reference_ && look.map != nullptr && reference_->radiance == look.map->radiance;
+    if (look.state.wipe && same && light_ && readsLightmap(settings.view) &&
+        wanted.content == MapContent::Light && !wanted.voxels)
+        drawReference(look, settings);
 }
 
 void ScenePane::show(glm::uvec2 corner) const {

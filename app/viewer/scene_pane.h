@@ -25,6 +25,7 @@ public:
     void setScene(const LoadedScene* scene);
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);
+    void setSky(const SkySettings& sky);
     /// The links of a patch, over the scene in the view of what it sees.
     void setPaths(const InspectPaths& paths);
     void setVoxels(const InspectVoxels& voxels);
@@ -35,6 +36,9 @@ public:
         LightmapTexture lightmap;
         const PublishedMap* map = nullptr; // that lightmap holds
     };
+    /// Keeps a copy of the light that is shown, to be compared with. False: it is no light, or there is none.
+    bool storeReference(const Look& look);
+    bool hasReference() const { return reference_ != nullptr; }
     void draw(const Look& look, glm::uvec2 size);
     /// Copies the last picture into the window's framebuffer, its lower left corner at `corner` [pixels].
     void show(glm::uvec2 corner) const;
@@ -57,6 +61,12 @@ public:
     void reload();
 
 private:
+    struct Reference {
+        gl::Texture copy;
+        LightmapTexture lightmap;
+        bool radiance = false; // as PublishedMap has it
+    };
+    void drawReference(const Look& look, const DrawSettings& settings);
     DrawSettings settingsOf(const Look& look);
     void drawFlat(const Look& look, const DrawSettings& settings, const SceneRenderer::Target& target);
     void makeRenderer(uint32_t samples);
@@ -72,6 +82,9 @@ private:
     std::unique_ptr<LineDraw> lines_;
     std::unique_ptr<VoxelDraw> voxels_;
     gl::Framebuffer picture_;
+    std::unique_ptr<Reference> reference_;
+    std::unique_ptr<SceneRenderer> referenceRenderer_; // keeps its own last picture
+    gl::Framebuffer referencePicture_;
     std::map<size_t, float> exposures_; // that views asked for when drawn last [EV]
     size_t drawnView_ = 0;              // of viewEntries(): in the last picture
     size_t shownView_ = 0;              // of viewEntries(): the newest whose content was there

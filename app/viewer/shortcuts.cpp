@@ -2,8 +2,10 @@
 
 #include "app/viewer/views.h"
 #include "assets/error.h"
+#include "renderer/gizmo.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -29,10 +31,29 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::Step, 0, GLFW_KEY_PERIOD, 0, "Bake", "Step"},
         {Action::Reset, 0, GLFW_KEY_R, kCtrl, "Bake", "Reset"},
         {Action::Close, 0, GLFW_KEY_ESCAPE, 0, "Bake", "Close dialog or abort pass"},
+        {Action::DuplicateLight, 0, GLFW_KEY_D, kCtrl, "Light", "Duplicate light"},
+        {Action::DeleteLight, 0, GLFW_KEY_DELETE, 0, "Light", "Delete light"},
+        {Action::NextLight, 1, GLFW_KEY_L, 0, "Light", "Next light"},
+        {Action::NextLight, -1, GLFW_KEY_L, kShift, "Light", "Previous light"},
+        {Action::SoloLight, 0, GLFW_KEY_S, kAlt, "Light", "Solo"},
+        {Action::MuteLight, 0, GLFW_KEY_M, kAlt, "Light", "Mute"},
+        {Action::LightStrength, 1, GLFW_KEY_EQUAL, kAlt, "Light", "Stronger light"},
+        {Action::LightStrength, -1, GLFW_KEY_MINUS, kAlt, "Light", "Weaker light"},
+        {Action::NudgeLight, -1, GLFW_KEY_LEFT, kAlt, "Light", "Nudge left"},
+        {Action::NudgeLight, 1, GLFW_KEY_RIGHT, kAlt, "Light", "Nudge right"},
+        {Action::NudgeLight, 2, GLFW_KEY_UP, kAlt, "Light", "Nudge up"},
+        {Action::NudgeLight, -2, GLFW_KEY_DOWN, kAlt, "Light", "Nudge down"},
+        {Action::NudgeLight, 3, GLFW_KEY_PAGE_UP, kAlt, "Light", "Nudge away"},
+        {Action::NudgeLight, -3, GLFW_KEY_PAGE_DOWN, kAlt, "Light", "Nudge closer"},
+        {Action::Gizmo, static_cast<int>(GizmoMode::Translate), GLFW_KEY_T, 0, "Light", "Move by the gizmo"},
+        {Action::Gizmo, static_cast<int>(GizmoMode::Rotate), GLFW_KEY_R, 0, "Light", "Turn by the gizmo"},
+        {Action::LightIcons, 0, GLFW_KEY_I, 0, "View", "Light icons"},
+        {Action::Wipe, 0, GLFW_KEY_B, 0, "View", "A/B wipe"},
+        {Action::StoreReference, 0, GLFW_KEY_B, kShift, "View", "Store the light as B"},
         {Action::UvTexture, 0, GLFW_KEY_U, 0, "View", "As UV texture"},
         {Action::Masked, 0, GLFW_KEY_M, 0, "View", "UV texture masked"},
         {Action::NextFilter, 0, GLFW_KEY_F, kShift, "View", "Next lightmap filter"},
-        {Action::NextTone, 0, GLFW_KEY_T, 0, "View", "Next tone mapping"},
+        {Action::NextTone, 0, GLFW_KEY_T, kShift, "View", "Next tone mapping"},
         {Action::Darker, 0, GLFW_KEY_LEFT_BRACKET, 0, "View", "Darker"},
         {Action::Brighter, 0, GLFW_KEY_RIGHT_BRACKET, 0, "View", "Brighter"},
         {Action::AutomaticExposure, 0, GLFW_KEY_X, 0, "View", "Automatic exposure"},
@@ -49,6 +70,11 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::HideUi, 0, GLFW_KEY_F2, 0, "Help", "Hide panels"},
         {Action::ReloadShaders, 0, GLFW_KEY_F5, 0, "Help", "Reload shaders"},
     };
+    constexpr std::array kLights = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
+    static_assert(kLights.size() == kAddSky + 1);
+    for (int i = 0; i <= kAddSky; ++i)
+        all.push_back({Action::AddLight, i, GLFW_KEY_1 + i, kCtrl, "Light",
+                       std::string("Add ") + kLights[static_cast<size_t>(i)]});
     const std::vector<ViewEntry>& views = viewEntries();
     for (size_t i = 0; i < views.size(); ++i)
         all.push_back({Action::View, static_cast<int>(i), views[i].key, views[i].mods, "View",
@@ -68,6 +94,20 @@ std::string keyName(int key) {
         return "Esc";
     case GLFW_KEY_HOME:
         return "Home";
+    case GLFW_KEY_DELETE:
+        return "Del";
+    case GLFW_KEY_LEFT:
+        return "Left";
+    case GLFW_KEY_RIGHT:
+        return "Right";
+    case GLFW_KEY_UP:
+        return "Up";
+    case GLFW_KEY_DOWN:
+        return "Down";
+    case GLFW_KEY_PAGE_UP:
+        return "Page Up";
+    case GLFW_KEY_PAGE_DOWN:
+        return "Page Down";
     default:
         break;
     }
@@ -109,7 +149,7 @@ std::string keyText(const Shortcut& shortcut) {
 }
 
 const std::vector<std::string>& panelNames() {
-    static const std::vector<std::string> names = {"Bake", "View", "Scene", "Profiler", "Log"};
+    static const std::vector<std::string> names = {"Bake", "View", "Scene", "Lights", "Profiler", "Log"};
     return names;
 }
 
@@ -120,7 +160,10 @@ const std::vector<MouseHint>& mouseHints() {
         {"Zoom", "wheel"},
         {"Look around", "right drag"},
         {"Fly (Shift: faster)", "W A S D, E up, Q down"},
-        {"Select an instance", "click"},
+        {"Select a light or an instance", "click"},
+        {"Move or turn the selected light", "left drag of the gizmo"},
+        {"Along one axis; not at all", "X, Y, Z; Esc while dragging"},
+        {"On the surface below; in steps", "Ctrl while moving; turning"},
         {"Visible from here", "Ctrl + click"},
         {"Open a scene", "drop a file"},
     };

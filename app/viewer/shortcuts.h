@@ -18,8 +18,20 @@ enum class Action : uint8_t {
     Pause,
     Step,
     Reset,
-    Close, // a dialog, else the pass under way
-    View,  // argument: of viewEntries()
+    Close,    // a dialog, else the pass under way
+    AddLight, // argument: a LightType, or kAddSky
+    DuplicateLight,
+    DeleteLight,
+    NextLight, // argument: 1, or -1 for the one before
+    SoloLight,
+    MuteLight,
+    LightStrength, // argument: 1 up, -1 down
+    NudgeLight,    // argument: 1, 2, 3 along the picture's right, up and forward, less than 0 against it
+    Gizmo,         // argument: a GizmoMode
+    LightIcons,
+    Wipe,
+    StoreReference,
+    View, // argument: of viewEntries()
     UvTexture,
     Masked,
     NextFilter,
@@ -40,6 +52,9 @@ enum class Action : uint8_t {
     HideUi,
     Panel, // argument: of panelNames()
 };
+
+/// Argument of AddLight behind all of LightType.
+constexpr int kAddSky = 5;
 
 /// A key and what it does. Keys are GLFW_KEY_, mods GLFW_MOD_.
 struct Shortcut {

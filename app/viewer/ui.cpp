@@ -32,6 +32,12 @@ bool isChecked(const PanelContext& context, const Shortcut& shortcut) {
         return context.view.masked;
     case Action::AutomaticExposure:
         return !context.view.exposure;
+    case Action::LightIcons:
+        return context.view.lightIcons;
+    case Action::Wipe:
+        return context.view.wipe;
+    case Action::Gizmo:
+        return static_cast<int>(context.view.gizmo) == shortcut.argument;
     case Action::Record:
         return context.recording;
     case Action::Caption:
@@ -105,7 +111,7 @@ std::string statusLine(const BakeStatus& status) {
 
 float Ui::drawMenus(const PanelContext& context) {
     if (!ImGui::BeginMainMenuBar()) return 0;
-    for (const char* group : {"File", "Edit", "Bake", "View", "Camera", "Capture", "Help"}) {
+    for (const char* group : {"File", "Edit", "Bake", "Light", "View", "Camera", "Capture", "Help"}) {
         if (!ImGui::BeginMenu(group)) continue;
         drawMenu(context, group);
         if (std::string(group) == "File") drawRecent(context, files_);
@@ -159,6 +165,9 @@ void Ui::drawTab(const PanelContext& context, size_t index) {
         scene_.draw(context);
         break;
     case 3:
+        lights_.draw(context);
+        break;
+    case 4:
         drawProfilerPanel(context);
         break;
     default:

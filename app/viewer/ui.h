@@ -7,6 +7,7 @@
 #include "app/viewer/file_dialog.h"
 #include "app/viewer/messages.h"
 #include "app/viewer/panels/bake_panel.h"
+#include "app/viewer/panels/lights_panel.h"
 #include "app/viewer/panels/panel.h"
 #include "app/viewer/panels/scene_panel.h"
 
@@ -40,6 +41,7 @@ private:
 
     BakePanel bake_;
     ScenePanel scene_;
+    LightsPanel lights_;
     FileDialog files_;
     Messages messages_;
     bool help_ = false;

@@ -6,7 +6,9 @@
 #include <glm/glm.hpp>
 
 #include "app/live/live_bake.h"
+#include "bake/light_source.h"
 #include "renderer/draw_settings.h"
+#include "renderer/gizmo.h"
 #include "renderer/uv_view.h"
 
 namespace relume {
@@ -19,6 +21,12 @@ struct ViewState {
     std::optional<float> exposure; // [EV], none: automatic
     uint32_t samples = 0;          // of each pixel
     int selected = -1;             // of Scene::instances
+    std::optional<LightKey> light; // that is selected
+    bool lightIcons = true;
+    GizmoMode gizmo = GizmoMode::Translate; // of a selected lamp
+
+    bool wipe = false;   // left of the line: the reference
+    float wipeAt = 0.5f; // the line, as a share of the picture's width
 
     bool uv = false; // the lightmap as a flat picture
     bool masked = true;

@@ -174,6 +174,11 @@ void Viewer::followScene() {
         materials_ = scene.prepared.scene.materials;
         view_.selected = -1;
         view_.seenTexel.reset();
+        view_.light.reset();
+        lightDrag_.reset();
+        newestEdit_.clear();
+        editedAt_ = now();
+        ownReference_ = false;
         if (!session_->sceneWasKept()) {
             ViewCamera camera = scene.view;
             const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
@@ -199,11 +204,14 @@ void Viewer::followScene() {
         ui_.messages().add(session_->lastError(), true, now()); // which the log has told
         session_->clearError();
     }
-    if (session_->scene() != nullptr && !sameFactors(materials_, session_->document().edits.materials)) {
-        materials_ = session_->document().edits.materials;
-        pane_.setMaterials(materials_);
-        changeScene();
-    }
+    followLights();
+}
+
+void Viewer::showMaterials(std::vector<Material> materials) {
+    if (sameFactors(materials_, materials)) return;
+    materials_ = std::move(materials);
+    pane_.setMaterials(materials_);
+    changeScene();
 }
 
 void Viewer::followBake(double time) {
@@ -217,6 +225,7 @@ void Viewer::followBake(double time) {
         pacer_.statusChanged();
     status_ = std::move(status);
     if (bridge_->update()) followMap();
+    followBadge(time);
     inspect();
     followInspected();
     if (!pane_.adapting())
@@ -312,6 +321,7 @@ PanelContext Viewer::context() {
             .preferences = preferences_,
             .figures = figures_,
             .log = log_,
+            .lights = lights_,
             .map = map(),
             .exposure = pane_.exposure(),
             .budgetMs = desc_.budgetMs,
@@ -319,11 +329,8 @@ PanelContext Viewer::context() {
             .perform = [this](Action action, int argument) { perform(action, argument); },
             .sceneChanged = [this] { changeScene(); },
             .edit = [this](const std::string& name, const Document& next) { edit(name, next); },
-            .endEdit =
-                [this] {
-                    edited_.clear();
-                    session_->endEdit();
-                },
+            .endEdit = [this] { endEdit(); },
+            .selectLight = [this](const LightKey& key) { selectLight(key); },
             .items = items_};
 }
 
@@ -378,6 +385,8 @@ void Viewer::frame(const Redraw& redraw) {
     if (!gui_.animates()) scale_ = window_.contentScale() / pixelsPerPoint() * preferences_.uiScale;
     gui_.begin(scale_);
     area_ = ui_.draw(context(), hidden_, scale_);
+    drawLightOverlay();
+    drawProgress();
     const double drawnUi = now();
     const bool anew = redraw.scene || sceneDirty_;
     drawScene(anew);

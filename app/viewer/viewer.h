@@ -5,9 +5,12 @@
 #include <string>
 
 #include "app/live/session.h"
+#include "app/viewer/bake_badge.h"
 #include "app/viewer/camera_control.h"
 #include "app/viewer/capture.h"
 #include "app/viewer/gui.h"
+#include "app/viewer/light_edits.h"
+#include "app/viewer/light_overlay.h"
 #include "app/viewer/lightmap_bridge.h"
 #include "app/viewer/redraw_pacer.h"
 #include "app/viewer/scene_pane.h"
@@ -60,6 +63,7 @@ private:
     void drawScene(bool anew);
     LightmapTexture lightmap() const;
     const PublishedMap* map() const;
+    void showMaterials(std::vector<Material> materials);
     void changeScene() { sceneDirty_ = settling_ = true; }
     float pixelsPerPoint() const;
 
@@ -73,6 +77,34 @@ private:
     bool overScene(const glm::dvec2& at) const;
     void updateFlight();
     void cameraMoved();
+
+    // viewer_progress.cpp
+    void followBadge(double time);
+    void beforeEdit(const std::string& name, const std::string& underWay);
+    void performWipe(Action action);
+    bool showsWipe() const;
+    bool overWipe(const glm::dvec2& at) const;
+    void dragWipe(const glm::dvec2& at);
+    void drawProgress();
+
+    // viewer_lights.cpp
+    LightStage stage() const;
+    bool showsLights() const;
+    void selectLight(const std::optional<LightKey>& key);
+    void followLights();
+    LightSpot lightSpot();
+    void addLight(int what);
+    void stepLight(int step);
+    void editOnce(const std::string& name, const Document& next);
+    void endEdit();
+    void performLight(Action action, int argument);
+    void nudgeLight(const LightSource& source, int argument);
+    bool pressLights(const glm::dvec2& at);
+    void dragLight(const glm::dvec2& at);
+    void endLightDrag();
+    void onDragKey(const WindowEvent& event);
+    void tellLightPlaces();
+    void drawLightOverlay();
 
     // viewer_actions.cpp
     void perform(Action action, int argument);
@@ -115,6 +147,13 @@ private:
 
     ViewState view_;
     CameraControl camera_;
+    LightList lights_;
+    std::optional<GizmoDrag> lightDrag_;
+    BakeBadge badge_;
+    std::string newestEdit_; // its name, "": none since the scene came
+    double editedAt_ = 0, convergedAt_ = 0;
+    bool ownReference_ = false; // B is what the user stored, and stays
+    bool wipeDrag_ = false;
     FrameFigures figures_;
     RedrawPacer pacer_;
     BakeStatus status_;
@@ -141,10 +180,10 @@ private:
     double tilesAsked_ = -1e9;
     uint64_t mapVersion_ = 0;
     glm::dvec2 cursor_{0.0}, pressed_{0.0};
-    int button_ = 0;        // of the mouse, that drags
-    bool dragged_ = false;  // it went further than a click does
-    std::vector<int> keys_; // of flight, that are held
-    bool fast_ = false;
+    int button_ = 0;                      // of the mouse, that drags
+    bool dragged_ = false;                // it went further than a click does
+    std::vector<int> keys_;               // of flight, that are held
+    bool fast_ = false, control_ = false; // Shift, Ctrl are held
 };
 
 } // namespace relume

@@ -38,6 +38,7 @@ void Viewer::tell(const char* kind, const std::string& what) const {
 
 void Viewer::edit(const std::string& name, const Document& next) {
     if (name != edited_) tell("edit", name);
+    beforeEdit(name, edited_);
     edited_ = name;
     session_->edit(name, next);
     pacer_.input();
@@ -75,6 +76,24 @@ void Viewer::perform(Action action, int argument) {
     case Action::Close:
         if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
+    case Action::AddLight:
+    case Action::DuplicateLight:
+    case Action::DeleteLight:
+    case Action::NextLight:
+    case Action::SoloLight:
+    case Action::MuteLight:
+    case Action::LightStrength:
+    case Action::NudgeLight:
+        return performLight(action, argument);
+    case Action::Gizmo:
+        view_.gizmo = static_cast<GizmoMode>(argument);
+        return;
+    case Action::Wipe:
+    case Action::StoreReference:
+        return performWipe(action);
+    case Action::LightIcons:
+        view_.lightIcons = !view_.lightIcons;
+        return;
     case Action::View:
     case Action::UvTexture:
     case Action::Masked:
@@ -110,6 +129,7 @@ void Viewer::performUndo(Action action) {
     const bool undo = action == Action::Undo;
     const std::string name = undo ? session_->undoName() : session_->redoName();
     edited_.clear();
+    if (!name.empty()) beforeEdit((undo ? "undo of " : "redo of ") + name, "");
     if (!(undo ? session_->undo() : session_->redo()))
         return note(undo ? "nothing to undo" : "nothing to make again");
     tell(undo ? "undo" : "redo", name);

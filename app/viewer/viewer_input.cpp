@@ -80,6 +80,10 @@ void Viewer::handle(const std::vector<WindowEvent>& events) {
 void Viewer::onKey(const WindowEvent& event) {
     const bool typing = gui_.wantsKeyboard();
     fast_ = (event.mods & GLFW_MOD_SHIFT) != 0;
+    // A press of Ctrl itself does not count among its modifiers.
+    const bool control = event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL;
+    control_ = control ? event.pressed : (event.mods & GLFW_MOD_CONTROL) != 0;
+    if (lightDrag_) return control ? dragLight(cursor_) : onDragKey(event);
     if (flightOf(event.place) != glm::ivec3(0)) {
         std::erase(keys_, event.place);
         const bool alone = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0;
@@ -93,7 +97,8 @@ void Viewer::onKey(const WindowEvent& event) {
     const Shortcut* shortcut = findShortcut(event.code, event.mods);
     if (shortcut == nullptr) return;
     const bool repeats = shortcut->action == Action::Darker || shortcut->action == Action::Brighter ||
-                         shortcut->action == Action::Undo || shortcut->action == Action::Redo;
+                         shortcut->action == Action::Undo || shortcut->action == Action::Redo ||
+                         shortcut->action == Action::LightStrength || shortcut->action == Action::NudgeLight;
     if (event.repeated && !repeats) return;
     // Letters, and Ctrl with one, are the text's while one types; Esc leaves a field, or closes a dialog.
     const bool closes = shortcut->action == Action::Close && ui_.files().isOpen();
@@ -108,6 +113,14 @@ bool Viewer::overScene(const glm::dvec2& at) const {
 
 void Viewer::onButton(const WindowEvent& event) {
     cursor_ = event.at;
+    if (wipeDrag_) {
+        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) wipeDrag_ = false;
+        return;
+    }
+    if (lightDrag_) {
+        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) endLightDrag();
+        return;
+    }
     if (!event.pressed) {
         if (!camera_.dragging() || event.code != button_) return;
         camera_.end();
@@ -119,6 +132,11 @@ void Viewer::onButton(const WindowEvent& event) {
         return;
     }
     if (camera_.dragging() || !overScene(event.at)) return;
+    if (event.code == GLFW_MOUSE_BUTTON_LEFT && overWipe(event.at)) {
+        wipeDrag_ = true;
+        return;
+    }
+    if (event.code == GLFW_MOUSE_BUTTON_LEFT && pressLights(event.at)) return;
     button_ = event.code;
     pressed_ = event.at;
     dragged_ = false;
@@ -134,6 +152,8 @@ void Viewer::onButton(const WindowEvent& event) {
 void Viewer::onCursor(const WindowEvent& event) {
     const glm::dvec2 before = cursor_;
     cursor_ = event.at;
+    if (wipeDrag_) return dragWipe(event.at);
+    if (lightDrag_) return dragLight(event.at);
     // A click that trembles is no drag: it would leave the camera a little beside.
     if (!camera_.dragging() || area_.size.y <= 0) return;
     if (!dragged_ && glm::distance(event.at, pressed_) <= kClickSlack) return;
@@ -175,7 +195,10 @@ void Viewer::cameraMoved() {
 
 // Selects an instance or, with Ctrl or in its own view, the patch to see from.
 void Viewer::onClick(const WindowEvent& event) {
-    const glm::vec2 pixel = (glm::vec2(event.at) - area_.corner) * pixelsPerPoint();
+    const glm::vec2 point = glm::vec2(event.at) - area_.corner;
+    if (showsLights())
+        if (const std::optional<LightKey> icon = iconAt(stage(), point)) return selectLight(icon);
+    const glm::vec2 pixel = point * pixelsPerPoint();
     const std::optional<Pick> pick = pane_.pick(look(), pixel);
     const size_t seen = viewIndex("seen");
     const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view_.view == seen;
@@ -188,6 +211,11 @@ void Viewer::onClick(const WindowEvent& event) {
         const int instance = pick ? static_cast<int>(pick->instance) : -1;
         view_.selected = instance == view_.selected ? -1 : instance;
         tell("action", "select " + std::to_string(view_.selected));
+        view_.light.reset();
+        if (view_.selected >= 0) {
+            const LightKey emitter{LightKey::Kind::Emitter, pick->instance, pick->material};
+            if (lights_.find(emitter) != nullptr) selectLight(emitter);
+        }
     }
     changeScene();
 }

@@ -2,18 +2,7 @@
 // lib/lamps.glsl. Before it: vec4 skyPixel(uint) - radiance [cd/m^2] and the share of its row up to and with the pixel - and
 // float skyRow(uint), the share of all rows up to and with this one, weighted by luminance and solid angle.
 
-CONST float kTurn = 6.28318531f;
-
-// Where in the picture a direction lies, in [0, 1)^2: assets/scene.h, Sky.
-FUNCTION vec2 skyPlace(vec3 d, float rotation) {
-    float u = 0.5f + (atan(d.x, -d.z) + rotation) / kTurn;
-    return vec2(u - floor(u), acos(clamp(d.y, -1.0f, 1.0f)) * 2.0f / kTurn);
-}
-
-FUNCTION vec3 skyDirection(vec2 place, float rotation) {
-    float polar = 0.5f * kTurn * place.y, angle = kTurn * (place.x - 0.5f) - rotation;
-    return vec3(sin(polar) * sin(angle), cos(polar), -sin(polar) * cos(angle));
-}
+#include "sky_place.glsl"
 
 // The first of `count` whose share is above u, and where in it u lies.
 FUNCTION uint skyFind(uint first, uint count, bool row, float u, INOUT(float) within) {

@@ -127,7 +127,7 @@ TEST_F(SceneEditTest, ColorsAreSrgbInHexAndLinearAsNumbers) {
     set("Lamp.color=1,0.5,0.25");
     EXPECT_EQ(light("Lamp").color, glm::vec3(1, 0.5f, 0.25f));
     set("spot.temperature=2700");
-    EXPECT_EQ(light("spot").color, blackBodyColor(2700.0f));
+    EXPECT_EQ(light("spot").color, blackBody(2700.0f));
     EXPECT_EQ(light("spot").intensity, 10.0f);
 }
 
@@ -274,7 +274,7 @@ TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
         {"Lamp.color=2,1,1",
          "usage: color 2,1,1 is out of range: give #rrggbb or r,g,b from 0 to 1, and what is "
          "brighter by the intensity"},
-        {"Lamp.temperature=500", "usage: temperature 500 is out of range: give kelvins from 1000 to 40000"},
+        {"Lamp.temperature=500", "usage: temperature 500 is out of range: give kelvins from 1000 to 15000"},
         {"spot.outer=95", "usage: outer 95 is out of range: give degrees from the axis, from 0.0573 to 90"},
         {"spot.outer=0", "usage: outer 0 is out of range: give degrees from the axis, from 0.0573 to 90"},
         {"spot.inner=60", "usage: the inner cone of 60 degrees is wider than the outer one of 45: make that "

@@ -168,6 +168,24 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
     EXPECT_EQ(session_.lastError(), "");
 }
 
+TEST_F(SessionTest, ACancelledEditHasNotBeen) {
+    open();
+    dim(0.5f, "Before");
+    session_.endEdit();
+    const float before = brightest();
+    const uint64_t changes = session_.changes(), bake = session_.newestBake();
+    dim(0.5f, "Drag");
+    dim(0.5f, "Drag");
+    EXPECT_GT(session_.changes(), changes);
+    EXPECT_GT(session_.newestBake(), bake);
+    session_.cancelEdit();
+    EXPECT_EQ(brightest(), before);
+    EXPECT_EQ(session_.undoName(), "Before");
+    EXPECT_EQ(session_.redoName(), "");
+    session_.cancelEdit(); // ended long ago: not taken back
+    EXPECT_EQ(session_.undoName(), "Before");
+}
+
 TEST_F(SessionTest, AnotherSceneForgetsEditsAndSteps) {
     open();
     dim(0.5f);

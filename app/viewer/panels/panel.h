@@ -5,6 +5,7 @@
 #include "app/live/session.h"
 #include "app/viewer/camera_control.h"
 #include "app/viewer/frame_figures.h"
+#include "app/viewer/light_edits.h"
 #include "app/viewer/log_buffer.h"
 #include "app/viewer/panels/item_log.h"
 #include "app/viewer/preferences.h"
@@ -22,6 +23,7 @@ struct PanelContext {
     Preferences& preferences;
     const FrameFigures& figures;
     const LogBuffer& log;
+    const LightList& lights;
     const PublishedMap* map; // that is shown, nullptr: none yet
     float exposure = 0;      // of the last picture [EV]
     double& budgetMs;        // aim of a batch while the camera is still
@@ -30,6 +32,7 @@ struct PanelContext {
     std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
     std::function<void(const std::string&, const Document&)> edit; // Session::edit, told to the log
     std::function<void()> endEdit;
+    std::function<void(const LightKey&)> selectLight;
     ui::ItemLog& items;
 };
 

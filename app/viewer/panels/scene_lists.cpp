@@ -1,6 +1,5 @@
 #include "app/viewer/panels/scene_lists.h"
 
-#include "app/light_names.h"
 #include "app/viewer/panels/widgets.h"
 
 #include <filesystem>
@@ -67,17 +66,6 @@ void drawInstances(const PanelContext& context, const LoadedScene& scene) {
             ui::tip("F frames what is selected");
             ImGui::PopID();
         }
-    }
-}
-
-void drawLights(const LoadedScene& scene) {
-    const std::vector<Light>& lights = scene.prepared.scene.lights;
-    if (lights.empty()) ImGui::TextWrapped("The file has no lights but emissive materials.");
-    for (size_t i = 0; i < lights.size(); ++i) {
-        const Light& light = lights[i];
-        ImGui::BulletText("%s", fmt::format("{}: {}, {:.4g} {}", nameOf(light.name, "light", i),
-                                            lightTypeName(light.type), light.intensity, lightUnit(light.type))
-                                    .c_str());
     }
 }
 

@@ -11,6 +11,5 @@ std::string nameOf(const std::string& name, const char* kind, size_t index);
 
 void drawCameras(const PanelContext& context, const LoadedScene& scene); // and bookmarks
 void drawInstances(const PanelContext& context, const LoadedScene& scene);
-void drawLights(const LoadedScene& scene);
 
 } // namespace relume

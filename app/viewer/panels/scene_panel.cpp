@@ -137,7 +137,6 @@ void ScenePanel::draw(const PanelContext& context) {
     if (ui::header("Materials", ImGuiTreeNodeFlags_DefaultOpen)) drawMaterials(context);
     if (ui::header("Cameras and bookmarks", ImGuiTreeNodeFlags_DefaultOpen)) drawCameras(context, *scene);
     if (ui::header("Instances")) drawInstances(context, *scene);
-    if (ui::header("Lights")) drawLights(*scene);
     if (ui::header("Statistics", ImGuiTreeNodeFlags_DefaultOpen)) drawStatistics(*scene);
 }
 

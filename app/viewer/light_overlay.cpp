@@ -1,0 +1,113 @@
+#include "app/viewer/light_overlay.h"
+
+#include "renderer/light_outline.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <imgui.h>
+
+namespace relume {
+namespace {
+
+// In screen coordinates.
+constexpr float kIcon = 13.0f;  // radius
+constexpr float kReach = 12.0f; // that a click may be off
+constexpr float kThin = 1.3f, kThick = 2.2f, kShade = 2.0f;
+constexpr glm::vec3 kSelected(1.0f, 0.55f, 0.1f), kHeld(1.0f, 0.9f, 0.3f), kDark(0.45f); // as displayed
+constexpr float kWhitened = 0.5f; // of an icon's colour: a deep blue would not be seen
+
+ImU32 packed(const glm::vec3& color, float opacity) {
+    return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, opacity});
+}
+
+ImVec2 at(const glm::vec2& corner, const glm::vec2& point) {
+    return {corner.x + point.x, corner.y + point.y};
+}
+
+glm::vec3 iconColor(const LightStage& stage, const LightKey& key, const Light& light) {
+    if (stage.view.light == key) return kSelected;
+    if (!stage.mix.shines(key)) return kDark;
+    const float most = std::max({light.color.r, light.color.g, light.color.b, 1e-6f});
+    return glm::mix(light.color / most, glm::vec3(1.0f), kWhitened);
+}
+
+void drawIcon(const LightStage& stage, const glm::vec2& corner, const LightKey& key, const Light& light) {
+    const ViewCamera& camera = stage.screen.camera;
+    const glm::vec3 side = right(camera);
+    const OutlineDesc desc{.right = side,
+                           .up = glm::cross(side, forward(camera)),
+                           .size = kIcon * lengthOnScreen(stage.screen, glm::vec3(light.transform[3]))};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const std::vector<OutlineSegment> segments = lightOutline(light, desc);
+    const float width = stage.view.light == key ? kThick : kThin;
+    // A dark line below each, so that they show before anything.
+    for (const bool shade : {true, false}) {
+        const ImU32 color =
+            shade ? packed(glm::vec3(0.0f), 0.5f) : packed(iconColor(stage, key, light), 1.0f);
+        for (const OutlineSegment& segment : segments)
+            if (const auto line = projectLine(stage.screen, segment.from, segment.to))
+                list.AddLine(at(corner, line->first), at(corner, line->second), color,
+                             shade ? width + kShade : width);
+    }
+}
+
+void drawGizmo(const LightStage& stage, const glm::vec2& corner, GizmoHandle held) {
+    const std::optional<GizmoPlace> place = gizmoOf(stage);
+    if (!place) return;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const GizmoShape& shape : gizmoShapes(*place)) {
+        std::vector<ImVec2> points;
+        for (const glm::vec2& point : shape.points)
+            points.push_back(at(corner, point));
+        const bool lit = shape.handle == held;
+        const glm::vec3 color = lit ? kHeld : gizmoColor(shape.handle);
+        const auto count = static_cast<int>(points.size());
+        if (shape.filled) {
+            const bool area = count > 3; // planes let the scene through, arrow heads do not
+            list.AddConvexPolyFilled(points.data(), count, packed(color, area ? 0.45f : 1.0f));
+        } else {
+            list.AddPolyline(points.data(), count, packed(glm::vec3(0.0f), 0.5f), ImDrawFlags_None,
+                             kThick + kShade);
+            list.AddPolyline(points.data(), count, packed(color, 1.0f), ImDrawFlags_None, kThick);
+        }
+    }
+}
+
+} // namespace
+
+const Light* selectedLamp(const LightStage& stage) {
+    const std::optional<LightKey>& key = stage.view.light;
+    const bool lamp = key && key->kind == LightKey::Kind::Lamp && key->index < stage.edits.lights.size();
+    return lamp ? &stage.edits.lights[key->index] : nullptr;
+}
+
+std::optional<GizmoPlace> gizmoOf(const LightStage& stage) {
+    const Light* light = selectedLamp(stage);
+    if (light == nullptr) return std::nullopt;
+    return GizmoPlace{stage.screen, glm::vec3(light->transform[3]), stage.view.gizmo};
+}
+
+std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point) {
+    std::optional<LightKey> found;
+    float least = kReach;
+    for (uint32_t i = 0; i < stage.edits.lights.size() && stage.view.lightIcons; ++i) {
+        const auto place = project(stage.screen, glm::vec3(stage.edits.lights[i].transform[3]));
+        const float distance = place ? glm::distance(*place, point) : std::numeric_limits<float>::max();
+        if (distance > least) continue;
+        least = distance;
+        found = LightKey{LightKey::Kind::Lamp, i, 0};
+    }
+    return found;
+}
+
+void drawLights(const LightStage& stage, const glm::vec2& corner, GizmoHandle held) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.PushClipRect(at(corner, glm::vec2(0.0f)), at(corner, stage.screen.size));
+    for (uint32_t i = 0; i < stage.edits.lights.size() && stage.view.lightIcons; ++i)
+        drawIcon(stage, corner, {LightKey::Kind::Lamp, i, 0}, stage.edits.lights[i]);
+    drawGizmo(stage, corner, held);
+    list.PopClipRect();
+}
+
+} // namespace relume

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "app/viewer/light_edits.h"
+#include "app/viewer/view_state.h"
+#include "renderer/gizmo.h"
+
+namespace relume {
+
+/// Lights over the picture of a scene: an icon for each that has no geometry, and the gizmo of the selected
+/// one.
+struct LightStage {
+    const SceneEdits& edits;
+    const LightMix& mix;
+    const ViewState& view;
+    ScreenView screen; // in screen coordinates, as all points below
+};
+
+/// nullptr: no light without geometry is selected.
+const Light* selectedLamp(const LightStage& stage);
+/// The gizmo of the selected light; none: nothing to be dragged.
+std::optional<GizmoPlace> gizmoOf(const LightStage& stage);
+/// The light whose icon is at a point, the nearest to it.
+std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point);
+/// Within a frame of Dear ImGui, behind its windows. corner: of the picture in the window; held: highlighted.
+void drawLights(const LightStage& stage, const glm::vec2& corner, GizmoHandle held);
+
+} // namespace relume

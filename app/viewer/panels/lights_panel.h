@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "app/viewer/panels/panel.h"
+
+namespace relume {
+
+/// All lights as a mix board, and below it what can be set of the selected one.
+class LightsPanel {
+public:
+    void draw(const PanelContext& context);
+
+private:
+    void drawBoard(const PanelContext& context);
+    void drawRow(const PanelContext& context, const LightSource& source);
+    void drawAdd(const PanelContext& context);
+    void drawInspector(const PanelContext& context);
+    void drawLamp(const PanelContext& context, const LightSource& source);
+    void drawAngles(const PanelContext& context, const LightSource& source);
+
+    // As they were typed: of a light that shines straight down turn and roll are one.
+    glm::vec3 angles_{0.0f}; // [degrees]
+    LightKey anglesOf_;
+};
+
+} // namespace relume

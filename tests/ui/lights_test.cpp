@@ -1,0 +1,159 @@
+// Lights in the viewer: added by keys, set in the mix board, dragged by the gizmo, undone, compared.
+#include "tests/ui/viewer_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+namespace relume {
+namespace {
+
+using namespace std::chrono_literals;
+using Place = std::pair<int, int>;
+
+class ViewerLights : public ViewerTest {
+protected:
+    /// Does something to a converged scene and waits until it has converged again.
+    template<typename Do>
+    static void edit(ViewerProcess& viewer, const std::string& name, Do what) {
+        viewer.mark();
+        what();
+        EXPECT_TRUE(viewer.says(name)) << viewer.output();
+        EXPECT_TRUE(viewer.says("badge: converged", 240)) << viewer.output();
+        std::this_thread::sleep_for(500ms);
+    }
+    std::unique_ptr<ViewerProcess> openConverged() {
+        auto viewer = openCornell();
+        EXPECT_TRUE(viewer->says("badge: converged", 60)) << viewer->output();
+        return viewer;
+    }
+    static Place placeOf(ViewerProcess& viewer, const std::string& name) {
+        const std::optional<Place> place = item(viewer, name);
+        EXPECT_TRUE(place) << name << ": " << viewer.output();
+        return place.value_or(Place{});
+    }
+    /// Mean difference of two pictures from one column to another, as shares of their width.
+    static double differenceBetween(const FloatImage& a, const FloatImage& b, double from, double to) {
+        double sum = 0;
+        size_t count = 0;
+        for (uint32_t y = 0; y < a.height; ++y)
+            for (auto x = static_cast<uint32_t>(from * a.width); x < static_cast<uint32_t>(to * a.width); ++x)
+                for (size_t c = 0; c < 3; ++c, ++count)
+                    sum +=
+                        std::abs(a.planes[c][size_t{y} * a.width + x] - b.planes[c][size_t{y} * a.width + x]);
+        return sum / static_cast<double>(std::max<size_t>(count, 1));
+    }
+};
+
+TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
+    auto viewer = openConverged();
+    const FloatImage before = screenshot(*viewer);
+    edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
+    const FloatImage added = screenshot(*viewer);
+    EXPECT_GT(mean(added) - mean(before), 0.005) << "another light";
+
+    viewer->keys({"alt+4"});
+    std::this_thread::sleep_for(500ms);
+    const Place strength = placeOf(*viewer, "Lights/Point/Intensity");
+    edit(*viewer, "edit: Intensity of Point",
+         [&] { viewer->drag(strength.first, strength.second, strength.first + 50, strength.second); });
+    const FloatImage stronger = screenshot(*viewer);
+    EXPECT_GT(mean(stronger) - mean(added), 0.005);
+
+    const Place up = placeOf(*viewer, "Gizmo/Y");
+    edit(*viewer, "edit: Move Point", [&] { viewer->drag(up.first, up.second, up.first, up.second - 90); });
+    const FloatImage moved = screenshot(*viewer);
+    EXPECT_GT(difference(stronger, moved), 0.003);
+    const Place lifted = placeOf(*viewer, "Gizmo/Y");
+    EXPECT_NEAR(lifted.second, up.second - 90, 4) << "the gizmo goes along with the cursor";
+    EXPECT_NEAR(lifted.first, up.first, 12);
+
+    // One step each.
+    edit(*viewer, "undo: Move Point", [&] { viewer->keys({"ctrl+z"}); });
+    EXPECT_LT(difference(stronger, screenshot(*viewer)), 0.003);
+    edit(*viewer, "undo: Intensity of Point", [&] { viewer->keys({"ctrl+z"}); });
+    EXPECT_LT(difference(added, screenshot(*viewer)), 0.003);
+    edit(*viewer, "undo: Add Point", [&] { viewer->keys({"ctrl+z"}); });
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.003);
+    quit(*viewer);
+}
+
+TEST_F(ViewerLights, ADragIsCancelledByEscape) {
+    auto viewer = openConverged();
+    edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
+    std::this_thread::sleep_for(300ms);
+    const Place before = placeOf(*viewer, "Gizmo/X");
+    viewer->mark();
+    viewer->moveTo(before.first, before.second);
+    viewer->xdotool({"mousedown", "1"});
+    viewer->moveTo(before.first + 30, before.second);
+    viewer->moveTo(before.first + 60, before.second);
+    EXPECT_TRUE(viewer->says("edit: Move Point")) << viewer->output();
+    viewer->keys({"Escape"});
+    EXPECT_TRUE(viewer->says("action: drag cancelled")) << viewer->output();
+    viewer->xdotool({"mouseup", "1"});
+    std::this_thread::sleep_for(500ms);
+    EXPECT_EQ(placeOf(*viewer, "Gizmo/X"), before);
+    viewer->mark();
+    viewer->keys({"ctrl+z"});
+    EXPECT_TRUE(viewer->says("undo: Add Point")) << "no step of the drag stays: " << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
+    auto viewer = openConverged();
+    viewer->keys({"ctrl+2"});
+    EXPECT_TRUE(viewer->says("action: select light Spot")) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    viewer->mark();
+    viewer->keys({"l"});
+    EXPECT_TRUE(viewer->says("action: select light Light")) << "the emitter: " << viewer->output();
+    const Place icon = placeOf(*viewer, "Icons/Spot");
+    viewer->mark();
+    viewer->click(icon.first, icon.second);
+    EXPECT_TRUE(viewer->says("action: select light Spot")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"alt+Right"});
+    EXPECT_TRUE(viewer->says("edit: Position of Spot")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"r", "alt+Right"});
+    EXPECT_TRUE(viewer->says("edit: Rotation of Spot")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"ctrl+d"});
+    EXPECT_TRUE(viewer->says("action: select light Spot 2")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"alt+m"});
+    EXPECT_TRUE(viewer->says("edit: Mute of Spot 2")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"Delete"});
+    EXPECT_TRUE(viewer->says("edit: Delete Spot 2")) << viewer->output();
+    quit(*viewer);
+}
+
+TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
+    auto viewer = openConverged();
+    const FloatImage before = screenshot(*viewer);
+    edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
+    const FloatImage after = screenshot(*viewer);
+    viewer->keys({"b"});
+    std::this_thread::sleep_for(500ms);
+    const FloatImage wiped = screenshot(*viewer);
+    EXPECT_LT(differenceBetween(before, wiped, 0.0, 0.49), 0.002) << "left as it was";
+    EXPECT_LT(differenceBetween(after, wiped, 0.51, 1.0), 0.002) << "right as it is";
+    EXPECT_GT(differenceBetween(before, after, 0.0, 0.49), 0.005);
+    // The line follows the mouse.
+    const Place line = placeOf(*viewer, "Wipe/Line");
+    viewer->drag(line.first, line.second, line.first + 230, line.second);
+    std::this_thread::sleep_for(300ms);
+    const FloatImage further = screenshot(*viewer);
+    EXPECT_LT(differenceBetween(before, further, 0.0, 0.7), 0.002);
+    viewer->mark();
+    viewer->keys({"shift+b"}); // the light as it is becomes B
+    std::this_thread::sleep_for(500ms);
+    EXPECT_LT(difference(after, screenshot(*viewer)), 0.002);
+    quit(*viewer);
+}
+
+} // namespace
+} // namespace relume

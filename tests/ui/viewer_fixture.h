@@ -1,0 +1,98 @@
+#pragma once
+
+#include "assets/float_image.h"
+#include "tests/temporary_folder.h"
+#include "tests/ui/viewer_process.h"
+#include "tests/ui/virtual_display.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace relume {
+
+inline const std::string kScenes = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/";
+constexpr int kWidth = 1280, kHeight = 800;
+
+/// A display of all tests, and a home of each.
+class ViewerTest : public testing::Test {
+protected:
+    static void SetUpTestSuite() { display_ = std::make_unique<VirtualDisplay>(kWidth, kHeight); }
+    static void TearDownTestSuite() { display_.reset(); }
+
+    std::unique_ptr<ViewerProcess> open(std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--log-actions", "--validate", "--size", "64"});
+        auto viewer = std::make_unique<ViewerProcess>(
+            ViewerProcess::Desc{.display = display_->name(), .home = home_.path(""), .arguments = arguments});
+        EXPECT_TRUE(viewer->window()) << viewer->output();
+        return viewer;
+    }
+    std::unique_ptr<ViewerProcess> openCornell() {
+        auto viewer = open({"view", kScenes + "cornell_small.glb"});
+        EXPECT_TRUE(viewer->says("bake: done", 240)) << viewer->output();
+        viewer->keys({"bracketleft"}); // exposure by hand: automatic would follow what is to be compared
+        return viewer;
+    }
+
+    /// Where a widget is, as the viewer told last.
+    static std::optional<std::pair<int, int>> item(ViewerProcess& viewer, const std::string& name) {
+        std::optional<std::pair<int, int>> place;
+        const std::string text = viewer.output(), start = "item: " + name + " ";
+        for (size_t at = text.find(start); at != std::string::npos; at = text.find(start, at + 1)) {
+            int x = 0, y = 0;
+            if (std::sscanf(text.c_str() + at + start.size(), "%d %d", &x, &y) == 2) place = {x, y};
+        }
+        return place;
+    }
+
+    /// Takes a screenshot by its key and reads it.
+    FloatImage screenshot(ViewerProcess& viewer, const std::string& key = "F12") {
+        viewer.mark();
+        viewer.keys({key});
+        EXPECT_TRUE(viewer.says("wrote ")) << viewer.output();
+        EXPECT_TRUE(viewer.says(".png")) << viewer.output();
+        const std::string text = viewer.output();
+        const size_t at = text.rfind("wrote ") + 6;
+        return readImage(text.substr(at, text.find(".png", at) + 4 - at));
+    }
+
+    /// Quits by its key: a clean end within moments, and nothing that went wrong before.
+    void quit(ViewerProcess& viewer) {
+        viewer.keys({"ctrl+q"});
+        const auto start = std::chrono::steady_clock::now();
+        const std::optional<int> status = viewer.ended(10);
+        // A quarter of a second on a machine of its own, 1 s is the aim; other work may stand in the way.
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+        ASSERT_TRUE(status) << "it does not end: " << viewer.output();
+        EXPECT_EQ(*status, 0) << viewer.output();
+        EXPECT_EQ(viewer.output().find("validation"), std::string::npos) << viewer.output();
+    }
+
+    static double mean(const FloatImage& image) {
+        double sum = 0;
+        for (size_t c = 0; c < 3; ++c)
+            for (const float value : image.planes[c])
+                sum += value;
+        return sum / (3.0 * static_cast<double>(image.planes[0].size()));
+    }
+    static double difference(const FloatImage& a, const FloatImage& b) {
+        if (a.width != b.width || a.height != b.height) return 1;
+        double sum = 0;
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t i = 0; i < a.planes[c].size(); ++i)
+                sum += std::abs(a.planes[c][i] - b.planes[c][i]);
+        return sum / (3.0 * static_cast<double>(a.planes[0].size()));
+    }
+
+    inline static std::unique_ptr<VirtualDisplay> display_;
+    TemporaryFolder home_;
+};
+
+} // namespace relume
