@@ -17,6 +17,7 @@ void addSceneCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addMixCommand(CLI::App& app);
 void addSamplesCommand(CLI::App& app);
 // Of `relume bench`.
 void addBenchMethodsCommand(CLI::App& bench);

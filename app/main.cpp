@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     relume::addUnwrapCommand(app);
     relume::addSceneCommand(app);
     relume::addDevicesCommand(app);
+    relume::addMixCommand(app);
     relume::addCompareCommand(app);
     relume::addBenchCommand(app);
     relume::addSamplesCommand(app);

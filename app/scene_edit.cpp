@@ -295,6 +295,8 @@ std::string Editor::operator()(const DeleteEdit& edit) const {
     if (thing.kind == Kind::Emitter)
         throw Error(fmt::format("{} is an object that shines, which cannot be deleted: set its strength to 0",
                                 quoted(thing.name)));
+    if (thing.kind == Kind::Sky && edits.sky == SkySettings())
+        throw Error("the scene has no sky: there is nothing to delete");
     if (thing.kind == Kind::Lamp)
         edits.lights.erase(edits.lights.begin() + thing.index);
     else

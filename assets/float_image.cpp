@@ -1,17 +1,12 @@
 #include "assets/float_image.h"
 
 #include "assets/error.h"
+#include "assets/exr_part.h"
 #include "assets/file_write.h"
-#include "assets/log.h"
 #include "assets/radiance_hdr.h"
 
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfStringAttribute.h>
 
 // Our own static copies: other libraries carry theirs under the same names.
 #define STB_IMAGE_STATIC
@@ -37,8 +32,6 @@
 namespace relume {
 namespace {
 
-constexpr uint64_t kMostPacking = 65536; // pixels per byte; the best case of EXR's codecs is far below
-
 enum class Format { Exr, Png, Hdr };
 enum class Access { Read, Write };
 
@@ -53,145 +46,29 @@ Format formatOf(const std::string& path, Access access) {
                 (access == Access::Read ? ", or .hdr" : ""));
 }
 
-void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels) {
-    if (width * height <= mostPixels) return;
-    throw Error(path + ": has " + std::to_string(width) + " x " + std::to_string(height) +
-                " pixels, more than " + std::to_string(mostPixels >> 20) + " Mpixel: scale it down");
-}
-
-std::string readBytes(const std::string& path) {
-    std::error_code code;
-    if (!std::filesystem::exists(path, code)) throw Error(path + ": no such file: check the name");
-    if (std::filesystem::is_directory(path, code)) throw Error(path + ": is a folder: name an image in it");
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!file || file.bad()) throw Error(path + ": cannot be read: check its permissions");
-    return bytes;
-}
-
-class MemoryInput : public Imf::IStream {
-public:
-    MemoryInput(const char* name, const std::string& bytes) : IStream(name), bytes_(bytes) {}
-    bool read(char c[], int n) override {
-        if (n < 0 || uint64_t(n) > bytes_.size() - at_) throw std::runtime_error("the file ends too early");
-        std::memcpy(c, bytes_.data() + at_, size_t(n));
-        at_ += uint64_t(n);
-        return at_ < bytes_.size();
-    }
-    uint64_t tellg() override { return at_; }
-    void seekg(uint64_t position) override {
-        if (position > bytes_.size()) throw std::runtime_error("the file ends too early");
-        at_ = position;
-    }
-
-private:
-    const std::string& bytes_;
-    uint64_t at_ = 0;
-};
-
-class MemoryOutput : public Imf::OStream {
-public:
-    explicit MemoryOutput(const char* name) : OStream(name) {}
-    void write(const char c[], int n) override {
-        if (at_ + uint64_t(n) > bytes.size()) bytes.resize(at_ + uint64_t(n));
-        std::memcpy(bytes.data() + at_, c, size_t(n));
-        at_ += uint64_t(n);
-    }
-    uint64_t tellp() override { return at_; }
-    void seekp(uint64_t position) override { at_ = position; }
-
-    std::string bytes;
-
-private:
-    uint64_t at_ = 0;
-};
-
 FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
-    MemoryInput stream(path.c_str(), bytes);
-    Imf::InputFile file(stream);
-    const Imath::Box2i window = file.header().dataWindow();
-    const uint64_t width = uint64_t(int64_t(window.max.x) - window.min.x + 1);
-    const uint64_t height = uint64_t(int64_t(window.max.y) - window.min.y + 1);
-    if (width > kMostImagePixels || height > kMostImagePixels || width * height > kMostImagePixels ||
-        width * height / kMostPacking > bytes.size())
-        throw std::runtime_error("its header claims " + std::to_string(width) + " x " +
-                                 std::to_string(height));
-    checkPixels(path, width, height, mostPixels);
-
-    FloatImage image;
-    image.width = uint32_t(width);
-    image.height = uint32_t(height);
-    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) {
-        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
-            throw std::runtime_error(std::string("channel ") + c.name() +
-                                     " is subsampled, which is not supported");
-        image.channels.emplace_back(c.name());
-    }
-    const auto rank = [](const std::string& name) { return std::string("RGBA").find(name); };
-    std::stable_sort(image.channels.begin(), image.channels.end(),
-                     [&](const std::string& a, const std::string& b) {
-                         return (a.size() == 1 ? rank(a) : std::string::npos) <
-                                (b.size() == 1 ? rank(b) : std::string::npos);
-                     });
-    Imf::FrameBuffer frame;
-    image.planes.resize(image.channels.size());
-    for (size_t c = 0; c < image.channels.size(); ++c) {
-        image.planes[c].resize(width * height);
-        frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), window));
-    }
-    file.setFrameBuffer(frame);
-    file.readPixels(window.min.y, window.max.y);
-    for (auto a = file.header().begin(); a != file.header().end(); ++a)
-        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
-            image.attributes[a.name()] = text->value();
-    return image;
-}
-
-std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut) {
-    std::vector<half> halves(plane.size());
-    for (size_t i = 0; i < plane.size(); ++i) {
-        const bool tooLarge = std::isfinite(plane[i]) && std::abs(plane[i]) > float(HALF_MAX);
-        cut += tooLarge;
-        halves[i] = half(tooLarge ? std::copysign(float(HALF_MAX), plane[i]) : plane[i]);
-    }
-    return halves;
+    exr::MemoryInput stream(path.c_str(), bytes);
+    Imf::InputFile file(stream); // of several parts the first one
+    return exr::readPart(file, path, bytes.size(), mostPixels);
 }
 
 std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type) {
-    Imf::Header header(int(image.width), int(image.height));
-    header.compression() = Imf::ZIP_COMPRESSION;
-    for (const auto& [name, value] : image.attributes)
-        header.insert(name, Imf::StringAttribute(value));
-
-    const bool isHalf = type == ExrType::Half;
-    const Imf::PixelType pixelType = isHalf ? Imf::HALF : Imf::FLOAT;
-    Imf::FrameBuffer frame;
-    std::vector<std::vector<half>> halves;
+    exr::MemoryOutput stream(path.c_str());
     size_t cut = 0;
-    for (size_t c = 0; c < image.channels.size(); ++c) {
-        header.channels().insert(image.channels[c], Imf::Channel(pixelType));
-        const void* data = image.planes[c].data();
-        if (isHalf) data = halves.emplace_back(toHalf(image.planes[c], cut)).data();
-        frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, header.dataWindow()));
-    }
-    if (cut > 0)
-        spdlog::warn("{}: {} values beyond 65504 were cut to fit half: write float instead", path, cut);
-
-    MemoryOutput stream(path.c_str());
     {
-        Imf::OutputFile file(stream, header);
-        file.setFrameBuffer(frame);
-        file.writePixels(int(image.height));
+        Imf::OutputFile file(stream, exr::headerOf(image, type));
+        exr::writePart(file, image, type, cut);
     } // its destructor writes the table of lines
+    exr::warnAboutCut(path, cut);
     return std::move(stream.bytes);
 }
 
 FloatImage readHdr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
     const RadianceHeader header = readRadianceHeader(bytes);
-    if (uint64_t(header.width) * header.height / kMostPacking > bytes.size())
+    if (uint64_t(header.width) * header.height / exr::kMostPacking > bytes.size())
         throw std::runtime_error("its header claims " + std::to_string(header.width) + " x " +
                                  std::to_string(header.height));
-    checkPixels(path, header.width, header.height, mostPixels);
+    exr::checkPixels(path, header.width, header.height, mostPixels);
     return decodeRadiance(bytes, header);
 }
 
@@ -201,7 +78,7 @@ FloatImage readPng(const std::string& path, const std::string& bytes, uint64_t m
     const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
     if (stbi_info_from_memory(data, size, &width, &height, &channels))
-        checkPixels(path, uint64_t(width), uint64_t(height), mostPixels);
+        exr::checkPixels(path, uint64_t(width), uint64_t(height), mostPixels);
     // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
     const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
@@ -242,7 +119,7 @@ double linearFromSrgb(double encoded) {
 
 FloatImage readImage(const std::string& path, uint64_t mostPixels) {
     const Format format = formatOf(path, Access::Read);
-    const std::string bytes = readBytes(path);
+    const std::string bytes = exr::readBytes(path);
     try {
         if (format == Format::Hdr) return readHdr(path, bytes, mostPixels);
         return format == Format::Exr ? readExr(path, bytes, mostPixels) : readPng(path, bytes, mostPixels);

@@ -54,7 +54,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake shot timelapse edit info unwrap scene devices compare bench samples)
+verbs=(bake shot timelapse edit info unwrap scene devices mix compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -69,7 +69,7 @@ grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version
 expectUsageError
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
-for verb in bake shot timelapse edit info unwrap compare; do
+for verb in bake shot timelapse edit info unwrap mix compare; do
     expectUsageError "$verb" # the scene or the files are missing
     expectUsageError "$verb" --nosuchoption
 done
@@ -137,6 +137,12 @@ expectUsageError edit room.glb -o out.glb --set Lamp.brightness=1
 expectUsageError edit room.glb -o out.glb --move Lamp=1,2
 expectUsageError edit room.glb -o out.glb --add lantern
 
+expectUsageError mix layers.exr # neither -o nor --list
+expectUsageError mix layers.exr -o out.exr --set Lamp=nan
+expectUsageError mix layers.exr -o out.exr --set Lamp
+expectUsageError mix layers.exr -o out.png --layers-out
+expectWorldError missing.exr mix missing.exr -o out.exr
+expectWorldError nosuchfolder mix missing.exr -o nosuchfolder/out.exr
 expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp
 expectWorldError nosuchfolder edit missing.glb -o nosuchfolder/out.glb --delete Lamp
 expectWorldError missing.glb bake missing.glb -o room.exr

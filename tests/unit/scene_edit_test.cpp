@@ -170,6 +170,7 @@ TEST_F(SceneEditTest, TheSkyIsAddedSetAndDeleted) {
     EXPECT_NE(refused("--set", "Sky.file=missing.exr").find("missing.exr"), std::string::npos);
     edit("--delete", "Sky");
     EXPECT_EQ(edits_.sky, SkySettings());
+    EXPECT_EQ(refused("--delete", "Sky"), "the scene has no sky: there is nothing to delete");
     EXPECT_EQ(refused("--add", "sky,radius=2"),
               "usage: a sky has no radius: it has color, temperature, intensity, rotation, file");
 }

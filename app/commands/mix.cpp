@@ -1,0 +1,109 @@
+#include "app/command.h"
+#include "app/light_mix.h"
+#include "assets/error.h"
+#include "assets/log.h"
+
+#include <cstdio>
+#include <memory>
+
+namespace relume {
+namespace {
+
+struct MixOptions {
+    std::string layers, output;
+    std::vector<std::string> sets, muted, solo;
+    bool list = false, layersOut = false, half = false;
+};
+
+MixDesc resolve(const MixOptions& options) {
+    if (options.output.empty() && !options.list)
+        throw UsageError("mix: nothing to do: give -o FILE.exr or .png, or --list");
+    if (options.layersOut && !options.output.ends_with(".exr"))
+        throw UsageError("--layers-out: layers are kept in OpenEXR only: give -o a name that ends in .exr");
+    MixDesc desc;
+    for (const std::string& text : options.sets) {
+        try {
+            desc.edits.push_back(weightEditOf(text));
+        } catch (const UsageError& error) {
+            throw UsageError("--set '" + text + "': " + error.what());
+        }
+    }
+    desc.muted = options.muted;
+    desc.solo = options.solo;
+    return desc;
+}
+
+std::string attribute(const LayeredImage::Layer& layer, const char* name) {
+    const auto found = layer.attributes.find(name);
+    return found == layer.attributes.end() ? "" : found->second;
+}
+
+void printList(const LayeredImage& image) {
+    std::printf("%-24s %-12s %12s %-7s %-24s %s\n", "light", "type", "intensity", "", "colour", "");
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const glm::vec3 color = colorOf(layer);
+        const std::string stale = attribute(layer, layer_attribute::kStale);
+        std::string state = layer.weight == glm::vec3(0.0f) ? "off" : "";
+        if (!stale.empty()) state += (state.empty() ? "stale: " : ", stale: ") + stale;
+        std::printf("%-24s %-12s %12.6g %-7s %-24s %s\n", layer.name.c_str(),
+                    attribute(layer, layer_attribute::kType).c_str(), double(intensityOf(layer)),
+                    attribute(layer, layer_attribute::kUnit).c_str(),
+                    fmt::format("{:.4g},{:.4g},{:.4g}", color.r, color.g, color.b).c_str(), state.c_str());
+    }
+}
+
+void runMix(const MixOptions& options) {
+    const MixDesc desc = resolve(options);
+    if (!options.output.empty()) checkWritable(options.output);
+    LayeredImage image = readLayeredExr(options.layers);
+    try {
+        mixLayers(image, desc);
+    } catch (const UsageError&) {
+        throw;
+    } catch (const Error& error) {
+        throw Error(options.layers + ": " + error.what());
+    }
+    if (options.list) printList(image);
+    if (options.output.empty()) return;
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const std::string stale = attribute(layer, layer_attribute::kStale);
+        if (!stale.empty() && layer.weight != glm::vec3(0.0f))
+            spdlog::warn("{}: stale: {}: bake it again", options.layers, stale);
+    }
+    const ExrType type = options.half ? ExrType::Half : ExrType::Float;
+    if (options.layersOut)
+        writeLayeredExr(options.output, image, type);
+    else
+        writeImage(options.output, image.composite, type);
+    spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
+}
+
+} // namespace
+
+void addMixCommand(CLI::App& app) {
+    const auto options = std::make_shared<MixOptions>();
+    CLI::App* command = app.add_subcommand(
+        "mix", "Weigh the lights of a lightmap anew, without a bake: intensity, colour, on/off");
+    command->add_option("layers", options->layers, "OpenEXR file that 'relume bake --layers' wrote")
+        ->required()
+        ->type_name("LAYERS.exr");
+    command->add_option("-o,--output", options->output, "The sum, .exr or .png")->type_name("FILE");
+    const auto names = [&](const char* option, std::vector<std::string>& to, const char* help) {
+        return command->add_option(option, to, help)
+            ->expected(1)
+            ->allow_extra_args(false)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    };
+    names("--set", options->sets,
+          "Another intensity, in the light's unit, and colour: #rrggbb (sRGB) or linear r,g,b; NAME*=FACTOR "
+          "scales the intensity")
+        ->type_name("NAME=INTENSITY[,COLOR]");
+    names("--mute", options->muted, "Turn this light off")->type_name("NAME");
+    names("--solo", options->solo, "Only this light, and others with --solo")->type_name("NAME");
+    command->add_flag("--list", options->list, "Print the lights, as they are mixed");
+    command->add_flag("--layers-out", options->layersOut, "Write the layers too, with their new weights");
+    command->add_flag("--half", options->half, "16-bit floats in an .exr");
+    command->callback([options] { runMix(*options); });
+}
+
+} // namespace relume

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+
+#include "assets/float_image.h"
+
+// What readers and writers of OpenEXR files have in common, be they of one part or of several. Whatever is
+// wrong with a file is thrown as std::exception.
+namespace relume::exr {
+
+constexpr uint64_t kMostPacking = 65536; // pixels per byte; the best case of EXR's codecs is far below
+
+class MemoryInput : public Imf::IStream {
+public:
+    MemoryInput(const char* name, const std::string& bytes) : IStream(name), bytes_(bytes) {}
+    bool read(char c[], int n) override;
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t position) override;
+
+private:
+    const std::string& bytes_;
+    uint64_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+public:
+    explicit MemoryOutput(const char* name) : OStream(name) {}
+    void write(const char c[], int n) override;
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t position) override { at_ = position; }
+
+    std::string bytes;
+
+private:
+    uint64_t at_ = 0;
+};
+
+/// All of a file.
+std::string readBytes(const std::string& path);
+
+/// Throws Error, naming the file, where an image has more than `mostPixels`.
+void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels);
+
+/// The image that a header tells of, without its pixels; channels R, G, B, A first, then by name. Throws
+/// Error where it has more than `mostPixels`; `bytes`: of the file, which must hold that many.
+FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t bytes, uint64_t mostPixels);
+
+/// The header that an image is written with.
+Imf::Header headerOf(const FloatImage& image, ExrType type);
+
+/// Reads the pixels of an Imf::InputFile or Imf::InputPart.
+template<class Part>
+FloatImage readPart(Part& part, const std::string& path, uint64_t bytes, uint64_t mostPixels) {
+    FloatImage image = imageOf(part.header(), path, bytes, mostPixels);
+    const Imath::Box2i window = part.header().dataWindow();
+    Imf::FrameBuffer frame;
+    image.planes.resize(image.channels.size());
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        image.planes[c].resize(size_t(image.width) * image.height);
+        frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), window));
+    }
+    part.setFrameBuffer(frame);
+    part.readPixels(window.min.y, window.max.y);
+    return image;
+}
+
+/// Rounds to half, cutting what is beyond its range; `cut` counts that.
+std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
+
+/// Writes the pixels of an Imf::OutputFile or Imf::OutputPart.
+template<class Part>
+void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
+    const Imf::PixelType pixelType = type == ExrType::Half ? Imf::HALF : Imf::FLOAT;
+    Imf::FrameBuffer frame;
+    std::vector<std::vector<half>> halves;
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        const void* data = image.planes[c].data();
+        if (type == ExrType::Half) data = halves.emplace_back(toHalf(image.planes[c], cut)).data();
+        frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, part.header().dataWindow()));
+    }
+    part.setFrameBuffer(frame);
+    part.writePixels(int(image.height));
+}
+
+void warnAboutCut(const std::string& path, size_t cut);
+
+} // namespace relume::exr

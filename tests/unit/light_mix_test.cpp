@@ -1,0 +1,139 @@
+#include "app/light_mix.h"
+
+#include "assets/error.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace relume {
+namespace {
+
+LayeredImage::Layer layer(const char* name, const glm::vec3& weight, const std::vector<float>& texels) {
+    LayeredImage::Layer made{name, weight, {}, {2, 1, {}, {}, {}}};
+    for (int c = 0; c < 3; ++c)
+        made.image.add(std::string(1, "RGB"[c])) = {texels[0] * float(c + 1), texels[1]};
+    return made;
+}
+
+/// A lamp whose colour and intensity are known, one that is off, and a sky of which only the weight is known.
+LayeredImage board() {
+    LayeredImage image;
+    image.composite = {2, 1, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B", "coverage", "stderr"})
+        image.composite.add(channel) = {0.5f, 1.0f};
+    image.layers = {layer("Lamp", {40, 20, 10}, {0.01f, 0.5f}), layer("Off", {0, 0, 0}, {3, 4}),
+                    layer("Sky", {1, 2, 4}, {0.25f, 0.125f})};
+    image.layers[0].attributes = {{layer_attribute::kIntensity, "20"}, {layer_attribute::kColor, "2,1,0.5"}};
+    image.layers[1].attributes = {{layer_attribute::kIntensity, "7"}, {layer_attribute::kColor, "1,0.5,0"}};
+    return image;
+}
+
+glm::vec3 texel(const LayeredImage& image, size_t index) {
+    return {image.composite.planes[0][index], image.composite.planes[1][index],
+            image.composite.planes[2][index]};
+}
+
+void expectNear(const glm::vec3& a, const glm::vec3& b) {
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(a[c], b[c], 1e-6f * std::abs(b[c]));
+}
+
+MixDesc sets(const std::vector<std::string>& texts) {
+    MixDesc desc;
+    for (const std::string& text : texts)
+        desc.edits.push_back(weightEditOf(text));
+    return desc;
+}
+
+std::string errorOf(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(LightMix, TheSumIsThatOfWeightedLayers) {
+    LayeredImage image = board();
+    mixLayers(image, {});
+    expectNear(texel(image, 0), {40 * 0.01f + 1 * 0.25f, 20 * 0.02f + 2 * 0.5f, 10 * 0.03f + 4 * 0.75f});
+    expectNear(texel(image, 1), {40 * 0.5f + 0.125f, 20 * 0.5f + 0.25f, 10 * 0.5f + 0.5f});
+    EXPECT_EQ(image.composite.channels, (std::vector<std::string>{"R", "G", "B", "coverage"}));
+    EXPECT_EQ(*image.composite.find("coverage"), (std::vector<float>{0.5f, 1}));
+    const LayeredImage once = image;
+    mixLayers(image, {});
+    EXPECT_EQ(image.composite.planes, once.composite.planes);
+}
+
+TEST(LightMix, AnIntensityKeepsTheColor) {
+    LayeredImage image = board();
+    mixLayers(image, sets({"Lamp=2.5", "Sky=2"}));
+    EXPECT_EQ(image.layers[0].weight, glm::vec3(5, 2.5f, 1.25f));
+    EXPECT_EQ(image.layers[2].weight, glm::vec3(0.5f, 1, 2)); // its brightest channel
+    EXPECT_EQ(intensityOf(image.layers[0]), 2.5f);
+    EXPECT_EQ(colorOf(image.layers[0]), glm::vec3(2, 1, 0.5f));
+    mixLayers(image, sets({"Lamp*=4", "Sky*=0"}));
+    EXPECT_EQ(image.layers[0].weight, glm::vec3(20, 10, 5));
+    EXPECT_EQ(intensityOf(image.layers[0]), 10.0f);
+    EXPECT_EQ(image.layers[2].weight, glm::vec3(0));
+    mixLayers(image, sets({"Sky=8"})); // its colour is remembered
+    EXPECT_EQ(image.layers[2].weight, glm::vec3(2, 4, 8));
+}
+
+TEST(LightMix, ColorsAreSrgbInHexAndLinearAsNumbers) {
+    LayeredImage image = board();
+    mixLayers(image, sets({"Lamp=10,#ff8000", "Sky=2,1,0.5,0.25"}));
+    EXPECT_EQ(image.layers[0].weight.r, 10.0f);
+    EXPECT_NEAR(image.layers[0].weight.g, 2.158605f, 1e-5f);
+    EXPECT_EQ(image.layers[0].weight.b, 0.0f);
+    EXPECT_EQ(image.layers[2].weight, glm::vec3(2, 1, 0.5f));
+}
+
+TEST(LightMix, SwitchesTurnLightsOffAndOn) {
+    LayeredImage image = board();
+    MixDesc desc;
+    desc.muted = {"Sky"};
+    mixLayers(image, desc);
+    expectNear(texel(image, 0), {0.4f, 0.4f, 0.3f});
+    EXPECT_EQ(intensityOf(image.layers[2]), 4.0f); // what it had stays known
+    EXPECT_EQ(colorOf(image.layers[2]), glm::vec3(0.25f, 0.5f, 1));
+
+    image = board();
+    desc = {};
+    desc.solo = {"Sky", "Lamp"};
+    desc.muted = {"Lamp"};
+    mixLayers(image, desc);
+    expectNear(texel(image, 0), {0.25f, 1.0f, 3.0f});
+    EXPECT_EQ(intensityOf(image.layers[0]), 20.0f);
+
+    image = board();
+    mixLayers(image, sets({"Off*=2"}));
+    EXPECT_EQ(image.layers[1].weight, glm::vec3(0)); // still off
+    mixLayers(image, sets({"Off=7"}));
+    EXPECT_EQ(image.layers[1].weight, glm::vec3(7, 3.5f, 0));
+}
+
+TEST(LightMix, WhatIsWrongIsNamed) {
+    LayeredImage image = board();
+    EXPECT_EQ(errorOf([&] { mixLayers(image, sets({"lamp=1"})); }),
+              "no light is called 'lamp': did you mean 'Lamp'?");
+    MixDesc desc;
+    desc.solo = {"Window"};
+    EXPECT_EQ(errorOf([&] { mixLayers(image, desc); }),
+              "no light is called 'Window': there is 'Lamp', 'Off' and 'Sky'");
+    for (const char* text : {"Lamp", "=2", "*=2", "Lamp*=2,#ffffff"})
+        EXPECT_EQ(errorOf([&] { weightEditOf(text); }), "write NAME=INTENSITY[,COLOR] or NAME*=FACTOR")
+            << text;
+    EXPECT_EQ(errorOf([&] { weightEditOf("Lamp=-1"); }),
+              "intensity -1 is out of range: give a number of 0 or more");
+    EXPECT_EQ(errorOf([&] { weightEditOf("Lamp=nan"); }),
+              "'nan' is no intensity of finite numbers: give a number of 0 or more");
+    EXPECT_NE(errorOf([&] { weightEditOf("Lamp=1,#12"); }).find("'#12' is no color"), std::string::npos);
+    EXPECT_NE(errorOf([&] { mixLayers(image, sets({"Lamp=3e38"})); }).find("becomes too bright"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace relume
