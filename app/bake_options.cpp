@@ -199,6 +199,10 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--picture: '" + o.picture + "' does not end in .png");
     if (!o.checkpoint.empty() && o.checkpoint == o.output)
         throw UsageError("--checkpoint: '" + o.checkpoint + "' is the lightmap's own name");
+    if (o.layers && !o.output.ends_with(".exr"))
+        throw UsageError("--layers: layers are kept in OpenEXR only: give -o a name that ends in .exr");
+    if (o.layers && o.quantity == "radiance")
+        throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
     BakeRequest request;
     request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
     request.bake.size = o.size;

@@ -24,4 +24,17 @@ LightPattern patternOf(const Scene& scene, const LightKey& key) {
     return pattern;
 }
 
+std::string staleReason(const Layer& layer) {
+    if (layer.has() || layer.source.weight == glm::vec3(0.0f)) return "";
+    const std::string light = "light '" + layer.source.name + "' ";
+    const Layer* shown = layer.shown();
+    if (!shown) return light + "is not baked yet";
+    const LightPattern &now = layer.pattern, &then = shown->pattern;
+    if (now.light.transform != then.light.transform) return light + "moved";
+    if (now.rotation != then.rotation) return light + "turned";
+    LightPattern recoloured = then;
+    recoloured.surfaces = now.surfaces;
+    return recoloured == now ? light + "meets surfaces of other colours" : light + "has another form";
+}
+
 } // namespace relume

@@ -54,4 +54,7 @@ struct Layer {
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }
 };
 
+/// What of the scene the layer does not show yet: "light 'Lamp' moved"; "": nothing.
+std::string staleReason(const Layer& layer);
+
 } // namespace relume

@@ -37,17 +37,32 @@ void LayerSolver::edit(const LightMix& mix) {
     ASSERT(atRest() || surfacesOf(input_.scene) == surfaces_);
     mix_ = mix;
     edited_ = true;
+    done_ = false;
     weigh();
 }
 
 // Of those that stay what they are; what is not known yet comes with adopt().
 void LayerSolver::weigh() {
     const std::vector<LightSource> sources = lightSources(input_.scene);
+    std::vector<LightPattern> patterns;
+    for (const LightSource& source : sources) {
+        patterns.push_back(patternOf(input_.scene, source.key));
+        patterns.back().surfaces = surfaces_;
+    }
+    const auto has = [&](const LightPattern& pattern) {
+        return std::any_of(layers_.begin(), layers_.end(),
+                           [&](const std::unique_ptr<Layer>& layer) { return layer->pattern == pattern; });
+    };
     for (size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = *layers_[i];
-        const auto now = std::find_if(sources.begin(), sources.end(), [&](const LightSource& source) {
-            return source.key == layer.source.key;
-        });
+        auto now = sources.end();
+        for (auto source = sources.begin(); source != sources.end() && now == sources.end(); ++source)
+            if (patterns[static_cast<size_t>(source - sources.begin())] == layer.pattern) now = source;
+        // One that was moved shines on from where it was.
+        for (auto source = sources.begin(); source != sources.end() && now == sources.end(); ++source)
+            if (source->key == layer.source.key &&
+                !has(patterns[static_cast<size_t>(source - sources.begin())]))
+                now = source;
         const glm::vec3 weight =
             now != sources.end() && mix_.shines(now->key) ? now->weight : glm::vec3(0.0f);
         if (weight == layer.source.weight) continue;
@@ -136,6 +151,9 @@ void LayerSolver::adopt() {
         patterns.push_back(patternOf(input_.scene, source.key));
         patterns.back().surfaces = surfaces_;
     }
+    std::vector<const Layer*> shown;
+    for (const std::unique_ptr<Layer>& layer : layers_)
+        shown.push_back(layer.get());
     std::vector<std::unique_ptr<Layer>> next(sources.size());
     for (size_t i = 0; i < sources.size(); ++i)
         next[i] = takeLayer(patterns[i]);
@@ -167,10 +185,15 @@ void LayerSolver::adopt() {
         abortPass();
     else if (work_)
         work_->layer = static_cast<size_t>(found - layers_.begin());
-    restOf_.reset();
-    changed_.clear();
-    for (size_t i = 0; i < layers_.size(); ++i)
-        changed(i);
+    const bool same =
+        std::equal(shown.begin(), shown.end(), layers_.begin(), layers_.end(),
+                   [](const Layer* a, const std::unique_ptr<Layer>& b) { return a == b.get(); });
+    if (!same) {
+        restOf_.reset();
+        changed_.clear();
+        for (size_t i = 0; i < layers_.size(); ++i)
+            changed(i);
+    }
     done_ = false;
     tellError();
 }

@@ -2,6 +2,7 @@
 #include "app/bake_statistics.h"
 #include "app/command.h"
 #include "app/interrupt.h"
+#include "app/layer_file.h"
 #include "app/lightmap_attributes.h"
 #include "app/progress.h"
 #include "app/solve.h"
@@ -20,6 +21,24 @@ namespace {
 // Of all threads, the drivers' too [s].
 double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+struct LayerFileDesc {
+    LightmapDesc lightmap;
+    ExrType type = ExrType::Float;
+    std::map<std::string, std::string> attributes; // of the composite
+};
+
+void writeLayers(const std::string& path, Baker& baker, const Scene& scene, const LayerFileDesc& desc) {
+    auto& solver = dynamic_cast<LayerSolver&>(baker.solver());
+    LayeredImage image = layeredImage(baker, solver, scene, desc.lightmap);
+    image.composite.attributes = desc.attributes;
+    writeLayeredExr(path, image, desc.type);
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const auto error = layer.attributes.find("relume:error");
+        spdlog::info("layer '{}': {}", layer.name,
+                     error == layer.attributes.end() ? "off, not baked" : "error " + error->second);
+    }
 }
 
 void bake(BakeOptions o) {
@@ -54,7 +73,11 @@ void bake(BakeOptions o) {
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;
     const SolverProgress& progress = baker.solver().progress();
     addLightmapAttributes(image, o.scene, request.bake, request.lightmap, progress);
-    writeImage(o.output, image, o.half ? ExrType::Half : ExrType::Float);
+    const ExrType type = o.half ? ExrType::Half : ExrType::Float;
+    if (o.layers)
+        writeLayers(o.output, baker, prepared.scene, {request.lightmap, type, image.attributes});
+    else
+        writeImage(o.output, image, type);
     if (!o.picture.empty()) writeImage(o.picture, image);
     if (!o.errorMap.empty()) writeImage(o.errorMap, baker.errorMap());
     if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);

@@ -207,6 +207,7 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.transport.rtrad = desc.rtrad;
     settings.solver.transport.deviceGather = desc.deviceGather;
     settings.solver.live = desc.live;
+    settings.solver.layers = {.on = desc.layers, .bytes = desc.layerBytes};
     if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
     return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
 }

@@ -80,6 +80,8 @@ struct BakeDesc {
     bool rtrad = false; // the preset
     bool deviceGather = false;
     bool live = false;
+    bool layers = false;
+    uint64_t layerBytes = 0; // at most; 0: as much as there is
 };
 
 struct Baked {

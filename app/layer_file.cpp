@@ -1,0 +1,70 @@
+#include "app/layer_file.h"
+
+#include "app/light_names.h"
+#include "assets/error.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+namespace attribute = layer_attribute;
+
+struct LightText {
+    std::string type, unit;
+    float intensity = 0.0f;
+    glm::vec3 color{1.0f};
+};
+
+LightText describe(const Scene& scene, const LightKey& key) {
+    if (key.kind == LightKey::Kind::Lamp) {
+        const Light& light = scene.lights[key.index];
+        return {lightTypeName(light.type), lightUnit(light.type), light.intensity, light.color};
+    }
+    const bool sky = key.kind == LightKey::Kind::Sky;
+    const glm::vec3 radiance = sky ? scene.sky.radiance : scene.materials[key.material].emission;
+    const float most = std::max({radiance.r, radiance.g, radiance.b});
+    return {sky ? "sky" : "emitter", "cd/m^2", most, most > 0.0f ? radiance / most : glm::vec3(1.0f)};
+}
+
+} // namespace
+
+LayeredImage layeredImage(const Baker& baker, LayerSolver& solver, const Scene& scene,
+                          const LightmapDesc& desc) {
+    ASSERT(desc.quantity == Quantity::Lighting);
+    LayeredImage image;
+    image.composite = baker.lightmap(desc);
+    for (const std::unique_ptr<Layer>& layer : solver.layers()) {
+        const LightText light = describe(scene, layer->source.key);
+        LayeredImage::Layer part{layer->source.name, layer->source.weight, {}, {}};
+        part.attributes[attribute::kType] = light.type;
+        part.attributes[attribute::kUnit] = light.unit;
+        part.attributes[attribute::kIntensity] = fmt::format("{}", light.intensity);
+        part.attributes[attribute::kColor] =
+            fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
+        const std::string stale = staleReason(*layer);
+        if (!stale.empty()) part.attributes[attribute::kStale] = stale;
+        const Layer* shown = layer->shown();
+        if (shown) {
+            part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",
+                                                          shown->level.directRounds, shown->level.linkRounds);
+            part.attributes["relume:error"] = fmt::format("{:.6g}", shown->error);
+        }
+        part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), desc);
+        image.layers.push_back(std::move(part));
+    }
+    return image;
+}
+
+std::string staleLayers(const LayerSolver& solver) {
+    std::string text;
+    for (const std::unique_ptr<Layer>& layer : solver.layers()) {
+        const std::string reason = staleReason(*layer);
+        if (!reason.empty()) text += (text.empty() ? "" : "; ") + reason;
+    }
+    return text;
+}
+
+} // namespace relume
