@@ -42,7 +42,7 @@ public:
 
     /// Loads a scene beside the main thread; the present one stays until it is there, or for good when it
     /// cannot be read: then lastError() says why. With `keep` (the file changed) camera and settings are to
-    /// stay, and edits of materials by name.
+    /// stay, edits of materials by name, and those of lights where the file's are what they were.
     void open(const std::string& path, bool keep = false);
     bool loading() const { return loading_.valid(); }
     const std::string& loadingPath() const { return loadingPath_; }
@@ -90,7 +90,8 @@ private:
     void startBake(bool keepLight);
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene);
-    void keepEdits(std::vector<Material>& materials);
+    void keepEdits(SceneEdits& edits, const std::vector<Instance>& instances);
+    void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
     void fail(const std::string& message);
     void forgetSteps();
     void dropFormer();

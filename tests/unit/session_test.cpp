@@ -168,6 +168,36 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
     EXPECT_EQ(session_.lastError(), "");
 }
 
+TEST_F(SessionTest, LightsStayWhereTheAtlasBecomesAnother) {
+    open();
+    Document next = session_.document();
+    next.edits.lights.emplace_back().name = "Added";
+    next.edits.sky.radiance = glm::vec3(2.0f);
+    next.mix.muted = {{LightKey::Kind::Lamp, 0, 0}};
+    session_.edit("Add", next);
+    next.bake.size = 2 * kSize;
+    session_.edit("Size", next);
+    ASSERT_TRUE(untilLoaded());
+    ASSERT_EQ(session_.document().edits.lights.size(), 1u);
+    EXPECT_EQ(session_.document().edits.lights[0].name, "Added");
+    EXPECT_EQ(session_.document().edits.sky.radiance, glm::vec3(2.0f));
+    EXPECT_EQ(session_.document().mix, next.mix);
+    EXPECT_EQ(session_.undoName(), "Size");
+}
+
+TEST_F(SessionTest, AFileWithOtherInstancesForgetsSteps) {
+    open();
+    Document next = session_.document();
+    next.edits.lights.emplace_back().name = "Added";
+    session_.edit("Add", next);
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_geom.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_EQ(session_.undoName(), "") << "it would number instances that are gone";
+    EXPECT_EQ(session_.document().edits.placements.size(), session_.scene()->prepared.scene.instances.size());
+    ASSERT_EQ(session_.document().edits.lights.size(), 1u) << "the file has no lights, as before";
+}
+
 TEST_F(SessionTest, ACancelledEditHasNotBeen) {
     open();
     dim(0.5f, "Before");
