@@ -89,6 +89,7 @@ private:
 
     // viewer_lights.cpp
     LightStage stage() const;
+    glm::vec2 pointAt(const glm::dvec2& at) const;
     bool showsLights() const;
     void selectLight(const std::optional<LightKey>& key);
     void followLights();

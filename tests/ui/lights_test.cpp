@@ -128,6 +128,7 @@ TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
     viewer->mark();
     viewer->keys({"Delete"});
     EXPECT_TRUE(viewer->says("edit: Delete Spot 2")) << viewer->output();
+    EXPECT_TRUE(viewer->says("badge: converged", 240)) << viewer->output();
     quit(*viewer);
 }
 
