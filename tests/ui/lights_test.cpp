@@ -69,6 +69,9 @@ TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
     EXPECT_NEAR(lifted.second, up.second - 90, 4) << "the gizmo goes along with the cursor";
     EXPECT_NEAR(lifted.first, up.first, 12);
 
+    edit(*viewer, "action: Reset", [&] { viewer->keys({"ctrl+r"}); });
+    EXPECT_LT(difference(moved, screenshot(*viewer)), 0.003) << "what a fresh bake gives";
+
     // One step each.
     edit(*viewer, "undo: Move Point", [&] { viewer->keys({"ctrl+z"}); });
     EXPECT_LT(difference(stronger, screenshot(*viewer)), 0.003);

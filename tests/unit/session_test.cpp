@@ -1,6 +1,7 @@
 // The session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, none runs.
 #include "app/live/session.h"
 
+#include "app/viewer/light_edits.h"
 #include "assets/error.h"
 #include "assets/log.h"
 #include "tests/temporary_folder.h"
@@ -196,6 +197,31 @@ TEST_F(SessionTest, AFileWithOtherInstancesForgetsSteps) {
     EXPECT_EQ(session_.undoName(), "") << "it would number instances that are gone";
     EXPECT_EQ(session_.document().edits.placements.size(), session_.scene()->prepared.scene.instances.size());
     ASSERT_EQ(session_.document().edits.lights.size(), 1u) << "the file has no lights, as before";
+}
+
+TEST_F(SessionTest, TheListOfLightsFollowsTheDocument) {
+    LightList list;
+    EXPECT_FALSE(list.update(session_.scene(), session_));
+    open();
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_FALSE(list.update(session_.scene(), session_)) << "nothing happened";
+    ASSERT_EQ(list.sources().size(), 1u);
+    const LightKey emitter = list.sources()[0].key;
+    EXPECT_EQ(emitter.kind, LightKey::Kind::Emitter);
+    EXPECT_EQ(list.emittersOf(emitter.material), 1u);
+    Document next = session_.document();
+    const LightKey added = addLamp(next, {.name = "Lamp", .color = {1.0f, 0.5f, 0.25f}, .intensity = 4.0f});
+    session_.edit("Add", next);
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    ASSERT_NE(list.find(added), nullptr);
+    EXPECT_EQ(list.find(added)->name, "Lamp");
+    EXPECT_EQ(list.find(added)->weight, glm::vec3(4.0f, 2.0f, 1.0f));
+    ASSERT_TRUE(session_.undo());
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_EQ(list.find(added), nullptr);
+    dim(0.0f);
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_TRUE(list.sources().empty()) << "it emits no more";
 }
 
 TEST_F(SessionTest, ACancelledEditHasNotBeen) {
