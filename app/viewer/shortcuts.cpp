@@ -20,6 +20,8 @@ constexpr int kCtrl = GLFW_MOD_CONTROL, kShift = GLFW_MOD_SHIFT, kAlt = GLFW_MOD
 std::vector<Shortcut> makeShortcuts() {
     std::vector<Shortcut> all = {
         {Action::Open, 0, GLFW_KEY_O, kCtrl, "File", "Open scene"},
+        {Action::Save, 0, GLFW_KEY_S, kCtrl, "File", "Save scene"},
+        {Action::SaveAs, 0, GLFW_KEY_S, kCtrl | kShift, "File", "Save scene as"},
         {Action::Export, 0, GLFW_KEY_E, kCtrl, "File", "Export lightmap"},
         {Action::Watch, 0, 0, 0, "File", "Reload when the file changes"},
         {Action::Quit, 0, GLFW_KEY_Q, kCtrl, "File", "Quit"},

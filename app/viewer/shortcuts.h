@@ -9,6 +9,8 @@ namespace relume {
 /// Everything that a user can do by a key or a menu.
 enum class Action : uint8_t {
     Open,
+    Save,
+    SaveAs,
     Export,
     Watch,
     Quit,

@@ -2,28 +2,17 @@
 
 #include "app/viewer/views.h"
 #include "assets/error.h"
-#include "assets/warnings.h"
 #include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
 #include <fmt/format.h>
 
 namespace relume {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr float kExposureStep = 0.25f; // [EV] of a key press
-
-std::string absolutePath(const std::string& path) {
-    std::error_code code;
-    const fs::path whole = fs::absolute(path, code);
-    return code ? path : whole.lexically_normal().string();
-}
 
 template<typename T>
 void next(T& choice, size_t count) {
@@ -50,21 +39,18 @@ void Viewer::note(const std::string& text, bool bad) {
     pacer_.input();
 }
 
-std::string Viewer::scenePath() const {
-    const LoadedScene* scene = session_->scene();
-    return scene != nullptr ? absolutePath(scene->prepared.scene.path) : "";
-}
-
 void Viewer::perform(Action action, int argument) {
     tell("action", shortcutOf(action, argument).name);
     pacer_.input();
     switch (action) {
     case Action::Open:
+    case Action::Save:
+    case Action::SaveAs:
     case Action::Export:
     case Action::Watch:
         return performFile(action);
     case Action::Quit:
-        return window_.close();
+        return quit();
     case Action::Undo:
     case Action::Redo:
         return performUndo(action);
@@ -133,41 +119,6 @@ void Viewer::performUndo(Action action) {
     if (!(undo ? session_->undo() : session_->redo()))
         return note(undo ? "nothing to undo" : "nothing to make again");
     tell(undo ? "undo" : "redo", name);
-}
-
-void Viewer::performFile(Action action) {
-    if (action == Action::Watch) return session_->watchFile(!session_->watchesFile());
-    const std::string path = scenePath();
-    if (action == Action::Open) {
-        const std::string folder = path.empty() ? "" : fs::path(path).parent_path().string() + "/";
-        ui_.files().open({.title = "Open scene",
-                          .path = folder,
-                          .endings = {".glb", ".gltf"},
-                          .recent = preferences_.recent,
-                          .done = [this](const std::string& chosen) { open(chosen); }});
-        return;
-    }
-    if (path.empty()) return note("there is no scene whose lightmap could be written", true);
-    const fs::path scene(path);
-    ui_.files().open({.title = "Export lightmap",
-                      .path = freePath((scene.parent_path() / scene.stem()).string() + "_lightmap.exr"),
-                      .endings = {".exr", ".png"},
-                      .recent = {},
-                      .saves = true,
-                      .done = [this](const std::string& chosen) { exportLightmap(chosen); }});
-}
-
-void Viewer::open(const std::string& path) {
-    session_->open(path);
-    pacer_.input();
-}
-
-void Viewer::exportLightmap(const std::string& path) {
-    tell("export", path);
-    if (!path.ends_with(".exr") && !path.ends_with(".png"))
-        return note(path + ": a lightmap ends in .exr or .png", true);
-    bake_->exportLightmap(path, session_->document().lightmap);
-    note("writing " + path);
 }
 
 void Viewer::performBake(Action action) {

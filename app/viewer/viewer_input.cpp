@@ -78,6 +78,10 @@ void Viewer::handle(const std::vector<WindowEvent>& events) {
 }
 
 void Viewer::onKey(const WindowEvent& event) {
+    if (ui_.question().isOpen()) {
+        if (event.pressed) ui_.question().answer(event.code);
+        return;
+    }
     const bool typing = gui_.wantsKeyboard();
     fast_ = (event.mods & GLFW_MOD_SHIFT) != 0;
     // A press of Ctrl itself does not count among its modifiers.

@@ -1,9 +1,11 @@
 // Lights in the viewer: added by keys, set in the mix board, dragged by the gizmo, undone, compared.
+#include "assets/gltf.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 namespace relume {
@@ -157,6 +159,35 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     std::this_thread::sleep_for(500ms);
     EXPECT_LT(difference(after, screenshot(*viewer)), 0.002);
     quit(*viewer);
+}
+
+TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
+    const std::string file = home_.path("scene.glb");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", file);
+    auto viewer = open({"view", file});
+    ASSERT_TRUE(viewer->says("title: scene.glb - Relume")) << viewer->output();
+    viewer->keys({"ctrl+1"});
+    EXPECT_TRUE(viewer->says("title: scene.glb* - Relume")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"ctrl+q"});
+    EXPECT_TRUE(viewer->says("ask: scene.glb has edits")) << viewer->output();
+    viewer->keys({"Escape"});
+    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(viewer->runs());
+    viewer->mark();
+    viewer->keys({"ctrl+s"});
+    EXPECT_TRUE(viewer->says("saved: " + file)) << viewer->output();
+    EXPECT_TRUE(viewer->says("title: scene.glb - Relume")) << viewer->output();
+    EXPECT_EQ(loadGltf(file).lights.at(0).name, "Point");
+    // Another one is saved on the way out.
+    viewer->mark();
+    viewer->keys({"ctrl+2"});
+    EXPECT_TRUE(viewer->says("title: scene.glb* - Relume")) << viewer->output();
+    viewer->keys({"ctrl+q"});
+    EXPECT_TRUE(viewer->says("ask: ")) << viewer->output();
+    viewer->keys({"Return"});
+    EXPECT_EQ(viewer->ended(10), 0) << viewer->output();
+    EXPECT_EQ(loadGltf(file).lights.size(), 2u);
 }
 
 } // namespace
