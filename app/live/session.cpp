@@ -37,6 +37,13 @@ bool haveSameNames(const std::vector<Named>& a, const std::vector<Named>& b) {
                       [](const Named& x, const Named& y) { return x.name == y.name; });
 }
 
+// Placements go by the objects' order, which a save may change where an object left its node.
+bool sameObjects(const Scene& a, const Scene& b) {
+    return std::equal(
+        a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
+        [](const Instance& x, const Instance& y) { return x.name == y.name && x.mesh == y.mesh; });
+}
+
 } // namespace
 
 Session::FileTime Session::fileTime(const std::string& path) {
@@ -66,12 +73,16 @@ void Session::open(const std::string& path, bool keep) {
     desc.path = path;
     desc.size = document_.bake.size;
     spdlog::info("opening {}", path);
-    watched_ = fileTime(path);
+    finishSaving(); // what is read is what is there then
+    loadingTime_ = fileTime(path);
+    sameFile_ = keep && path == prepare_.path && loadingTime_ && loadingTime_ == watched_;
     loading_ = std::async(std::launch::async, [desc, number = ++loads_] { return load(desc, number); });
 }
 
 bool Session::update() {
     dropFormer();
+    takeSaved();
+    if (nextSave_ && !file_.saving() && !loading_.valid()) save(*std::exchange(nextSave_, std::nullopt));
     const bool changed = finishLoading();
     if (watch_) pollFile();
     return changed;
@@ -81,6 +92,8 @@ bool Session::finishLoading() {
     if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return false;
     bool changed = false;
+    // A file that cannot be read is not tried again until it is another one.
+    if (loadingPath_ == prepare_.path) watched_ = loadingTime_;
     try {
         take(loading_.get());
         changed = true;
@@ -125,6 +138,43 @@ void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instance
     document_.mix = {};
 }
 
+void Session::save(const std::string& path) {
+    if (!scene_) return;
+    if (loading_.valid() && loadingPath_ != prepare_.path) {
+        fail(fmt::format("{}: not saved while {} is opened: save it before, or wait", prepare_.path,
+                         loadingPath_));
+        return;
+    }
+    if (file_.saving() || loading_.valid())
+        nextSave_ = path;
+    else
+        file_.save(path.empty() ? prepare_.path : path, document_.edits);
+}
+
+void Session::takeSaved() {
+    try {
+        const std::optional<SceneFile::Saved> saved = file_.update();
+        if (!saved) return;
+        spdlog::info("saved {}", saved->path);
+        prepare_.path = saved->path;
+        watched_ = saved->time; // what we wrote need not be read
+        ++saves_;
+    } catch (const std::bad_alloc&) {
+        fail(prepare_.path + ": cannot be saved: it does not fit in memory");
+    } catch (const std::exception& error) {
+        fail(error.what());
+    }
+}
+
+void Session::finishSaving() {
+    file_.wait();
+    takeSaved();
+    if (!nextSave_ || loading_.valid()) return;
+    save(*std::exchange(nextSave_, std::nullopt));
+    file_.wait();
+    takeSaved();
+}
+
 void Session::keepMaterials(std::vector<Material>& materials, bool sameNames) const {
     const std::vector<Material>& before = scene_->prepared.scene.materials;
     for (size_t i = 0; i < before.size(); ++i) {
@@ -147,10 +197,15 @@ void Session::forgetSteps() {
 
 void Session::take(std::unique_ptr<LoadedScene> scene) {
     kept_ = keepLoading_ && scene_ != nullptr;
-    SceneEdits edits = editsOf(scene->prepared.scene);
-    if (kept_) {
-        keepEdits(edits, scene->prepared.scene.instances);
+    const Scene& file = scene->prepared.scene;
+    SceneEdits edits = editsOf(file);
+    if (kept_ && sameFile_ && sameObjects(scene_->prepared.scene, file)) {
+        edits = document_.edits;
+    } else if (kept_) {
+        keepEdits(edits, file.instances);
+        file_.loaded(file);
     } else {
+        file_.loaded(file);
         forgetSteps();
         document_.mix = {};
     }
@@ -159,6 +214,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene) {
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
     prepare_.path = loadingPath_;
+    watched_ = loadingTime_;
     startBake(kept_);
 }
 
@@ -178,7 +234,9 @@ void Session::startBake(bool keepLight) {
     newestBake_ = bake;
 }
 
-void Session::edit(const std::string& name, const Document& next) {
+void Session::edit(const std::string& name, const Document& wanted) {
+    Document next = wanted;
+    file_.number(next.edits.lights);
     if (open_ && done_ == steps_.size() && done_ > 0 && steps_.back().name == name) {
         steps_.back().after = next;
     } else {

@@ -9,6 +9,7 @@
 
 #include "app/bake_options.h"
 #include "app/live/live_bake.h"
+#include "app/live/scene_file.h"
 #include "assets/clock.h"
 #include "renderer/camera.h"
 #include "renderer/scene_geometry.h"
@@ -42,7 +43,8 @@ public:
 
     /// Loads a scene beside the main thread; the present one stays until it is there, or for good when it
     /// cannot be read: then lastError() says why. With `keep` (the file changed) camera and settings are to
-    /// stay, edits of materials by name, and those of lights where the file's are what they were.
+    /// stay, edits of materials by name, and those of lights where the file's are what they were; of a file
+    /// that is as it was loaded or saved all edits.
     void open(const std::string& path, bool keep = false);
     bool loading() const { return loading_.valid(); }
     const std::string& loadingPath() const { return loadingPath_; }
@@ -73,6 +75,17 @@ public:
     std::string undoName() const;
     std::string redoName() const;
 
+    /// Saves the document's edits into the scene's file, or as `path`, which is that file from then on,
+    /// beside the main thread; the newest wish counts. lastError() says what went wrong.
+    void save(const std::string& path = "");
+    bool saving() const { return file_.saving() || nextSave_.has_value(); }
+    /// Whether there is something that a save would put into the file.
+    bool dirty() const { return scene_ && file_.differs(document_.edits); }
+    /// The scene's file, "" for none: where it was loaded from, or saved as.
+    std::string path() const { return scene_ ? prepare_.path : ""; }
+    /// Counts saves that are done.
+    uint64_t saves() const { return saves_; }
+
     /// Why these settings cannot be baked, one line; "" when they can.
     static std::string problem(const BakeSettings& settings);
 
@@ -92,6 +105,8 @@ private:
     void take(std::unique_ptr<LoadedScene> scene);
     void keepEdits(SceneEdits& edits, const std::vector<Instance>& instances);
     void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
+    void takeSaved();
+    void finishSaving();
     void fail(const std::string& message);
     void forgetSteps();
     void dropFormer();
@@ -105,16 +120,20 @@ private:
     std::future<std::unique_ptr<LoadedScene>> loading_;
     std::string loadingPath_, nextPath_, lastError_;
     bool keepLoading_ = false, keepNext_ = false, kept_ = false;
+    SceneFile file_;
+    std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
     std::vector<Step> steps_;
     size_t done_ = 0;   // steps before it are done, the others undone
     bool open_ = false; // the last step may still grow
-    uint64_t loads_ = 0, firstBake_ = 0, newestBake_ = 0, changes_ = 0;
+    uint64_t loads_ = 0, firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0;
 
     using FileTime = std::optional<std::filesystem::file_time_type>;
     static FileTime fileTime(const std::string& path);
     bool watch_ = false;
     Clock::time_point polled_{};
-    FileTime watched_, seen_; // of the scene as it was read; when looked at last
+    FileTime watched_, seen_; // of the scene as it was read or saved; when looked at last
+    FileTime loadingTime_;    // of what is loading
+    bool sameFile_ = false;   // what is loading is the file as it was read or saved before
 };
 
 } // namespace relume
