@@ -214,7 +214,8 @@ void Viewer::showMaterials(std::vector<Material> materials) {
 
 void Viewer::followBake(double time) {
     BakeStatus status = bake_->status();
-    if (status.phase != status_.phase) {
+    // An edit may be answered between two looks: done before, and done again.
+    if (status.phase != status_.phase || (status.bake != status_.bake && status.phase == Phase::Done)) {
         pacer_.input();
         tell("bake", phaseName(status.phase));
     }
