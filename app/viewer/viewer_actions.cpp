@@ -14,6 +14,11 @@ namespace {
 
 constexpr float kExposureStep = 0.25f; // [EV] of a key press
 
+// Of the order in which they are declared.
+bool within(Action action, Action first, Action last) {
+    return action >= first && action <= last;
+}
+
 template<typename T>
 void next(T& choice, size_t count) {
     choice = static_cast<T>((static_cast<size_t>(choice) + 1) % count);
@@ -42,63 +47,26 @@ void Viewer::note(const std::string& text, bool bad) {
 void Viewer::perform(Action action, int argument) {
     tell("action", shortcutOf(action, argument).name);
     pacer_.input();
+    if (within(action, Action::Open, Action::Watch)) return performFile(action);
+    if (within(action, Action::Undo, Action::Redo)) return performUndo(action);
+    if (within(action, Action::MakePass, Action::Reset)) return performBake(action);
+    if (within(action, Action::AddLight, Action::NudgeLight)) return performLight(action, argument);
+    if (within(action, Action::Wipe, Action::StoreReference)) return performWipe(action);
+    if (within(action, Action::View, Action::AutomaticExposure)) return performView(action, argument);
+    if (within(action, Action::FrameAll, Action::StoreBookmark)) return performCamera(action);
+    if (within(action, Action::Screenshot, Action::Caption)) return performCapture(action);
     switch (action) {
-    case Action::Open:
-    case Action::Save:
-    case Action::SaveAs:
-    case Action::Export:
-    case Action::Watch:
-        return performFile(action);
     case Action::Quit:
         return quit();
-    case Action::Undo:
-    case Action::Redo:
-        return performUndo(action);
-    case Action::MakePass:
-    case Action::Pause:
-    case Action::Step:
-    case Action::Reset:
-        return performBake(action);
     case Action::Close:
         if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
-    case Action::AddLight:
-    case Action::DuplicateLight:
-    case Action::DeleteLight:
-    case Action::NextLight:
-    case Action::SoloLight:
-    case Action::MuteLight:
-    case Action::LightStrength:
-    case Action::NudgeLight:
-        return performLight(action, argument);
     case Action::Gizmo:
         view_.gizmo = static_cast<GizmoMode>(argument);
         return;
-    case Action::Wipe:
-    case Action::StoreReference:
-        return performWipe(action);
     case Action::LightIcons:
         view_.lightIcons = !view_.lightIcons;
         return;
-    case Action::View:
-    case Action::UvTexture:
-    case Action::Masked:
-    case Action::NextFilter:
-    case Action::NextTone:
-    case Action::Darker:
-    case Action::Brighter:
-    case Action::AutomaticExposure:
-        return performView(action, argument);
-    case Action::FrameAll:
-    case Action::FrameSelected:
-    case Action::ResetCamera:
-    case Action::StoreBookmark:
-        return performCamera(action);
-    case Action::Screenshot:
-    case Action::ScreenshotWithUi:
-    case Action::Record:
-    case Action::Caption:
-        return performCapture(action);
     case Action::ReloadShaders:
         return reloadShaders();
     case Action::Help:
@@ -108,6 +76,8 @@ void Viewer::perform(Action action, int argument) {
         return;
     case Action::Panel:
         return ui_.showPanel(static_cast<size_t>(argument));
+    default:
+        return;
     }
 }
 
