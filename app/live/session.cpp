@@ -122,7 +122,7 @@ void Session::fail(const std::string& message) {
 // What was edited goes over to a file that was written anew; the rest is as the file has it now: where its
 // lights changed, all of them.
 void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instances) {
-    const Scene& file = scene_->prepared.scene;
+    const Scene& file = file_.scene();
     const SceneEdits own = editsOf(file);
     const bool sameNames = haveSameNames(edits.materials, file.materials);
     const bool sameInstances = haveSameNames(instances, file.instances) && edits.placements == own.placements;
