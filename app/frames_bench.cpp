@@ -144,6 +144,7 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
     request.bake.solver.error = 0;
     request.bake.solver.passes = isPairMethod(request.bake.solver.method) ? Solver::kMaxPasses : 0;
     request.bake.solver.links.samples = 0;
+    request.bake.solver.layers.on = true; // as in the viewer
     const PreparedScene scene = prepareScene(request.prepare);
     std::unique_ptr<LiveBake> bake; // its Vulkan outlives OpenGL (picture_studio.h)
     const gl::HeadlessContext context({.debug = desc.bake.validate});

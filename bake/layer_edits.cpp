@@ -33,6 +33,20 @@ uint64_t surfacesOf(const Scene& scene) {
 
 } // namespace
 
+std::string LayerSolver::problem(const Scene& scene, const PatchSet& patches, uint64_t bytes) {
+    const size_t lights = lightSources(scene).size();
+    const uint64_t needed = lights * 2 * LightBuffers::lightBytes(patches);
+    if (needed <= bytes) return "";
+    return fmt::format("layers of {} lights take {:.1f} GiB, {:.1f} may be taken: use a smaller lightmap, or "
+                       "bake without layers",
+                       lights, static_cast<double>(needed) / kGiB, static_cast<double>(bytes) / kGiB);
+}
+
+bool LayerSolver::holds(size_t lamps) const {
+    const size_t others = emitterKeys_.size() + 1; // and the sky
+    return (lamps + others) * 2 * LightBuffers::lightBytes(input_.patches) <= layerBytes_;
+}
+
 void LayerSolver::edit(const LightMix& mix) {
     ASSERT(atRest() || surfacesOf(input_.scene) == surfaces_);
     mix_ = mix;
@@ -137,12 +151,8 @@ void LayerSolver::adopt() {
     const std::optional<LightPattern> working =
         work_ ? std::optional(layers_[work_->layer]->pattern) : std::nullopt;
     const std::vector<LightSource> sources = lightSources(input_.scene);
-    const uint64_t needed = sources.size() * 2 * LightBuffers::lightBytes(input_.patches);
-    if (needed > layerBytes_)
-        throw Error(fmt::format("layers of {} lights take {:.1f} GiB, {:.1f} may be taken: use a smaller "
-                                "lightmap, or bake without layers",
-                                sources.size(), static_cast<double>(needed) / kGiB,
-                                static_cast<double>(layerBytes_) / kGiB));
+    const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
+    if (!tooMany.empty()) throw Error(tooMany);
     surfaces_ = surfacesOf(input_.scene);
     lamps_.update(input_.scene);
     updateEmitters(sources);

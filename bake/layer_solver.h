@@ -36,6 +36,12 @@ public:
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
+    /// Why layers of the scene's lights take more than this many bytes, with the mend, one line; "" where they
+    /// do not.
+    static std::string problem(const Scene& scene, const PatchSet& patches, uint64_t bytes);
+    /// Whether there is memory for layers of so many lamps beside those of the other lights.
+    bool holds(size_t lamps) const;
+
     /// What the user sees and changes; valid until the next step() or edit().
     const std::vector<std::unique_ptr<Layer>>& layers() const { return layers_; }
     /// vec4 per patch of a layer's result, for a unit of its weight.

@@ -1,5 +1,6 @@
 #include "bake/solver.h"
 
+#include "assets/log.h"
 #include "bake/layer_solver.h"
 #include "bake/link_solver.h"
 #include "bake/pair_solver.h"
@@ -94,7 +95,12 @@ std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSetting
         complete.layers.bytes =
             static_cast<uint64_t>(kLayerShare * static_cast<double>(input.device.freeMemory()));
     if (isPairMethod(settings.method)) return std::make_unique<PairSolver>(input, complete);
-    if (settings.layers.on) return std::make_unique<LayerSolver>(input, complete);
+    if (settings.layers.on) {
+        const std::string tooMany = LayerSolver::problem(input.scene, input.patches, complete.layers.bytes);
+        if (!settings.layers.optional || tooMany.empty())
+            return std::make_unique<LayerSolver>(input, complete);
+        spdlog::warn("all lights are baked as one: {}", tooMany);
+    }
     return std::make_unique<LinkSolver>(input, complete);
 }
 

@@ -72,7 +72,8 @@ struct CacheSettings {
 /// Of hybrid: one layer per light (bake/layer_solver.h).
 struct LayerSettings {
     bool on = false;
-    uint64_t bytes = 0; // of layers, at most; 0: a third of the free device memory
+    uint64_t bytes = 0;    // of layers, at most; 0: a third of the free device memory
+    bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
 };
 
 struct SolverSettings {

@@ -173,7 +173,7 @@ bool BakeLoop::onlyLights(const BakeOrders::Start& start) const {
            wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
            wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
            editsOf(scene_).placements == start.edits.placements &&
-           sameForPatches(start.edits.materials, scene_.materials);
+           sameForPatches(start.edits.materials, scene_.materials) && layered()->holds(start.edits.lights.size());
 }
 
 // The solver keeps what is still right. A pass under way reads colours of surfaces: they change between two.
@@ -202,7 +202,8 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     settings_ = start.settings;
     settings_.solver.batchMs = desc_.batchMs;
     settings_.solver.live = true;
-    settings_.solver.layers.on = canHaveLayers(settings_.solver);
+    settings_.solver.layers.on = start.settings.solver.layers.on && canHaveLayers(settings_.solver);
+    settings_.solver.layers.optional = true;
     rings_ = start.rings;
     status_.bake = start.number;
     status_.settings = settings_;

@@ -46,6 +46,8 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
                     "How the lightmap comes to OpenGL: shared (no copy), copied, or auto")
         ->capture_default_str()
         ->check(CLI::IsMember({"auto", "shared", "copied"}));
+    command.add_flag("--no-layers", o.noLayers,
+                     "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
     command.add_flag("--watch", o.watch, "Load the scene again whenever its file changes");
     command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
         ->type_name("WxH");
@@ -66,6 +68,7 @@ ViewerDesc resolveViewOptions(const ViewOptions& o) {
                     .watch = o.watch,
                     .camera = o.camera,
                     .logActions = o.logActions};
+    desc.request.bake.solver.layers.on = !o.noLayers;
     if (!o.window.empty()) {
         const size_t cross = o.window.find('x');
         const std::string_view all = o.window;

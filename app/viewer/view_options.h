@@ -12,7 +12,7 @@ struct ViewOptions {
     BakeOptions bake; // scene, and how its lightmap is made
     std::string display = "auto", window, camera;
     double budget = 8; // [ms]
-    bool watch = false, logActions = false;
+    bool watch = false, logActions = false, noLayers = false;
 };
 
 void addViewOptions(CLI::App& command, ViewOptions& options);

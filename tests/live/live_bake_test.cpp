@@ -125,9 +125,14 @@ protected:
 
 TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
     const TemporaryFolder folder;
-    for (const Method method : {Method::Hybrid, Method::Directional, Method::MonteCarlo}) {
+    const std::pair<Method, bool> bakes[] = {{Method::Hybrid, false},
+                                             {Method::Hybrid, true},
+                                             {Method::Directional, false},
+                                             {Method::MonteCarlo, false}};
+    for (const auto& [method, layers] : bakes) {
         BakeSettings settings = quickSettings();
         settings.solver.method = method;
+        settings.solver.layers.on = layers;
         if (isPairMethod(method)) {
             settings.solver.pairs.window = 2;
             settings.solver.passes = 3;
@@ -164,6 +169,57 @@ TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
         }
         std::filesystem::remove(folder.path("live.exr"));
     }
+}
+
+TEST_F(LiveBakeTest, AnEditOfLightsGoesOnWithTheSameBake) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const double before = screen_.mean();
+    const uint64_t rays = bake_.status().progress.rays;
+    ASSERT_GT(rays, 0u);
+    for (Material& material : edits_.materials)
+        material.emission *= 0.5f;
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    EXPECT_NEAR(screen_.mean(), 0.5 * before, 1e-3 * before);
+    EXPECT_EQ(bake_.status().progress.rays, rays);
+    edits_.lights.push_back({.name = "Bulb"});
+    edits_.lights.back().transform[3] = glm::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    EXPECT_GT(screen_.mean(), 0.51 * before);
+    EXPECT_GT(bake_.status().progress.rays, rays);
+}
+
+// The newest edit wins, nothing piles up, and it ends as a bake of the last edit alone.
+TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    edits_.lights.push_back({.name = "Bulb"});
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    for (int i = 0; i < 300; ++i) {
+        edits_.lights.back().transform[3] = glm::vec4(0.3f + 0.001f * static_cast<float>(i), 0.6f, 0.5f, 1.0f);
+        edits_.lights.back().intensity = 1.0f + 0.01f * static_cast<float>(i);
+        start(settings);
+        if (i % 3 == 0) until([] { return false; }, 0.005);
+    }
+    const auto last = Clock::now();
+    ASSERT_TRUE(untilShown());
+    EXPECT_LT(Clock::now() - last, 10s) << "what was superseded is not worked off";
+    Scene scene = scene_.scene;
+    applyEdits(scene, edits_);
+    Baker baker(testDevice(), scene, scene_.mesh, settings);
+    while (!baker.solver().done())
+        baker.solver().step();
+    const TemporaryFolder folder;
+    bake_.exportLightmap(folder.path("live.exr"), {});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
+    const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
+    for (size_t c = 0; c < expected.planes.size(); ++c)
+        EXPECT_EQ(got.planes[c], expected.planes[c]);
 }
 
 TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {
