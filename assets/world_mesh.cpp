@@ -148,7 +148,7 @@ class PartList {
 public:
     PartList(const Scene& scene, const LightmapAtlas& atlas) : charts_(scene.meshes.size()) {
         for (size_t i = 0; i < scene.instances.size(); ++i)
-            addInstance(scene, atlas, i);
+            if (!scene.instances[i].hidden) addInstance(scene, atlas, i);
     }
     const std::vector<Part>& parts() const { return parts_; }
     uint32_t chartBound() const { return nextChart_; }

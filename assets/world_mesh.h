@@ -31,8 +31,8 @@ struct WorldMesh {
     uint32_t triangleCount() const { return static_cast<uint32_t>(material.size()); }
 };
 
-/// Flattens a scene with the atlas it was given. Drops zero-area triangles. Throws Error when nothing is
-/// left.
+/// Flattens a scene with the atlas it was given. Drops zero-area triangles and hidden instances. Throws Error
+/// when nothing is left.
 WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas);
 
 } // namespace relume

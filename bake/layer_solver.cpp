@@ -357,7 +357,8 @@ bool LayerSolver::settled() {
     }
     work.change = change;
     double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-    if (work.target == firstLevel() && !(work.target == lastLevel())) aim = std::max(aim, kFirstIterationError);
+    if (work.target == firstLevel() && !(work.target == lastLevel()))
+        aim = std::max(aim, kFirstIterationError);
     return work.iterationError <= aim || work.bounce + 1 >= kMaxPasses;
 }
 

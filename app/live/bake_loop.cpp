@@ -173,7 +173,8 @@ bool BakeLoop::onlyLights(const BakeOrders::Start& start) const {
            wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
            wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
            editsOf(scene_).placements == start.edits.placements &&
-           sameForPatches(start.edits.materials, scene_.materials) && layered()->holds(start.edits.lights.size());
+           sameForPatches(start.edits.materials, scene_.materials) &&
+           layered()->holds(start.edits.lights.size());
 }
 
 // The solver keeps what is still right. A pass under way reads colours of surfaces: they change between two.

@@ -186,7 +186,7 @@ TEST_F(LiveBakeTest, AnEditOfLightsGoesOnWithTheSameBake) {
     EXPECT_NEAR(screen_.mean(), 0.5 * before, 1e-3 * before);
     EXPECT_EQ(bake_.status().progress.rays, rays);
     edits_.lights.push_back({.name = "Bulb"});
-    edits_.lights.back().transform[3] = glm::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+    edits_.lights.back().transform[3] = glm::vec4(0.0f, 1.5f, 0.5f, 1.0f);
     start(settings);
     ASSERT_TRUE(untilShown());
     EXPECT_GT(screen_.mean(), 0.51 * before);
@@ -201,7 +201,8 @@ TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
     start(settings, false);
     ASSERT_TRUE(untilShown());
     for (int i = 0; i < 300; ++i) {
-        edits_.lights.back().transform[3] = glm::vec4(0.3f + 0.001f * static_cast<float>(i), 0.6f, 0.5f, 1.0f);
+        edits_.lights.back().transform[3] =
+            glm::vec4(0.002f * static_cast<float>(i) - 0.3f, 1.4f, 0.4f, 1.0f);
         edits_.lights.back().intensity = 1.0f + 0.01f * static_cast<float>(i);
         start(settings);
         if (i % 3 == 0) until([] { return false; }, 0.005);

@@ -52,6 +52,19 @@ TEST(WorldMesh, PositionsUvsAndDefaults) {
     EXPECT_EQ(mesh.metallicUv.size(), 6u);
 }
 
+TEST(WorldMesh, HiddenInstancesAreLeftOut) {
+    Scene scene = test::sceneOf(test::square());
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[0].hidden = true;
+    scene.instances[1].transform = glm::translate(glm::mat4(1), glm::vec3(1, 2, 3));
+    const LightmapAtlas atlas = identityAtlas(scene);
+    const WorldMesh mesh = flatten(scene, atlas);
+    ASSERT_EQ(mesh.triangleCount(), 2u);
+    EXPECT_EQ(mesh.instance, (std::vector<uint32_t>{1, 1}));
+    scene.instances[1].hidden = true;
+    EXPECT_THROW(flatten(scene, atlas), Error);
+}
+
 TEST(WorldMesh, MirroredInstancesKeepTheirFront) {
     Scene scene = test::sceneOf(test::square());
     const glm::mat4 flips[] = {glm::scale(glm::mat4(1), glm::vec3(-1, 1, 1)),
