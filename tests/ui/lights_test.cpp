@@ -161,6 +161,28 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     quit(*viewer);
 }
 
+TEST_F(ViewerLights, ASkyIsSeenBehindTheSceneAndMuted) {
+    auto viewer = openConverged();
+    viewer->moveTo(800, 400);
+    viewer->wheel(-12); // so far away that there is nothing in the corners
+    const auto corner = [](const FloatImage& image) {
+        float sum = 0;
+        for (size_t c = 0; c < 3; ++c)
+            for (uint32_t y = 4; y < 8; ++y)
+                sum += image.planes[c][size_t{y} * image.width + image.width - 5];
+        return sum / 12.0f;
+    };
+    const FloatImage before = screenshot(*viewer);
+    edit(*viewer, "edit: Add sky", [&] { viewer->keys({"ctrl+6"}); });
+    const FloatImage lit = screenshot(*viewer);
+    EXPECT_GT(corner(lit) - corner(before), 0.02f);
+    edit(*viewer, "edit: Mute of Sky", [&] { viewer->keys({"alt+m"}); });
+    const FloatImage muted = screenshot(*viewer);
+    EXPECT_NEAR(corner(muted), corner(before), 0.002f);
+    EXPECT_LT(difference(before, muted), 0.003) << "its light is gone, too";
+    quit(*viewer);
+}
+
 TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
     const std::string file = home_.path("scene.glb");
     std::filesystem::copy_file(kScenes + "cornell_small.glb", file);
