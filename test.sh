@@ -3,8 +3,8 @@
 #
 #   ./test.sh                          everything, release build
 #   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan
-#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), gpu, live (any Vulkan device), ui (Xvfb), bench
-#                                      with preset tsan: thread
+#   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), core (of these, without the program), gpu,
+#                                      live (any Vulkan device), ui (Xvfb), bench; with preset tsan: thread
 #   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
 #
 # RELUME_WERROR=ON makes warnings errors.
@@ -20,14 +20,15 @@ case "$preset $label" in
         exit 2
         ;;
 esac
-target=all
+target=(all)
 only=()
 if [ "$label" != all ]; then
-    target=relume_${label}_tests
+    target=(relume_${label}_tests)
+    if [ "$label" = unit ]; then target+=(relume_core_tests); fi
     only=(-L "^$label\$")
 fi
 
 ./setup.sh
 cmake --preset "$preset" -DRELUME_TESTS=ON -DRELUME_WERROR="${RELUME_WERROR:-OFF}" >/dev/null
-cmake --build --preset "$preset" --target "$target"
+cmake --build --preset "$preset" --target "${target[@]}"
 ctest --preset "$preset" -j "$(nproc)" "${only[@]}" "$@"

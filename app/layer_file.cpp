@@ -2,6 +2,7 @@
 
 #include "app/light_names.h"
 #include "assets/error.h"
+#include "assets/log.h"
 
 #include <algorithm>
 
@@ -31,11 +32,13 @@ LightText describe(const Scene& scene, const LightKey& key) {
 
 } // namespace
 
-LayeredImage layeredImage(const Baker& baker, LayerSolver& solver, const Scene& scene,
-                          const LightmapDesc& desc) {
+LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& desc,
+                          const std::map<std::string, std::string>& attributes) {
     ASSERT(desc.quantity == Quantity::Lighting);
+    const auto& solver = dynamic_cast<LayerSolver&>(baker.solver());
     LayeredImage image;
     image.composite = baker.lightmap(desc);
+    image.composite.attributes = attributes;
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         const LightText light = describe(scene, layer->source.key);
         LayeredImage::Layer part{layer->source.name, layer->source.weight, {}, {}};
@@ -56,6 +59,15 @@ LayeredImage layeredImage(const Baker& baker, LayerSolver& solver, const Scene& 
         image.layers.push_back(std::move(part));
     }
     return image;
+}
+
+void writeLayers(const std::string& path, const LayeredImage& image, ExrType type) {
+    writeLayeredExr(path, image, type);
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const auto error = layer.attributes.find("relume:error");
+        spdlog::info("layer '{}': {}", layer.name,
+                     error == layer.attributes.end() ? "off, not baked" : "error " + error->second);
+    }
 }
 
 std::string staleLayers(const LayerSolver& solver) {

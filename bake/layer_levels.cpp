@@ -109,7 +109,9 @@ void LayerSolver::finishLevel() {
     layer.count = total.z;
     layer.directVariance = total.y;
     layer.indirectVariance = smoothedVariance(sums);
-    layer.iterationError = settings_.passes > 0 ? 0.0 : work.iterationError * work.ratio; // one bounce more
+    // What bounces have settled is gathered once more; over all rounds the last gather is what was measured.
+    const double more = work.gathers > 1 ? 1.0 : work.ratio;
+    layer.iterationError = settings_.passes > 0 ? 0.0 : work.iterationError * more;
     layer.error = 0;
     if (layer.light > 0) {
         const double mean = layer.light / (3.0 * layer.count);

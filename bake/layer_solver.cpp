@@ -194,11 +194,8 @@ void LayerSolver::countRays() {
     commands_.run();
 }
 
-uint32_t LayerSolver::bouncesWanted() const {
-    return settings_.passes > 2 ? settings_.passes - 2 : 0;
-}
-
-// Hybrid's first pass is the direct light, its last one gathers with all links.
+// Hybrid's first pass is the direct light: with a number of passes the others are gathered over all links.
+// Else bounces settle over the links of the first round.
 void LayerSolver::beginBounces() {
     const Layer& layer = *layers_[work_->layer];
     work_->bounce = 0;
@@ -209,7 +206,7 @@ void LayerSolver::beginBounces() {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    if (settings_.passes > 0 && bouncesWanted() == 0) return beginGather();
+    if (settings_.passes > 0) return beginGather();
     beginBounce();
 }
 
@@ -275,7 +272,33 @@ void LayerSolver::linkBatch() {
     if (order_.left() > 0) return;
     if (bounces) return endBounce();
     if (++work_->round < work_->target.linkRounds) return order_.begin(input_.patches.chunkCount(), seen_);
-    finishLevel();
+    endGather();
+}
+
+// What has settled over few links has their noise, which all links see then: it is gathered again until the
+// light has settled over all of them.
+void LayerSolver::endGather() {
+    ++work_->gathers;
+    ++progress_.passes;
+    if (work_->target.linkRounds == 1 && settings_.passes == 0) return finishLevel();
+    if (settings_.passes > 0 && work_->gathers + 1 >= settings_.passes) return finishLevel();
+    std::swap(input_.light.ligIn, input_.light.ligOut);
+    VkCommandBuffer cmd = commands_.begin();
+    gatherPass_.recordCompose(cmd, input_.light, buffers_, &layers_[work_->layer]->direct,
+                              work_->target.linkRounds * linksOfRound_);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands_.run();
+    if (settings_.passes == 0 && gathered()) return finishLevel();
+    beginGather();
+}
+
+// The first change is the noise of what was there before.
+bool LayerSolver::gathered() {
+    if (work_->gathers == 1) work_->change = 0;
+    measureChange();
+    return work_->gathers + 1 >= kMaxPasses ||
+           (work_->gathers > 1 && work_->iterationError <= iterationAim());
 }
 
 // Where the CPU does both, a submit would take longer than a small batch.
@@ -325,7 +348,7 @@ bool LayerSolver::wantsDistances() const {
 
 void LayerSolver::endBounce() {
     ++progress_.passes;
-    const bool last = settings_.passes > 0 ? work_->bounce + 1 >= bouncesWanted() : settled();
+    const bool last = settled();
     std::swap(input_.light.ligIn, input_.light.ligOut);
     ++work_->bounce;
     if (last)
@@ -334,9 +357,20 @@ void LayerSolver::endBounce() {
         beginBounce();
 }
 
-// By the remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two changes
-// (conventions.md, Errors). A light that reaches nothing has settled at once.
+double LayerSolver::iterationAim() const {
+    const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
+    const bool first = work_->target == firstLevel() && !(work_->target == lastLevel());
+    return first ? std::max(aim, kFirstIterationError) : aim;
+}
+
 bool LayerSolver::settled() {
+    measureChange();
+    return work_->iterationError <= iterationAim() || work_->bounce + 1 >= kMaxPasses;
+}
+
+// From ligIn to ligOut or back. The remaining error of a geometric series: change q / (1 - q), q being the
+// ratio of the last two changes (conventions.md, Errors). A light that reaches nothing has settled at once.
+void LayerSolver::measureChange() {
     VkCommandBuffer cmd = commands_.begin();
     resolvePass_.recordChange(cmd, input_.light, buffers_);
     vk::barrier(cmd);
@@ -356,10 +390,6 @@ bool LayerSolver::settled() {
         work.iterationError = work.ratio < 1.0 ? change * work.ratio / (1.0 - work.ratio) / mean : 1.0;
     }
     work.change = change;
-    double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-    if (work.target == firstLevel() && !(work.target == lastLevel()))
-        aim = std::max(aim, kFirstIterationError);
-    return work.iterationError <= aim || work.bounce + 1 >= kMaxPasses;
 }
 
 void LayerSolver::abortPass() {

@@ -65,8 +65,9 @@ private:
         size_t layer = 0;
         LayerLevel target;
         Stage stage = Stage::Direct;
-        uint32_t round = 0;  // of samples, or of links that are gathered
-        uint32_t bounce = 0; // finished ones
+        uint32_t round = 0;   // of samples, or of links that are gathered
+        uint32_t bounce = 0;  // finished ones, over the links of the first round
+        uint32_t gathers = 0; // the same over those of all rounds
         double change = 0, ratio = 0, iterationError = 1;
     };
 
@@ -84,14 +85,17 @@ private:
     void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work);
     void endBounce();
     bool settled();
+    void measureChange();
     void beginGather();
+    void endGather();
+    bool gathered();
     bool wantsDistances() const;
     void recordRadiance(VkCommandBuffer cmd);
     void beginPass(VkCommandBuffer cmd);
     uint32_t raysOf(const Layer& layer) const;
     ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
     void countRays();
-    uint32_t bouncesWanted() const; // before the last gather; 0: until they have settled
+    double iterationAim() const;
 
     // layer_levels.cpp
     void finishLevel();

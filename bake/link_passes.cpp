@@ -181,9 +181,9 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
 }
 
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                                   bool direct, uint32_t samples) const {
+                                   const vk::Buffer* direct, uint32_t samples) const {
     const shader::ComposePush push{.sums = buffers.linkSums.address(),
-                                   .direct = direct ? buffers.direct.address() : 0,
+                                   .direct = direct ? direct->address() : 0,
                                    .light = light.ligIn.address(),
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};

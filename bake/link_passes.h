@@ -85,9 +85,9 @@ public:
     /// Of all links of a bounce; links and samples of the Work's ranges are over.
     void recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                            const Work& work) const;
-    /// ligIn = direct light and the mean of `samples` links.
+    /// ligIn = direct light (vec4 per patch, nullptr: none) and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                       bool direct, uint32_t samples) const;
+                       const vk::Buffer* direct, uint32_t samples) const;
     /// direct, as it was after so many rounds.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds) const;

@@ -273,7 +273,8 @@ void LinkSolver::beginBounce() {
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const uint32_t samples = counted ? 0 : state_.linkRounds * linksOfRound_;
-        gatherPass_.recordCompose(cmd, input_.light, buffers_, hasDirect(), samples);
+        gatherPass_.recordCompose(cmd, input_.light, buffers_, hasDirect() ? &buffers_.direct : nullptr,
+                                  samples);
         vk::barrier(cmd);
     }
     recordRadiance(cmd);

@@ -23,24 +23,6 @@ double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-struct LayerFileDesc {
-    LightmapDesc lightmap;
-    ExrType type = ExrType::Float;
-    std::map<std::string, std::string> attributes; // of the composite
-};
-
-void writeLayers(const std::string& path, Baker& baker, const Scene& scene, const LayerFileDesc& desc) {
-    auto& solver = dynamic_cast<LayerSolver&>(baker.solver());
-    LayeredImage image = layeredImage(baker, solver, scene, desc.lightmap);
-    image.composite.attributes = desc.attributes;
-    writeLayeredExr(path, image, desc.type);
-    for (const LayeredImage::Layer& layer : image.layers) {
-        const auto error = layer.attributes.find("relume:error");
-        spdlog::info("layer '{}': {}", layer.name,
-                     error == layer.attributes.end() ? "off, not baked" : "error " + error->second);
-    }
-}
-
 void bake(BakeOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
@@ -75,7 +57,7 @@ void bake(BakeOptions o) {
     addLightmapAttributes(image, o.scene, request.bake, request.lightmap, progress);
     const ExrType type = o.half ? ExrType::Half : ExrType::Float;
     if (o.layers)
-        writeLayers(o.output, baker, prepared.scene, {request.lightmap, type, image.attributes});
+        writeLayers(o.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes), type);
     else
         writeImage(o.output, image, type);
     if (!o.picture.empty()) writeImage(o.picture, image);

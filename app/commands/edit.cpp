@@ -1,6 +1,8 @@
 #include "app/command.h"
 #include "app/edit_options.h"
+#include "app/bake_edits.h"
 #include "assets/error.h"
+#include "assets/float_image.h"
 #include "assets/file_write.h"
 #include "assets/gltf.h"
 #include "assets/gltf_edit.h"
@@ -17,6 +19,7 @@ namespace {
 
 struct EditOptions {
     std::string scene, output;
+    BakeOptions bake; // output "": none
 };
 
 bool hides(const std::vector<TypedEdit>& typed) {
@@ -26,26 +29,44 @@ bool hides(const std::vector<TypedEdit>& typed) {
     });
 }
 
+// Layers, where the file can hold them.
+BakeOptions bakeOptionsOf(const EditOptions& options) {
+    BakeOptions bake = options.bake;
+    bake.scene = options.scene;
+    bake.layers = bake.output.ends_with(".exr");
+    resolveBakeOptions(bake); // contradictions are told before anything is written
+    return bake;
+}
+
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
+    if (options.output.empty() && options.bake.output.empty())
+        throw UsageError(
+            "edit: nothing to do: give -o for the edited scene, --bake for its lightmap, or both");
+    const bool bakes = !options.bake.output.empty();
+    const BakeOptions bake = bakes ? bakeOptionsOf(options) : BakeOptions{};
     if (typed.empty())
         throw UsageError("edit: no edit is given: add --set, --move, --add, --delete or another one");
     std::error_code code; // a missing scene is told by who reads it
     const auto bytes = std::filesystem::file_size(options.scene, code);
-    checkFileWritable(options.output, code ? 0 : bytes);
+    if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
+    if (bakes) checkWritable(bake.output);
     const Scene before = loadGltf(options.scene);
     for (const std::string& warning : before.warnings)
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    if (hides(typed))
+    if (hides(typed) && !options.output.empty())
         spdlog::warn("{}: a glTF file cannot say that an object is hidden: it is shown when it is read again",
                      options.output);
     Scene after = partsOfEdits(before);
     applyEdits(after, edits);
-    saveEditedGltf(options.scene, before, after, options.output);
+    if (!options.output.empty()) {
+        saveEditedGltf(options.scene, before, after, options.output);
+        spdlog::info("wrote {}", options.output);
+    }
     for (const std::string& line : done)
         std::printf("%s\n", line.c_str());
-    spdlog::info("wrote {}", options.output);
+    if (bakes) bakeEdited(bake, edits);
 }
 
 } // namespace
@@ -61,9 +82,22 @@ void addEditCommand(CLI::App& app) {
     command
         ->add_option("-o,--output", options->output,
                      "The edited scene, of the ending that SCENE has; may be SCENE itself")
-        ->required()
         ->type_name("OUT");
     addEditOptions(*command);
+    command
+        ->add_option(
+            "--bake", options->bake.output,
+            "Bake the edited scene into this lightmap, .exr (light by light, for `relume mix`) or .png")
+        ->type_name("OUT");
+    addSizeOption(*command, "--size", options->bake);
+    BakeOptions& bake = options->bake;
+    command->add_option("--error", bake.error, "--bake: stop when the remaining error is below this (0.01)")
+        ->check(CLI::Range(1e-6, 1.0));
+    command->add_option("--samples", bake.samples, "--bake: directions per patch, whatever the error")
+        ->check(CLI::Range(1u, 65536u));
+    command->add_option("--tracer", bake.tracer, "--bake: auto, rtp, query, bvh, embree or voxel")
+        ->capture_default_str();
+    command->add_option("--device", bake.device, "--bake: Vulkan device, index or part of its name");
     command->footer("NAME is what `relume info` calls a light, or an object or a material of the file; a "
                     "second \"Lamp\" is\n"
                     "\"Lamp 2\". Where a light, an object and a material share a name: light:NAME, "

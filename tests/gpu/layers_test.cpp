@@ -121,6 +121,19 @@ TEST(Layers, SumToWhatTheHybridBakes) {
     EXPECT_LE(relativeError(bake.image(), bakeScene(scene, precise).lighting), 0.02);
 }
 
+// The noise of the links that bounces settle over must not stay in what is gathered over many.
+TEST(Layers, ConvergeToWhatTheHybridConvergesTo) {
+    BakeDesc many{.passes = 0, .method = Method::Hybrid, .samples = 1024};
+    Scene scene = room();
+    for (Material& material : scene.materials)
+        material.emission = glm::vec3(0.0f);
+    const FloatImage expected = bakeScene(scene, many).lighting;
+    many.layers = true;
+    Layered bake(scene, many);
+    bake.finish();
+    EXPECT_LE(relativeError(bake.image(), expected), 0.002);
+}
+
 // Every wall of a closed box shines with e and reflects a: lighting is e / (1 - a) everywhere.
 TEST(Layers, SumToTheFurnace) {
     constexpr float kAlbedo = 0.5f, kEmission = 2.0f;

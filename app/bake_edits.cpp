@@ -1,0 +1,37 @@
+#include "app/bake_edits.h"
+
+#include "app/bake_checkpoints.h"
+#include "app/interrupt.h"
+#include "app/layer_file.h"
+#include "app/lightmap_attributes.h"
+#include "app/solve.h"
+#include "assets/error.h"
+#include "assets/log.h"
+#include "bake/vk/device.h"
+
+namespace relume {
+
+void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
+    const InterruptGuard guard;
+    const BakeRequest request = resolveBakeOptions(options);
+    PreparedScene prepared = prepareScene(request.prepare);
+    const bool moved = editsOf(prepared.scene).placements != edits.placements;
+    applyEdits(prepared.scene, edits);
+    if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
+    const vk::Device device({.select = options.device});
+    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
+    Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
+    warnIfDark(prepared.scene, baker.patches());
+    BakeCheckpoints none(options);
+    solve(baker.solver(), request.bake.solver, none);
+    FloatImage image = baker.lightmap(request.lightmap);
+    addLightmapAttributes(image, options.scene, request.bake, request.lightmap, baker.solver().progress());
+    if (options.layers)
+        writeLayers(options.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
+                    ExrType::Float);
+    else
+        writeImage(options.output, image, ExrType::Float);
+    spdlog::info("wrote {}", options.output);
+}
+
+} // namespace relume
