@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <variant>
 
 namespace relume {
 namespace {
@@ -18,13 +17,6 @@ namespace {
 struct EditOptions {
     std::string scene, output;
 };
-
-bool hides(const std::vector<TypedEdit>& typed) {
-    return std::any_of(typed.begin(), typed.end(), [](const TypedEdit& edit) {
-        const auto* hide = std::get_if<HideEdit>(&edit.edit);
-        return hide && hide->hidden;
-    });
-}
 
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     if (typed.empty())
@@ -37,7 +29,8 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    if (hides(typed))
+    const auto isHidden = [](const Placement& placement) { return placement.hidden; };
+    if (std::any_of(edits.placements.begin(), edits.placements.end(), isHidden))
         spdlog::warn("{}: a glTF file cannot say that an object is hidden: it is shown when it is read again",
                      options.output);
     Scene after = partsOfEdits(before);
