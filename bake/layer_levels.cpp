@@ -23,8 +23,8 @@ double strength(const glm::vec3& weight) {
 
 LayerLevel LayerSolver::lastLevel() const {
     const uint32_t samples = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
-    const uint32_t rounds = (samples + linksOfRound_ - 1) / linksOfRound_;
-    return {rounds, settings_.passes == 1 ? 0 : rounds};
+    const auto rounds = [&](uint32_t each) { return (samples + each - 1) / each; };
+    return {rounds(kPointsOfRound), settings_.passes == 1 ? 0 : rounds(linksOfRound_)};
 }
 
 // What a light that is moved shows at once.

@@ -19,6 +19,8 @@ constexpr double kMaxGrowth = 4.0;
 // Of the error that is asked for, what bounces may leave.
 constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
+// Of the first level, which is in haste.
+constexpr double kFirstIterationError = 0.01;
 // A GPU is not filled by less than this: unseen chunks that take no longer come along with seen ones.
 constexpr double kWorthASubmit = 0.5; // [ms]
 // What a batch this much shorter than wanted took says little about longer ones.
@@ -47,8 +49,8 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     : input_(checked(input, settings)), settings_(settings),
       linksOfRound_(
           relume::linksOfRound(input.patches.count, settings.links.samples, input.device.info().software())),
-      emitters_(input.device, input.patches, linksOfRound_),
-      lamps_(input.device, input.scene, input.patches, {.samples = linksOfRound_, .apart = true}),
+      emitters_(input.device, input.patches, kPointsOfRound),
+      lamps_(input.device, input.scene, input.patches, {.samples = kPointsOfRound, .apart = true}),
       buffers_(input.device, input.patches,
                {.linksOfRound = linksOfRound_, .direct = true, .smooth = settings.links.smooth}),
       links_(input.device, {.chunkCount = input.patches.chunkCount(),
@@ -354,7 +356,8 @@ bool LayerSolver::settled() {
         work.iterationError = work.ratio < 1.0 ? change * work.ratio / (1.0 - work.ratio) / mean : 1.0;
     }
     work.change = change;
-    const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
+    double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
+    if (work.target == firstLevel() && !(work.target == lastLevel())) aim = std::max(aim, kFirstIterationError);
     return work.iterationError <= aim || work.bounce + 1 >= kMaxPasses;
 }
 

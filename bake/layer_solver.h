@@ -49,6 +49,9 @@ public:
     /// Whether base colours may be changed now: no layer is on its way to its first level.
     bool atRest() const { return !work_ || layers_[work_->layer]->has(); }
 
+    /// Points on each light per patch and round, at most: few, so that a light that moves is seen soon.
+    static constexpr uint32_t kPointsOfRound = 2 * shader::kReplicates;
+
 private:
     enum class Stage : uint8_t { Direct, Bounces, Gather };
     /// A layer on its way to the next level.

@@ -25,6 +25,8 @@ public:
 
     /// The file is as this scene was loaded from it. Waits for a save that is under way, and forgets it.
     void loaded(const Scene& scene);
+    /// As it was loaded or saved.
+    const Scene& scene() const { return file_; }
     /// Gives each light that the file has not, and that is new to this, a number of its own in Light::node
     /// (below -1), by which it is known from then on, through undo too.
     void number(std::vector<Light>& lights);

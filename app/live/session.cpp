@@ -31,6 +31,12 @@ std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number) {
     return scene;
 }
 
+template<typename Named>
+bool haveSameNames(const std::vector<Named>& a, const std::vector<Named>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Named& x, const Named& y) { return x.name == y.name; });
+}
+
 // Placements go by the objects' order, which a save may change where an object left its node.
 bool sameObjects(const Scene& a, const Scene& b) {
     return std::equal(
@@ -113,6 +119,25 @@ void Session::fail(const std::string& message) {
     lastError_ = message;
 }
 
+// What was edited goes over to a file that was written anew; the rest is as the file has it now: where its
+// lights changed, all of them.
+void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instances) {
+    const Scene& file = file_.scene();
+    const SceneEdits own = editsOf(file);
+    const bool sameNames = haveSameNames(edits.materials, file.materials);
+    const bool sameInstances = haveSameNames(instances, file.instances) && edits.placements == own.placements;
+    const bool sameLights = edits.lights == own.lights && edits.sky == own.sky;
+    keepMaterials(edits.materials, sameNames);
+    if (sameInstances) edits.placements = document_.edits.placements;
+    if (sameLights) {
+        edits.lights = document_.edits.lights;
+        edits.sky = document_.edits.sky;
+    }
+    if (sameNames && sameInstances && sameLights) return;
+    forgetSteps(); // which number materials, instances and lights
+    document_.mix = {};
+}
+
 void Session::save(const std::string& path) {
     if (!scene_) return;
     if (loading_.valid() && loadingPath_ != prepare_.path) {
@@ -150,11 +175,8 @@ void Session::finishSaving() {
     takeSaved();
 }
 
-// What was edited goes over to a file that was written anew; the rest is as the file has it now.
-void Session::keepEdits(std::vector<Material>& materials) {
+void Session::keepMaterials(std::vector<Material>& materials, bool sameNames) const {
     const std::vector<Material>& before = scene_->prepared.scene.materials;
-    const bool sameNames = std::equal(materials.begin(), materials.end(), before.begin(), before.end(),
-                                      [](const Material& a, const Material& b) { return a.name == b.name; });
     for (size_t i = 0; i < before.size(); ++i) {
         const Material& edited = document_.edits.materials[i];
         if (edited.baseColor == before[i].baseColor && edited.emission == before[i].emission) continue;
@@ -165,7 +187,6 @@ void Session::keepEdits(std::vector<Material>& materials) {
         same->baseColor = edited.baseColor;
         same->emission = edited.emission;
     }
-    if (!sameNames) forgetSteps(); // which number the materials
 }
 
 void Session::forgetSteps() {
@@ -181,7 +202,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene) {
     if (kept_ && sameFile_ && sameObjects(scene_->prepared.scene, file)) {
         edits = document_.edits;
     } else if (kept_) {
-        keepEdits(edits.materials);
+        keepEdits(edits, file.instances);
         file_.loaded(file);
     } else {
         file_.loaded(file);

@@ -43,7 +43,8 @@ public:
 
     /// Loads a scene beside the main thread; the present one stays until it is there, or for good when it
     /// cannot be read: then lastError() says why. With `keep` (the file changed) camera and settings are to
-    /// stay, and edits of materials by name; of a file that is as it was loaded or saved all edits.
+    /// stay, edits of materials by name, and those of lights where the file's are what they were; of a file
+    /// that is as it was loaded or saved all edits.
     void open(const std::string& path, bool keep = false);
     bool loading() const { return loading_.valid(); }
     const std::string& loadingPath() const { return loadingPath_; }
@@ -102,7 +103,8 @@ private:
     void startBake(bool keepLight);
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene);
-    void keepEdits(std::vector<Material>& materials);
+    void keepEdits(SceneEdits& edits, const std::vector<Instance>& instances);
+    void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
     void takeSaved();
     void finishSaving();
     void fail(const std::string& message);

@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-// In screen coordinates.
+// In points.
 constexpr float kIcon = 13.0f;  // radius
 constexpr float kReach = 12.0f; // that a click may be off
 constexpr float kThin = 1.3f, kThick = 2.2f, kShade = 2.0f;
@@ -21,9 +21,26 @@ ImU32 packed(const glm::vec3& color, float opacity) {
     return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, opacity});
 }
 
-ImVec2 at(const glm::vec2& corner, const glm::vec2& point) {
-    return {corner.x + point.x, corner.y + point.y};
-}
+/// Draws in points.
+class Pen {
+public:
+    Pen(const LightStage& stage, const glm::vec2& corner) : scale_(stage.scale), corner_(corner) {}
+
+    ImVec2 at(const glm::vec2& point) const {
+        return {corner_.x + scale_ * point.x, corner_.y + scale_ * point.y};
+    }
+    void line(const glm::vec2& from, const glm::vec2& to, ImU32 color, float width) const {
+        ImGui::GetBackgroundDrawList()->AddLine(at(from), at(to), color, scale_ * width);
+    }
+    void line(const std::vector<ImVec2>& points, ImU32 color, float width) const {
+        ImGui::GetBackgroundDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), color,
+                                                    ImDrawFlags_None, scale_ * width);
+    }
+
+private:
+    float scale_;
+    glm::vec2 corner_;
+};
 
 glm::vec3 iconColor(const LightStage& stage, const LightKey& key, const Light& light) {
     if (stage.view.light == key) return kSelected;
@@ -32,13 +49,12 @@ glm::vec3 iconColor(const LightStage& stage, const LightKey& key, const Light& l
     return glm::mix(light.color / most, glm::vec3(1.0f), kWhitened);
 }
 
-void drawIcon(const LightStage& stage, const glm::vec2& corner, const LightKey& key, const Light& light) {
+void drawIcon(const LightStage& stage, const Pen& pen, const LightKey& key, const Light& light) {
     const ViewCamera& camera = stage.screen.camera;
     const glm::vec3 side = right(camera);
     const OutlineDesc desc{.right = side,
                            .up = glm::cross(side, forward(camera)),
                            .size = kIcon * lengthOnScreen(stage.screen, glm::vec3(light.transform[3]))};
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const std::vector<OutlineSegment> segments = lightOutline(light, desc);
     const float width = stage.view.light == key ? kThick : kThin;
     // A dark line below each, so that they show before anything.
@@ -47,19 +63,18 @@ void drawIcon(const LightStage& stage, const glm::vec2& corner, const LightKey& 
             shade ? packed(glm::vec3(0.0f), 0.5f) : packed(iconColor(stage, key, light), 1.0f);
         for (const OutlineSegment& segment : segments)
             if (const auto line = projectLine(stage.screen, segment.from, segment.to))
-                list.AddLine(at(corner, line->first), at(corner, line->second), color,
-                             shade ? width + kShade : width);
+                pen.line(line->first, line->second, color, shade ? width + kShade : width);
     }
 }
 
-void drawGizmo(const LightStage& stage, const glm::vec2& corner, GizmoHandle held) {
+void drawGizmo(const LightStage& stage, const Pen& pen, GizmoHandle held) {
     const std::optional<GizmoPlace> place = gizmoOf(stage);
     if (!place) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (const GizmoShape& shape : gizmoShapes(*place)) {
         std::vector<ImVec2> points;
         for (const glm::vec2& point : shape.points)
-            points.push_back(at(corner, point));
+            points.push_back(pen.at(point));
         const bool lit = shape.handle == held;
         const glm::vec3 color = lit ? kHeld : gizmoColor(shape.handle);
         const auto count = static_cast<int>(points.size());
@@ -67,9 +82,8 @@ void drawGizmo(const LightStage& stage, const glm::vec2& corner, GizmoHandle hel
             const bool area = count > 3; // planes let the scene through, arrow heads do not
             list.AddConvexPolyFilled(points.data(), count, packed(color, area ? 0.45f : 1.0f));
         } else {
-            list.AddPolyline(points.data(), count, packed(glm::vec3(0.0f), 0.5f), ImDrawFlags_None,
-                             kThick + kShade);
-            list.AddPolyline(points.data(), count, packed(color, 1.0f), ImDrawFlags_None, kThick);
+            pen.line(points, packed(glm::vec3(0.0f), 0.5f), kThick + kShade);
+            pen.line(points, packed(color, 1.0f), kThick);
         }
     }
 }
@@ -103,10 +117,11 @@ std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point) 
 
 void drawLights(const LightStage& stage, const glm::vec2& corner, GizmoHandle held) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.PushClipRect(at(corner, glm::vec2(0.0f)), at(corner, stage.screen.size));
+    const Pen pen(stage, corner);
+    list.PushClipRect(pen.at(glm::vec2(0.0f)), pen.at(stage.screen.size));
     for (uint32_t i = 0; i < stage.edits.lights.size() && stage.view.lightIcons; ++i)
-        drawIcon(stage, corner, {LightKey::Kind::Lamp, i, 0}, stage.edits.lights[i]);
-    drawGizmo(stage, corner, held);
+        drawIcon(stage, pen, {LightKey::Kind::Lamp, i, 0}, stage.edits.lights[i]);
+    drawGizmo(stage, pen, held);
     list.PopClipRect();
 }
 

@@ -14,7 +14,8 @@ struct LightStage {
     const SceneEdits& edits;
     const LightMix& mix;
     const ViewState& view;
-    ScreenView screen; // in screen coordinates, as all points below
+    ScreenView screen;  // in points, as all below
+    float scale = 1.0f; // screen coordinates in a point
 };
 
 /// nullptr: no light without geometry is selected.

@@ -17,20 +17,8 @@ namespace {
 
 constexpr int kCtrl = GLFW_MOD_CONTROL, kShift = GLFW_MOD_SHIFT, kAlt = GLFW_MOD_ALT;
 
-std::vector<Shortcut> makeShortcuts() {
-    std::vector<Shortcut> all = {
-        {Action::Open, 0, GLFW_KEY_O, kCtrl, "File", "Open scene"},
-        {Action::Export, 0, GLFW_KEY_E, kCtrl, "File", "Export lightmap"},
-        {Action::Watch, 0, 0, 0, "File", "Reload when the file changes"},
-        {Action::Quit, 0, GLFW_KEY_Q, kCtrl, "File", "Quit"},
-        {Action::Undo, 0, GLFW_KEY_Z, kCtrl, "Edit", "Undo"},
-        {Action::Redo, 0, GLFW_KEY_Z, kCtrl | kShift, "Edit", "Redo"},
-        {Action::Redo, 0, GLFW_KEY_Y, kCtrl, "Edit", "Redo"},
-        {Action::Pause, 0, GLFW_KEY_SPACE, 0, "Bake", "Pause or resume"},
-        {Action::MakePass, 0, GLFW_KEY_P, 0, "Bake", "Make pass"},
-        {Action::Step, 0, GLFW_KEY_PERIOD, 0, "Bake", "Step"},
-        {Action::Reset, 0, GLFW_KEY_R, kCtrl, "Bake", "Reset"},
-        {Action::Close, 0, GLFW_KEY_ESCAPE, 0, "Bake", "Close dialog or abort pass"},
+void addLightShortcuts(std::vector<Shortcut>& all) {
+    const std::vector<Shortcut> lights = {
         {Action::DuplicateLight, 0, GLFW_KEY_D, kCtrl, "Light", "Duplicate light"},
         {Action::DeleteLight, 0, GLFW_KEY_DELETE, 0, "Light", "Delete light"},
         {Action::NextLight, 1, GLFW_KEY_L, 0, "Light", "Next light"},
@@ -47,6 +35,31 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::NudgeLight, -3, GLFW_KEY_PAGE_DOWN, kAlt, "Light", "Nudge closer"},
         {Action::Gizmo, static_cast<int>(GizmoMode::Translate), GLFW_KEY_T, 0, "Light", "Move by the gizmo"},
         {Action::Gizmo, static_cast<int>(GizmoMode::Rotate), GLFW_KEY_R, 0, "Light", "Turn by the gizmo"},
+    };
+    all.insert(all.end(), lights.begin(), lights.end());
+    constexpr std::array kLights = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
+    static_assert(kLights.size() == kAddSky + 1);
+    for (int i = 0; i <= kAddSky; ++i)
+        all.push_back({Action::AddLight, i, GLFW_KEY_1 + i, kCtrl, "Light",
+                       std::string("Add ") + kLights[static_cast<size_t>(i)]});
+}
+
+std::vector<Shortcut> makeShortcuts() {
+    std::vector<Shortcut> all = {
+        {Action::Open, 0, GLFW_KEY_O, kCtrl, "File", "Open scene"},
+        {Action::Save, 0, GLFW_KEY_S, kCtrl, "File", "Save scene"},
+        {Action::SaveAs, 0, GLFW_KEY_S, kCtrl | kShift, "File", "Save scene as"},
+        {Action::Export, 0, GLFW_KEY_E, kCtrl, "File", "Export lightmap"},
+        {Action::Watch, 0, 0, 0, "File", "Reload when the file changes"},
+        {Action::Quit, 0, GLFW_KEY_Q, kCtrl, "File", "Quit"},
+        {Action::Undo, 0, GLFW_KEY_Z, kCtrl, "Edit", "Undo"},
+        {Action::Redo, 0, GLFW_KEY_Z, kCtrl | kShift, "Edit", "Redo"},
+        {Action::Redo, 0, GLFW_KEY_Y, kCtrl, "Edit", "Redo"},
+        {Action::Pause, 0, GLFW_KEY_SPACE, 0, "Bake", "Pause or resume"},
+        {Action::MakePass, 0, GLFW_KEY_P, 0, "Bake", "Make pass"},
+        {Action::Step, 0, GLFW_KEY_PERIOD, 0, "Bake", "Step"},
+        {Action::Reset, 0, GLFW_KEY_R, kCtrl, "Bake", "Reset"},
+        {Action::Close, 0, GLFW_KEY_ESCAPE, 0, "Bake", "Close dialog or abort pass"},
         {Action::LightIcons, 0, GLFW_KEY_I, 0, "View", "Light icons"},
         {Action::Wipe, 0, GLFW_KEY_B, 0, "View", "A/B wipe"},
         {Action::StoreReference, 0, GLFW_KEY_B, kShift, "View", "Store the light as B"},
@@ -70,11 +83,7 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::HideUi, 0, GLFW_KEY_F2, 0, "Help", "Hide panels"},
         {Action::ReloadShaders, 0, GLFW_KEY_F5, 0, "Help", "Reload shaders"},
     };
-    constexpr std::array kLights = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
-    static_assert(kLights.size() == kAddSky + 1);
-    for (int i = 0; i <= kAddSky; ++i)
-        all.push_back({Action::AddLight, i, GLFW_KEY_1 + i, kCtrl, "Light",
-                       std::string("Add ") + kLights[static_cast<size_t>(i)]});
+    addLightShortcuts(all);
     const std::vector<ViewEntry>& views = viewEntries();
     for (size_t i = 0; i < views.size(); ++i)
         all.push_back({Action::View, static_cast<int>(i), views[i].key, views[i].mods, "View",

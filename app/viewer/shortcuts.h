@@ -6,9 +6,11 @@
 
 namespace relume {
 
-/// Everything that a user can do by a key or a menu.
+/// Everything that a user can do by a key or a menu; what belongs together stands together.
 enum class Action : uint8_t {
     Open,
+    Save,
+    SaveAs,
     Export,
     Watch,
     Quit,

@@ -62,7 +62,7 @@ void drawRecent(const PanelContext& context, FileDialog& files) {
     for (const std::string& path : recent)
         if (ImGui::MenuItem(path.c_str())) {
             files.close();
-            context.session.open(path);
+            context.open(path);
         }
     ImGui::EndMenu();
 }
@@ -269,12 +269,17 @@ Ui::Area Ui::draw(const PanelContext& context, bool hidden, float scale) {
     {
         const ui::ItemLog::Scope scope(context.items, "Dialog");
         files_.draw();
+        question_.draw();
     }
     drawMessages(area);
     return area;
 }
 
 bool Ui::closeDialog() {
+    if (question_.isOpen()) {
+        question_.close();
+        return true;
+    }
     if (files_.isOpen()) {
         files_.close();
         return true;

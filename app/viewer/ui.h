@@ -10,6 +10,7 @@
 #include "app/viewer/panels/lights_panel.h"
 #include "app/viewer/panels/panel.h"
 #include "app/viewer/panels/scene_panel.h"
+#include "app/viewer/question.h"
 
 namespace relume {
 
@@ -28,6 +29,7 @@ public:
     void toggleHelp() { help_ = !help_; }
     void showPanel(size_t index) { wantedPanel_ = static_cast<int>(index); }
     FileDialog& files() { return files_; }
+    Question& question() { return question_; }
     Messages& messages() { return messages_; }
     const Messages& messages() const { return messages_; }
 
@@ -43,6 +45,7 @@ private:
     ScenePanel scene_;
     LightsPanel lights_;
     FileDialog files_;
+    Question question_;
     Messages messages_;
     bool help_ = false;
     int wantedPanel_ = -1;

@@ -131,7 +131,7 @@ double Viewer::idleSeconds(double time) const {
 }
 
 void Viewer::run() {
-    while (!window_.closing()) {
+    while (!closes()) {
         const double limit = 1.0 / (kLimiterSlack * window_.refreshRate());
         const double before = now();
         const double idle = idleSeconds(before);
@@ -192,9 +192,6 @@ void Viewer::followScene() {
             camera_.set(camera, scene.geometry.bounds);
             camera_.setHome(camera);
             preferences_.addRecent(scene.prepared.scene.path);
-            window_.setTitle(
-                scene.prepared.scene.path.substr(scene.prepared.scene.path.find_last_of('/') + 1) +
-                " - Relume");
         }
         askedBake_ = 0;
         tell("scene", scene.prepared.scene.path);
@@ -205,6 +202,7 @@ void Viewer::followScene() {
         session_->clearError();
     }
     followLights();
+    followFile();
 }
 
 void Viewer::showMaterials(std::vector<Material> materials) {
@@ -216,7 +214,8 @@ void Viewer::showMaterials(std::vector<Material> materials) {
 
 void Viewer::followBake(double time) {
     BakeStatus status = bake_->status();
-    if (status.phase != status_.phase) {
+    // An edit may be answered between two looks: done before, and done again.
+    if (status.phase != status_.phase || (status.bake != status_.bake && status.phase == Phase::Done)) {
         pacer_.input();
         tell("bake", phaseName(status.phase));
     }
@@ -330,6 +329,7 @@ PanelContext Viewer::context() {
             .sceneChanged = [this] { changeScene(); },
             .edit = [this](const std::string& name, const Document& next) { edit(name, next); },
             .endEdit = [this] { endEdit(); },
+            .open = [this](const std::string& path) { open(path); },
             .selectLight = [this](const LightKey& key) { selectLight(key); },
             .items = items_};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,6 +79,17 @@ private:
     void updateFlight();
     void cameraMoved();
 
+    // viewer_files.cpp
+    std::string scenePath() const; // absolute, the key of bookmarks; "" without a scene
+    void performFile(Action action);
+    void open(const std::string& path);
+    void exportLightmap(const std::string& path);
+    void save(const std::string& path);
+    void unlessUnsaved(const std::string& what, const std::function<void()>& go);
+    void quit();
+    bool closes();
+    void followFile();
+
     // viewer_progress.cpp
     void followBadge(double time);
     void beforeEdit(const std::string& name, const std::string& underWay);
@@ -89,6 +101,7 @@ private:
 
     // viewer_lights.cpp
     LightStage stage() const;
+    glm::vec2 pointAt(const glm::dvec2& at) const;
     bool showsLights() const;
     void selectLight(const std::optional<LightKey>& key);
     void followLights();
@@ -109,13 +122,10 @@ private:
     // viewer_actions.cpp
     void perform(Action action, int argument);
     void performUndo(Action action);
-    void performFile(Action action);
     void performBake(Action action);
     void performView(Action action, int argument);
     void performCamera(Action action);
     void performCapture(Action action);
-    void open(const std::string& path);
-    void exportLightmap(const std::string& path);
     void reloadShaders();
     void storeBookmark();
     void captureFrame(double time);
@@ -126,7 +136,6 @@ private:
     void note(const std::string& text, bool bad = false);
     void tell(const char* kind, const std::string& what) const; // a line for --log-actions
     void edit(const std::string& name, const Document& next);
-    std::string scenePath() const; // absolute, the key of bookmarks; "" without a scene
     std::vector<std::string> captionLines() const;
 
     ViewerDesc desc_;
@@ -147,6 +156,10 @@ private:
 
     ViewState view_;
     CameraControl camera_;
+    uint64_t saves_ = 0;              // that were told
+    std::string title_;               // of the window
+    std::function<void()> afterSave_; // waits for the save under way
+    bool quitting_ = false;           // edits are saved, or not wanted
     LightList lights_;
     std::optional<GizmoDrag> lightDrag_;
     BakeBadge badge_;

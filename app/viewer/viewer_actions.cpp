@@ -2,27 +2,21 @@
 
 #include "app/viewer/views.h"
 #include "assets/error.h"
-#include "assets/warnings.h"
 #include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
 #include <fmt/format.h>
 
 namespace relume {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr float kExposureStep = 0.25f; // [EV] of a key press
 
-std::string absolutePath(const std::string& path) {
-    std::error_code code;
-    const fs::path whole = fs::absolute(path, code);
-    return code ? path : whole.lexically_normal().string();
+// Of the order in which they are declared.
+bool within(Action action, Action first, Action last) {
+    return action >= first && action <= last;
 }
 
 template<typename T>
@@ -50,69 +44,29 @@ void Viewer::note(const std::string& text, bool bad) {
     pacer_.input();
 }
 
-std::string Viewer::scenePath() const {
-    const LoadedScene* scene = session_->scene();
-    return scene != nullptr ? absolutePath(scene->prepared.scene.path) : "";
-}
-
 void Viewer::perform(Action action, int argument) {
     tell("action", shortcutOf(action, argument).name);
     pacer_.input();
+    if (within(action, Action::Open, Action::Watch)) return performFile(action);
+    if (within(action, Action::Undo, Action::Redo)) return performUndo(action);
+    if (within(action, Action::MakePass, Action::Reset)) return performBake(action);
+    if (within(action, Action::AddLight, Action::NudgeLight)) return performLight(action, argument);
+    if (within(action, Action::Wipe, Action::StoreReference)) return performWipe(action);
+    if (within(action, Action::View, Action::AutomaticExposure)) return performView(action, argument);
+    if (within(action, Action::FrameAll, Action::StoreBookmark)) return performCamera(action);
+    if (within(action, Action::Screenshot, Action::Caption)) return performCapture(action);
     switch (action) {
-    case Action::Open:
-    case Action::Export:
-    case Action::Watch:
-        return performFile(action);
     case Action::Quit:
-        return window_.close();
-    case Action::Undo:
-    case Action::Redo:
-        return performUndo(action);
-    case Action::MakePass:
-    case Action::Pause:
-    case Action::Step:
-    case Action::Reset:
-        return performBake(action);
+        return quit();
     case Action::Close:
         if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
-    case Action::AddLight:
-    case Action::DuplicateLight:
-    case Action::DeleteLight:
-    case Action::NextLight:
-    case Action::SoloLight:
-    case Action::MuteLight:
-    case Action::LightStrength:
-    case Action::NudgeLight:
-        return performLight(action, argument);
     case Action::Gizmo:
         view_.gizmo = static_cast<GizmoMode>(argument);
         return;
-    case Action::Wipe:
-    case Action::StoreReference:
-        return performWipe(action);
     case Action::LightIcons:
         view_.lightIcons = !view_.lightIcons;
         return;
-    case Action::View:
-    case Action::UvTexture:
-    case Action::Masked:
-    case Action::NextFilter:
-    case Action::NextTone:
-    case Action::Darker:
-    case Action::Brighter:
-    case Action::AutomaticExposure:
-        return performView(action, argument);
-    case Action::FrameAll:
-    case Action::FrameSelected:
-    case Action::ResetCamera:
-    case Action::StoreBookmark:
-        return performCamera(action);
-    case Action::Screenshot:
-    case Action::ScreenshotWithUi:
-    case Action::Record:
-    case Action::Caption:
-        return performCapture(action);
     case Action::ReloadShaders:
         return reloadShaders();
     case Action::Help:
@@ -122,6 +76,8 @@ void Viewer::perform(Action action, int argument) {
         return;
     case Action::Panel:
         return ui_.showPanel(static_cast<size_t>(argument));
+    default:
+        return;
     }
 }
 
@@ -133,41 +89,6 @@ void Viewer::performUndo(Action action) {
     if (!(undo ? session_->undo() : session_->redo()))
         return note(undo ? "nothing to undo" : "nothing to make again");
     tell(undo ? "undo" : "redo", name);
-}
-
-void Viewer::performFile(Action action) {
-    if (action == Action::Watch) return session_->watchFile(!session_->watchesFile());
-    const std::string path = scenePath();
-    if (action == Action::Open) {
-        const std::string folder = path.empty() ? "" : fs::path(path).parent_path().string() + "/";
-        ui_.files().open({.title = "Open scene",
-                          .path = folder,
-                          .endings = {".glb", ".gltf"},
-                          .recent = preferences_.recent,
-                          .done = [this](const std::string& chosen) { open(chosen); }});
-        return;
-    }
-    if (path.empty()) return note("there is no scene whose lightmap could be written", true);
-    const fs::path scene(path);
-    ui_.files().open({.title = "Export lightmap",
-                      .path = freePath((scene.parent_path() / scene.stem()).string() + "_lightmap.exr"),
-                      .endings = {".exr", ".png"},
-                      .recent = {},
-                      .saves = true,
-                      .done = [this](const std::string& chosen) { exportLightmap(chosen); }});
-}
-
-void Viewer::open(const std::string& path) {
-    session_->open(path);
-    pacer_.input();
-}
-
-void Viewer::exportLightmap(const std::string& path) {
-    tell("export", path);
-    if (!path.ends_with(".exr") && !path.ends_with(".png"))
-        return note(path + ": a lightmap ends in .exr or .png", true);
-    bake_->exportLightmap(path, session_->document().lightmap);
-    note("writing " + path);
 }
 
 void Viewer::performBake(Action action) {

@@ -78,6 +78,10 @@ void Viewer::handle(const std::vector<WindowEvent>& events) {
 }
 
 void Viewer::onKey(const WindowEvent& event) {
+    if (ui_.question().isOpen()) {
+        if (event.pressed) ui_.question().answer(event.code);
+        return;
+    }
     const bool typing = gui_.wantsKeyboard();
     fast_ = (event.mods & GLFW_MOD_SHIFT) != 0;
     // A press of Ctrl itself does not count among its modifiers.
@@ -195,10 +199,9 @@ void Viewer::cameraMoved() {
 
 // Selects an instance or, with Ctrl or in its own view, the patch to see from.
 void Viewer::onClick(const WindowEvent& event) {
-    const glm::vec2 point = glm::vec2(event.at) - area_.corner;
     if (showsLights())
-        if (const std::optional<LightKey> icon = iconAt(stage(), point)) return selectLight(icon);
-    const glm::vec2 pixel = point * pixelsPerPoint();
+        if (const std::optional<LightKey> icon = iconAt(stage(), pointAt(event.at))) return selectLight(icon);
+    const glm::vec2 pixel = (glm::vec2(event.at) - area_.corner) * pixelsPerPoint();
     const std::optional<Pick> pick = pane_.pick(look(), pixel);
     const size_t seen = viewIndex("seen");
     const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view_.view == seen;

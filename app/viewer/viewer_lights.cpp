@@ -45,7 +45,13 @@ LightStage Viewer::stage() const {
     return {.edits = document.edits,
             .mix = document.mix,
             .view = view_,
-            .screen = {camera_.camera(), glm::max(area_.size, glm::vec2(1.0f))}};
+            .screen = {camera_.camera(), glm::max(area_.size / scale_, glm::vec2(1.0f))},
+            .scale = scale_};
+}
+
+// Of the picture [points], as the stage has it.
+glm::vec2 Viewer::pointAt(const glm::dvec2& at) const {
+    return (glm::vec2(at) - area_.corner) / scale_;
 }
 
 bool Viewer::showsLights() const {
@@ -194,9 +200,10 @@ void Viewer::nudgeLight(const LightSource& source, int argument) {
 bool Viewer::pressLights(const glm::dvec2& at) {
     if (!showsLights()) return false;
     const std::optional<GizmoPlace> place = gizmoOf(stage());
-    const glm::vec2 point = glm::vec2(at) - area_.corner;
+    const glm::vec2 point = pointAt(at);
     const GizmoHandle handle = place ? gizmoAt(*place, point) : GizmoHandle::None;
     if (handle == GizmoHandle::None) return false;
+    endEdit(); // of whatever came before: this is a step of its own
     lightDrag_.emplace(*place, handle, selectedLamp(stage())->transform, point);
     return true;
 }
@@ -206,7 +213,7 @@ void Viewer::dragLight(const glm::dvec2& at) {
     const LightSource* source = view_.light ? lights_.find(*view_.light) : nullptr;
     if (light == nullptr || source == nullptr) return endLightDrag(); // undone meanwhile
     const bool moves = lightDrag_->mode() == GizmoMode::Translate;
-    glm::mat4 transform = lightDrag_->moved(glm::vec2(at) - area_.corner, control_);
+    glm::mat4 transform = lightDrag_->moved(pointAt(at), control_);
     if (control_ && moves) {
         const glm::vec2 pixel = (glm::vec2(at) - area_.corner) * pixelsPerPoint();
         const std::optional<Pick> pick = pane_.pick(look(), pixel);
@@ -257,7 +264,7 @@ void Viewer::tellLightPlaces() {
     constexpr std::array<const char*, 8> kHandles = {"", "X", "Y", "Z", "YZ", "ZX", "XY", "Screen"};
     const LightStage now = stage();
     const auto add = [&](const char* name, const glm::vec2& point) {
-        items_.add(name, glm::ivec2(glm::round(area_.corner + point)));
+        items_.add(name, glm::ivec2(glm::round(area_.corner + scale_ * point)));
     };
     {
         const ui::ItemLog::Scope scope(items_, "Icons");
@@ -282,7 +289,7 @@ void Viewer::drawLightOverlay() {
     GizmoHandle held = lightDrag_ ? lightDrag_->handle() : GizmoHandle::None;
     const std::optional<GizmoPlace> place = gizmoOf(stage());
     if (!lightDrag_ && place && !camera_.dragging() && overScene(cursor_))
-        held = gizmoAt(*place, glm::vec2(cursor_) - area_.corner);
+        held = gizmoAt(*place, pointAt(cursor_));
     drawLights(stage(), area_.corner, held);
 }
 

@@ -12,10 +12,10 @@ namespace {
 
 using State = BakeBadge::State;
 
-// In screen coordinates.
+// In points.
 constexpr float kGrip = 6.0f;   // that a hand may be beside the line
 constexpr float kKnob = 7.0f;   // radius
-constexpr float kMargin = 8.0f; // around text over the scene
+constexpr float kMargin = 0.6f; // around text over the scene [heights of the font]
 
 ImVec4 colorOf(State state) {
     switch (state) {
@@ -32,7 +32,7 @@ ImVec4 colorOf(State state) {
 
 void drawLabel(ImDrawList& list, const ImVec2& at, const char* text, const ImVec4& color) {
     const ImVec2 size = ImGui::CalcTextSize(text);
-    const float pad = 0.5f * kMargin;
+    const float pad = 0.5f * kMargin * ImGui::GetFontSize();
     list.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + pad},
                        ImGui::ColorConvertFloat4ToU32({0.0f, 0.0f, 0.0f, 0.6f}), pad);
     list.AddText(at, ImGui::ColorConvertFloat4ToU32(color), text);
@@ -87,7 +87,7 @@ bool Viewer::showsWipe() const {
 
 bool Viewer::overWipe(const glm::dvec2& at) const {
     const float line = area_.corner.x + view_.wipeAt * area_.size.x;
-    return showsWipe() && std::abs(static_cast<float>(at.x) - line) <= kGrip;
+    return showsWipe() && std::abs(static_cast<float>(at.x) - line) <= kGrip * scale_;
 }
 
 void Viewer::dragWipe(const glm::dvec2& at) {
@@ -101,6 +101,7 @@ void Viewer::drawProgress() {
     if (session_->scene() == nullptr) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const glm::vec2 low = area_.corner, high = area_.corner + area_.size;
+    const float margin = kMargin * ImGui::GetFontSize();
     list.PushClipRect({low.x, low.y}, {high.x, high.y});
     if (showsWipe()) {
         const float x = low.x + view_.wipeAt * area_.size.x, middle = 0.5f * (low.y + high.y);
@@ -108,18 +109,18 @@ void Viewer::drawProgress() {
         items_.add("Line", glm::ivec2(glm::round(glm::vec2(x, middle))));
         const ImU32 dark = ImGui::ColorConvertFloat4ToU32({0.0f, 0.0f, 0.0f, 0.6f});
         const ImU32 light = ImGui::ColorConvertFloat4ToU32({1.0f, 1.0f, 1.0f, 1.0f});
-        list.AddLine({x, low.y}, {x, high.y}, dark, 3.0f);
-        list.AddLine({x, low.y}, {x, high.y}, light, 1.0f);
-        list.AddCircleFilled({x, middle}, kKnob, light);
+        list.AddLine({x, low.y}, {x, high.y}, dark, 3.0f * scale_);
+        list.AddLine({x, low.y}, {x, high.y}, light, scale_);
+        list.AddCircleFilled({x, middle}, kKnob * scale_, light);
         const char* left = ownReference_ ? "B: stored" : "B: before";
         const ImVec4 white(1.0f, 1.0f, 1.0f, 1.0f);
-        const float top = low.y + kMargin;
-        drawLabel(list, {x - ImGui::CalcTextSize(left).x - 2.0f * kMargin, top}, left, white);
-        drawLabel(list, {x + 2.0f * kMargin, top}, "A: now", white);
+        const float top = low.y + margin;
+        drawLabel(list, {x - ImGui::CalcTextSize(left).x - 2.0f * margin, top}, left, white);
+        drawLabel(list, {x + 2.0f * margin, top}, "A: now", white);
     }
     if (!hidden_ && !badge_.text.empty()) {
         const ImVec2 size = ImGui::CalcTextSize(badge_.text.c_str());
-        drawLabel(list, {high.x - size.x - 2.0f * kMargin, high.y - size.y - 2.0f * kMargin},
+        drawLabel(list, {high.x - size.x - 2.0f * margin, high.y - size.y - 2.0f * margin},
                   badge_.text.c_str(), colorOf(badge_.state));
     }
     list.PopClipRect();

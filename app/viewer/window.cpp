@@ -156,6 +156,10 @@ void Window::close() {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
+void Window::keepOpen() {
+    glfwSetWindowShouldClose(window_, GLFW_FALSE);
+}
+
 bool Window::minimised() const {
     const glm::uvec2 pixels = size();
     return glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE || pixels.x == 0 || pixels.y == 0;

@@ -42,6 +42,7 @@ public:
     GLFWwindow* handle() const { return window_; }
     bool closing() const;
     void close();
+    void keepOpen(); // takes back close(), or what the user did in its place
     bool minimised() const;
     glm::uvec2 size() const;                             // [pixels], of what is drawn into
     glm::uvec2 extent() const;                           // [screen coordinates]

@@ -1,9 +1,11 @@
 // Lights in the viewer: added by keys, set in the mix board, dragged by the gizmo, undone, compared.
+#include "assets/gltf.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 namespace relume {
@@ -69,6 +71,9 @@ TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
     EXPECT_NEAR(lifted.second, up.second - 90, 4) << "the gizmo goes along with the cursor";
     EXPECT_NEAR(lifted.first, up.first, 12);
 
+    edit(*viewer, "action: Reset", [&] { viewer->keys({"ctrl+r"}); });
+    EXPECT_LT(difference(moved, screenshot(*viewer)), 0.003) << "what a fresh bake gives";
+
     // One step each.
     edit(*viewer, "undo: Move Point", [&] { viewer->keys({"ctrl+z"}); });
     EXPECT_LT(difference(stronger, screenshot(*viewer)), 0.003);
@@ -128,6 +133,7 @@ TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
     viewer->mark();
     viewer->keys({"Delete"});
     EXPECT_TRUE(viewer->says("edit: Delete Spot 2")) << viewer->output();
+    EXPECT_TRUE(viewer->says("badge: converged", 240)) << viewer->output();
     quit(*viewer);
 }
 
@@ -153,6 +159,35 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     std::this_thread::sleep_for(500ms);
     EXPECT_LT(difference(after, screenshot(*viewer)), 0.002);
     quit(*viewer);
+}
+
+TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
+    const std::string file = home_.path("scene.glb");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", file);
+    auto viewer = open({"view", file});
+    ASSERT_TRUE(viewer->says("title: scene.glb - Relume")) << viewer->output();
+    viewer->keys({"ctrl+1"});
+    EXPECT_TRUE(viewer->says("title: scene.glb* - Relume")) << viewer->output();
+    viewer->mark();
+    viewer->keys({"ctrl+q"});
+    EXPECT_TRUE(viewer->says("ask: scene.glb has edits")) << viewer->output();
+    viewer->keys({"Escape"});
+    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(viewer->runs());
+    viewer->mark();
+    viewer->keys({"ctrl+s"});
+    EXPECT_TRUE(viewer->says("saved: " + file)) << viewer->output();
+    EXPECT_TRUE(viewer->says("title: scene.glb - Relume")) << viewer->output();
+    EXPECT_EQ(loadGltf(file).lights.at(0).name, "Point");
+    // Another one is saved on the way out.
+    viewer->mark();
+    viewer->keys({"ctrl+2"});
+    EXPECT_TRUE(viewer->says("title: scene.glb* - Relume")) << viewer->output();
+    viewer->keys({"ctrl+q"});
+    EXPECT_TRUE(viewer->says("ask: ")) << viewer->output();
+    viewer->keys({"Return"});
+    EXPECT_EQ(viewer->ended(10), 0) << viewer->output();
+    EXPECT_EQ(loadGltf(file).lights.size(), 2u);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // The session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, none runs.
 #include "app/live/session.h"
 
+#include "app/viewer/light_edits.h"
 #include "assets/error.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
@@ -167,6 +168,61 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
     writeFile(kScenes + "cornell_small.glb");
     ASSERT_TRUE(until([&] { return loads_ == 2; }));
     EXPECT_EQ(session_.lastError(), "");
+}
+
+TEST_F(SessionTest, LightsStayWhereTheAtlasBecomesAnother) {
+    open();
+    Document next = session_.document();
+    next.edits.lights.emplace_back().name = "Added";
+    next.edits.sky.radiance = glm::vec3(2.0f);
+    next.mix.muted = {{LightKey::Kind::Lamp, 0, 0}};
+    session_.edit("Add", next);
+    next.bake.size = 2 * kSize;
+    session_.edit("Size", next);
+    ASSERT_TRUE(untilLoaded());
+    ASSERT_EQ(session_.document().edits.lights.size(), 1u);
+    EXPECT_EQ(session_.document().edits.lights[0].name, "Added");
+    EXPECT_EQ(session_.document().edits.sky.radiance, glm::vec3(2.0f));
+    EXPECT_EQ(session_.document().mix, next.mix);
+    EXPECT_EQ(session_.undoName(), "Size");
+}
+
+TEST_F(SessionTest, AFileWithOtherInstancesForgetsSteps) {
+    open();
+    Document next = session_.document();
+    next.edits.lights.emplace_back().name = "Added";
+    session_.edit("Add", next);
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_geom.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_EQ(session_.undoName(), "") << "it would number instances that are gone";
+    EXPECT_EQ(session_.document().edits.placements.size(), session_.scene()->prepared.scene.instances.size());
+    ASSERT_EQ(session_.document().edits.lights.size(), 1u) << "the file has no lights, as before";
+}
+
+TEST_F(SessionTest, TheListOfLightsFollowsTheDocument) {
+    LightList list;
+    EXPECT_FALSE(list.update(session_.scene(), session_));
+    open();
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_FALSE(list.update(session_.scene(), session_)) << "nothing happened";
+    ASSERT_EQ(list.sources().size(), 1u);
+    const LightKey emitter = list.sources()[0].key;
+    EXPECT_EQ(emitter.kind, LightKey::Kind::Emitter);
+    EXPECT_EQ(list.emittersOf(emitter.material), 1u);
+    Document next = session_.document();
+    const LightKey added = addLamp(next, {.name = "Lamp", .color = {1.0f, 0.5f, 0.25f}, .intensity = 4.0f});
+    session_.edit("Add", next);
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    ASSERT_NE(list.find(added), nullptr);
+    EXPECT_EQ(list.find(added)->name, "Lamp");
+    EXPECT_EQ(list.find(added)->weight, glm::vec3(4.0f, 2.0f, 1.0f));
+    ASSERT_TRUE(session_.undo());
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_EQ(list.find(added), nullptr);
+    dim(0.0f);
+    ASSERT_TRUE(list.update(session_.scene(), session_));
+    EXPECT_TRUE(list.sources().empty()) << "it emits no more";
 }
 
 TEST_F(SessionTest, ACancelledEditHasNotBeen) {

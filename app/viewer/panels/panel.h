@@ -32,6 +32,7 @@ struct PanelContext {
     std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
     std::function<void(const std::string&, const Document&)> edit; // Session::edit, told to the log
     std::function<void()> endEdit;
+    std::function<void(const std::string&)> open; // a scene
     std::function<void(const LightKey&)> selectLight;
     ui::ItemLog& items;
 };
