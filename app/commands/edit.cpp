@@ -12,7 +12,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <variant>
 
 namespace relume {
 namespace {
@@ -21,13 +20,6 @@ struct EditOptions {
     std::string scene, output;
     BakeOptions bake; // output "": none
 };
-
-bool hides(const std::vector<TypedEdit>& typed) {
-    return std::any_of(typed.begin(), typed.end(), [](const TypedEdit& edit) {
-        const auto* hide = std::get_if<HideEdit>(&edit.edit);
-        return hide && hide->hidden;
-    });
-}
 
 // Layers, where the file can hold them.
 BakeOptions bakeOptionsOf(const EditOptions& options) {
@@ -55,7 +47,8 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    if (hides(typed) && !options.output.empty())
+    const auto isHidden = [](const Placement& placement) { return placement.hidden; };
+    if (!options.output.empty() && std::any_of(edits.placements.begin(), edits.placements.end(), isHidden))
         spdlog::warn("{}: a glTF file cannot say that an object is hidden: it is shown when it is read again",
                      options.output);
     Scene after = partsOfEdits(before);
