@@ -22,5 +22,6 @@ void addSamplesCommand(CLI::App& app);
 // Of `relume bench`.
 void addBenchMethodsCommand(CLI::App& bench);
 void addBenchFramesCommand(CLI::App& bench);
+void addBenchEditsCommand(CLI::App& bench);
 
 } // namespace relume

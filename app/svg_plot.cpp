@@ -13,6 +13,7 @@ namespace {
 // In units of the view box, about a pixel each at full width.
 constexpr double kWidth = 640, kHeight = 400, kLeft = 72, kRight = 28, kTop = 14, kBottom = 52;
 constexpr double kMarker = 3.5;
+constexpr double kLine = 18; // of text in a file of its own
 constexpr size_t kMostTicks = 12;
 
 // Told apart by people with any colour vision [Okabe and Ito 2008]; yellow and black would vanish on light
@@ -92,6 +93,32 @@ public:
         out_ = fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n",
                            kWidth, kHeight, escapeMarkup(desc_.title));
         out_ += fmt::format("<title>{}</title>\n", escapeMarkup(desc_.title));
+        body();
+        return out_ + "</svg>\n";
+    }
+
+    std::string drawFile() {
+        const double height = kHeight + kLine * (2.0 + static_cast<double>(desc_.series.size()));
+        out_ = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+                           "viewBox=\"0 0 {0} {1}\" color=\"#1c2024\">\n<style>\n{2}</style>\n"
+                           "<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+                           kWidth, height, plotStyle());
+        text(kWidth / 2, kLine, "middle", desc_.title);
+        out_ += fmt::format("<g transform=\"translate(0 {})\">\n", kLine * 1.5);
+        body();
+        for (size_t i = 0; i < desc_.series.size(); ++i) {
+            const double y = kHeight + kLine * static_cast<double>(i);
+            out_ += fmt::format("<path class=\"line\" stroke=\"{}\" stroke-dasharray=\"{}\" "
+                                "d=\"M{:.1f} {:.1f}h28\"/>\n",
+                                pick(kColours, desc_.series[i].colour), pick(kDashes, desc_.series[i].dash),
+                                kLeft, y);
+            text(kLeft + 36, y + 4, "start", desc_.series[i].name);
+        }
+        return out_ + "</g>\n</svg>\n";
+    }
+
+private:
+    void body() {
         if (any_) {
             grid();
             for (const PlotSeries& series : desc_.series)
@@ -103,10 +130,8 @@ public:
         out_ += fmt::format("<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}"
                             "</text>\n",
                             kTop + (kHeight - kTop - kBottom) / 2, escapeMarkup(desc_.yLabel));
-        return out_ + "</svg>\n";
     }
 
-private:
     void text(double x, double y, const char* anchor, const std::string& content) {
         out_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
                             escapeMarkup(content));
@@ -219,6 +244,10 @@ std::string escapeMarkup(const std::string& text) {
 
 std::string logLogPlot(const PlotDesc& desc) {
     return Plot(desc).draw();
+}
+
+std::string logLogPlotFile(const PlotDesc& desc) {
+    return Plot(desc).drawFile();
 }
 
 std::string plotSwatch(const PlotSeries& series) {

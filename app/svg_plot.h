@@ -32,6 +32,9 @@ std::string escapeMarkup(const std::string& text);
 /// from plotStyle().
 std::string logLogPlot(const PlotDesc& desc);
 
+/// The same as an SVG file of its own: on white, with title and legend.
+std::string logLogPlotFile(const PlotDesc& desc);
+
 /// A small <svg> that shows a series' colour and dash, for legends.
 std::string plotSwatch(const PlotSeries& series);
 

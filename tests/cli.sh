@@ -90,6 +90,9 @@ expectUsageError bench methods room.glb --html r.html --windows 3
 expectUsageError bench methods room.glb --html r.html --samples 0
 expectUsageError bench methods room.glb --html r.html --methods nosuchmethod
 expectUsageError bench methods room.glb --html r.html --sizes 64 --picture-size 128
+expectUsageError bench edits room.glb --lights 0
+expectUsageError bench edits room.glb --error 0
+expectUsageError bench edits room.glb --tracer nosuchtracer
 expectUsageError compare a.exr b.exr --metric nosuchmetric
 expectUsageError compare a.exr b.exr --diff diff.exr
 
@@ -153,6 +156,7 @@ expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.glb bench trace missing.glb
 expectWorldError missing.glb bench methods missing.glb --html report.html
+expectWorldError missing.glb bench edits missing.glb
 expectWorldError missing.exr compare missing.exr other.exr
 
 printf 'not a scene' >broken.glb
@@ -160,6 +164,7 @@ expectWorldError broken.glb info broken.glb
 expectWorldError broken.glb bake broken.glb -o room.exr
 expectWorldError nosuchfolder bake broken.glb -o nosuchfolder/room.exr
 expectWorldError nosuchfolder bench methods broken.glb --html nosuchfolder/report.html
+expectWorldError nosuchfolder bench edits broken.glb --plot nosuchfolder/edits.svg
 expectWorldError nosuchfolder compare a.exr b.exr --diff nosuchfolder/diff.png
 expectWorldError nosuchfolder bake broken.glb -o room.exr --picture nosuchfolder/room.png
 

@@ -93,6 +93,7 @@ void addBenchCommand(CLI::App& app) {
     bench->require_subcommand(1);
     addBenchMethodsCommand(*bench);
     addBenchFramesCommand(*bench);
+    addBenchEditsCommand(*bench);
     CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
     auto options = std::make_shared<Options>();
     trace->add_option("scene", options->scene, "glTF scene")->required();

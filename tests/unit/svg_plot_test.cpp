@@ -52,6 +52,21 @@ TEST(SvgPlot, LeavesOutWhatHasNoLogarithm) {
     EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
+TEST(SvgPlot, AFileOfItsOwnHasALegend) {
+    const PlotDesc desc{.title = "a < b",
+                        .xLabel = "x",
+                        .yLabel = "y",
+                        .series = {{.name = "first & last", .points = {{1, 1}, {10, 2}}}, {.name = "other"}}};
+    const std::string svg = logLogPlotFile(desc);
+    EXPECT_EQ(markupProblem(svg), "");
+    EXPECT_EQ(svg.find("<svg xmlns=\"http://www.w3.org/2000/svg\""), 0u);
+    EXPECT_EQ(countOf(svg, "<svg"), 1u);
+    EXPECT_EQ(countOf(svg, "<circle"), 2u);
+    EXPECT_EQ(countOf(svg, ">first &amp; last</text>"), 1u);
+    EXPECT_EQ(countOf(svg, ">other</text>"), 1u);
+    EXPECT_EQ(countOf(svg, ">a &lt; b</text>"), 1u);
+}
+
 TEST(SvgPlot, SaysWhenThereIsNothing) {
     for (const std::vector<PlotSeries>& none :
          {std::vector<PlotSeries>{}, std::vector<PlotSeries>{{.name = "a", .points = {{0, 0}}}}}) {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+#include "app/edits_report.h"
+#include "app/light_difference.h"
+#include "bake/baker.h"
+#include "bake/layer_solver.h"
+
+namespace relume {
+
+/// Steps the solver until it is done: one step at least, by which a solver that was done hears of an edit.
+/// Throws Error on Ctrl-C.
+void bakeToEnd(Solver& solver);
+
+/// What a moved lamp's picture is compared with, after the move.
+struct MoveReferences {
+    PatchLight lamp; // its own light
+    PatchLight all;
+};
+
+/// A bake in layers whose scene is edited, every edit timed: step(), edit() and liveLight() by the clock. The
+/// first of the scene's lights is the one that moves.
+class EditedBake {
+public:
+    /// The solver is made by restart(). Throws Error.
+    EditedBake(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
+
+    const Baker& baker() const { return *baker_; }
+    const Scene& scene() const { return scene_; }
+    const SolverProgress& progress() { return solver().progress(); }
+    /// Of the first light, for a unit of its weight.
+    PatchLight firstLamp();
+
+    /// From nothing to the end, with these lights. Returns how long it took [s].
+    double restart(const std::vector<Light>& lights, const SolverSettings& settings);
+    /// To lights that differ in intensity and colour alone; how long until there is a picture [s].
+    double weigh(const std::vector<Light>& lights);
+    /// To lights of which the first one has moved; fills in what a move is told of, but for its undo.
+    MoveEdit move(const std::vector<Light>& lights, const MoveReferences& references);
+    /// Back to the lights before. `first`: firstLamp() as it was then.
+    void undo(const std::vector<Light>& lights, const PatchLight& first, MoveEdit& edit);
+    struct Repaint {
+        double first = 0, all = 0; // until there is a picture with one layer that has it, with all [s]
+    };
+    Repaint repaint(uint32_t material, const glm::vec4& baseColor);
+
+private:
+    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    const Layer* movedLayer();
+
+    const vk::Device& device_;
+    Scene scene_;
+    std::unique_ptr<Baker> baker_;
+};
+
+} // namespace relume
