@@ -36,8 +36,8 @@ public:
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
-    /// Why layers of the scene's lights take more than this many bytes, with the mend, one line; "" where they
-    /// do not.
+    /// Why layers of the scene's lights take more than this many bytes, with the mend, one line; "" where
+    /// they do not.
     static std::string problem(const Scene& scene, const PatchSet& patches, uint64_t bytes);
     /// Whether there is memory for layers of so many lamps beside those of the other lights.
     bool holds(size_t lamps) const;
