@@ -13,9 +13,10 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-constexpr uint32_t kTile = 8;       // texels
-constexpr float kMaxAlbedo = 0.98f; // times the reflectivity: above, the iteration hardly ends (conventions.md)
-constexpr float kOffset = 1e-4f;    // of a texel's size, along the normal
+constexpr uint32_t kTile = 8; // texels
+constexpr float kMaxAlbedo =
+    0.98f;                       // times the reflectivity: above, the iteration hardly ends (conventions.md)
+constexpr float kOffset = 1e-4f; // of a texel's size, along the normal
 constexpr float kFloatError =
     8.0f * 0.5f * std::numeric_limits<float>::epsilon(); // of a coordinate after interpolation
 // A chart's texels are scaled to the area of its triangles, but never up by more than this: a chart two

@@ -16,14 +16,14 @@ namespace relume {
 struct PatchSet {
     TraceScene scene;
     std::vector<shader::PatchEdges> edges;
-    std::vector<shader::ChunkBounds> bounds; // per chunk
-    std::vector<glm::vec4> albedo;           // a unused
-    std::vector<glm::vec4> emission;         // [cd/m^2], a unused
+    std::vector<shader::ChunkBounds> bounds;               // per chunk
+    std::vector<glm::vec4> albedo;                         // a unused
+    std::vector<glm::vec4> emission;                       // [cd/m^2], a unused
     std::vector<glm::vec4> albedoPattern, emissionPattern; // the same for factors of 1
     std::vector<uint32_t> material; // into Scene::materials; materials.size(): the default one
     float maxAlbedo = 1.0f;         // that albedo is clamped to
-    uint32_t count = 0;                      // patches without padding
-    uint32_t clampedAlbedo = 0;              // patches whose albedo times reflectivity was above 0.98
+    uint32_t count = 0;             // patches without padding
+    uint32_t clampedAlbedo = 0;     // patches whose albedo times reflectivity was above 0.98
 
     uint32_t chunkCount() const { return scene.chunkCount(); }
 };
