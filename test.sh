@@ -24,8 +24,11 @@ target=(all)
 only=()
 if [ "$label" != all ]; then
     target=(relume_${label}_tests)
-    if [ "$label" = unit ]; then target+=(relume_core_tests); fi
     only=(-L "^$label\$")
+    if [ "$label" = unit ]; then
+        target+=(relume_core_tests)
+        only=(-L '^(unit|core)$')
+    fi
 fi
 
 ./setup.sh
