@@ -1,6 +1,7 @@
 #include "app/live/bake_loop.h"
 
 #include "app/bake_settings.h"
+#include "app/layer_file.h"
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
 #include "assets/log.h"
@@ -379,6 +380,8 @@ void BakeLoop::exportAll(const BakeOrders& orders) {
                 done ? baker_->lightmap(desc) : makeLightmap(baker_->patches(), maps_->lightNow(), desc);
             addLightmapAttributes(image, scene_.path, settings_, wanted.lightmap,
                                   baker_->solver().progress());
+            const std::string stale = layered() ? staleLayers(*layered()) : "";
+            if (!stale.empty()) image.attributes[layer_attribute::kStale] = stale;
             writeImage(wanted.path, image);
             spdlog::info("wrote {}", wanted.path);
         } catch (const Error& error) {
