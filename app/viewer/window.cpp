@@ -114,15 +114,15 @@ void Window::installCallbacks() {
                      .repeated = action == GLFW_REPEAT});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int mods) {
-        glm::dvec2 at(0.0);
-        glfwGetCursorPos(window, &at.x, &at.y);
+        // glfwGetCursorPos would say where it is by now: after a slow frame that is not where it was pressed.
         add(window, {.kind = WindowEvent::Kind::Button,
                      .code = button,
                      .mods = mods,
                      .pressed = action == GLFW_PRESS,
-                     .at = at});
+                     .at = static_cast<Window*>(glfwGetWindowUserPointer(window))->cursor_});
     });
     glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        static_cast<Window*>(glfwGetWindowUserPointer(window))->cursor_ = {x, y};
         add(window, {.kind = WindowEvent::Kind::Cursor, .at = {x, y}});
     });
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {

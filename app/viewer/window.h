@@ -63,6 +63,7 @@ private:
     GLFWwindow* window_ = nullptr;
     float contentScale_ = 1;
     double refreshRate_ = 60;
+    glm::dvec2 cursor_{0.0}; // [screen coordinates], where the newest event saw it
     std::vector<WindowEvent> events_;
 };
 

@@ -151,6 +151,17 @@ void ViewerProcess::drag(int fromX, int fromY, int toX, int toY, int button) {
     xdotool({"mouseup", std::to_string(button)});
 }
 
+void ViewerProcess::dragWhileItHangs(int fromX, int fromY, int toX, int toY) {
+    moveTo(fromX, fromY);
+    std::this_thread::sleep_for(300ms);
+    kill(pid_, SIGSTOP);
+    xdotool({"mousedown", "1"});
+    moveTo(toX, toY);
+    kill(pid_, SIGCONT);
+    std::this_thread::sleep_for(300ms);
+    xdotool({"mouseup", "1"});
+}
+
 void ViewerProcess::wheel(int clicks) {
     for (int i = 0; i < std::abs(clicks); ++i)
         xdotool({"click", clicks > 0 ? "4" : "5"});

@@ -39,6 +39,8 @@ public:
     void moveTo(int x, int y); // within the window [pixels]
     void click(int x, int y, int button = 1);
     void drag(int fromX, int fromY, int toX, int toY, int button = 1);
+    /// A drag of which it gets all but the release at once, as within a slow frame.
+    void dragWhileItHangs(int fromX, int fromY, int toX, int toY);
     void wheel(int clicks); // above 0: up
     void resize(int width, int height);
     void xdotool(const std::vector<std::string>& arguments);
