@@ -12,10 +12,6 @@ namespace {
 
 using shader::kChunk;
 
-// The first batch of each kind, before anything is measured: surely below 50 ms.
-constexpr uint32_t kFirstChunks = 16;
-// A batch may grow this much over the one before: a first measurement may have caught shader compilation.
-constexpr double kMaxGrowth = 4.0;
 // Of the error that is asked for, what bounces may leave.
 constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
@@ -23,15 +19,6 @@ constexpr double kLeastIterationError = 1e-4;
 constexpr double kFirstIterationError = 0.01;
 // A GPU is not filled by less than this: unseen chunks that take no longer come along with seen ones.
 constexpr double kWorthASubmit = 0.5; // [ms]
-// What a batch this much shorter than wanted took says little about longer ones.
-constexpr double kShortBatch = 0.25;
-
-// [chunks/ms]. wanted: chunks that the batch might have had.
-double updatedRate(double rate, double chunks, double wanted, double seconds) {
-    const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
-    if (chunks < kShortBatch * wanted && measured < rate) return rate;
-    return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
-}
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
     ASSERT(settings.method == Method::Hybrid && !settings.transport.rtrad);
@@ -137,10 +124,9 @@ uint32_t LayerSolver::raysOf(const Layer& layer) const {
     return layer.group < lamps_.groups() ? lamps_.rays(layer.group) : 0;
 }
 
-ChunkRange LayerSolver::nextRange(double chunksPerMs, uint32_t most) const {
-    const double wanted = chunksPerMs > 0 ? chunksPerMs * batchMs_ : kFirstChunks;
-    const double limit = std::clamp(wanted, 1.0, std::max(1.0, static_cast<double>(most)));
-    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(chunksPerMs * kWorthASubmit));
+ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most) const {
+    const double limit = std::clamp(rate.wanted(batchMs_), 1.0, std::max(1.0, static_cast<double>(most)));
+    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(rate.perMs() * kWorthASubmit));
 }
 
 void LayerSolver::directBatch() {
@@ -152,7 +138,7 @@ void LayerSolver::directBatch() {
         directBatchOf(emitters_, layer.group, range);
     else
         directBatchOf(lamps_, layer.group, range);
-    directRate_ = updatedRate(directRate_, range.count, directRate_ * batchMs_, secondsSince(start));
+    directRate_.note(range.count, batchMs_, secondsSince(start));
     order_.finish(range);
     if (order_.left() == 0) endDirectRound();
 }
@@ -261,8 +247,7 @@ void LayerSolver::linkBatch() {
         linksAtOnce(trace ? &closest : nullptr, work);
     else
         linksBySubmit(trace ? &closest : nullptr, work);
-    double& rate = trace ? traceRate_ : gatherRate_;
-    rate = updatedRate(rate, range.count, rate * batchMs_, secondsSince(start));
+    (trace ? traceRate_ : gatherRate_).note(range.count, batchMs_, secondsSince(start));
     const auto first = senders_.begin() + range.first;
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
     (trace ? progress_.rays : progress_.raysSaved) += count;

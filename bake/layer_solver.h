@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "assets/clock.h"
+#include "bake/batch_rate.h"
 #include "bake/emitter_light.h"
 #include "bake/lamp_light.h"
 #include "bake/layer_passes.h"
@@ -93,7 +94,7 @@ private:
     void recordRadiance(VkCommandBuffer cmd);
     void beginPass(VkCommandBuffer cmd);
     uint32_t raysOf(const Layer& layer) const;
-    ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
+    ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
     void countRays();
     double iterationAim() const;
 
@@ -134,11 +135,11 @@ private:
     LayerPass layerPass_;
     vk::Commands commands_;
     vk::Timestamps timestamps_;
-    ChunkOrder order_;                                       // of the pass under way
-    std::vector<uint8_t> seen_;                              // chunks that come first
-    std::vector<uint32_t> senders_;                          // patches that take part, per chunk
-    double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
-    bool distancesKnown_ = false;                            // of the first round's links
+    ChunkOrder order_;              // of the pass under way
+    std::vector<uint8_t> seen_;     // chunks that come first
+    std::vector<uint32_t> senders_; // patches that take part, per chunk
+    BatchRate directRate_, traceRate_, gatherRate_;
+    bool distancesKnown_ = false; // of the first round's links
 
     std::vector<std::unique_ptr<Layer>> layers_; // in the order of lightSources()
     std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last

@@ -12,12 +12,8 @@ namespace {
 
 using shader::kChunk;
 
-// The first batch of each kind, before anything is measured: surely below 50 ms.
-constexpr uint32_t kFirstChunks = 16;
 // Chunks of one submit of interpolation: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
-// A batch may grow this much over the one before: a first measurement may have caught shader compilation.
-constexpr double kMaxGrowth = 4.0;
 // Of the error that is asked for, what the bounces of the first round may leave; later rounds go on with
 // them.
 constexpr double kIterationShare = 0.2;
@@ -27,15 +23,6 @@ constexpr double kSegmentCost = 0.3;
 // A GPU is not filled by less than this, and each submit costs 0.05 to 0.1 ms: unseen chunks that take no
 // longer come along with seen ones on both sides.
 constexpr double kWorthASubmit = 0.5; // [ms]
-// What a batch this much shorter than wanted took says little about longer ones.
-constexpr double kShortBatch = 0.25;
-
-// [chunks/ms]. wanted: chunks that the batch might have had.
-double updatedRate(double rate, double chunks, double wanted, double seconds) {
-    const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
-    if (chunks < kShortBatch * wanted && measured < rate) return rate;
-    return rate > 0 ? std::min(measured, kMaxGrowth * rate) : measured;
-}
 
 EmitterLight makeEmitters(const SolverInput& input, bool hybrid, uint32_t links) {
     const PatchSet& patches = input.patches;
@@ -197,10 +184,9 @@ bool LinkSolver::wantsDirect() const {
            gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, linksOfRound_ * linkShare);
 }
 
-ChunkRange LinkSolver::nextRange(double chunksPerMs, uint32_t most) const {
-    const double wanted = chunksPerMs > 0 ? chunksPerMs * batchMs_ : kFirstChunks;
-    const double limit = std::clamp(wanted, 1.0, std::max(1.0, static_cast<double>(most)));
-    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(chunksPerMs * kWorthASubmit));
+ChunkRange LinkSolver::nextRange(const BatchRate& rate, uint32_t most) const {
+    const double limit = std::clamp(rate.wanted(batchMs_), 1.0, std::max(1.0, static_cast<double>(most)));
+    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(rate.perMs() * kWorthASubmit));
 }
 
 const std::vector<uint8_t>& LinkSolver::seenOfStage() const {
@@ -237,7 +223,7 @@ void LinkSolver::directBatch() {
             lamps_.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
         }));
     }
-    directRate_ = updatedRate(directRate_, range.count, directRate_ * batchMs_, secondsSince(start));
+    directRate_.note(range.count, batchMs_, secondsSince(start));
     order_.finish(range);
     if (settings_.live && !hasSolution()) live_.ranges.push_back(range);
     if (order_.left() > 0) return;
@@ -324,8 +310,7 @@ void LinkSolver::linkBatch() {
         linksAtOnce(trace ? &closest : nullptr, work);
     else
         linksBySubmit(trace ? &closest : nullptr, work);
-    double& rate = trace ? traceRate_ : gatherRate_;
-    rate = updatedRate(rate, range.count, rate * batchMs_, secondsSince(start));
+    (trace ? traceRate_ : gatherRate_).note(range.count, batchMs_, secondsSince(start));
     const auto first = senders_.begin() + range.first;
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
     (trace ? progress_.rays : progress_.raysSaved) += count;

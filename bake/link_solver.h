@@ -1,6 +1,7 @@
 #pragma once
 
 #include "assets/clock.h"
+#include "bake/batch_rate.h"
 #include "bake/emitter_light.h"
 #include "bake/footprint.h"
 #include "bake/lamp_light.h"
@@ -84,7 +85,7 @@ private:
     shader::ResolveSums resolveOnce(double sigma);
     double coarseVariance(double patches);
     void learn(const shader::ResolveSums& sums);
-    ChunkRange nextRange(double chunksPerMs, uint32_t most) const;
+    ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
     const std::vector<uint8_t>& seenOfStage() const;
 
     // For a viewer: link_live.cpp.
@@ -112,9 +113,9 @@ private:
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     State state_;
-    ChunkOrder order_;                                       // of the round's chunks
-    std::vector<uint8_t> seenPatches_, seenReceivers_;       // chunks that come first
-    double directRate_ = 0, traceRate_ = 0, gatherRate_ = 0; // [chunks/ms], 0: not measured yet
+    ChunkOrder order_;                                 // of the round's chunks
+    std::vector<uint8_t> seenPatches_, seenReceivers_; // chunks that come first
+    BatchRate directRate_, traceRate_, gatherRate_;
     std::vector<uint32_t> senders_; // of each chunk with links: patches that take part
     bool gridLimits_ = false;       // more samples are of no use
     bool stale_ = true;             // light_ is behind the sums

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace relume {
+
+/// How many chunks make a batch of so many milliseconds.
+class BatchRate {
+public:
+    double perMs() const { return rate_; } // [chunks/ms], 0: not measured yet
+    double wanted(double batchMs) const { return rate_ > 0 ? rate_ * batchMs : kFirstChunks; }
+    /// A batch of these that took `seconds`; batchMs was its aim.
+    void note(double chunks, double batchMs, double seconds) {
+        const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
+        if (chunks < kShortBatch * rate_ * batchMs && measured < rate_) return;
+        rate_ = rate_ > 0 ? std::min(measured, kMaxGrowth * rate_) : measured;
+    }
+
+private:
+    // The first batch of each kind, before anything is measured: surely below 50 ms.
+    static constexpr double kFirstChunks = 16;
+    // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
+    static constexpr double kMaxGrowth = 4.0;
+    // What a batch this much shorter than wanted took says little about longer ones.
+    static constexpr double kShortBatch = 0.25;
+
+    double rate_ = 0;
+};
+
+} // namespace relume
