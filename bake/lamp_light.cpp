@@ -57,7 +57,12 @@ void LampLight::group() {
         rays_ += lamp.samples;
         most = std::max(most, group.targets);
     }
-    lamps_ = vk::makeBuffer(device_, set_.lamps, "lamps");
+    // A light that is dragged changes what is in it many times a second.
+    const std::span<const shader::Lamp> lamps(set_.lamps);
+    if (lamps_ && lamps_.size() >= lamps.size_bytes())
+        vk::upload(device_, lamps_, lamps.data(), lamps.size_bytes());
+    else
+        lamps_ = vk::makeBuffer(device_, lamps, "lamps");
     if (room_ == 0) {
         batchChunks_ = mostChunks(chunkCount_, device_.info().software());
         samples_ = vk::ComputeProgram(device_, "lamp_samples");

@@ -86,10 +86,16 @@ void LayerSolver::weigh() {
     tellError();
 }
 
-std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) const {
+std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) {
     const VkDeviceSize bytes = LightBuffers::lightBytes(input_.patches);
     auto layer = std::make_unique<Layer>();
     layer->pattern = pattern;
+    if (spare_) { // a driver takes longer to find memory than a GPU to fill it
+        layer->direct = std::move(spare_->direct);
+        layer->result = std::move(spare_->result);
+        spare_.reset();
+        return layer;
+    }
     layer->direct = vk::Buffer(input_.device, {.size = bytes, .name = "direct light of a layer"});
     layer->result = vk::Buffer(input_.device, {.size = bytes, .name = "layer"});
     return layer;
@@ -112,11 +118,16 @@ std::unique_ptr<Layer> LayerSolver::takeLayer(const LightPattern& pattern) {
 // Kept for an undo, as long as there is memory for it.
 void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     if (layer->before) archive(std::move(layer->before));
-    if (!layer->has()) return;
+    if (!layer->has()) {
+        spare_ = std::move(layer);
+        return;
+    }
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * LightBuffers::lightBytes(input_.patches);
-    while (!former_.empty() && (layers_.size() + former_.size()) * each > layerBytes_)
+    while (!former_.empty() && (layers_.size() + former_.size() + (spare_ ? 1 : 0)) * each > layerBytes_) {
+        spare_ = std::move(former_.front());
         former_.erase(former_.begin());
+    }
 }
 
 // Surfaces of other colours change bounces alone. The new layer goes as far as the one before was.

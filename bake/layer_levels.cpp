@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 namespace relume {
 namespace {
@@ -76,11 +77,9 @@ shader::ResolveSums LayerSolver::resolve(uint32_t linkRounds, double sigma) {
                         {.size = input_.patches.scene.size,
                          .samples = linkRounds * linksOfRound_,
                          .sigma = static_cast<float>(sigma)});
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    return sumsOf(
-        vk::readBuffer<shader::ResolveSums>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()));
+    recordBack(cmd, buffers_.chunkSums, input_.patches.chunkCount() * sizeof(shader::ResolveSums));
+    run(cmd);
+    return sumsOf(std::span(back_.as<shader::ResolveSums>(), input_.patches.chunkCount()));
 }
 
 void LayerSolver::finishLevel() {
@@ -97,13 +96,9 @@ void LayerSolver::finishLevel() {
     VkCommandBuffer cmd = commands_.begin();
     layerPass_.recordResult(cmd, input_.light, layer, work.target.linkRounds > 0 ? &buffers_.result : nullptr,
                             buffers_.chunkSums);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    glm::dvec4 total(0.0);
-    for (const glm::vec4& sum :
-         vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()))
-        total += glm::dvec4(sum);
+    recordBack(cmd, buffers_.chunkSums, input_.patches.chunkCount() * sizeof(glm::vec4));
+    run(cmd);
+    const glm::dvec4 total = sumsOf(std::span(back_.as<glm::vec4>(), input_.patches.chunkCount()));
     layer.level = work.target;
     layer.light = total.x;
     layer.count = total.z;

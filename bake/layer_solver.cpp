@@ -4,7 +4,6 @@
 #include "bake/point_trace.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace relume {
@@ -12,11 +11,6 @@ namespace {
 
 using shader::kChunk;
 
-// Of the error that is asked for, what bounces may leave.
-constexpr double kIterationShare = 0.2;
-constexpr double kLeastIterationError = 1e-4;
-// Of the first level, which is in haste.
-constexpr double kFirstIterationError = 0.01;
 // A GPU is not filled by less than this: unseen chunks that take no longer come along with seen ones.
 constexpr double kWorthASubmit = 0.5; // [ms]
 
@@ -57,6 +51,10 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
             vk::Buffer(input.device, {.size = lightBytes / sizeof(glm::vec4) * sizeof(glm::uvec2),
                                       .name = "packed radiance"});
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
+    back_ =
+        vk::Buffer(input.device, {.size = std::max<uint64_t>(buffers_.chunkSums.size(), buffers_.rays.size()),
+                                  .memory = vk::Memory::Host,
+                                  .name = "sums for the CPU"});
     const std::vector<shader::Patch>& patches = input.patches.scene.patches;
     senders_.assign(input.patches.chunkCount(), 0);
     for (size_t i = 0; i < patches.size(); ++i)
@@ -102,21 +100,30 @@ void LayerSolver::begin(size_t layer, LayerLevel target) {
     work_ = Work{.layer = layer, .target = target};
     work_->round = layers_[layer]->directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
-    VkCommandBuffer cmd = commands_.begin();
-    vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
-    beginPass(cmd);
+    beginPass(Stage::Direct);
     if (raysOf(*layers_[layer]) == 0) { // nothing in it shines
         work_->round = target.directRounds - 1;
         endDirectRound();
     }
 }
 
-// Ends the command buffer and makes all chunks wait for their turn.
-void LayerSolver::beginPass(VkCommandBuffer cmd) {
+void LayerSolver::beginPass(Stage stage) {
+    work_->stage = stage;
+    work_->begun = false;
+    order_.begin(input_.patches.chunkCount(), seen_);
+}
+
+// Into back_, whose former contents are over with.
+void LayerSolver::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes) {
+    vk::barrier(cmd);
+    const VkBufferCopy all{0, 0, bytes};
+    vkCmdCopyBuffer(cmd, from.handle(), back_.handle(), 1, &all);
+}
+
+void LayerSolver::run(VkCommandBuffer cmd) {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    order_.begin(input_.patches.chunkCount(), seen_);
 }
 
 uint32_t LayerSolver::raysOf(const Layer& layer) const {
@@ -148,10 +155,14 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
     const typename Lights::Work work{.group = group, .round = work_->round, .range = range};
     const PointTimes times = tracePoints(
         {commands_, timestamps_, input_.tracer}, lights.segments(work, buffers_.rays),
-        [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, input_.light, work); },
+        [&](VkCommandBuffer cmd) {
+            if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
+            lights.recordSamples(cmd, input_.light, work);
+        },
         [&](VkCommandBuffer cmd) {
             lights.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
         });
+    work_->begun = true;
     progress_.traceSeconds += times.trace;
     progress_.gatherSeconds += times.gather;
 }
@@ -161,225 +172,35 @@ void LayerSolver::endDirectRound() {
     if (++work_->round < work_->target.directRounds) return order_.begin(input_.patches.chunkCount(), seen_);
     const uint32_t rounds = work_->target.directRounds - layer.directRounds;
     VkCommandBuffer cmd = commands_.begin();
-    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, rounds);
+    if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    layer.directRounds = work_->target.directRounds;
+    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, rounds);
+    recordRayCount(cmd);
+    run(cmd);
     countRays();
+    layer.directRounds = work_->target.directRounds;
     beginBounces();
 }
 
-void LayerSolver::countRays() {
-    const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
-    progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
-    VkCommandBuffer cmd = commands_.begin();
+void LayerSolver::recordRayCount(VkCommandBuffer cmd) {
+    recordBack(cmd, buffers_.rays, buffers_.rays.size());
+    vk::barrier(cmd);
     vkCmdFillBuffer(cmd, buffers_.rays.handle(), 0, VK_WHOLE_SIZE, 0);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
 }
 
-// Hybrid's first pass is the direct light: with a number of passes the others are gathered over all links.
-// Else bounces settle over the links of the first round.
-void LayerSolver::beginBounces() {
-    const Layer& layer = *layers_[work_->layer];
-    work_->bounce = 0;
-    if (work_->target.linkRounds == 0) return finishLevel();
-    VkCommandBuffer cmd = commands_.begin();
-    const VkBufferCopy all{0, 0, input_.light.ligIn.size()};
-    vkCmdCopyBuffer(cmd, layer.direct.handle(), input_.light.ligIn.handle(), 1, &all);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    if (settings_.passes > 0) return beginGather();
-    beginBounce();
-}
-
-void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
-    radiancePass_.record(cmd, input_.light, settings_.transport);
-    vk::barrier(cmd);
-    gatherPass_.recordPack(cmd, input_.light, buffers_);
-}
-
-void LayerSolver::beginBounce() {
-    work_->stage = Stage::Bounces;
-    work_->round = 0;
-    VkCommandBuffer cmd = commands_.begin();
-    recordRadiance(cmd);
-    beginPass(cmd);
-}
-
-// What has settled is gathered over the links of all rounds.
-void LayerSolver::beginGather() {
-    work_->stage = Stage::Gather;
-    work_->round = 0;
-    VkCommandBuffer cmd = commands_.begin();
-    recordRadiance(cmd);
-    vkCmdFillBuffer(cmd, buffers_.linkSums.handle(), 0, VK_WHOLE_SIZE, 0);
-    beginPass(cmd);
-}
-
-void LayerSolver::linkBatch() {
-    const Layer& layer = *layers_[work_->layer];
-    const uint32_t next = order_.next(1, 0).first;
-    const LinkCache::Place place = links_.find(work_->round, next, input_.patches.chunkCount() - next);
-    const bool trace = !place.known;
-    const ChunkRange range = trace ? nextRange(traceRate_, std::min(place.count, buffers_.batchChunks))
-                                   : nextRange(gatherRate_, place.count);
-    const auto start = Clock::now();
-    const ClosestWork closest{.firstChunk = range.first,
-                              .chunkCount = range.count,
-                              .firstSample = work_->round * linksOfRound_,
-                              .sampleCount = linksOfRound_,
-                              .rotation = settings_.links.rotation,
-                              .links = place.links,
-                              .linksOffset = place.offset};
-    const bool bounces = work_->stage == Stage::Bounces;
-    const LinkGatherPass::Work work{.links = place.links,
-                                    .linksOffset = place.offset,
-                                    .samples = linksOfRound_,
-                                    .direct = &layer.direct,
-                                    .output = bounces,
-                                    .accumulate = !bounces,
-                                    .range = range};
-    if (gatherPass_.onCpu() && !input_.tracer.records())
-        linksAtOnce(trace ? &closest : nullptr, work);
-    else
-        linksBySubmit(trace ? &closest : nullptr, work);
-    (trace ? traceRate_ : gatherRate_).note(range.count, batchMs_, secondsSince(start));
-    const auto first = senders_.begin() + range.first;
-    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
-    (trace ? progress_.rays : progress_.raysSaved) += count;
-    progress_.pairs += count;
-    links_.note(work_->round, range);
-    order_.finish(range);
-    if (order_.left() > 0) return;
-    if (bounces) return endBounce();
-    if (++work_->round < work_->target.linkRounds) return order_.begin(input_.patches.chunkCount(), seen_);
-    endGather();
-}
-
-// What has settled over few links has their noise, which all links see then: it is gathered again until the
-// light has settled over all of them.
-void LayerSolver::endGather() {
-    ++work_->gathers;
-    ++progress_.passes;
-    if (work_->target.linkRounds == 1 && settings_.passes == 0) return finishLevel();
-    if (settings_.passes > 0 && work_->gathers + 1 >= settings_.passes) return finishLevel();
-    std::swap(input_.light.ligIn, input_.light.ligOut);
-    VkCommandBuffer cmd = commands_.begin();
-    gatherPass_.recordCompose(cmd, input_.light, buffers_, &layers_[work_->layer]->direct,
-                              work_->target.linkRounds * linksOfRound_);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    if (settings_.passes == 0 && gathered()) return finishLevel();
-    beginGather();
-}
-
-// The first change is the noise of what was there before.
-bool LayerSolver::gathered() {
-    if (work_->gathers == 1) work_->change = 0;
-    measureChange();
-    return work_->gathers + 1 >= kMaxPasses ||
-           (work_->gathers > 1 && work_->iterationError <= iterationAim());
-}
-
-// Where the CPU does both, a submit would take longer than a small batch.
-void LayerSolver::linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work) {
-    const auto start = Clock::now();
-    if (closest) input_.tracer.closest(VK_NULL_HANDLE, *closest);
-    const double traced = secondsSince(start);
-    gatherPass_.record(VK_NULL_HANDLE, input_.light, buffers_, work);
-    progress_.traceSeconds += traced;
-    progress_.gatherSeconds += secondsSince(start) - traced;
-    if (!wantsDistances()) return;
-    VkCommandBuffer cmd = commands_.begin();
-    gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
-    vk::barrier(cmd);
-    commands_.run();
-}
-
-void LayerSolver::linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work) {
-    VkCommandBuffer cmd = commands_.begin();
-    timestamps_.reset(cmd);
-    timestamps_.mark(cmd, 0);
-    const auto start = Clock::now();
-    if (closest) input_.tracer.closest(cmd, *closest);
-    const double cpuTrace = secondsSince(start);
-    vk::barrier(cmd);
-    timestamps_.mark(cmd, 1);
-    if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
-        vk::hostBarrier(cmd);
-        commands_.run();
-        cmd = commands_.begin();
-    }
-    gatherPass_.record(cmd, input_.light, buffers_, work);
-    if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
-    timestamps_.mark(cmd, 2);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    progress_.traceSeconds +=
-        input_.tracer.onCpu() && closest ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
-    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
-}
-
-// Of the first round's links: the same for every layer.
-bool LayerSolver::wantsDistances() const {
-    return buffers_.distances && !distancesKnown_ && work_->stage == Stage::Gather && work_->round == 0;
-}
-
-void LayerSolver::endBounce() {
-    ++progress_.passes;
-    const bool last = settled();
-    std::swap(input_.light.ligIn, input_.light.ligOut);
-    ++work_->bounce;
-    if (last)
-        beginGather();
-    else
-        beginBounce();
-}
-
-double LayerSolver::iterationAim() const {
-    const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-    const bool first = work_->target == firstLevel() && !(work_->target == lastLevel());
-    return first ? std::max(aim, kFirstIterationError) : aim;
-}
-
-bool LayerSolver::settled() {
-    measureChange();
-    return work_->iterationError <= iterationAim() || work_->bounce + 1 >= kMaxPasses;
-}
-
-// From ligIn to ligOut or back. The remaining error of a geometric series: change q / (1 - q), q being the
-// ratio of the last two changes (conventions.md, Errors). A light that reaches nothing has settled at once.
-void LayerSolver::measureChange() {
-    VkCommandBuffer cmd = commands_.begin();
-    resolvePass_.recordChange(cmd, input_.light, buffers_);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    glm::dvec4 total(0.0);
-    for (const glm::vec4& sum :
-         vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()))
-        total += glm::dvec4(sum);
-    const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
-    const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
-    Work& work = *work_;
-    if (change == 0.0 || mean <= 0.0) {
-        work.iterationError = work.ratio = 0.0;
-    } else if (work.change > 0.0) {
-        work.ratio = change / work.change;
-        work.iterationError = work.ratio < 1.0 ? change * work.ratio / (1.0 - work.ratio) / mean : 1.0;
-    }
-    work.change = change;
+void LayerSolver::countRays() {
+    const uint32_t* counters = back_.as<uint32_t>();
+    progress_.rays = std::accumulate(counters, counters + shader::kRayCounters, progress_.rays);
 }
 
 void LayerSolver::abortPass() {
     if (!work_) return;
-    if (work_->stage == Stage::Direct) countRays();
+    if (work_->stage == Stage::Direct) {
+        VkCommandBuffer cmd = commands_.begin();
+        recordRayCount(cmd);
+        run(cmd);
+        countRays();
+    }
     work_.reset();
     progress_.passFraction = 0;
 }

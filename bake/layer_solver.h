@@ -69,6 +69,8 @@ private:
         uint32_t round = 0;   // of samples, or of links that are gathered
         uint32_t bounce = 0;  // finished ones, over the links of the first round
         uint32_t gathers = 0; // the same over those of all rounds
+        bool begun = false;   // a batch of this pass has been made
+        bool lit = false;     // what patches send is that of ligIn
         double change = 0, ratio = 0, iterationError = 1;
     };
 
@@ -79,23 +81,28 @@ private:
     template<typename Lights>
     void directBatchOf(const Lights& lights, uint32_t group, ChunkRange range);
     void endDirectRound();
-    void beginBounces();
-    void beginBounce();
-    void linkBatch();
-    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
-    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work);
-    void endBounce();
-    bool settled();
-    void measureChange();
-    void beginGather();
-    void endGather();
-    bool gathered();
-    bool wantsDistances() const;
-    void recordRadiance(VkCommandBuffer cmd);
-    void beginPass(VkCommandBuffer cmd);
+    void recordRayCount(VkCommandBuffer cmd);
+    void countRays();
     uint32_t raysOf(const Layer& layer) const;
     ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
-    void countRays();
+    void beginPass(Stage stage);
+    void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes);
+    void run(VkCommandBuffer cmd);
+
+    // layer_links.cpp
+    void beginBounces();
+    void linkBatch();
+    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work, bool endsBounce);
+    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work, bool endsBounce);
+    void recordPassBegin(VkCommandBuffer cmd);
+    void recordRadiance(VkCommandBuffer cmd);
+    void recordBounceEnd(VkCommandBuffer cmd);
+    void recordChange(VkCommandBuffer cmd);
+    void endBounce();
+    void learnChange();
+    void endGather();
+    bool gathered() const;
+    bool wantsDistances() const;
     double iterationAim() const;
 
     // layer_levels.cpp
@@ -110,7 +117,7 @@ private:
     // layer_edits.cpp
     void adopt();
     void weigh();
-    std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
+    std::unique_ptr<Layer> makeLayer(const LightPattern& pattern);
     std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
     void archive(std::unique_ptr<Layer> layer);
     void keepDirect(const Layer& from, Layer& to);
@@ -133,6 +140,7 @@ private:
     LinkGatherPass gatherPass_;
     ResolvePass resolvePass_;
     LayerPass layerPass_;
+    vk::Buffer back_; // what the CPU reads after a submit: sums per chunk, or counters of rays
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     ChunkOrder order_;              // of the pass under way
@@ -143,6 +151,7 @@ private:
 
     std::vector<std::unique_ptr<Layer>> layers_; // in the order of lightSources()
     std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
+    std::unique_ptr<Layer> spare_;               // of no light: its buffers are for the next one
     uint64_t layerBytes_ = 0;                    // at most, of all of them
     std::vector<LightKey> emitterKeys_;          // of emitters_' groups
     uint64_t surfaces_ = 0;

@@ -76,9 +76,8 @@ double LinkSolver::coarseVariance(double patches) {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    glm::dvec4 total(0.0);
-    for (const glm::vec4& sum : vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, senders_.size()))
-        total += glm::dvec4(sum);
+    const glm::dvec4 total =
+        sumsOf(vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, senders_.size()));
     const double rows = std::max(0.0, total.x) / std::max(1.0, total.y);
     const double columns = std::max(0.0, total.z) / std::max(1.0, total.w);
     return patches * (settings_.links.indirectScale == 2 ? kGapShare2 : kGapShare4) * (rows + columns);

@@ -90,7 +90,7 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
            footprint + EmitterLight::bytes(chunkCount, software) + LampLight::bytes(chunkCount, software);
 }
 
-shader::ResolveSums sumsOf(const std::vector<shader::ResolveSums>& chunks) {
+shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks) {
     std::array<double, 6> total{};
     for (const shader::ResolveSums& s : chunks) {
         const std::array<float, 6> terms = {s.light, s.direct, s.indirect, s.raw, s.bias, s.count};
@@ -99,6 +99,13 @@ shader::ResolveSums sumsOf(const std::vector<shader::ResolveSums>& chunks) {
     }
     const auto f = [&](size_t k) { return static_cast<float>(total[k]); };
     return {f(0), f(1), f(2), f(3), f(4), f(5)};
+}
+
+glm::dvec4 sumsOf(std::span<const glm::vec4> chunks) {
+    glm::dvec4 total(0.0);
+    for (const glm::vec4& sum : chunks)
+        total += glm::dvec4(sum);
+    return total;
 }
 
 void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "bake/coarse_patches.h"
 #include "bake/light_buffers.h"
@@ -47,7 +48,8 @@ struct LinkBuffers {
 };
 
 /// Of all chunks.
-shader::ResolveSums sumsOf(const std::vector<shader::ResolveSums>& chunks);
+shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks);
+glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
 
 /// Light over links: the mean of what the links' patches send, and of direct light, to ligOut. Where only
 /// receivers of a coarser grid have links: first to coarseSums, cleared before, then by interpolation to

@@ -423,11 +423,8 @@ void LinkSolver::measureChange() {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
-    const auto sums =
-        vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount());
-    glm::dvec4 total(0.0);
-    for (const glm::vec4& sum : sums)
-        total += glm::dvec4(sum);
+    const glm::dvec4 total =
+        sumsOf(vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()));
     const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
     if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));

@@ -1,19 +1,13 @@
 #include "bake/vk/buffer.h"
 
-#include "bake/vk/commands.h"
 #include "bake/vk/memory.h"
+#include "bake/vk/staging.h"
 
-#include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace relume::vk {
 
 namespace {
-
-// Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
-// had always.
-constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
 
 uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
     if (memory == Memory::Device) return device.deviceMemoryType(typeBits);
@@ -21,12 +15,6 @@ uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     const uint32_t cached = device.memoryType(typeBits, coherent | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
     return cached != ~0u ? cached : device.memoryType(typeBits, coherent);
-}
-
-void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, const Buffer& to,
-          VkDeviceSize toOffset, VkDeviceSize size) {
-    const VkBufferCopy region{fromOffset, toOffset, size};
-    vkCmdCopyBuffer(cmd, from.handle(), to.handle(), 1, &region);
 }
 
 } // namespace
@@ -103,49 +91,13 @@ void Buffer::release() {
 void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size,
             VkDeviceSize offset) {
     ASSERT(offset + size <= buffer.size());
-    if (size == 0) return;
-    Commands commands(device);
-    if (buffer.mapped() != nullptr) {
-        barrier(commands.begin()); // earlier work may still use the buffer
-        commands.run();
-        std::memcpy(static_cast<char*>(buffer.mapped()) + offset, data, size);
-        return;
-    }
-    const Buffer staging(device,
-                         {.size = std::min(size, kStagingBytes), .memory = Memory::Host, .name = "upload"});
-    for (VkDeviceSize done = 0; done < size; done += kStagingBytes) {
-        const VkDeviceSize piece = std::min(kStagingBytes, size - done);
-        std::memcpy(staging.mapped(), static_cast<const char*>(data) + done, piece);
-        VkCommandBuffer cmd = commands.begin();
-        barrier(cmd);
-        copy(cmd, staging, 0, buffer, offset + done, piece);
-        barrier(cmd);
-        commands.run();
-    }
+    if (size > 0) device.staging().upload(buffer, data, size, offset);
 }
 
 void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
               VkDeviceSize offset) {
     ASSERT(offset + size <= buffer.size());
-    if (size == 0) return;
-    Commands commands(device);
-    if (buffer.mapped() != nullptr) {
-        hostBarrier(commands.begin());
-        commands.run();
-        std::memcpy(data, static_cast<const char*>(buffer.mapped()) + offset, size);
-        return;
-    }
-    const Buffer staging(device,
-                         {.size = std::min(size, kStagingBytes), .memory = Memory::Host, .name = "download"});
-    for (VkDeviceSize done = 0; done < size; done += kStagingBytes) {
-        const VkDeviceSize piece = std::min(kStagingBytes, size - done);
-        VkCommandBuffer cmd = commands.begin();
-        barrier(cmd);
-        copy(cmd, buffer, offset + done, staging, 0, piece);
-        hostBarrier(cmd);
-        commands.run();
-        std::memcpy(static_cast<char*>(data) + done, staging.mapped(), piece);
-    }
+    if (size > 0) device.staging().download(buffer, data, size, offset);
 }
 
 } // namespace relume::vk

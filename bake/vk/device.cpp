@@ -4,6 +4,7 @@
 #include "bake/vk/device_info.h"
 #include "bake/vk/instance.h"
 #include "bake/vk/pipeline_cache.h"
+#include "bake/vk/staging.h"
 
 #include <algorithm>
 #include <cctype>
@@ -101,6 +102,7 @@ Device::Device(const Desc& desc) {
         if (desc.chosen) desc.chosen(info_);
         createDevice();
         pipelineCache_ = loadPipelineCache(device_, info_);
+        staging_ = std::make_unique<Staging>(*this);
     } catch (...) {
         release();
         throw;
@@ -114,6 +116,7 @@ Device::~Device() {
 void Device::release() {
     if (device_ != VK_NULL_HANDLE) {
         vkDeviceWaitIdle(device_);
+        staging_.reset();
         if (pipelineCache_ != VK_NULL_HANDLE) {
             savePipelineCache(device_, info_, pipelineCache_);
             vkDestroyPipelineCache(device_, pipelineCache_, nullptr);

@@ -53,6 +53,8 @@ const char* deviceTypeName(VkPhysicalDeviceType type);
 /// All Vulkan devices of this machine. Empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
+class Staging;
+
 /// Instance, device and one queue with graphics and compute. Outlives everything made from it.
 class Device {
 public:
@@ -104,6 +106,7 @@ public:
     /// Of all devices of this process, those destroyed as well.
     static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
+    Staging& staging() const { return *staging_; }
 
 private:
     friend VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
@@ -130,6 +133,7 @@ private:
     bool anisotropy_ = false;
     mutable std::mutex queueMutex_;
     VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+    std::unique_ptr<Staging> staging_;
     std::atomic<uint32_t> validationMessages_{0};
 };
 

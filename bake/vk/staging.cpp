@@ -1,0 +1,77 @@
+#include "bake/vk/staging.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace relume::vk {
+namespace {
+
+// What stays [bytes]: sums over chunks of the largest lightmap.
+constexpr VkDeviceSize kKeptBytes = VkDeviceSize{4} << 20;
+// Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
+// had always.
+constexpr VkDeviceSize kLargeBytes = VkDeviceSize{32} << 20;
+
+void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, const Buffer& to,
+          VkDeviceSize toOffset, VkDeviceSize size) {
+    const VkBufferCopy region{fromOffset, toOffset, size};
+    vkCmdCopyBuffer(cmd, from.handle(), to.handle(), 1, &region);
+}
+
+} // namespace
+
+// `large` is the one of a copy for which the one that stays is too small.
+const Buffer& Staging::windowFor(VkDeviceSize size, Buffer& large) {
+    if (size <= kKeptBytes) {
+        if (!window_)
+            window_ = Buffer(device_, {.size = kKeptBytes, .memory = Memory::Host, .name = "staging"});
+        return window_;
+    }
+    large = Buffer(device_,
+                   {.size = std::min(size, kLargeBytes), .memory = Memory::Host, .name = "large staging"});
+    return large;
+}
+
+void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, VkDeviceSize offset) {
+    const std::lock_guard lock(mutex_);
+    if (buffer.mapped() != nullptr) {
+        barrier(commands_.begin()); // earlier work may still use the buffer
+        commands_.run();
+        std::memcpy(static_cast<char*>(buffer.mapped()) + offset, data, size);
+        return;
+    }
+    Buffer large;
+    const Buffer& window = windowFor(size, large);
+    for (VkDeviceSize done = 0; done < size; done += window.size()) {
+        const VkDeviceSize piece = std::min(window.size(), size - done);
+        std::memcpy(window.mapped(), static_cast<const char*>(data) + done, piece);
+        VkCommandBuffer cmd = commands_.begin();
+        barrier(cmd);
+        copy(cmd, window, 0, buffer, offset + done, piece);
+        barrier(cmd);
+        commands_.run();
+    }
+}
+
+void Staging::download(const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset) {
+    const std::lock_guard lock(mutex_);
+    if (buffer.mapped() != nullptr) {
+        hostBarrier(commands_.begin());
+        commands_.run();
+        std::memcpy(data, static_cast<const char*>(buffer.mapped()) + offset, size);
+        return;
+    }
+    Buffer large;
+    const Buffer& window = windowFor(size, large);
+    for (VkDeviceSize done = 0; done < size; done += window.size()) {
+        const VkDeviceSize piece = std::min(window.size(), size - done);
+        VkCommandBuffer cmd = commands_.begin();
+        barrier(cmd);
+        copy(cmd, buffer, offset + done, window, 0, piece);
+        hostBarrier(cmd);
+        commands_.run();
+        std::memcpy(static_cast<char*>(data) + done, window.mapped(), piece);
+    }
+}
+
+} // namespace relume::vk
