@@ -122,6 +122,8 @@ EditedBake::Repaint EditedBake::repaint(uint32_t material, const glm::vec4& base
         return layer->pattern.surfaces != before && layer->has();
     };
     scene_.materials[material].baseColor = baseColor;
+    const PatchSet& patches = baker_->patches();
+    PatchLight picture;
     Repaint times;
     Stopwatch watch;
     watch([&] {
@@ -132,13 +134,16 @@ EditedBake::Repaint EditedBake::repaint(uint32_t material, const glm::vec4& base
         watch([&] { solver().step(); });
         stopIfInterrupted();
         const std::vector<std::unique_ptr<Layer>>& layers = solver().layers();
-        const bool some = times.first == 0 && std::any_of(layers.begin(), layers.end(), ready);
+        const bool first = times.first == 0 && solver().current();
         const bool every = times.all == 0 && std::all_of(layers.begin(), layers.end(), ready);
-        if (!some && !every) continue;
-        watch([&] { solver().liveLight(); });
-        if (some) times.first = watch.seconds;
+        if (!first && !every) continue;
+        const LiveLight live = watch([&] { return solver().liveLight(); });
         if (every) times.all = watch.seconds;
+        if (!first) continue;
+        times.first = watch.seconds;
+        picture = vk::readBuffer<glm::vec4>(device_, *live.light, patches.scene.patches.size());
     } while (!solver().done());
+    times.firstError = compareLight(patches, picture, solver().light()).relRmse;
     return times;
 }
 

@@ -41,7 +41,8 @@ public:
     /// Back to the lights before. `first`: firstLamp() as it was then.
     void undo(const std::vector<Light>& lights, const PatchLight& first, MoveEdit& edit);
     struct Repaint {
-        double first = 0, all = 0; // until there is a picture with one layer that has it, with all [s]
+        double first = 0, all = 0;        // until there is a picture of it, and until all layers have it [s]
+        std::optional<double> firstError; // relRMSE of that picture against the one of the layers
     };
     Repaint repaint(uint32_t material, const glm::vec4& baseColor);
 

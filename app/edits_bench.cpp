@@ -271,6 +271,7 @@ private:
             rate.add(before, edited_.progress());
             edit.rays = std::max(edit.rays, edited_.progress().rays - before.rays);
             first.push_back(times.first);
+            edit.firstError = times.firstError;
             all.push_back(times.all);
             edited_.repaint(*index, colour);
         }

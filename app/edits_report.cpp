@@ -73,6 +73,7 @@ Json describe(const EditsRun& run) {
     if (run.albedo)
         json["albedo"] = {{"material", run.albedo->material},
                           {"firstSeconds", run.albedo->firstSeconds},
+                          {"firstError", number(run.albedo->firstError)},
                           {"seconds", run.albedo->seconds},
                           {"rays", run.albedo->rays}};
     json["links"] = {{"bytes", run.links.bytes},
@@ -144,6 +145,7 @@ std::vector<Row> rows() {
         all.push_back(std::move(row));
     const std::vector<Row> rest = {
         {"albedo: first picture after", [](Run r) { return r.albedo ? time(r.albedo->firstSeconds) : "–"; }},
+        {"  off all layers'", [](Run r) { return r.albedo ? percent(r.albedo->firstError) : "–"; }},
         {"  all layers after", [](Run r) { return r.albedo ? time(r.albedo->seconds) : "–"; }},
         {"  rays", [](Run r) { return r.albedo ? std::to_string(r.albedo->rays) : "–"; }},
         {"links: memory",

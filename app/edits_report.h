@@ -53,8 +53,9 @@ struct FreshBake {
 /// Of the base colour of the material with the largest area.
 struct AlbedoEdit {
     std::string material;
-    double firstSeconds = 0; // until there is a picture with a layer that has it
-    double seconds = 0;      // until all layers have it
+    double firstSeconds = 0;          // until there is a picture of it, all lights in one
+    std::optional<double> firstError; // its relRMSE against the picture of all layers
+    double seconds = 0;               // until all layers have it
     uint64_t rays = 0;
 };
 

@@ -97,6 +97,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
                      patches_.clampedAlbedo);
     }
     light_ = std::make_unique<LightBuffers>(device, patches_);
+    colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
 
     makeTracers();
@@ -180,12 +181,7 @@ void Baker::resetSolver(const SolverSettings& settings) {
 }
 
 void Baker::updateMaterials() {
-    applyMaterials(patches_, scene_.materials);
-    const auto update = [&](const vk::Buffer& buffer, const std::vector<glm::vec4>& values) {
-        vk::upload(device_, buffer, values.data(), values.size() * sizeof(glm::vec4));
-    };
-    update(light_->albedo, patches_.albedo);
-    update(light_->emission, patches_.emission);
+    colours_->update(device_, scene_.materials, patches_, *light_);
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

@@ -8,6 +8,7 @@
 
 #include "bake/lightmap.h"
 #include "bake/solver.h"
+#include "bake/surface_colours.h"
 #include "bake/trace/tracer.h"
 
 namespace relume {
@@ -78,6 +79,7 @@ private:
     PhaseHook onPhase_;
     PatchSet patches_;
     std::unique_ptr<LightBuffers> light_;
+    std::unique_ptr<SurfaceColours> colours_;
     std::unique_ptr<Tracer> tracer_;
     std::unique_ptr<Solver> solver_;
     std::string tracerChoice_;

@@ -35,14 +35,16 @@ struct LayerLevel {
 /// One light's share of the lightmap, for a unit of its weight: direct light and all bounces.
 struct Layer {
     LightPattern pattern;
-    LightSource source;          // as it is now; weight: with its switches, 0 where it is off
-    uint32_t group = 0;          // of the emitters' or of the lamps' direct light
-    vk::Buffer direct;           // vec4 per patch: lighting, variance of R, G and B together
-    vk::Buffer result;           // vec4 per patch: lighting, standard error
-    uint32_t directRounds = 0;   // in direct
-    LayerLevel level;            // of result; no rounds: there is none yet
-    SmoothingWidth width;        // of the last result
-    double light = 0, count = 0; // sums over patches, R, G and B together
+    LightSource source; // as it is now; weight: with its switches, 0 where it is off
+    uint32_t group = 0; // of the emitters' or of the lamps' direct light
+    // vec4 per patch: lighting, variance of R, G and B together; it may be one with a layer of other
+    // surfaces'.
+    std::shared_ptr<vk::Buffer> direct; // nullptr: no rounds yet
+    vk::Buffer result;                  // vec4 per patch: lighting, standard error; where there is a level
+    uint32_t directRounds = 0;          // in direct
+    LayerLevel level;                   // of result; no rounds: there is none yet
+    SmoothingWidth width;               // of the last result
+    double light = 0, count = 0;        // sums over patches, R, G and B together
     double directVariance = 0, indirectVariance = 0, iterationError = 1;
     double error = 1;               // relRMSE of result
     std::optional<LayerLevel> redo; // it had been here, with other surfaces

@@ -82,23 +82,31 @@ void LayerSolver::weigh() {
         if (weight == layer.source.weight) continue;
         layer.source.weight = weight;
         changed(i);
+        sumDue_ = sumDue_ || sumShown_;
     }
     tellError();
 }
 
-std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) {
-    const VkDeviceSize bytes = LightBuffers::lightBytes(input_.patches);
+std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) const {
     auto layer = std::make_unique<Layer>();
     layer->pattern = pattern;
-    if (spare_) { // a driver takes longer to find memory than a GPU to fill it
-        layer->direct = std::move(spare_->direct);
-        layer->result = std::move(spare_->result);
-        spare_.reset();
-        return layer;
-    }
-    layer->direct = vk::Buffer(input_.device, {.size = bytes, .name = "direct light of a layer"});
-    layer->result = vk::Buffer(input_.device, {.size = bytes, .name = "layer"});
     return layer;
+}
+
+// A driver takes longer to find memory than a GPU to fill it.
+vk::Buffer LayerSolver::takeBuffer(const char* name) {
+    if (spare_.empty())
+        return {input_.device, {.size = LightBuffers::lightBytes(input_.patches), .name = name}};
+    vk::Buffer buffer = std::move(spare_.back());
+    spare_.pop_back();
+    return buffer;
+}
+
+void LayerSolver::recycle(Layer& layer) {
+    spare_.clear();
+    if (layer.direct && layer.direct.use_count() == 1) spare_.push_back(std::move(*layer.direct));
+    layer.direct.reset();
+    if (layer.result) spare_.push_back(std::move(layer.result));
 }
 
 // From those that are or were there; nullptr: none is like this.
@@ -118,14 +126,11 @@ std::unique_ptr<Layer> LayerSolver::takeLayer(const LightPattern& pattern) {
 // Kept for an undo, as long as there is memory for it.
 void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     if (layer->before) archive(std::move(layer->before));
-    if (!layer->has()) {
-        spare_ = std::move(layer);
-        return;
-    }
+    if (!layer->has()) return recycle(*layer);
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * LightBuffers::lightBytes(input_.patches);
-    while (!former_.empty() && (layers_.size() + former_.size() + (spare_ ? 1 : 0)) * each > layerBytes_) {
-        spare_ = std::move(former_.front());
+    while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > layerBytes_) { // and the spare
+        recycle(*former_.front());
         former_.erase(former_.begin());
     }
 }
@@ -135,13 +140,9 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
     if (!(alike == to.pattern) || from.directRounds == 0) return;
-    VkCommandBuffer cmd = commands_.begin();
-    const VkBufferCopy all{0, 0, from.direct.size()};
-    vkCmdCopyBuffer(cmd, from.direct.handle(), to.direct.handle(), 1, &all);
-    vk::barrier(cmd);
-    commands_.run();
+    to.direct = from.direct;
     to.directRounds = from.directRounds;
-    if (from.has()) to.redo = from.level;
+    to.redo = from.has() ? std::optional(from.level) : from.redo;
 }
 
 void LayerSolver::updateEmitters(const std::vector<LightSource>& sources) {
@@ -159,6 +160,7 @@ void LayerSolver::updateEmitters(const std::vector<LightSource>& sources) {
 
 void LayerSolver::adopt() {
     edited_ = false;
+    if (work_ && work_->sum) work_.reset();
     const std::optional<LightPattern> working =
         work_ ? std::optional(layers_[work_->layer]->pattern) : std::nullopt;
     const std::vector<LightSource> sources = lightSources(input_.scene);
@@ -215,6 +217,8 @@ void LayerSolver::adopt() {
         for (size_t i = 0; i < layers_.size(); ++i)
             changed(i);
     }
+    sumDue_ = wantsSum();
+    if (!sumDue_) hideSum();
     done_ = false;
     tellError();
 }

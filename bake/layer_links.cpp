@@ -32,13 +32,14 @@ void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
     gatherPass_.recordPack(cmd, input_.light, buffers_);
 }
 
-// The first bounce is that of the direct light; to gather is to begin with sums of nothing.
+// The first bounce is that of the direct light, or, for the sum, of what is shown: an edit changes part of
+// it. To gather is to begin with sums of nothing.
 void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
     if (!work_->lit) {
         if (work_->bounce == 0 && work_->gathers == 0) {
             const VkBufferCopy all{0, 0, input_.light.ligIn.size()};
-            vkCmdCopyBuffer(cmd, layers_[work_->layer]->direct.handle(), input_.light.ligIn.handle(), 1,
-                            &all);
+            const vk::Buffer& first = work_->sum && settings_.passes == 0 ? composite_ : *working().direct;
+            vkCmdCopyBuffer(cmd, first.handle(), input_.light.ligIn.handle(), 1, &all);
         }
         recordRadiance(cmd);
     }
@@ -49,7 +50,7 @@ void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
 }
 
 void LayerSolver::linkBatch() {
-    const Layer& layer = *layers_[work_->layer];
+    const Layer& layer = working();
     const uint32_t next = order_.next(1, 0).first;
     const LinkCache::Place place = links_.find(work_->round, next, input_.patches.chunkCount() - next);
     const bool trace = !place.known;
@@ -67,7 +68,7 @@ void LayerSolver::linkBatch() {
     const LinkGatherPass::Work work{.links = place.links,
                                     .linksOffset = place.offset,
                                     .samples = linksOfRound_,
-                                    .direct = &layer.direct,
+                                    .direct = layer.direct.get(),
                                     .output = bounces,
                                     .accumulate = !bounces,
                                     .range = range};
@@ -195,7 +196,7 @@ void LayerSolver::endGather() {
     if (settings_.passes > 0 && work_->gathers + 1 >= settings_.passes) return finishLevel();
     std::swap(input_.light.ligIn, input_.light.ligOut);
     VkCommandBuffer cmd = commands_.begin();
-    gatherPass_.recordCompose(cmd, input_.light, buffers_, &layers_[work_->layer]->direct,
+    gatherPass_.recordCompose(cmd, input_.light, buffers_, working().direct.get(),
                               work_->target.linkRounds * linksOfRound_);
     if (settings_.passes == 0) recordChange(cmd);
     recordRadiance(cmd);

@@ -11,11 +11,12 @@ namespace relume {
 void LayerSolver::changed(size_t layer) {
     stale_ = true;
     light_.clear();
+    if (sumShown_) return;
     if (std::find(changed_.begin(), changed_.end(), layer) == changed_.end()) changed_.push_back(layer);
 }
 
-// Returns how many.
-uint32_t LayerSolver::writeWeights(std::optional<size_t> without, std::optional<size_t> only) {
+std::vector<shader::LayerWeight> LayerSolver::shares(std::optional<size_t> without,
+                                                     std::optional<size_t> only) const {
     std::vector<shader::LayerWeight> list;
     for (size_t i = 0; i < layers_.size(); ++i) {
         const Layer* shown = layers_[i]->shown();
@@ -23,6 +24,11 @@ uint32_t LayerSolver::writeWeights(std::optional<size_t> without, std::optional<
             continue;
         list.push_back({.light = shown->result.address(), .weight = layers_[i]->source.weight});
     }
+    return list;
+}
+
+// Returns how many.
+uint32_t LayerSolver::writeWeights(const std::vector<shader::LayerWeight>& list) {
     const uint64_t bytes = std::max<uint64_t>(1, list.size()) * sizeof(shader::LayerWeight);
     if (!weights_ || weights_.size() < bytes)
         weights_ = vk::Buffer(input_.device, {.size = bytes, .memory = vk::Memory::Host, .name = "weights"});
@@ -32,17 +38,20 @@ uint32_t LayerSolver::writeWeights(std::optional<size_t> without, std::optional<
 
 // In the layers' order: the same bytes whatever was shown before.
 void LayerSolver::mix(const vk::Buffer& to) {
-    const uint32_t count = writeWeights(std::nullopt, std::nullopt);
     VkCommandBuffer cmd = commands_.begin();
-    layerPass_.recordMix(cmd, weights_, count, nullptr, to);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
+    if (sumShown_) {
+        const VkBufferCopy all{0, 0, to.size()};
+        vkCmdCopyBuffer(cmd, sum_->result.handle(), to.handle(), 1, &all);
+    } else {
+        const uint32_t count = writeWeights(shares(std::nullopt, std::nullopt));
+        layerPass_.recordMix(cmd, weights_, count, nullptr, to);
+    }
+    run(cmd);
 }
 
 // While one layer changes again and again the sum of the others is kept: an edit then costs two layers.
 void LayerSolver::mixForViewer() {
-    if (changed_.size() != 1) {
+    if (sumShown_ || changed_.size() != 1) {
         mix(composite_);
         restOf_.reset();
         changed_.clear();
@@ -51,14 +60,14 @@ void LayerSolver::mixForViewer() {
     const size_t layer = changed_.front();
     if (restOf_ != layer) {
         if (!rest_) rest_ = vk::Buffer(input_.device, {.size = composite_.size(), .name = "other layers"});
-        const uint32_t count = writeWeights(layer, std::nullopt);
+        const uint32_t count = writeWeights(shares(layer, std::nullopt));
         VkCommandBuffer cmd = commands_.begin();
         layerPass_.recordMix(cmd, weights_, count, nullptr, rest_);
         vk::barrier(cmd);
         commands_.run();
         restOf_ = layer;
     }
-    const uint32_t count = writeWeights(std::nullopt, layer);
+    const uint32_t count = writeWeights(shares(std::nullopt, layer));
     VkCommandBuffer cmd = commands_.begin();
     layerPass_.recordMix(cmd, weights_, count, &rest_, composite_);
     vk::barrier(cmd);
@@ -143,7 +152,10 @@ SolverState LayerSolver::state() {
 std::vector<StatePart> LayerSolver::stateParts() {
     std::vector<StatePart> parts;
     for (const std::unique_ptr<Layer>& layer : layers_) {
-        parts.push_back(part(input_.device, layer->direct));
+        if (!layer->direct)
+            layer->direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of a layer"));
+        if (!layer->result) layer->result = takeBuffer("layer");
+        parts.push_back(part(input_.device, *layer->direct));
         parts.push_back(part(input_.device, layer->result));
     }
     return parts;

@@ -13,7 +13,8 @@ namespace relume {
 class LayerPass {
 public:
     explicit LayerPass(const vk::Device& device)
-        : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix") {}
+        : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix"),
+          mixDirect_(device, "layer_mix_direct") {}
 
     /// Takes the sums of `rounds` new rounds, vec4[kReplicates][patches], into layer.direct, which holds
     /// layer.directRounds of them.
@@ -26,9 +27,12 @@ public:
     /// light = base + the sum of weights (LayerWeight[count]) times layers. base: nullptr for nothing.
     void recordMix(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count, const vk::Buffer* base,
                    const vk::Buffer& light) const;
+    /// The same of direct light: weights are of layers' direct, and so is what is written.
+    void recordMixDirect(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count,
+                         const vk::Buffer& direct) const;
 
 private:
-    vk::ComputeProgram direct_, result_, mix_;
+    vk::ComputeProgram direct_, result_, mix_, mixDirect_;
 };
 
 } // namespace relume

@@ -73,8 +73,9 @@ LayerSolver::~LayerSolver() = default;
 
 void LayerSolver::step() {
     const auto start = Clock::now();
-    if (edited_ && (!work_ || layers_[work_->layer]->has())) adopt();
+    if (edited_ && atRest()) adopt();
     if (done_) return;
+    if (sumDue_ && work_ && !work_->sum) abortPass();
     if (!work_) plan();
     if (work_) {
         if (work_->stage == Stage::Direct)
@@ -87,6 +88,7 @@ void LayerSolver::step() {
 }
 
 void LayerSolver::plan() {
+    if (sumDue_) return beginSum();
     const std::optional<size_t> next = nextLayer();
     if (!next) {
         done_ = true;
@@ -171,7 +173,14 @@ void LayerSolver::endDirectRound() {
     Layer& layer = *layers_[work_->layer];
     if (++work_->round < work_->target.directRounds) return order_.begin(input_.patches.chunkCount(), seen_);
     const uint32_t rounds = work_->target.directRounds - layer.directRounds;
+    std::shared_ptr<vk::Buffer> shared; // with a layer that is to stay as it is
+    if (layer.direct.use_count() > 1) shared = std::move(layer.direct);
+    if (!layer.direct) layer.direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of a layer"));
     VkCommandBuffer cmd = commands_.begin();
+    if (shared) {
+        const VkBufferCopy all{0, 0, shared->size()};
+        vkCmdCopyBuffer(cmd, shared->handle(), layer.direct->handle(), 1, &all);
+    }
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, rounds);

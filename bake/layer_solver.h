@@ -54,7 +54,9 @@ public:
     /// light that is dragged is seen.
     void edit(const LightMix& mix);
     /// Whether base colours may be changed now: no layer is on its way to its first level.
-    bool atRest() const { return !work_ || layers_[work_->layer]->has(); }
+    bool atRest() const { return !work_ || work_->sum || layers_[work_->layer]->has(); }
+    /// Whether what is shown is of the newest colours of surfaces: layer by layer, or all in one.
+    bool current() const;
 
     /// Points on each light per patch and round, at most: few, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = 2 * shader::kReplicates;
@@ -64,6 +66,7 @@ private:
     /// A layer on its way to the next level.
     struct Work {
         size_t layer = 0;
+        bool sum = false; // not a layer, but all of them together
         LayerLevel target;
         Stage stage = Stage::Direct;
         uint32_t round = 0;   // of samples, or of links that are gathered
@@ -76,6 +79,7 @@ private:
 
     // layer_solver.cpp
     void plan();
+    Layer& working() { return work_->sum ? *sum_ : *layers_[work_->layer]; }
     void begin(size_t layer, LayerLevel target);
     void directBatch();
     template<typename Lights>
@@ -117,14 +121,23 @@ private:
     // layer_edits.cpp
     void adopt();
     void weigh();
-    std::unique_ptr<Layer> makeLayer(const LightPattern& pattern);
+    std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
+    vk::Buffer takeBuffer(const char* name);
+    void recycle(Layer& layer);
     std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
     void archive(std::unique_ptr<Layer> layer);
-    void keepDirect(const Layer& from, Layer& to);
+    static void keepDirect(const Layer& from, Layer& to);
     void updateEmitters(const std::vector<LightSource>& sources);
 
+    // layer_sum.cpp
+    bool wantsSum() const;
+    void beginSum();
+    void showSum();
+    void hideSum();
+
     // layer_mix.cpp
-    uint32_t writeWeights(std::optional<size_t> without, std::optional<size_t> only);
+    std::vector<shader::LayerWeight> shares(std::optional<size_t> without, std::optional<size_t> only) const;
+    uint32_t writeWeights(const std::vector<shader::LayerWeight>& list);
     void mix(const vk::Buffer& to);
     void mixForViewer();
     void changed(size_t layer);
@@ -151,13 +164,16 @@ private:
 
     std::vector<std::unique_ptr<Layer>> layers_; // in the order of lightSources()
     std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
-    std::unique_ptr<Layer> spare_;               // of no light: its buffers are for the next one
+    std::vector<vk::Buffer> spare_;              // of layers that are gone, for the next ones
     uint64_t layerBytes_ = 0;                    // at most, of all of them
     std::vector<LightKey> emitterKeys_;          // of emitters_' groups
     uint64_t surfaces_ = 0;
     std::optional<Work> work_;
     LightMix mix_;
     bool edited_ = false; // an edit waits to be adopted
+
+    std::unique_ptr<Layer> sum_; // of all lights with their weights: direct light, and what came of it
+    bool sumDue_ = false, sumShown_ = false;
 
     vk::Buffer weights_;   // LayerWeight[]
     vk::Buffer composite_; // vec4 per patch

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/float_image.h"
+#include "bake/surface_colours.h"
 
 #include <algorithm>
 #include <cmath>
@@ -372,14 +373,7 @@ void applyMaterials(PatchSet& patches, const std::vector<Material>& materials) {
     patches.emission.resize(count);
     patches.clampedAlbedo = 0;
     for (size_t i = 0; i < count; ++i) {
-        const Material& material = all[patches.material[i]];
-        glm::vec4 albedo = material.baseColor * patches.albedoPattern[i];
-        if (!patches.scene.rtrad && std::max({albedo.r, albedo.g, albedo.b}) > patches.maxAlbedo) {
-            ++patches.clampedAlbedo;
-            albedo = glm::min(albedo, glm::vec4(patches.maxAlbedo));
-        }
-        patches.albedo[i] = albedo;
-        patches.emission[i] = glm::vec4(material.emission, 0.0f) * patches.emissionPattern[i];
+        if (applyMaterial(patches, i, all[patches.material[i]])) ++patches.clampedAlbedo;
     }
 }
 

@@ -312,6 +312,53 @@ TEST(Layers, AColouredSurfaceGathersLinksAnewWithoutARay) {
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene)));
 }
 
+// Relative root mean square.
+double distance(const Light4& a, const Light4& b) {
+    double squares = 0, sum = 0;
+    for (size_t i = 0; i < b.size(); ++i) {
+        const glm::vec3 difference = glm::vec3(a[i]) - glm::vec3(b[i]);
+        squares += glm::dot(difference, difference);
+        sum += b[i].r + b[i].g + b[i].b;
+    }
+    return std::sqrt(squares / (3.0 * static_cast<double>(b.size()))) /
+           (sum / (3.0 * static_cast<double>(b.size())));
+}
+
+TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
+    BakeDesc desc = kQuick;
+    desc.live = true;
+    desc.smooth = false; // each layer has a width of its own
+    Layered bake(room(), desc);
+    bake.finish();
+    EXPECT_TRUE(bake.solver().current());
+    const Light4 before = bake.light();
+    const uint64_t rays = bake.progress().rays;
+    for (const float green : {0.2f, 0.5f}) {
+        bake.scene.materials[0].baseColor = {0.8f, green, 0.1f, 1.0f};
+        bake.edit();
+        EXPECT_FALSE(bake.solver().current());
+        while (!bake.solver().current())
+            bake.solver().step();
+        const auto& layers = bake.solver().layers();
+        EXPECT_TRUE(
+            std::none_of(layers.begin(), layers.end(), [](const auto& layer) { return layer->has(); }));
+    }
+    const Light4 atOnce = bake.light();
+    // A weight counts in it, too.
+    bake.scene.lights[0].intensity *= 2.0f;
+    bake.edit();
+    while (!bake.solver().current())
+        bake.solver().step();
+    const Light4 stronger = bake.light();
+    bake.finish();
+    EXPECT_EQ(bake.progress().rays, rays);
+    const Light4 after = bake.light();
+    EXPECT_TRUE(sameBytes(after, freshLight(bake.scene, desc)));
+    EXPECT_LT(distance(stronger, after), 1e-3) << "of the same links";
+    EXPECT_GT(distance(before, after), 0.1);
+    EXPECT_GT(distance(atOnce, after), 0.05);
+}
+
 TEST(Layers, MuteAndSoloWeighLightsWithNothing) {
     Layered bake(room());
     bake.finish();

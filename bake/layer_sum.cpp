@@ -1,0 +1,75 @@
+// Of LayerSolver: all lights in one, for what changes every layer. Direct light is known, so that their
+// weighted sum takes no longer to bounce than one layer; layers follow.
+#include "bake/layer_solver.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+// Of which the sum's bounces are made, per patch: their noise is then about what hybrid's aim is.
+constexpr uint32_t kSumLinks = 64;
+
+bool shines(const Layer& layer) {
+    return layer.source.weight != glm::vec3(0.0f);
+}
+
+} // namespace
+
+// Of fewer than two layers it would be no faster.
+bool LayerSolver::wantsSum() const {
+    if (!settings_.live || settings_.passes == 1) return false;
+    size_t waiting = 0;
+    for (const std::unique_ptr<Layer>& layer : layers_) {
+        if (!shines(*layer)) continue;
+        if (layer->directRounds == 0) return false;
+        waiting += layer->has() ? 0 : 1;
+    }
+    return waiting > 1;
+}
+
+bool LayerSolver::current() const {
+    return !edited_ && !sumDue_ && !(work_ && work_->sum) &&
+           (sumShown_ || std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
+                return layer->has() || !shines(*layer);
+            }));
+}
+
+void LayerSolver::beginSum() {
+    sumDue_ = false;
+    if (!sum_) {
+        sum_ = std::make_unique<Layer>();
+        sum_->direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of all layers"));
+    }
+    std::vector<shader::LayerWeight> list;
+    uint32_t rounds = 1;
+    for (const std::unique_ptr<Layer>& layer : layers_) {
+        if (!shines(*layer)) continue;
+        list.push_back({.light = layer->direct->address(), .weight = layer->source.weight});
+        rounds = std::max(rounds, layer->has() ? layer->level.linkRounds
+                                               : layer->redo.value_or(LayerLevel()).linkRounds);
+    }
+    const uint32_t count = writeWeights(list);
+    VkCommandBuffer cmd = commands_.begin();
+    layerPass_.recordMixDirect(cmd, weights_, count, *sum_->direct);
+    run(cmd);
+    work_ = Work{.sum = true, .target = {0, std::min(rounds, std::max(1u, kSumLinks / linksOfRound_))}};
+    beginBounces();
+}
+
+void LayerSolver::showSum() {
+    sumShown_ = false; // what is shown changes
+    for (size_t i = 0; i < layers_.size(); ++i)
+        changed(i);
+    sumShown_ = true;
+}
+
+void LayerSolver::hideSum() {
+    if (!sumShown_) return;
+    sumShown_ = false;
+    restOf_.reset();
+    for (size_t i = 0; i < layers_.size(); ++i)
+        changed(i);
+}
+
+} // namespace relume

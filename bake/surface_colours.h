@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bake/light_buffers.h"
+#include "bake/worker_pool.h"
+
+namespace relume {
+
+/// Albedo and emission of one patch by its material. Returns whether the albedo had to be made less.
+bool applyMaterial(PatchSet& patches, size_t patch, const Material& material);
+
+/// Follows colours and strengths of materials: patches of those that changed are others, and so is the
+/// device's copy.
+class SurfaceColours {
+public:
+    /// materials: those that the patches were made with.
+    explicit SurfaceColours(std::vector<Material> materials);
+    void update(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
+                LightBuffers& light);
+
+private:
+    struct Changed {
+        bool albedo = false, emission = false;
+    };
+    std::vector<Changed> changesTo(const std::vector<Material>& materials) const;
+    bool updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
+                     PatchSet& patches, size_t block, int64_t& clamped) const;
+
+    std::vector<Material> applied_;    // and glTF's default material
+    std::unique_ptr<WorkerPool> pool_; // from the first update on
+};
+
+} // namespace relume
