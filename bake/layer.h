@@ -20,6 +20,7 @@ struct LightPattern {
     float rotation = 0;                  // Sky [rad]
     std::string file;                    // Sky
     uint64_t surfaces = 0;               // tells colours of surfaces apart
+    uint64_t objects = 0;                // and where objects stand
 
     bool operator==(const LightPattern&) const = default;
 };
@@ -35,11 +36,15 @@ struct LayerLevel {
 /// One light's share of the lightmap, for a unit of its weight: direct light and all bounces.
 struct Layer {
     LightPattern pattern;
-    LightSource source;          // as it is now; weight: with its switches, 0 where it is off
-    uint32_t group = 0;          // of the emitters' or of the lamps' direct light
-    vk::Buffer direct;           // vec4 per patch: lighting, variance of R, G and B together
-    vk::Buffer result;           // vec4 per patch: lighting, standard error
-    uint32_t directRounds = 0;   // in direct
+    LightSource source;        // as it is now; weight: with its switches, 0 where it is off
+    uint32_t group = 0;        // of the emitters' or of the lamps' direct light
+    vk::Buffer direct;         // vec4 per patch: lighting, variance of R, G and B together
+    vk::Buffer result;         // vec4 per patch: lighting, standard error
+    uint32_t directRounds = 0; // in direct
+    // directRounds after each level that took more; what is summed together decides the last bits.
+    std::vector<uint32_t> directSteps;
+    // Per chunk 1 where direct is of objects that have moved since; empty: nowhere.
+    std::vector<uint8_t> stale;
     LayerLevel level;            // of result; no rounds: there is none yet
     SmoothingWidth width;        // of the last result
     double light = 0, count = 0; // sums over patches, R, G and B together

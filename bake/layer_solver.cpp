@@ -55,10 +55,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
         vk::Buffer(input.device, {.size = std::max<uint64_t>(buffers_.chunkSums.size(), buffers_.rays.size()),
                                   .memory = vk::Memory::Host,
                                   .name = "sums for the CPU"});
-    const std::vector<shader::Patch>& patches = input.patches.scene.patches;
-    senders_.assign(input.patches.chunkCount(), 0);
-    for (size_t i = 0; i < patches.size(); ++i)
-        senders_[i / kChunk] += (patches[i].flags & shader::kPatchSends) != 0;
+    countSenders();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.rays, &composite_, &input.light.ligIn, &input.light.ligOut})
         vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
@@ -71,12 +68,21 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
 
 LayerSolver::~LayerSolver() = default;
 
+void LayerSolver::countSenders() {
+    const std::vector<shader::Patch>& patches = input_.patches.scene.patches;
+    senders_.assign(input_.patches.chunkCount(), 0);
+    for (size_t i = 0; i < patches.size(); ++i)
+        senders_[i / kChunk] += (patches[i].flags & shader::kPatchSends) != 0;
+}
+
 void LayerSolver::step() {
     const auto start = Clock::now();
     if (edited_ && (!work_ || layers_[work_->layer]->has())) adopt();
     if (done_) return;
-    if (!work_) plan();
-    if (work_) {
+    if (!work_ && !relink_) plan();
+    if (relink_) {
+        relinkBatch();
+    } else if (work_) {
         if (work_->stage == Stage::Direct)
             directBatch();
         else
@@ -98,6 +104,7 @@ void LayerSolver::plan() {
 
 void LayerSolver::begin(size_t layer, LayerLevel target) {
     work_ = Work{.layer = layer, .target = target};
+    if (!layers_[layer]->stale.empty()) return beginMending();
     work_->round = layers_[layer]->directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
     beginPass(Stage::Direct);
@@ -168,6 +175,7 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
 }
 
 void LayerSolver::endDirectRound() {
+    if (work_->mended) return endMendingRound();
     Layer& layer = *layers_[work_->layer];
     if (++work_->round < work_->target.directRounds) return order_.begin(input_.patches.chunkCount(), seen_);
     const uint32_t rounds = work_->target.directRounds - layer.directRounds;
@@ -179,6 +187,7 @@ void LayerSolver::endDirectRound() {
     run(cmd);
     countRays();
     layer.directRounds = work_->target.directRounds;
+    layer.directSteps.push_back(layer.directRounds);
     beginBounces();
 }
 
