@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace relume {
@@ -20,7 +19,7 @@ using shader::kNoPatch;
 constexpr float kRounding = 1e-5f;
 // Where objects were, or are: each is a test per ray. An object of many parts is one.
 constexpr size_t kMostBoxes = 4;
-// A link that was not traced again.
+// A link that was not traced again, where none are listed.
 constexpr uint32_t kKept = 0xfffffff0u;
 static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
 
@@ -35,10 +34,6 @@ std::vector<uint32_t> indicesOf(const std::vector<uint32_t>& instances, const st
     for (uint32_t i = 0; i < instances.size(); ++i)
         if (contains(some, instances[i])) indices.push_back(i);
     return indices;
-}
-
-bool samePatch(const shader::Patch& a, const shader::Patch& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 } // namespace
@@ -100,13 +95,23 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
         if (all.mesh.instance[part.triangles[t]] != mesh.instance[t]) return {};
     part.slots = indicesOf(on_.patches.instance, moved.shown);
     if (mesh.triangleCount() == 0) return part;
-    TextureGroup group =
-        rasterizeTextureGroup(on_.device, on_.scene, mesh, {.size = all.size, .conservative = conservative_});
     // Texels that charts share are whose they were.
-    for (size_t texel = 0; texel < homes_.size(); ++texel) {
+    std::vector<uint8_t> own(homes_.size());
+    uint32_t first = all.size, last = 0; // rows
+    for (uint32_t texel = 0; texel < homes_.size(); ++texel) {
         const uint32_t home = homes_[texel];
-        if (home == kNoPatch || !contains(moved.shown, on_.patches.instance[home])) group.triangle[texel] = 0;
+        own[texel] = home != kNoPatch && contains(moved.shown, on_.patches.instance[home]);
+        if (own[texel] == 0) continue;
+        first = std::min(first, texel / all.size);
+        last = texel / all.size + 1;
     }
+    TextureGroup group = rasterizeTextureGroup(on_.device, on_.scene, mesh,
+                                               {.size = all.size,
+                                                .conservative = conservative_,
+                                                .firstRow = first,
+                                                .rows = std::max(first, last) - first});
+    for (size_t texel = 0; texel < own.size(); ++texel)
+        if (own[texel] == 0) group.triangle[texel] = 0;
     part.patches = buildPatches(on_.scene, std::move(mesh), group, {.part = true});
     if (part.patches.count != part.slots.size()) return {};
     for (uint32_t i = 0; i < part.patches.count; ++i) {
@@ -194,9 +199,14 @@ void ObjectMover::putPatches(const Part& part, const Moved& moved, ObjectMove& m
     }
 }
 
-// Chunks first to last - 1.
-void ObjectMover::upload(uint32_t first, uint32_t last) const {
-    if (first >= last) return;
+// From the first chunk with a change to the last one.
+void ObjectMover::upload(const ObjectMove& changes) const {
+    uint32_t first = 0, last = on_.patches.chunkCount();
+    while (first < last && !changes.changes(first))
+        ++first;
+    while (last > first && !changes.changes(last - 1))
+        --last;
+    if (first == last) return;
     const auto copy = [&](const vk::Buffer& buffer, const auto& values, size_t each) {
         const size_t size = sizeof(values[0]), from = first * each;
         vk::upload(on_.device, buffer, &values[from], (last - first) * each * size, from * size);
@@ -222,7 +232,7 @@ void ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
     vk::Commands commands(on_.device);
     for (uint32_t first = 0; first < chunks; first += batch) {
         const uint32_t count = std::min(batch, chunks - first);
-        std::fill_n(links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
+        if (tracer.onCpu()) std::fill_n(links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
         VkCommandBuffer cmd = commands.begin();
         tracer.retrace(cmd, {.closest = {.firstChunk = first,
                                          .chunkCount = count,
@@ -237,15 +247,56 @@ void ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
                              .rays = &rays});
         vk::hostBarrier(cmd);
         commands.run();
-        for (uint32_t at = 0; at < count * perChunk; ++at) {
+        const uint32_t found =
+            tracer.onCpu() ? count * perChunk : vk::readBuffer<uint32_t>(on_.device, list, 1).front();
+        const auto listed =
+            tracer.onCpu() ? std::vector<uint32_t>() : vk::readBuffer<uint32_t>(on_.device, list, found, 1);
+        for (uint32_t i = 0; i < found; ++i) {
+            const uint32_t at = tracer.onCpu() ? i : listed[i];
             const uint32_t link = links.as<uint32_t>()[at];
-            if (link == kKept) continue;
+            if (tracer.onCpu() && link == kKept) continue;
             const uint32_t k = at / kChunk % kInsideSamples;
             glm::uvec2& bits = inside_[size_t{first + at / perChunk} * kChunk + at % kChunk];
             bits.x = (bits.x & ~(1u << k)) | uint32_t{link == shader::kLinkBack} << k;
             bits.y = (bits.y & ~(1u << k)) | uint32_t{link == shader::kLinkSky} << k;
         }
     }
+}
+
+// Patches are told from those inside something by directions of all of them, as if none were known yet.
+void ObjectMover::findInside(Tracer& tracer, ObjectMove& move) {
+    std::vector<shader::Patch>& patches = on_.patches.scene.patches;
+    ObjectMove touched = move;
+    const auto touch = [](ObjectMove& m, uint32_t i) {
+        m.changed[i / kChunk][static_cast<int>(i % kChunk / 32)] |= 1u << i % 32;
+    };
+    std::vector<uint32_t> were; // inside something, or not there
+    for (uint32_t i = 0; i < on_.patches.count; ++i) {
+        if ((patches[i].flags & shader::kPatchSends) != 0) continue;
+        were.push_back(i);
+        if (patches[i].area <= 0.0f) continue;
+        patches[i].flags |= shader::kPatchSends;
+        touch(touched, i);
+    }
+    for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
+        if (move.changes(chunk)) on_.patches.bounds[chunk] = chunkBounds(on_.patches, chunk);
+    upload(touched);
+    tracer.update();
+    traceInside(tracer, move);
+    auto was = were.begin();
+    for (uint32_t i = 0; i < on_.patches.count; ++i) {
+        const bool before = was != were.end() && *was == i;
+        was += before;
+        const auto backs = static_cast<uint32_t>(std::popcount(inside_[i].x));
+        const auto sky = static_cast<uint32_t>(std::popcount(inside_[i].y));
+        if (liesInside(backs, sky, kInsideSamples)) patches[i].flags &= ~shader::kPatchSends;
+        if (before != ((patches[i].flags & shader::kPatchSends) == 0)) {
+            move.texels = true;
+            touch(move, i);
+        }
+    }
+    touched.add(move);
+    upload(touched);
 }
 
 std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {
@@ -262,32 +313,14 @@ std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer
     move.boxes = boxesOf(*instances);
     move.instances = instances->shown;
     move.instances.insert(move.instances.end(), gone.begin(), gone.end());
-    std::vector<shader::Patch>& patches = on_.patches.scene.patches;
-    const std::vector<shader::Patch> before = patches;
     putTriangles(*part, *instances);
     putPatches(*part, *instances, move);
     const std::vector<Placement> then = std::exchange(placed_, editsOf(on_.scene).placements);
-    for (const uint32_t i : instances->shown)
-        move.texels = move.texels || then[i].hidden;
-    move.texels = move.texels || !gone.empty();
+    move.texels = !gone.empty() || std::any_of(instances->shown.begin(), instances->shown.end(),
+                                               [&](uint32_t i) { return then[i].hidden; });
     for (const shader::TraceBox& box : boxesOf(*instances))
         move.boxes.push_back(box);
-    for (uint32_t i = 0; i < on_.patches.count; ++i)
-        if (patches[i].area > 0.0f) patches[i].flags |= shader::kPatchSends;
-    for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
-        if (move.changes(chunk)) on_.patches.bounds[chunk] = chunkBounds(on_.patches, chunk);
-    upload(0, on_.patches.chunkCount());
-    tracer.update();
-    traceInside(tracer, move);
-    for (uint32_t i = 0; i < on_.patches.count; ++i) {
-        const auto backs = static_cast<uint32_t>(std::popcount(inside_[i].x));
-        const auto sky = static_cast<uint32_t>(std::popcount(inside_[i].y));
-        if (liesInside(backs, sky, kInsideSamples)) patches[i].flags &= ~shader::kPatchSends;
-        move.texels = move.texels || ((patches[i].flags ^ before[i].flags) & shader::kPatchSends) != 0;
-        if (!samePatch(patches[i], before[i]))
-            move.changed[i / kChunk][static_cast<int>(i % kChunk / 32)] |= 1u << i % 32;
-    }
-    upload(0, on_.patches.chunkCount());
+    findInside(tracer, move);
     result.add(move);
     return result;
 }

@@ -47,7 +47,8 @@ private:
     void putTriangles(Part& part, const Moved& moved);
     void putPatches(const Part& part, const Moved& moved, ObjectMove& move);
     void traceInside(Tracer& tracer, const ObjectMove& move);
-    void upload(uint32_t first, uint32_t last) const;
+    void findInside(Tracer& tracer, ObjectMove& move);
+    void upload(const ObjectMove& changes) const;
 
     On on_;
     bool conservative_;
