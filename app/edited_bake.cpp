@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -144,6 +145,28 @@ EditedBake::Repaint EditedBake::repaint(uint32_t material, const glm::vec4& base
         picture = vk::readBuffer<glm::vec4>(device_, *live.light, patches.scene.patches.size());
     } while (!solver().done());
     times.firstError = compareLight(patches, picture, solver().light()).relRmse;
+    return times;
+}
+
+std::optional<EditedBake::Replacement> EditedBake::place(uint32_t instance, const glm::mat4& transform,
+                                                         const LightmapAtlas& atlas) {
+    ASSERT(solver().atRest());
+    const glm::mat4 before = std::exchange(scene_.instances[instance].transform, transform);
+    Replacement times;
+    Stopwatch watch;
+    const std::optional<ObjectMove> move = watch([&] { return baker_->moveObjects(atlas); });
+    if (!move) {
+        scene_.instances[instance].transform = before;
+        return {};
+    }
+    times.follow = watch.seconds;
+    watch([&] {
+        solver().moveObjects(*move);
+        solver().edit({});
+        bakeToEnd(solver());
+        solver().liveLight();
+    });
+    times.all = watch.seconds;
     return times;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "app/edits_report.h"
 #include "app/light_difference.h"
+#include "assets/lightmap_atlas.h"
 #include "bake/baker.h"
 #include "bake/layer_solver.h"
 
@@ -45,6 +47,15 @@ public:
         std::optional<double> firstError; // relRMSE of that picture against the one of the layers
     };
     Repaint repaint(uint32_t material, const glm::vec4& baseColor);
+
+    struct Replacement {
+        double follow = 0,
+               all = 0; // for patches, triangles and tracer; with that, until the error is reached [s]
+    };
+    /// Puts an object elsewhere. Nothing: that cannot be followed, and it stays where it is.
+    std::optional<Replacement> place(uint32_t instance, const glm::mat4& transform,
+                                     const LightmapAtlas& atlas);
+    PatchLight light() { return solver().light(); }
 
 private:
     LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }

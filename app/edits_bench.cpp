@@ -4,10 +4,12 @@
 #include "app/fresh_bakes.h"
 #include "app/lamp_placement.h"
 #include "app/prepare.h"
+#include "app/stopwatch.h"
 #include "assets/error.h"
 #include "assets/log.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -18,6 +20,8 @@ namespace {
 // Of the diagonal: what the moved lamp's place differs by from run to run, or its layer of the run before
 // would serve. Far below what an error could show.
 constexpr float kNudge = 1e-5f;
+// Of the diagonal: how far an object is moved.
+constexpr float kObjectWay = 0.05f;
 
 /// The same numbers on every machine, in [0, 1) [O'Neill 2014, PCG].
 class Random {
@@ -62,6 +66,21 @@ std::optional<uint32_t> largestMaterial(const WorldMesh& mesh, const Scene& scen
         if (!most || areas[m] > areas[*most]) most = m;
     }
     return most;
+}
+
+// The object whose number of triangles is nearest to a hundredth of all, and its share. Nothing: there is but
+// one object.
+std::optional<std::pair<uint32_t, double>> smallObject(const WorldMesh& mesh, const Scene& scene) {
+    constexpr double kWanted = 0.01, kMost = 0.5;
+    std::vector<double> triangles(scene.instances.size(), 0.0);
+    for (const uint32_t instance : mesh.instance)
+        triangles[instance] += 1.0 / mesh.triangleCount();
+    const auto off = [&](uint32_t i) { return std::abs(std::log(triangles[i] / kWanted)); };
+    std::optional<uint32_t> best;
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        if (triangles[i] > 0.0 && triangles[i] < kMost && (!best || off(i) < off(*best))) best = i;
+    if (!best) return {};
+    return std::pair(*best, triangles[*best]);
 }
 
 template<typename Run, typename T>
@@ -124,8 +143,8 @@ public:
 
 private:
     EditsBench(const vk::Device& device, const EditsBenchDesc& desc, PreparedScene prepared)
-        : desc_(desc), fileLights_(std::exchange(prepared.scene.lights, {})),
-          edited_(device, prepared.scene, prepared.mesh, settings()),
+        : device_(device), desc_(desc), fileLights_(std::exchange(prepared.scene.lights, {})),
+          atlas_(prepared.atlas), edited_(device, prepared.scene, prepared.mesh, settings()),
           fresh_(device, prepared.scene, std::move(prepared.mesh), settings()),
           places_(placeLamps(edited_.baker().patches().scene,
                              *std::max_element(desc.lamps.begin(), desc.lamps.end()))) {
@@ -151,7 +170,7 @@ private:
         BakeSettings settings;
         settings.size = desc_.size;
         settings.tracer = desc_.tracer;
-        settings.solver = hybrid();
+        settings.solver = layers(); // for objects that move
         return settings;
     }
     SolverSettings hybrid() const {
@@ -164,6 +183,10 @@ private:
     SolverSettings layers() const {
         SolverSettings settings = hybrid();
         settings.layers.on = true;
+        return settings;
+    }
+    static SolverSettings live(SolverSettings settings) {
+        settings.live = true;
         return settings;
     }
     static SolverSettings fixed(SolverSettings settings, uint32_t samples) {
@@ -193,9 +216,7 @@ private:
         run.lamps = lamps;
         const std::vector<Light> lights = lightsOf(lamps);
         spdlog::info("{} lamps: first bake", lamps);
-        SolverSettings live = layers();
-        live.live = true;
-        run.firstBakeSeconds = edited_.restart(lights, live);
+        run.firstBakeSeconds = edited_.restart(lights, live(layers()));
         spdlog::info("{} lamps: weights", lamps);
         run.weights = measureWeights(lights);
         spdlog::info("{} lamps: reference", lamps);
@@ -203,6 +224,8 @@ private:
         spdlog::info("{} lamps: moves", lamps);
         run.move = measureMoves(lights, run.links);
         run.albedo = measureAlbedo(run.links);
+        spdlog::info("{} lamps: object", lamps);
+        run.object = measureObject(lights);
         const SolverProgress& progress = edited_.progress();
         const double links = static_cast<double>(report_.patches) * progress.samples;
         run.links.bytes = progress.cacheBytes;
@@ -281,6 +304,44 @@ private:
         return edit;
     }
 
+    // There and back again; places differ from run to run as those of a moved lamp do.
+    std::optional<ObjectEdit> measureObject(const std::vector<Light>& lights) {
+        const Scene& scene = edited_.scene();
+        const auto object = smallObject(edited_.baker().patches().scene.mesh, scene);
+        if (!object) return {};
+        const auto [index, share] = *object;
+        const glm::mat4 home = scene.instances[index].transform;
+        ObjectEdit edit{.object = scene.instances[index].name, .share = share};
+        std::vector<double> follow, all;
+        for (uint32_t run = 0; run < desc_.runs; ++run) {
+            const glm::vec3 way(kObjectWay + static_cast<float>(run) * kNudge, 0.0f, 0.0f);
+            const glm::mat4 there = glm::translate(glm::mat4(1.0f), places_.diagonal * way) * home;
+            const uint64_t rays = edited_.progress().rays;
+            const auto times = edited_.place(index, there, atlas_);
+            if (!times) return {};
+            follow.push_back(times->follow);
+            all.push_back(times->all);
+            edit.rays = std::max(edit.rays, edited_.progress().rays - rays);
+            if (run == 0) measureFreshObject(lights, edit);
+            edited_.place(index, home, atlas_);
+        }
+        edit.followSeconds = median(std::move(follow));
+        edit.seconds = median(std::move(all));
+        return edit;
+    }
+
+    // The scene as it is edited now, from nothing.
+    void measureFreshObject(const std::vector<Light>& lights, ObjectEdit& edit) {
+        Stopwatch watch;
+        EditedBake fresh = watch([&] {
+            return EditedBake(device_, edited_.scene(), flatten(edited_.scene(), atlas_), settings());
+        });
+        edit.freshPreparation = watch.seconds;
+        edit.freshSeconds = fresh.restart(lights, live(layers()));
+        edit.freshRays = fresh.progress().rays;
+        edit.difference = compareLight(edited_.baker().patches(), edited_.light(), fresh.light()).relRmse;
+    }
+
     FreshBake measureFresh(const std::vector<Light>& lights, const SolverSettings& settings) {
         std::vector<FreshBake> runs;
         for (uint32_t run = 0; run < desc_.runs; ++run)
@@ -288,8 +349,10 @@ private:
         return middleOf(runs);
     }
 
+    const vk::Device& device_;
     const EditsBenchDesc& desc_;
     std::vector<Light> fileLights_;
+    LightmapAtlas atlas_;
     EditedBake edited_;
     FreshBakes fresh_;
     LampPlaces places_;

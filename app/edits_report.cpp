@@ -76,6 +76,18 @@ Json describe(const EditsRun& run) {
                           {"firstError", number(run.albedo->firstError)},
                           {"seconds", run.albedo->seconds},
                           {"rays", run.albedo->rays}};
+    json["object"] = nullptr;
+    if (run.object)
+        json["object"] = {{"object", run.object->object},
+                          {"shareOfTriangles", run.object->share},
+                          {"followSeconds", run.object->followSeconds},
+                          {"seconds", run.object->seconds},
+                          {"rays", run.object->rays},
+                          {"freshSeconds", run.object->freshSeconds},
+                          {"freshPreparationSeconds", run.object->freshPreparation},
+                          {"freshRays", run.object->freshRays},
+                          {"difference", number(run.object->difference)},
+                          {"overObject", number(ratio(run.object->freshSeconds, run.object->seconds))}};
     json["links"] = {{"bytes", run.links.bytes},
                      {"bytesPerLink", number(run.links.bytesPerLink)},
                      {"perSecondMove", number(run.links.perSecondMove)},
@@ -121,6 +133,23 @@ std::vector<Row> freshRows() {
     };
 }
 
+std::vector<Row> objectRows() {
+    using Run = const EditsRun&;
+    const auto row = [](const char* name, const std::function<std::string(const ObjectEdit&)>& text) {
+        return Row{name, [text](Run r) { return r.object ? text(*r.object) : std::string("–"); }};
+    };
+    using Edit = const ObjectEdit&;
+    return {
+        row("object: share of triangles", [](Edit e) { return percent(e.share); }),
+        row("  moved: patches and tracer after", [](Edit e) { return time(e.followSeconds); }),
+        row("  all layers after", [](Edit e) { return time(e.seconds); }),
+        row("  rays", [](Edit e) { return std::to_string(e.rays); }),
+        row("  fresh, layers: to the error", [](Edit e) { return time(e.freshSeconds); }),
+        row("  over the object", [](Edit e) { return times(ratio(e.freshSeconds, e.seconds)); }),
+        row("  off the fresh layers", [](Edit e) { return percent(e.difference); }),
+    };
+}
+
 std::vector<Row> rows() {
     using Run = const EditsRun&;
     std::vector<Row> all = {
@@ -148,6 +177,11 @@ std::vector<Row> rows() {
         {"  off all layers'", [](Run r) { return r.albedo ? percent(r.albedo->firstError) : "–"; }},
         {"  all layers after", [](Run r) { return r.albedo ? time(r.albedo->seconds) : "–"; }},
         {"  rays", [](Run r) { return r.albedo ? std::to_string(r.albedo->rays) : "–"; }},
+    };
+    all.insert(all.end(), rest.begin(), rest.end());
+    for (Row& row : objectRows())
+        all.push_back(std::move(row));
+    const std::vector<Row> links = {
         {"links: memory",
          [](Run r) { return fmt::format("{:.1f} MiB", static_cast<double>(r.links.bytes) / 1048576.0); }},
         {"  bytes each", [](Run r) { return fmt::format("{:.3g}", r.links.bytesPerLink); }},
@@ -155,7 +189,7 @@ std::vector<Row> rows() {
         {"  G/s over albedo edits",
          [](Run r) { return fmt::format("{:.3g}", 1e-9 * r.links.perSecondAlbedo); }},
     };
-    all.insert(all.end(), rest.begin(), rest.end());
+    all.insert(all.end(), links.begin(), links.end());
     return all;
 }
 

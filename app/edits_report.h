@@ -59,6 +59,19 @@ struct AlbedoEdit {
     uint64_t rays = 0;
 };
 
+/// Of an object with about a hundredth of the triangles, by a twentieth of the diagonal.
+struct ObjectEdit {
+    std::string object;
+    double share = 0;         // of the triangles
+    double followSeconds = 0; // for patches, triangles and tracer
+    double seconds = 0;       // with that, until all layers have the error that they had
+    uint64_t rays = 0;
+    double freshSeconds = 0; // a fresh bake in layers until it has the error, without what goes before
+    double freshPreparation = 0;
+    uint64_t freshRays = 0;
+    double difference = 0; // between both, relRMSE
+};
+
 struct LinkFigures {
     uint64_t bytes = 0;       // kept
     double bytesPerLink = 0;  // of the links of the deepest layer
@@ -74,6 +87,7 @@ struct EditsRun {
     MoveEdit move;
     FreshBake layers, hybrid;
     std::optional<AlbedoEdit> albedo; // none: the scene has no material
+    std::optional<ObjectEdit> object; // none: no object can be followed
     LinkFigures links;
 };
 

@@ -146,9 +146,10 @@ void Flattener::add(const Part& part) {
 /// The parts of all instances in file order; charts of a mesh are found once for all its instances.
 class PartList {
 public:
-    PartList(const Scene& scene, const LightmapAtlas& atlas) : charts_(scene.meshes.size()) {
-        for (size_t i = 0; i < scene.instances.size(); ++i)
-            if (!scene.instances[i].hidden) addInstance(scene, atlas, i);
+    PartList(const Scene& scene, const LightmapAtlas& atlas, std::span<const uint32_t> instances)
+        : charts_(scene.meshes.size()) {
+        for (const uint32_t i : instances)
+            addInstance(scene, atlas, i);
     }
     const std::vector<Part>& parts() const { return parts_; }
     uint32_t chartBound() const { return nextChart_; }
@@ -192,9 +193,10 @@ void compactCharts(WorldMesh& mesh, uint32_t bound) {
 
 } // namespace
 
-WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas) {
+WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
+                           std::span<const uint32_t> instances) {
     ASSERT(atlas.instances.size() == scene.instances.size());
-    const PartList list(scene, atlas);
+    const PartList list(scene, atlas, instances);
     WorldMesh mesh;
     Flattener flattener(mesh);
     flattener.reserve(list.triangles());
@@ -203,11 +205,19 @@ WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas) {
     mesh.opaqueCount = mesh.triangleCount();
     for (const Part& part : list.parts())
         if (isMasked(scene, part.primitive->material)) flattener.add(part);
-    if (mesh.triangleCount() == 0)
-        throw Error(scene.path + ": has no triangle with an area: export it with its geometry");
     if (flattener.dropped() > 0)
         spdlog::warn("{}: {} triangles without area are dropped", scene.path, flattener.dropped());
     compactCharts(mesh, list.chartBound());
+    return mesh;
+}
+
+WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas) {
+    std::vector<uint32_t> shown;
+    for (uint32_t i = 0; i < scene.instances.size(); ++i)
+        if (!scene.instances[i].hidden) shown.push_back(i);
+    WorldMesh mesh = flattenInstances(scene, atlas, shown);
+    if (mesh.triangleCount() == 0)
+        throw Error(scene.path + ": has no triangle with an area: export it with its geometry");
     return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "assets/lightmap_atlas.h"
@@ -34,5 +35,9 @@ struct WorldMesh {
 /// Flattens a scene with the atlas it was given. Drops zero-area triangles and hidden instances. Throws Error
 /// when nothing is left.
 WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas);
+/// The same of these instances alone, hidden or not, in ascending order; charts are counted among them. May
+/// be empty.
+WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
+                           std::span<const uint32_t> instances);
 
 } // namespace relume

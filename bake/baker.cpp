@@ -1,6 +1,7 @@
 #include "bake/baker.h"
 
 #include "assets/log.h"
+#include "bake/object_mover.h"
 #include "bake/texture_group.h"
 #include "bake/vk/commands.h"
 
@@ -10,8 +11,7 @@
 namespace relume {
 namespace {
 
-// Directions that decide whether a patch lies inside something.
-constexpr uint32_t kInsideSamples = 32;
+constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
 // Share of the free memory that a bake may take: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
 
@@ -100,12 +100,17 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
     colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
 
+    if (settings.solver.layers.on && !rtrad && !usesVoxels(settings))
+        mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
+                                               settings.conservative);
     makeTracers();
     onPhase_("solver set-up");
     PhaseClock setUp(phases_);
     solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
     setUp.end("solver set-up");
 }
+
+Baker::~Baker() = default;
 
 // Whether a patch lies inside something is told by triangles: a voxel knows no inside.
 void Baker::makeTracers() {
@@ -165,6 +170,7 @@ void Baker::findInvalid() {
         const auto* values = static_cast<const uint32_t*>(links.mapped());
         all.insert(all.end(), values, values + uint64_t{count} * kInsideSamples * shader::kChunk);
     }
+    if (mover_) mover_->noteInside(all);
     invalid_ = markInvalid(patches_, all, kInsideSamples);
     if (invalid_ == 0) return;
     spdlog::info(
@@ -182,6 +188,14 @@ void Baker::resetSolver(const SolverSettings& settings) {
 
 void Baker::updateMaterials() {
     colours_->update(device_, scene_.materials, patches_, *light_);
+}
+
+std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas& atlas) {
+    std::optional<ObjectMove> move = mover_ ? mover_->follow(atlas, *tracer_) : std::nullopt;
+    if (!move) return {};
+    invalid_ = mover_->invalidPatches();
+    if (mover_->repainted()) colours_->updateAll(device_, scene_.materials, patches_, *light_);
+    return move;
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,10 @@
 #include "bake/trace/tracer.h"
 
 namespace relume {
+
+struct LightmapAtlas;
+struct ObjectMove;
+class ObjectMover;
 
 struct BakeSettings {
     uint32_t size = 512; // lightmap edge [texels]
@@ -41,6 +46,7 @@ public:
     using PhaseHook = std::function<void(const char* phase)>;
     Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
           PhaseHook onPhase = {});
+    ~Baker();
 
     Solver& solver() { return *solver_; }
     /// Another solver of the same patches, which starts from no light; `transport` must stay as it is. Throws
@@ -49,6 +55,10 @@ public:
     /// Colours and strengths of materials as the scene has them now; not whether they are masked or emit at
     /// all. For a solver that follows edits, which is to be told afterwards.
     void updateMaterials();
+    /// Objects stand, or are hidden, as the scene has them now: for a solver that follows edits
+    /// (LayerSolver::moveObjects is to be told of what comes back). Nothing: that cannot be followed, and all
+    /// is as it was; another Baker is needed. The atlas is the one that the mesh was made with.
+    std::optional<ObjectMove> moveObjects(const LightmapAtlas& atlas);
     Tracer& tracer() { return *tracer_; }
     /// Its name and why it was taken: "embree (software device)".
     const std::string& tracerChoice() const { return tracerChoice_; }
@@ -80,6 +90,7 @@ private:
     PatchSet patches_;
     std::unique_ptr<LightBuffers> light_;
     std::unique_ptr<SurfaceColours> colours_;
+    std::unique_ptr<ObjectMover> mover_; // where layers are baked, whose solver follows edits
     std::unique_ptr<Tracer> tracer_;
     std::unique_ptr<Solver> solver_;
     std::string tracerChoice_;

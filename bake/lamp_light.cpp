@@ -3,6 +3,7 @@
 #include "bake/vk/commands.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -39,6 +40,11 @@ void LampLight::update(const Scene& scene) {
     set_.skyRotation = scene.sky.rotation;
     set_.lamps = lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = desc_.apart});
     group();
+}
+
+bool LampLight::updateReach(const WorldMesh& mesh) {
+    const float before = std::exchange(set_.reach, reachOf(mesh));
+    return set_.reach != before;
 }
 
 void LampLight::group() {

@@ -22,11 +22,14 @@ public:
 
     /// Lamps as they are now; sky picture and patches are the same as before. No batch may be under way.
     void update(const Scene& scene);
+    /// Triangles stand elsewhere now. Whether rays to the sky and to suns end elsewhere, too.
+    bool updateReach(const WorldMesh& mesh);
 
     bool empty() const { return groups_.empty(); }
     uint32_t groups() const { return static_cast<uint32_t>(groups_.size()); }
     uint32_t rays() const { return rays_; } // per patch and round, of all groups
     uint32_t rays(uint32_t group) const { return groups_[group].targets; }
+    float reach() const { return set_.reach; } // how far away rays to the sky and to suns end [m]
     bool hasSky() const { return !set_.empty() && set_.lamps.back().type == shader::kLampSky; }
     uint32_t batchChunks() const { return batchChunks_; } // at most in one batch
     struct Work {

@@ -81,6 +81,8 @@ bool addPicture(LampSet& set, const Sky& sky) {
     return all > 0;
 }
 
+} // namespace
+
 float reachOf(const WorldMesh& mesh) {
     glm::vec3 lo = mesh.positions.front(), hi = lo;
     for (const glm::vec3& p : mesh.positions) {
@@ -89,8 +91,6 @@ float reachOf(const WorldMesh& mesh) {
     }
     return 2.0f * glm::length(hi - lo);
 }
-
-} // namespace
 
 std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const LampDesc& desc) {
     std::vector<shader::Lamp> lamps;

@@ -27,6 +27,8 @@ struct LampDesc {
     bool unit = false;     // every lamp shines with colour 1, those of no intensity too
 };
 LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc);
+/// LampSet::reach of these triangles.
+float reachOf(const WorldMesh& mesh);
 /// The lamps of such a set alone, whose sky is as it was made.
 std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const LampDesc& desc);
 

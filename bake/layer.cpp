@@ -34,7 +34,9 @@ std::string staleReason(const Layer& layer) {
     if (now.rotation != then.rotation) return light + "turned";
     LightPattern recoloured = then;
     recoloured.surfaces = now.surfaces;
-    return recoloured == now ? light + "meets surfaces of other colours" : light + "has another form";
+    if (recoloured == now) return light + "meets surfaces of other colours";
+    recoloured.objects = now.objects;
+    return light + (recoloured == now ? "shines on objects that moved" : "has another form");
 }
 
 } // namespace relume

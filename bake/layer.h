@@ -20,6 +20,7 @@ struct LightPattern {
     float rotation = 0;                  // Sky [rad]
     std::string file;                    // Sky
     uint64_t surfaces = 0;               // tells colours of surfaces apart
+    uint64_t objects = 0;                // and where objects stand
 
     bool operator==(const LightPattern&) const = default;
 };
@@ -42,9 +43,13 @@ struct Layer {
     std::shared_ptr<vk::Buffer> direct; // nullptr: no rounds yet
     vk::Buffer result;                  // vec4 per patch: lighting, standard error; where there is a level
     uint32_t directRounds = 0;          // in direct
-    LayerLevel level;                   // of result; no rounds: there is none yet
-    SmoothingWidth width;               // of the last result
-    double light = 0, count = 0;        // sums over patches, R, G and B together
+    // directRounds after each level that took more; what is summed together decides the last bits.
+    std::vector<uint32_t> directSteps;
+    // Per chunk 1 where direct is of objects that have moved since; empty: nowhere.
+    std::vector<uint8_t> stale;
+    LayerLevel level;            // of result; no rounds: there is none yet
+    SmoothingWidth width;        // of the last result
+    double light = 0, count = 0; // sums over patches, R, G and B together
     double directVariance = 0, indirectVariance = 0, iterationError = 1;
     double error = 1;               // relRMSE of result
     std::optional<LayerLevel> redo; // it had been here, with other surfaces

@@ -31,6 +31,17 @@ uint64_t surfacesOf(const Scene& scene) {
     return hash;
 }
 
+// The same of where objects stand. Hidden ones stand nowhere.
+uint64_t objectsOf(const Scene& scene) {
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (const Instance& instance : scene.instances) {
+        hash = (hash ^ instance.hidden) * 0x100000001b3u;
+        for (int k = 0; k < 16 && !instance.hidden; ++k)
+            hash = (hash ^ std::bit_cast<uint32_t>(instance.transform[k / 4][k % 4])) * 0x100000001b3u;
+    }
+    return hash;
+}
+
 } // namespace
 
 std::string LayerSolver::problem(const Scene& scene, const PatchSet& patches, uint64_t bytes) {
@@ -49,6 +60,7 @@ bool LayerSolver::holds(size_t lamps) const {
 
 void LayerSolver::edit(const LightMix& mix) {
     ASSERT(atRest() || surfacesOf(input_.scene) == surfaces_);
+    ASSERT(moved_ || objectsOf(input_.scene) == objects_);
     mix_ = mix;
     edited_ = true;
     done_ = false;
@@ -62,6 +74,7 @@ void LayerSolver::weigh() {
     for (const LightSource& source : sources) {
         patterns.push_back(patternOf(input_.scene, source.key));
         patterns.back().surfaces = surfaces_;
+        patterns.back().objects = objects_;
     }
     const auto has = [&](const LightPattern& pattern) {
         return std::any_of(layers_.begin(), layers_.end(),
@@ -135,13 +148,17 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     }
 }
 
-// Surfaces of other colours change bounces alone. The new layer goes as far as the one before was.
+// Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
+// new layer goes as far as the one before was.
 void LayerSolver::keepDirect(const Layer& from, Layer& to) {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
+    alike.objects = to.pattern.objects;
     if (!(alike == to.pattern) || from.directRounds == 0) return;
     to.direct = from.direct;
     to.directRounds = from.directRounds;
+    to.directSteps = from.directSteps;
+    keepStale(from, to);
     to.redo = from.has() ? std::optional(from.level) : from.redo;
 }
 
@@ -167,12 +184,15 @@ void LayerSolver::adopt() {
     const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
     if (!tooMany.empty()) throw Error(tooMany);
     surfaces_ = surfacesOf(input_.scene);
+    objects_ = objectsOf(input_.scene);
+    if (moved_) adoptMove();
     lamps_.update(input_.scene);
     updateEmitters(sources);
     std::vector<LightPattern> patterns;
     for (const LightSource& source : sources) {
         patterns.push_back(patternOf(input_.scene, source.key));
         patterns.back().surfaces = surfaces_;
+        patterns.back().objects = objects_;
     }
     std::vector<const Layer*> shown;
     for (const std::unique_ptr<Layer>& layer : layers_)
@@ -217,6 +237,7 @@ void LayerSolver::adopt() {
         for (size_t i = 0; i < layers_.size(); ++i)
             changed(i);
     }
+    moved_.reset();
     sumDue_ = wantsSum();
     if (!sumDue_) hideSum();
     done_ = false;

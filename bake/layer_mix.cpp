@@ -174,6 +174,7 @@ void LayerSolver::restore(const SolverState& state) {
         std::memcpy(&from, state.own.data() + i * sizeof from, sizeof from);
         Layer& layer = *layers_[i];
         layer.directRounds = from.directRounds;
+        layer.directSteps.assign(1, from.directRounds);
         layer.level = from.level;
         layer.width = from.width;
         layer.light = from.light;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -55,10 +56,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
         vk::Buffer(input.device, {.size = std::max<uint64_t>(buffers_.chunkSums.size(), buffers_.rays.size()),
                                   .memory = vk::Memory::Host,
                                   .name = "sums for the CPU"});
-    const std::vector<shader::Patch>& patches = input.patches.scene.patches;
-    senders_.assign(input.patches.chunkCount(), 0);
-    for (size_t i = 0; i < patches.size(); ++i)
-        senders_[i / kChunk] += (patches[i].flags & shader::kPatchSends) != 0;
+    countSenders();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.rays, &composite_, &input.light.ligIn, &input.light.ligOut})
         vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
@@ -71,13 +69,22 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
 
 LayerSolver::~LayerSolver() = default;
 
+void LayerSolver::countSenders() {
+    const std::vector<shader::Patch>& patches = input_.patches.scene.patches;
+    senders_.assign(input_.patches.chunkCount(), 0);
+    for (size_t i = 0; i < patches.size(); ++i)
+        senders_[i / kChunk] += (patches[i].flags & shader::kPatchSends) != 0;
+}
+
 void LayerSolver::step() {
     const auto start = Clock::now();
     if (edited_ && atRest()) adopt();
     if (done_) return;
     if (sumDue_ && work_ && !work_->sum) abortPass();
-    if (!work_) plan();
-    if (work_) {
+    if (!work_ && !relink_) plan();
+    if (relink_) {
+        relinkBatch();
+    } else if (work_) {
         if (work_->stage == Stage::Direct)
             directBatch();
         else
@@ -100,6 +107,7 @@ void LayerSolver::plan() {
 
 void LayerSolver::begin(size_t layer, LayerLevel target) {
     work_ = Work{.layer = layer, .target = target};
+    if (!layers_[layer]->stale.empty()) return beginMending();
     work_->round = layers_[layer]->directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
     beginPass(Stage::Direct);
@@ -170,17 +178,12 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
 }
 
 void LayerSolver::endDirectRound() {
+    if (work_->mended) return endMendingRound();
     Layer& layer = *layers_[work_->layer];
     if (++work_->round < work_->target.directRounds) return order_.begin(input_.patches.chunkCount(), seen_);
     const uint32_t rounds = work_->target.directRounds - layer.directRounds;
-    std::shared_ptr<vk::Buffer> shared; // with a layer that is to stay as it is
-    if (layer.direct.use_count() > 1) shared = std::move(layer.direct);
-    if (!layer.direct) layer.direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of a layer"));
     VkCommandBuffer cmd = commands_.begin();
-    if (shared) {
-        const VkBufferCopy all{0, 0, shared->size()};
-        vkCmdCopyBuffer(cmd, shared->handle(), layer.direct->handle(), 1, &all);
-    }
+    const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, rounds);
@@ -188,7 +191,20 @@ void LayerSolver::endDirectRound() {
     run(cmd);
     countRays();
     layer.directRounds = work_->target.directRounds;
+    layer.directSteps.push_back(layer.directRounds);
     beginBounces();
+}
+
+// Of direct light that a layer shares with one that is to stay as it is, a copy. Returns what that was made
+// of, to be kept until the copy is there; nullptr: none was needed.
+std::shared_ptr<vk::Buffer> LayerSolver::recordOwnDirect(VkCommandBuffer cmd, Layer& layer) {
+    if (layer.direct && layer.direct.use_count() == 1) return nullptr;
+    const std::shared_ptr<vk::Buffer> shared =
+        std::exchange(layer.direct, std::make_shared<vk::Buffer>(takeBuffer("direct light of a layer")));
+    if (!shared) return nullptr;
+    const VkBufferCopy all{0, 0, shared->size()};
+    vkCmdCopyBuffer(cmd, shared->handle(), layer.direct->handle(), 1, &all);
+    return shared;
 }
 
 void LayerSolver::recordRayCount(VkCommandBuffer cmd) {

@@ -10,6 +10,7 @@
 #include "bake/layer_passes.h"
 #include "bake/link_cache.h"
 #include "bake/link_passes.h"
+#include "bake/object_move.h"
 #include "bake/settling.h"
 #include "bake/vk/commands.h"
 
@@ -53,10 +54,14 @@ public:
     /// whose pattern changed are made anew once the first level of the layer under way is through, so that a
     /// light that is dragged is seen.
     void edit(const LightMix& mix);
-    /// Whether base colours may be changed now: no layer is on its way to its first level.
-    bool atRest() const { return !work_ || work_->sum || layers_[work_->layer]->has(); }
-    /// Whether what is shown is of the newest colours of surfaces: layer by layer, or all in one.
+    /// Whether what is shown is of the newest colours of surfaces and places of objects: layer by layer, or
+    /// all in one.
     bool current() const;
+    /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
+    void moveObjects(const ObjectMove& move);
+    /// Whether base colours and objects may be changed now: no layer is on its way to its first level, and no
+    /// links are.
+    bool atRest() const { return !relink_ && (!work_ || work_->sum || layers_[work_->layer]->has()); }
 
     /// Points on each light per patch and round, at most: few, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = 2 * shader::kReplicates;
@@ -75,9 +80,18 @@ private:
         bool begun = false;   // a batch of this pass has been made
         bool lit = false;     // what patches send is that of ligIn
         double change = 0, ratio = 0, iterationError = 1;
+        std::optional<uint32_t> mended; // of Layer::directSteps; direct light of stale chunks is made anew
+    };
+    /// Kept links on their way to where objects are now.
+    struct Relink {
+        ObjectMove move;
+        vk::Buffer boxes, changed, list;
+        BatchRate rate;
+        uint32_t round = 0, chunk = 0; // next
     };
 
     // layer_solver.cpp
+    void countSenders();
     void plan();
     Layer& working() { return work_->sum ? *sum_ : *layers_[work_->layer]; }
     void begin(size_t layer, LayerLevel target);
@@ -85,6 +99,7 @@ private:
     template<typename Lights>
     void directBatchOf(const Lights& lights, uint32_t group, ChunkRange range);
     void endDirectRound();
+    std::shared_ptr<vk::Buffer> recordOwnDirect(VkCommandBuffer cmd, Layer& layer);
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
     uint32_t raysOf(const Layer& layer) const;
@@ -135,6 +150,15 @@ private:
     void showSum();
     void hideSum();
 
+    // layer_objects.cpp
+    void adoptMove();
+    void relinkBatch();
+    LightPlace placeOf(const Layer& layer) const;
+    void keepStale(const Layer& from, Layer& to) const;
+    void beginMending();
+    void orderStale();
+    void endMendingRound();
+
     // layer_mix.cpp
     std::vector<shader::LayerWeight> shares(std::optional<size_t> without, std::optional<size_t> only) const;
     uint32_t writeWeights(const std::vector<shader::LayerWeight>& list);
@@ -167,7 +191,10 @@ private:
     std::vector<vk::Buffer> spare_;              // of layers that are gone, for the next ones
     uint64_t layerBytes_ = 0;                    // at most, of all of them
     std::vector<LightKey> emitterKeys_;          // of emitters_' groups
-    uint64_t surfaces_ = 0;
+    uint64_t surfaces_ = 0, objects_ = 0;
+    std::optional<ObjectMove> moved_; // an edit of objects that waits to be adopted
+    std::optional<Relink> relink_;
+    bool reachMoved_ = false; // rays to suns and the sky end elsewhere since objects moved
     std::optional<Work> work_;
     LightMix mix_;
     bool edited_ = false; // an edit waits to be adopted

@@ -22,7 +22,7 @@ bool LayerSolver::wantsSum() const {
     size_t waiting = 0;
     for (const std::unique_ptr<Layer>& layer : layers_) {
         if (!shines(*layer)) continue;
-        if (layer->directRounds == 0) return false;
+        if (layer->directRounds == 0 || !layer->stale.empty()) return false;
         waiting += layer->has() ? 0 : 1;
     }
     return waiting > 1;

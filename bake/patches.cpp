@@ -53,7 +53,7 @@ struct NewPatch {
     shader::Patch patch{};
     shader::PatchEdges edges{};
     glm::vec4 albedo{0.0f}, emission{0.0f}; // for factors of 1
-    uint32_t chart = kNoChart, material = 0;
+    uint32_t chart = kNoChart, material = 0, instance = 0;
 };
 
 struct ThinChart {
@@ -64,7 +64,7 @@ struct ThinChart {
 class Builder {
 public:
     Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
-        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad) {
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part) {
         if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
         materials_.emplace_back(); // glTF's default material
         set_.scene.mesh = std::move(mesh);
@@ -83,12 +83,14 @@ public:
         for (uint32_t tile = 0; tile < tiles * tiles; ++tile)
             addTile(tile % tiles, tile / tiles);
         set_.count = static_cast<uint32_t>(set_.scene.patches.size());
-        if (set_.count == 0) {
+        if (set_.count == 0 && !part_) {
             throw Error(
                 "the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or pass --unwrap");
         }
+        NewPatch padding;
+        padding.instance = static_cast<uint32_t>(scene_.instances.size());
         while (set_.scene.patches.size() % kChunk != 0)
-            add({});
+            add(padding);
         applyMaterials(set_, scene_.materials);
         addBounds();
         addHitTriangles();
@@ -147,6 +149,7 @@ private:
         set_.albedoPattern.push_back(p.albedo);
         set_.emissionPattern.push_back(p.emission);
         set_.material.push_back(p.material);
+        set_.instance.push_back(p.instance);
     }
 
     void addTile(uint32_t tileX, uint32_t tileY) {
@@ -185,6 +188,7 @@ private:
         p.albedo = group_.mat[texel];
         p.emission = group_.emission[texel];
         p.material = set_.scene.mesh.material[triangle];
+        p.instance = set_.scene.mesh.instance[triangle];
         return p;
     }
 
@@ -203,6 +207,7 @@ private:
         fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
              texel.y * group_.size + texel.x);
         result.material = m.material[thin.triangle];
+        result.instance = m.instance[thin.triangle];
         const Material& material = materials_[result.material];
         const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
         const glm::vec4 surface =
@@ -266,17 +271,8 @@ private:
     }
 
     void addBounds() {
-        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk) {
-            shader::ChunkBounds b{glm::vec3(std::numeric_limits<float>::max()),
-                                  glm::vec3(std::numeric_limits<float>::lowest()), 0.0f};
-            for (uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, set_.count); ++i) {
-                const shader::Patch& p = set_.scene.patches[i];
-                b.lo = glm::min(b.lo, p.position);
-                b.hi = glm::max(b.hi, p.position);
-                b.size = std::max(b.size, std::sqrt(p.area));
-            }
-            set_.bounds.push_back(b);
-        }
+        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk)
+            set_.bounds.push_back(chunkBounds(set_, chunk));
     }
 
     void addHitTriangles() {
@@ -350,7 +346,7 @@ private:
     const Scene& scene_;
     std::vector<Material> materials_;
     const TextureGroup& group_;
-    const bool rtrad_;
+    const bool rtrad_, part_;
     PatchSet set_;
     std::vector<TriangleFrame> frames_;               // per triangle
     std::vector<float> areaScale_;                    // per chart
@@ -365,6 +361,19 @@ PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& gr
     return builder.build();
 }
 
+shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk) {
+    shader::ChunkBounds b{glm::vec3(std::numeric_limits<float>::max()),
+                          glm::vec3(std::numeric_limits<float>::lowest()), 0.0f};
+    for (uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, patches.count); ++i) {
+        const shader::Patch& p = patches.scene.patches[i];
+        if (p.flags == 0 && p.area == 0.0f) continue;
+        b.lo = glm::min(b.lo, p.position);
+        b.hi = glm::max(b.hi, p.position);
+        b.size = std::max(b.size, std::sqrt(p.area));
+    }
+    return b;
+}
+
 void applyMaterials(PatchSet& patches, const std::vector<Material>& materials) {
     const size_t count = patches.albedoPattern.size();
     std::vector<Material> all = materials;
@@ -377,9 +386,13 @@ void applyMaterials(PatchSet& patches, const std::vector<Material>& materials) {
     }
 }
 
-uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
+bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount) {
     // Half of what a texel just below a floor looks at is the floor's back, the other half nothing at all.
     constexpr double kLeastBacks = 0.4;
+    return backs >= kLeastBacks * sampleCount && 2 * backs + sky > sampleCount;
+}
+
+uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
     uint32_t marked = 0;
     for (uint32_t i = 0; i < patches.count; ++i) {
         uint32_t backs = 0, sky = 0;
@@ -389,7 +402,7 @@ uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint
             backs += link == shader::kLinkBack;
             sky += link == shader::kLinkSky;
         }
-        if (backs < kLeastBacks * sampleCount || 2 * backs + sky <= sampleCount) continue;
+        if (!liesInside(backs, sky, sampleCount)) continue;
         patches.scene.patches[i].flags &= ~shader::kPatchSends;
         ++marked;
     }

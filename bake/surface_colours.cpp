@@ -91,4 +91,12 @@ void SurfaceColours::update(const vk::Device& device, const std::vector<Material
     applied_ = std::move(now);
 }
 
+void SurfaceColours::updateAll(const vk::Device& device, const std::vector<Material>& materials,
+                               PatchSet& patches, LightBuffers& light) {
+    applyMaterials(patches, materials);
+    vk::upload(device, light.albedo, patches.albedo.data(), patches.albedo.size() * sizeof(glm::vec4));
+    vk::upload(device, light.emission, patches.emission.data(), patches.emission.size() * sizeof(glm::vec4));
+    *this = SurfaceColours(materials);
+}
+
 } // namespace relume

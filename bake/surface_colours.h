@@ -19,6 +19,9 @@ public:
     explicit SurfaceColours(std::vector<Material> materials);
     void update(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
                 LightBuffers& light);
+    /// The same of all patches, whose patterns may be others.
+    void updateAll(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
+                   LightBuffers& light);
 
 private:
     struct Changed {

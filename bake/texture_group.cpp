@@ -81,9 +81,12 @@ private:
     std::vector<vk::RasterProgram::BoundTexture> bound_;
 };
 
-std::vector<shader::CitMaterial> citMaterials(const Scene& scene, TextureArray& textures) {
-    std::vector<Material> materials = scene.materials;
-    materials.emplace_back(); // glTF's default material
+// Textures come with those that the mesh has.
+std::vector<shader::CitMaterial> citMaterials(const Scene& scene, const WorldMesh& mesh,
+                                              TextureArray& textures) {
+    std::vector<Material> materials(scene.materials.size() + 1); // the last one is glTF's default material
+    for (const uint32_t used : mesh.material)
+        if (used < scene.materials.size()) materials[used] = scene.materials[used];
     std::vector<shader::CitMaterial> result;
     for (const Material& m : materials) {
         result.push_back({.baseColor = glm::vec4(1.0f, 1.0f, 1.0f, m.baseColor.a), // masks need it
@@ -114,23 +117,27 @@ std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector
 
 // Copies an image in TRANSFER_SRC_OPTIMAL to the host, one row of values per texel row.
 template<typename T>
-std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image) {
+std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image,
+                         const CitDesc& desc) {
+    const uint32_t first = std::min(desc.firstRow, image.height());
+    const uint32_t rows = std::min(desc.rows, image.height() - first);
     std::vector<T> values(size_t{image.width()} * image.height());
-    const vk::Buffer staging(
-        device,
-        {.size = values.size() * sizeof(T), .memory = vk::Memory::Host, .name = "texture group readback"});
+    const size_t bytes = size_t{image.width()} * rows * sizeof(T);
+    if (bytes == 0) return values;
+    const vk::Buffer staging(device,
+                             {.size = bytes, .memory = vk::Memory::Host, .name = "texture group readback"});
     VkCommandBuffer cmd = commands.begin();
     const VkBufferImageCopy region{.bufferOffset = 0,
                                    .bufferRowLength = 0,
                                    .bufferImageHeight = 0,
                                    .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                   .imageOffset = {},
-                                   .imageExtent = {image.width(), image.height(), 1}};
+                                   .imageOffset = {0, static_cast<int32_t>(first), 0},
+                                   .imageExtent = {image.width(), rows, 1}};
     vkCmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle(), 1,
                            &region);
     vk::hostBarrier(cmd);
     commands.run();
-    std::memcpy(values.data(), staging.mapped(), values.size() * sizeof(T));
+    std::memcpy(values.data() + size_t{image.width()} * first, staging.mapped(), bytes);
     return values;
 }
 
@@ -139,7 +146,7 @@ std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const
 TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
                                    const CitDesc& desc) {
     TextureArray textures(device, scene);
-    const vk::Buffer materials = vk::makeBuffer(device, citMaterials(scene, textures), "materials");
+    const vk::Buffer materials = vk::makeBuffer(device, citMaterials(scene, mesh, textures), "materials");
     const std::vector<VkFormat> formats = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
                                            VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
                                            VK_FORMAT_R32_UINT};
@@ -182,11 +189,11 @@ TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene,
 
     TextureGroup group;
     group.size = desc.size;
-    group.pos = readImage<glm::vec4>(device, commands, images[0]);
-    group.nrm = readImage<glm::vec4>(device, commands, images[1]);
-    group.mat = readImage<glm::vec4>(device, commands, images[2]);
-    group.emission = readImage<glm::vec4>(device, commands, images[3]);
-    group.triangle = readImage<uint32_t>(device, commands, images[4]);
+    group.pos = readImage<glm::vec4>(device, commands, images[0], desc);
+    group.nrm = readImage<glm::vec4>(device, commands, images[1], desc);
+    group.mat = readImage<glm::vec4>(device, commands, images[2], desc);
+    group.emission = readImage<glm::vec4>(device, commands, images[3], desc);
+    group.triangle = readImage<uint32_t>(device, commands, images[4], desc);
     return group;
 }
 

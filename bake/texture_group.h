@@ -24,6 +24,8 @@ struct CitDesc {
     uint32_t size = 512;
     bool conservative = false; // every texel that a triangle touches becomes a patch
     bool rtrad = false;        // albedo = base colour, whatever the metallic factor
+    uint32_t firstRow = 0;     // of texels that are asked for; all others come without a surface
+    uint32_t rows = ~0u;
 };
 
 /// Draws the mesh into its lightmap; the triangle drawn last wins. Throws Error.

@@ -166,39 +166,55 @@ LayerSolver* BakeLoop::layered() const {
     return baker_ ? dynamic_cast<LayerSolver*>(&baker_->solver()) : nullptr;
 }
 
-// Whether layers go on with what they have.
-bool BakeLoop::onlyLights(const BakeOrders::Start& start) const {
+// Whether layers may go on with what they have.
+bool BakeLoop::onlyEdits(const BakeOrders::Start& start) const {
     BakeSettings wanted = start.settings;
     wanted.solver.layers = settings_.solver.layers;
     return layered() && start.scene == prepared_ && describeSettings(wanted) == describeSettings(settings_) &&
            wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
            wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
-           editsOf(scene_).placements == start.edits.placements &&
            sameForPatches(start.edits.materials, scene_.materials) &&
            layered()->holds(start.edits.lights.size());
 }
 
-// The solver keeps what is still right. A pass under way reads colours of surfaces: they change between two.
-void BakeLoop::followEdit(const BakeOrders::Start& start) {
+// The solver keeps what is still right. A pass under way reads colours of surfaces and links: they change
+// between two. False: objects cannot be followed, and the bake is to begin anew.
+bool BakeLoop::followEdit(const BakeOrders::Start& start) {
     const bool recoloured = !sameSurfaces(start.edits.materials, scene_.materials);
-    if (recoloured && !layered()->atRest()) {
+    const bool moved = editsOf(scene_).placements != start.edits.placements;
+    if ((recoloured || moved) && !layered()->atRest()) {
         waiting_ = start;
-        return;
+        return true;
     }
     applyEdits(scene_, start.edits);
     if (recoloured) baker_->updateMaterials();
+    if (moved && !followObjects(start)) return false;
     layered()->edit(start.mix);
     status_.bake = start.number;
     maps_->edited(start.number);
     if (status_.phase == Phase::Done) status_.phase = Phase::Baking;
     const std::lock_guard lock(desk_.mutex);
     desk_.held = nullptr;
+    return true;
+}
+
+bool BakeLoop::followObjects(const BakeOrders::Start& start) {
+    const std::optional<ObjectMove> move = baker_->moveObjects(start.scene->atlas);
+    if (!move) {
+        prepared_ = nullptr; // scene_ and patches have gone apart
+        return false;
+    }
+    layered()->moveObjects(*move);
+    if (!move->texels) return true;
+    maps_->end();
+    beginMaps(true);
+    return true;
 }
 
 // Light of another scene is of no use, light of the same one stays until there is better.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
     waiting_.reset();
-    if (onlyLights(start)) return followEdit(start);
+    if (onlyEdits(start) && followEdit(start)) return;
     const bool sameScene = baker_ && start.scene == prepared_ && sameEdits(start.edits, editsOf(scene_));
     const bool solverOnly = sameScene && preparation(start.settings) == preparation(settings_);
     settings_ = start.settings;

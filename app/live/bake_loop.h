@@ -27,8 +27,9 @@ private:
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
-    bool onlyLights(const BakeOrders::Start& start) const;
-    void followEdit(const BakeOrders::Start& start);
+    bool onlyEdits(const BakeOrders::Start& start) const;
+    bool followEdit(const BakeOrders::Start& start);
+    bool followObjects(const BakeOrders::Start& start);
     LayerSolver* layered() const;
     void makeBaker(WorldMesh mesh, bool keepLight);
     void reloadShaders();

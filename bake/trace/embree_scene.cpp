@@ -101,7 +101,11 @@ struct EmbreeScene::Impl {
     uint32_t trace(const Block& block, uint32_t* bits) const;
     uint32_t listBlock(const OcclusionArrays& work, uint32_t row, uint32_t column, uint32_t* bits) const;
     void dropOpenPairs(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, kChunk>& rows) const;
-    void links(const Patch* patches, ChunkRays& directions, uint32_t* out) const;
+    void build();
+    void prepareBlocks();
+    void links(const Patch* patches, const ChunkRays& directions, std::span<const uint16_t> order,
+               uint32_t* out) const;
+    uint32_t linksAgain(const RetraceArrays& work, uint32_t chunk, uint32_t piece) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
     uint32_t targets(const Patch* patches, const glm::vec4* ends, uint32_t count, uint32_t* bits) const;
 
@@ -113,14 +117,23 @@ struct EmbreeScene::Impl {
     Bvh bvh; // for shafts
 };
 
-EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads)
-    : scene(traceScene), pool(threads), chunks(buildChunks(traceScene.patches, traceScene.rtrad)),
-      bvh(buildBvh(traceScene.mesh)) {
+EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads) : scene(traceScene), pool(threads) {
     const std::string config = "threads=" + std::to_string(pool.size());
     device.reset(rtcNewDevice(config.c_str()));
     if (!device)
         throw Error("embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) +
                     "): pass --tracer bvh");
+    build();
+    prepareBlocks();
+}
+
+// What only blocks need.
+void EmbreeScene::Impl::prepareBlocks() {
+    chunks = buildChunks(scene.patches, scene.rtrad);
+    bvh = buildBvh(scene.mesh);
+}
+
+void EmbreeScene::Impl::build() {
     embree.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(embree.get(), RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree.get(), RTC_BUILD_QUALITY_HIGH);
@@ -293,6 +306,7 @@ uint32_t EmbreeScene::Impl::listBlock(const OcclusionArrays& work, uint32_t row,
 }
 
 void EmbreeScene::occlusion(const OcclusionArrays& work) {
+    if (impl_->chunks.empty()) impl_->prepareBlocks();
     const Impl& impl = *impl_;
     const bool list = !work.senders.empty();
     const uint32_t rows = impl.scene.chunkCount();
@@ -332,16 +346,18 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
 }
 
-void EmbreeScene::Impl::links(const Patch* patches, ChunkRays& directions, uint32_t* out) const {
+// Of the rays of these numbers.
+void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
+                              std::span<const uint16_t> order, uint32_t* out) const {
     EmbreeIntersectQuery query;
     alignas(64) RTCRayHit8 rays;
     alignas(64) std::array<int, kPacket> valid;
-    for (uint32_t first = 0; first < directions.count(); first += kPacket) {
-        const uint16_t* order = &directions.order()[first];
+    for (size_t first = 0; first < order.size(); first += kPacket) {
+        const auto count = uint32_t(std::min<size_t>(kPacket, order.size() - first));
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
-            const uint32_t number = order[lane];
+            const uint32_t number = order[first + std::min(lane, count - 1)];
             const Patch& patch = patches[number % kChunk];
-            valid[lane] = patch.flags & shader::kPatchSends ? -1 : 0;
+            valid[lane] = lane < count && patch.flags & shader::kPatchSends ? -1 : 0;
             const glm::vec3 origin = patch.position + patch.offset * patch.normal;
             rays.ray.org_x[lane] = origin.x, rays.ray.org_y[lane] = origin.y, rays.ray.org_z[lane] = origin.z;
             rays.ray.dir_x[lane] = directions.x[number], rays.ray.dir_y[lane] = directions.y[number];
@@ -355,9 +371,64 @@ void EmbreeScene::Impl::links(const Patch* patches, ChunkRays& directions, uint3
             rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
         embreeIntersect(valid.data(), embree.get(), query, rays);
-        for (uint32_t lane = 0; lane < kPacket; ++lane)
-            out[order[lane]] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
+        for (uint32_t lane = 0; lane < count; ++lane)
+            out[order[first + lane]] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
     }
+}
+
+// Returns how many rays there were.
+uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk, uint32_t piece) const {
+    const ClosestArrays& c = work.closest;
+    const Patch* patches = &scene.patches[size_t(c.firstChunk + chunk) * kChunk];
+    const glm::uvec2 words = work.changed[c.firstChunk + chunk];
+    const uint64_t changed = words.x | uint64_t(words.y) << 32;
+    uint64_t above = 0, sends = 0;
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        sends |= uint64_t((patches[i].flags & shader::kPatchSends) != 0) << i;
+        for (const shader::TraceBox& box : work.boxes)
+            above |= uint64_t(shader::boxAbove(patches[i].position, patches[i].normal, box)) << i;
+    }
+    above &= sends & ~changed;
+    if ((above | changed) == 0) return 0;
+    const uint32_t first = piece * ChunkRays::kSamplesMax;
+    ChunkRays rays;
+    rays.setPatches(patches, static_cast<uint32_t>(c.rotation), scene.size);
+    rays.setSamples(c.firstSample + first, std::min(ChunkRays::kSamplesMax, c.sampleCount - first));
+    const auto again = [&](uint32_t number) {
+        const uint32_t i = number % kChunk;
+        if ((above >> i & 1) == 0) return (changed >> i & 1) != 0;
+        const glm::vec3 origin = patches[i].position + patches[i].offset * patches[i].normal;
+        const glm::vec3 direction(rays.x[number], rays.y[number], rays.z[number]);
+        return std::any_of(work.boxes.begin(), work.boxes.end(), [&](const shader::TraceBox& box) {
+            return shader::rayMeetsBox(origin, direction, box);
+        });
+    };
+    ChunkRays::Rays<uint16_t> order;
+    uint32_t count = 0, traced = 0;
+    for (uint32_t n = 0; n < rays.count(); ++n) {
+        const uint16_t number = rays.order()[n];
+        if (!again(number)) continue;
+        order[count++] = number;
+        traced += uint32_t(sends >> number % kChunk & 1);
+    }
+    links(patches, rays, {order.data(), count}, c.links + (size_t(chunk) * c.sampleCount + first) * kChunk);
+    return traced;
+}
+
+void EmbreeScene::retrace(const RetraceArrays& work) {
+    const Impl& impl = *impl_;
+    constexpr uint32_t kPiece = ChunkRays::kSamplesMax;
+    const uint32_t pieces = (work.closest.sampleCount + kPiece - 1) / kPiece;
+    impl_->pool.run(work.closest.chunkCount * pieces, [&](uint32_t k) {
+        const uint32_t rays = impl.linksAgain(work, k / pieces, k % pieces);
+        const uint32_t slot = (work.closest.firstChunk + k / pieces) % shader::kRayCounters;
+        if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
+    });
+}
+
+void EmbreeScene::update() {
+    impl_->build();
+    impl_->chunks.clear(); // blocks are seldom asked for then
 }
 
 void EmbreeScene::closest(const ClosestArrays& work) {
@@ -372,7 +443,8 @@ void EmbreeScene::closest(const ClosestArrays& work) {
         rays.setPatches(patches, static_cast<uint32_t>(work.rotation), impl.scene.size);
         if (work.disc) rays.setDisc(work.disc, work.discCount);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
-        impl.links(patches, rays, work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);
+        impl.links(patches, rays, {rays.order().data(), rays.count()},
+                   work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);
     });
 }
 

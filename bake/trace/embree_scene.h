@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "bake/trace/retrace_types.h"
 #include "bake/trace/trace_scene.h"
 #include "bake/trace/tracer.h"
 
@@ -38,6 +39,14 @@ struct SegmentArrays {
     uint32_t* rays = nullptr; // may be left out
 };
 
+/// RetraceWork (tracer.h) on plain memory.
+struct RetraceArrays {
+    ClosestArrays closest;
+    std::span<const shader::TraceBox> boxes = {};
+    const glm::uvec2* changed = nullptr; // per chunk of all
+    uint32_t* rays = nullptr;            // may be left out
+};
+
 /// The scene in Embree, traced in packets by all cores; needs no Vulkan. Borrows the TraceScene. Results do
 /// not depend on the number of threads.
 class EmbreeScene {
@@ -52,6 +61,9 @@ public:
     /// As tracer.h has it. A patch without kPatchSends gets kLinkDark for all samples.
     void closest(const ClosestArrays& work);
     void segments(const SegmentArrays& work);
+    /// As tracer.h has it.
+    void retrace(const RetraceArrays& work);
+    void update();
 
 private:
     struct Impl;

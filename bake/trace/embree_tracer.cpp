@@ -33,18 +33,16 @@ public:
                           .rays = work.rays ? mappedAs<uint32_t>(work.rays, counters) : nullptr});
     }
 
-    void closest(VkCommandBuffer, const ClosestWork& work) override {
-        const uint64_t links =
-            work.linksOffset + uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
-        scene_.closest({.receivers = work.receiversHost,
-                        .firstChunk = work.firstChunk,
-                        .chunkCount = work.chunkCount,
-                        .firstSample = work.firstSample,
-                        .sampleCount = work.sampleCount,
-                        .rotation = work.rotation,
-                        .disc = work.disc ? mappedAs<glm::vec2>(work.disc, work.discCount) : nullptr,
-                        .discCount = work.discCount,
-                        .links = mappedAs<uint32_t>(work.links, links) + work.linksOffset});
+    void closest(VkCommandBuffer, const ClosestWork& work) override { scene_.closest(arrays(work)); }
+
+    bool follows() const override { return true; }
+    void update() override { scene_.update(); }
+    void retrace(VkCommandBuffer, const RetraceWork& work) override {
+        ASSERT(!work.closest.receiversHost && !work.closest.disc);
+        scene_.retrace({.closest = arrays(work.closest),
+                        .boxes = {mappedAs<shader::TraceBox>(work.boxes, work.boxCount), work.boxCount},
+                        .changed = mappedAs<glm::uvec2>(work.changed, chunkCount_),
+                        .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
     }
 
     void segments(VkCommandBuffer, const SegmentWork& work) override {
@@ -59,6 +57,20 @@ public:
     }
 
 private:
+    static ClosestArrays arrays(const ClosestWork& work) {
+        const uint64_t links =
+            work.linksOffset + uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
+        return {.receivers = work.receiversHost,
+                .firstChunk = work.firstChunk,
+                .chunkCount = work.chunkCount,
+                .firstSample = work.firstSample,
+                .sampleCount = work.sampleCount,
+                .rotation = work.rotation,
+                .disc = work.disc ? mappedAs<glm::vec2>(work.disc, work.discCount) : nullptr,
+                .discCount = work.discCount,
+                .links = mappedAs<uint32_t>(work.links, links) + work.linksOffset};
+    }
+
     uint32_t chunkCount_;
     EmbreeScene scene_;
 };

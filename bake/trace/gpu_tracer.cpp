@@ -1,10 +1,13 @@
 #include "bake/trace/gpu_tracer.h"
 
 #include "bake/trace/bvh_builder.h"
+#include "bake/trace/retrace_types.h"
 #include "bake/vk/accel.h"
+#include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -36,6 +39,13 @@ public:
                      .alphaTexels = alphaTexels_.address(),
                      .opaqueCount = scene.mesh.opaqueCount,
                      .triangleCount = scene.mesh.triangleCount()};
+    }
+    void update(const vk::Device& device, const TraceScene& scene) {
+        const auto copy = [&](const vk::Buffer& buffer, const auto& values) {
+            vk::upload(device, buffer, values.data(), values.size() * sizeof(values[0]));
+        };
+        copy(hitTriangles_, scene.hitTriangles);
+        copy(texelToPatch_, scene.texelToPatch);
     }
     void setAccel(VkDeviceAddress accel, VkDeviceAddress triangles) {
         geometry_.accel = accel;
@@ -88,6 +98,35 @@ public:
                 .targetCount = work.targetCount};
     }
 
+    shader::RetraceMarkPush markPush(const RetraceWork& work) const {
+        return {.patches = patches_,
+                .boxes = work.boxes->address(),
+                .changed = work.changed->address(),
+                .list = work.list->address(),
+                .rays = work.rays->address(),
+                .boxCount = work.boxCount,
+                .firstChunk = work.closest.firstChunk,
+                .firstSample = work.closest.firstSample,
+                .sampleCount = work.closest.sampleCount,
+                .size = size_,
+                .rotation = static_cast<uint32_t>(work.closest.rotation)};
+    }
+    shader::RetracePush push(const RetraceWork& work) const {
+        const shader::ClosestPush all = push(work.closest);
+        return {.geometry = geometry_,
+                .patches = patches_,
+                .links = all.links,
+                .hitTriangles = hitTriangles_.address(),
+                .texelToPatch = texelToPatch_.address(),
+                .patchChart = patchChart_.address(),
+                .list = work.list->address(),
+                .firstChunk = all.firstChunk,
+                .firstSample = all.firstSample,
+                .sampleCount = all.sampleCount,
+                .size = size_,
+                .rotation = all.rotation};
+    }
+
 private:
     static std::vector<uint8_t> wholeWords(std::vector<uint8_t> bytes) {
         bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -101,12 +140,36 @@ private:
     shader::TraceGeometry geometry_{};
 };
 
-// Both compute tracers; they differ in the acceleration structure and in the shaders' variant.
+// Lists the links that are to be traced again. Barriers around it are its own.
+class RetraceMarks {
+public:
+    explicit RetraceMarks(const vk::Device& device) : mark_(device, "retrace_mark") {}
+    void record(VkCommandBuffer cmd, const SceneBuffers& buffers, const RetraceWork& work) const {
+        ASSERT(!work.closest.receivers && !work.closest.disc);
+        vkCmdFillBuffer(cmd, work.list->handle(), 0, sizeof(uint32_t), 0);
+        vk::barrier(cmd);
+        mark_.dispatch(cmd, buffers.markPush(work), work.closest.chunkCount,
+                       work.closest.sampleCount / kSamplesPerInvocation);
+        vk::barrier(cmd);
+    }
+
+private:
+    vk::ComputeProgram mark_;
+};
+
+// Invocations that share a list are as many as fill the device, in groups of a chunk.
+constexpr uint32_t kGpuRetraceGroups = 8192, kSoftwareRetraceGroups = 64;
+uint32_t retraceGroups(const vk::Device& device) {
+    return device.info().software() ? kSoftwareRetraceGroups : kGpuRetraceGroups;
+}
+
+// All compute tracers; they differ in the acceleration structure and in the shaders' variant.
 class ComputeTracer : public Tracer {
 public:
     ComputeTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
                   const std::string& name)
-        : buffers_(device, scene, patches), name_(name), occlusion_(device, "occlusion_" + name),
+        : device_(device), scene_(scene), buffers_(device, scene, patches), name_(name),
+          occlusion_(device, "occlusion_" + name),
           closest_(device, "closest_" + name, {device.info().software() ? 0u : 1u}),
           segments_(device, "segments_" + name) {}
 
@@ -126,26 +189,47 @@ public:
         segments_.dispatch(cmd, buffers_.push(work), work.chunkCount, segmentWords(work));
     }
 
+    void retrace(VkCommandBuffer cmd, const RetraceWork& work) override {
+        if (!marks_) {
+            marks_.emplace(device_);
+            retrace_ = vk::ComputeProgram(device_, "retrace_" + name_);
+        }
+        marks_->record(cmd, buffers_, work);
+        retrace_.dispatch(cmd, buffers_.push(work), retraceGroups(device_));
+    }
+
 protected:
     static constexpr uint32_t kGroupsX = 32768; // below every device's maxComputeWorkGroupCount
+    const vk::Device& device_;
+    const TraceScene& scene_;
     SceneBuffers buffers_;
 
 private:
     std::string name_;
-    vk::ComputeProgram occlusion_, closest_, segments_;
+    vk::ComputeProgram occlusion_, closest_, segments_, retrace_;
+    std::optional<RetraceMarks> marks_; // once objects move
 };
 
 class BvhTracer final : public ComputeTracer {
 public:
     BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
         : ComputeTracer(device, scene, patches, "bvh") {
-        const Bvh bvh = buildBvh(scene.mesh);
-        nodes_ = vk::makeBuffer(device, bvh.nodes, "bvh nodes");
-        triangles_ = vk::makeBuffer(device, bvh.triangles, "bvh triangles");
-        buffers_.setAccel(nodes_.address(), triangles_.address());
+        build();
+    }
+    bool follows() const override { return true; }
+    void update() override {
+        buffers_.update(device_, scene_);
+        build();
     }
 
 private:
+    void build() {
+        const Bvh bvh = buildBvh(scene_.mesh);
+        nodes_ = vk::makeBuffer(device_, bvh.nodes, "bvh nodes");
+        triangles_ = vk::makeBuffer(device_, bvh.triangles, "bvh triangles");
+        buffers_.setAccel(nodes_.address(), triangles_.address());
+    }
+
     vk::Buffer nodes_, triangles_;
 };
 
@@ -154,6 +238,12 @@ public:
     QueryTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
         : ComputeTracer(device, scene, patches, "query"),
           accel_(device, scene.mesh.positions, scene.mesh.opaqueCount) {
+        buffers_.setAccel(accel_.address(), 0);
+    }
+    bool follows() const override { return true; }
+    void update() override {
+        buffers_.update(device_, scene_);
+        accel_ = vk::Accel(device_, scene_.mesh.positions, scene_.mesh.opaqueCount);
         buffers_.setAccel(accel_.address(), 0);
     }
 
@@ -176,11 +266,11 @@ private:
 class PipelineTracer final : public Tracer {
 public:
     PipelineTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
-        : buffers_(device, scene, patches), accel_(device, scene.mesh.positions, scene.mesh.opaqueCount) {
+        : device_(device), scene_(scene), buffers_(device, scene, patches),
+          accel_(device, scene.mesh.positions, scene.mesh.opaqueCount) {
         buffers_.setAccel(accel_.address(), 0);
         // Without masked geometry no any-hit shader stands in the way of the traversal.
-        const bool masked = scene.mesh.opaqueCount < scene.mesh.triangleCount();
-        const std::string anyHit = masked ? "hit_rahit" : "";
+        const std::string anyHit = anyHitShader();
         occlusion_ = vk::RayProgram(device, {.raygen = "occlusion_rgen",
                                              .miss = "hit_rmiss",
                                              .closestHit = "hit_rchit",
@@ -212,10 +302,36 @@ public:
         segments_.trace(cmd, buffers_.push(work), kChunk, work.chunkCount * segmentWords(work));
     }
 
+    bool follows() const override { return true; }
+    void update() override {
+        buffers_.update(device_, scene_);
+        accel_ = vk::Accel(device_, scene_.mesh.positions, scene_.mesh.opaqueCount);
+        buffers_.setAccel(accel_.address(), 0);
+    }
+    void retrace(VkCommandBuffer cmd, const RetraceWork& work) override {
+        if (!marks_) {
+            marks_.emplace(device_);
+            retrace_ = vk::RayProgram(device_, {.raygen = "retrace_rgen",
+                                                .miss = "hit_rmiss",
+                                                .closestHit = "hit_rchit",
+                                                .anyHit = anyHitShader(),
+                                                .constants = {}});
+        }
+        marks_->record(cmd, buffers_, work);
+        retrace_.trace(cmd, buffers_.push(work), kChunk, retraceGroups(device_));
+    }
+
 private:
+    const char* anyHitShader() const {
+        return scene_.mesh.opaqueCount < scene_.mesh.triangleCount() ? "hit_rahit" : "";
+    }
+
+    const vk::Device& device_;
+    const TraceScene& scene_;
     SceneBuffers buffers_;
     vk::Accel accel_;
-    vk::RayProgram occlusion_, closest_, segments_;
+    vk::RayProgram occlusion_, closest_, segments_, retrace_;
+    std::optional<RetraceMarks> marks_; // once objects move
 };
 
 } // namespace

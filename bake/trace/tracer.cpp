@@ -1,5 +1,6 @@
 #include "bake/trace/tracer.h"
 
+#include "assets/error.h"
 #include "bake/trace/gpu_tracer.h"
 #include "bake/trace/mixed_tracer.h"
 
@@ -69,6 +70,14 @@ void checkTracer(TracerKind kind, const vk::Device& device) {
 }
 
 } // namespace
+
+void Tracer::update() {
+    ASSERT(follows());
+}
+
+void Tracer::retrace(VkCommandBuffer, const RetraceWork&) {
+    ASSERT(follows());
+}
 
 std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
                                    const vk::Buffer& patches, const VoxelSettings& voxels) {

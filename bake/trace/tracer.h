@@ -85,6 +85,18 @@ struct SegmentWork {
         nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
 };
 
+/// Links of `closest` that were traced before objects moved: those of patches that are others now, and those
+/// whose ray meets a box in which an object was or is, are traced again; all others stay as they are.
+struct RetraceWork {
+    ClosestWork closest; // of the scene's patches and the Sobol sequence
+    const vk::Buffer* boxes =
+        nullptr; // shader::TraceBox[boxCount], mapped where the tracer runs on the CPU, as those below
+    uint32_t boxCount = 0;
+    const vk::Buffer* changed = nullptr; // glm::uvec2 per chunk of all, a bit for each patch
+    const vk::Buffer* list = nullptr;    // uint32_t[1 + chunkCount * sampleCount * 64], not on the CPU
+    const vk::Buffer* rays = nullptr;    // as of SegmentWork
+};
+
 /// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call
 /// per batch. GPU tracers record into cmd; the CPU tracer runs at once and writes into host-visible buffers.
 /// Either way the result is there for what is recorded into cmd afterwards, behind a barrier that the caller
@@ -100,6 +112,13 @@ public:
     virtual void closest(VkCommandBuffer cmd, const ClosestWork& work) = 0;
     /// Not for the RTRad preset. On the CPU the targets must be there when this is called.
     virtual void segments(VkCommandBuffer cmd, const SegmentWork& work) = 0;
+
+    /// Whether it follows objects that move: only then the calls below are for it.
+    virtual bool follows() const { return false; }
+    /// Triangles of the scene that it was made of stand elsewhere now, as many as before, and texels may have
+    /// lost their patches. Waits for the device.
+    virtual void update();
+    virtual void retrace(VkCommandBuffer cmd, const RetraceWork& work);
 };
 
 enum class TracerKind { Auto, Rtp, Query, Bvh, Embree, Voxel };

@@ -1,25 +1,5 @@
 // Links of one patch for eight consecutive samples.
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer HitTriangles { HitTriangle items[]; };
-
-uint texelPatch(uint texel) { return Words(push.texelToPatch).items[texel]; }
-uint chartOfPatch(uint index) { return Words(push.patchChart).items[index]; }
-#ifdef TRACER_VOXEL
-uint closestLink(Patch p, vec3 direction) { return voxelLink(p, direction); }
-#else
-#include "lib/hit.glsl"
-
-uint linkOf(Hit found, vec3 direction) {
-    if (found.triangle == kNoPatch) return kLinkSky;
-    HitTriangle t = HitTriangles(push.hitTriangles).items[found.triangle];
-    if (dot(direction, t.normal) > 0.0) return t.doubleSided != 0u ? kLinkDark : kLinkBack;
-    if (t.representative == kNoPatch) return kLinkDark;
-    return patchAtHit(t, found.b1, found.b2, push.size);
-}
-
-uint closestLink(Patch p, vec3 direction) {
-    return linkOf(closestHit(p.position + p.offset * p.normal, direction), direction);
-}
-#endif
+#include "lib/link.glsl"
 
 vec3 discSample(uint key, uint index) {
     uint seed = discSeed(key, index, push.discCount);

@@ -1,0 +1,207 @@
+// Of LayerSolver: objects that move. Links and direct light are made anew where they may meet what moved,
+// with the samples that they were made of; bounces are gathered again.
+#include "bake/layer_solver.h"
+
+#include "assets/error.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace relume {
+namespace {
+
+using Kind = LightKey::Kind;
+using shader::kChunk;
+
+// Around a light: more than rounding moves its points by, as a share of where it is.
+constexpr float kRounding = 1e-5f;
+
+LightPlace grown(LightPlace place) {
+    const glm::vec3 reach = glm::max(glm::abs(place.lo), glm::abs(place.hi));
+    const glm::vec3 margin(kRounding * std::max({reach.x, reach.y, reach.z}));
+    place.lo -= margin;
+    place.hi += margin;
+    return place;
+}
+
+LightPlace placeOfLamp(const Light& light, float reach) {
+    const glm::vec3 at(light.transform[3]);
+    glm::vec3 extent(light.radius);
+    if (light.type == LightType::Directional) {
+        // Where it comes from; chords across the disc are shorter than the angle.
+        const glm::vec3 from = glm::normalize(glm::vec3(light.transform[2]));
+        extent = glm::vec3(0.5f * light.angle);
+        return grown({LightPlace::Kind::Directions, reach * (from - extent), reach * (from + extent)});
+    }
+    if (light.type == LightType::Rectangle)
+        extent = 0.5f * (light.size.x * glm::abs(glm::normalize(glm::vec3(light.transform[0]))) +
+                         light.size.y * glm::abs(glm::normalize(glm::vec3(light.transform[1]))));
+    return grown({LightPlace::Kind::Box, at - extent, at + extent});
+}
+
+LightPlace placeOfEmitter(const WorldMesh& mesh, const LightPattern& pattern) {
+    LightPlace place{LightPlace::Kind::Box, glm::vec3(1e30f), glm::vec3(-1e30f)};
+    for (size_t corner = 0; corner < mesh.positions.size(); ++corner) {
+        if (mesh.instance[corner / 3] != pattern.instance || mesh.material[corner / 3] != pattern.material)
+            continue;
+        place.lo = glm::min(place.lo, mesh.positions[corner]);
+        place.hi = glm::max(place.hi, mesh.positions[corner]);
+    }
+    return grown(place);
+}
+
+std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked) {
+    std::vector<ChunkRange> ranges;
+    for (uint32_t chunk = 0; chunk < marks.size(); ++chunk)
+        if ((marks[chunk] != 0) == marked) ranges.push_back({chunk, 1});
+    return merged(std::move(ranges));
+}
+
+} // namespace
+
+void LayerSolver::moveObjects(const ObjectMove& move) {
+    ASSERT(atRest());
+    if (move.instances.empty()) return;
+    if (!moved_) moved_.emplace();
+    moved_->add(move);
+}
+
+// Everything that was made of the former scene; layers come after.
+void LayerSolver::adoptMove() {
+    countSenders();
+    reachMoved_ = lamps_.updateReach(input_.patches.scene.mesh);
+    emitterKeys_.clear();
+    distancesKnown_ = false;
+    if (moved_->texels) {
+        const std::vector<uint32_t>& map = input_.patches.scene.texelToPatch;
+        vk::upload(input_.device, buffers_.texelToPatch, map.data(), map.size() * sizeof(map[0]));
+    }
+    relink_.emplace();
+    Relink& relink = *relink_;
+    relink.move = *moved_;
+    relink.boxes = vk::makeBuffer(input_.device, moved_->boxes, "boxes");
+    relink.changed = vk::makeBuffer(input_.device, moved_->changed, "changed patches");
+    const uint64_t most = uint64_t{buffers_.batchChunks} * linksOfRound_ * kChunk;
+    if (!input_.tracer.onCpu())
+        relink.list =
+            vk::Buffer(input_.device, {.size = (most + 1) * sizeof(uint32_t), .name = "links to trace"});
+}
+
+// A batch of the links that are kept.
+void LayerSolver::relinkBatch() {
+    Relink& relink = *relink_;
+    const uint32_t chunks = input_.patches.chunkCount();
+    if (relink.round < links_.rounds()) {
+        const LinkCache::Place place = links_.find(relink.round, relink.chunk, chunks - relink.chunk);
+        const double wanted = std::max(1.0, relink.rate.wanted(batchMs_));
+        uint32_t count = place.count;
+        if (place.known) {
+            count = static_cast<uint32_t>(
+                std::min<double>({wanted, double(count), double(buffers_.batchChunks)}));
+            const auto start = Clock::now();
+            const RetraceWork work{.closest = {.firstChunk = relink.chunk,
+                                               .chunkCount = count,
+                                               .firstSample = relink.round * linksOfRound_,
+                                               .sampleCount = linksOfRound_,
+                                               .rotation = settings_.links.rotation,
+                                               .links = place.links,
+                                               .linksOffset = place.offset},
+                                   .boxes = &relink.boxes,
+                                   .boxCount = static_cast<uint32_t>(relink.move.boxes.size()),
+                                   .changed = &relink.changed,
+                                   .list = &relink.list,
+                                   .rays = &buffers_.rays};
+            VkCommandBuffer cmd = input_.tracer.records() ? commands_.begin() : VK_NULL_HANDLE;
+            input_.tracer.retrace(cmd, work);
+            if (input_.tracer.records()) run(cmd);
+            relink.rate.note(count, batchMs_, secondsSince(start));
+            progress_.traceSeconds += secondsSince(start);
+        }
+        relink.chunk += count;
+        if (relink.chunk < chunks) return;
+        relink.chunk = 0;
+        if (++relink.round < links_.rounds()) return;
+    }
+    VkCommandBuffer cmd = commands_.begin();
+    recordRayCount(cmd);
+    run(cmd);
+    countRays();
+    relink_.reset();
+}
+
+LightPlace LayerSolver::placeOf(const Layer& layer) const {
+    const LightPattern& pattern = layer.pattern;
+    if (pattern.kind == Kind::Lamp) return placeOfLamp(pattern.light, lamps_.reach());
+    if (pattern.kind == Kind::Emitter) return placeOfEmitter(input_.patches.scene.mesh, pattern);
+    return {};
+}
+
+// Of direct light that was taken over from another layer of this light.
+void LayerSolver::keepStale(const Layer& from, Layer& to) const {
+    to.stale = from.stale;
+    if (!moved_) return;
+    const LightPattern& pattern = to.pattern;
+    const std::vector<uint32_t>& moved = moved_->instances;
+    const bool far = pattern.kind == Kind::Sky ||
+                     (pattern.kind == Kind::Lamp && pattern.light.type == LightType::Directional);
+    const bool itself = pattern.kind == Kind::Emitter &&
+                        std::find(moved.begin(), moved.end(), pattern.instance) != moved.end();
+    std::vector<uint8_t> reached(input_.patches.chunkCount(), 1);
+    if (!itself && !(far && reachMoved_)) reached = chunksReached(input_.patches, placeOf(to), *moved_);
+    to.stale.resize(reached.size(), 0);
+    for (size_t i = 0; i < reached.size(); ++i)
+        to.stale[i] |= reached[i];
+    if (std::find(to.stale.begin(), to.stale.end(), 1) == to.stale.end()) to.stale.clear();
+}
+
+// Direct light of stale chunks, made of the same rounds in the same steps as that of all others. Meanwhile
+// ligOut, which nobody else needs, holds the layer's direct light.
+void LayerSolver::beginMending() {
+    Layer& layer = *layers_[work_->layer];
+    if (raysOf(layer) == 0) { // as all of it
+        layer.stale.clear();
+        return begin(work_->layer, work_->target);
+    }
+    work_->mended = 0;
+    work_->round = 0;
+    beginPass(Stage::Direct);
+    orderStale();
+}
+
+void LayerSolver::orderStale() {
+    order_.begin(input_.patches.chunkCount(), seen_);
+    for (const ChunkRange& range : rangesOf(layers_[work_->layer]->stale, false))
+        order_.finish(range);
+}
+
+void LayerSolver::endMendingRound() {
+    Layer& layer = *layers_[work_->layer];
+    const uint32_t step = *work_->mended;
+    if (++work_->round < layer.directSteps[step]) return orderStale();
+    const uint32_t before = step > 0 ? layer.directSteps[step - 1] : 0;
+    VkCommandBuffer cmd = commands_.begin();
+    const uint32_t rounds = std::exchange(layer.directRounds, before);
+    const auto kept =
+        std::exchange(layer.direct, std::make_shared<vk::Buffer>(std::move(input_.light.ligOut)));
+    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, work_->round - before);
+    input_.light.ligOut = std::move(*layer.direct);
+    layer.direct = kept;
+    layer.directRounds = rounds;
+    work_->mended = step + 1;
+    work_->begun = false;
+    if (step + 1 < layer.directSteps.size()) {
+        run(cmd);
+        return orderStale();
+    }
+    vk::barrier(cmd);
+    const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
+    vk::barrier(cmd);
+    recordCopy(cmd, input_.light.ligOut, *layer.direct, rangesOf(layer.stale, true));
+    recordRayCount(cmd);
+    run(cmd);
+    countRays();
+    layer.stale.clear();
+    begin(work_->layer, work_->target);
+}
+
+} // namespace relume

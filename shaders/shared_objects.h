@@ -1,0 +1,36 @@
+// Of objects that move: what their kernels are told. Goes with shared.h, which is to be included before.
+
+// Where an object was or is, axis-parallel [m].
+struct TraceBox {
+    vec3 lo;
+    vec3 hi;
+};
+// Lists links whose rays meet a box, and all of patches that are others now.
+struct RetraceMarkPush {
+    ADDRESS patches; // Patch[]
+    ADDRESS boxes;   // TraceBox[boxCount]
+    ADDRESS changed; // uvec2[] per chunk, a bit for each patch
+    ADDRESS list;    // uint[]: how many, then which, as (chunk * sampleCount + sample) * 64 + patch, counted
+                     // from firstChunk and firstSample on
+    ADDRESS rays;    // uint[kRayCounters], to which the listed ones are added
+    uint boxCount;
+    uint firstChunk;
+    uint firstSample;
+    uint sampleCount;
+    uint size;     // lightmap edge [texels]
+    uint rotation; // kRotate...
+};
+struct RetracePush {
+    TraceGeometry geometry;
+    ADDRESS patches;      // Patch[]
+    ADDRESS links;        // uint[]
+    ADDRESS hitTriangles; // HitTriangle[]
+    ADDRESS texelToPatch; // uint[]
+    ADDRESS patchChart;   // uint[]
+    ADDRESS list;         // as above
+    uint firstChunk;
+    uint firstSample;
+    uint sampleCount;
+    uint size;     // lightmap edge [texels]
+    uint rotation; // kRotate...
+};

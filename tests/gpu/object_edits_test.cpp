@@ -1,0 +1,329 @@
+// Objects that are moved, hidden and shown again while layers are baked: against fresh bakes of what that
+// leads to.
+#include "assets/lightmap_atlas.h"
+#include "bake/layer_solver.h"
+#include "tests/gpu/bake_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace relume {
+namespace {
+
+using Light4 = std::vector<glm::vec4>;
+
+const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+constexpr uint32_t kSize = 64;
+// Instances of the room below: walls, plate, shelf, block, wall light.
+constexpr size_t kPlate = 6, kShelf = 7, kBlock = 8, kBlockEnd = 14;
+
+Light lightAt(LightType type, glm::vec3 position, float intensity, const std::string& name) {
+    Light light;
+    light.name = name;
+    light.type = type;
+    light.transform = glm::translate(glm::mat4(1.0f), position);
+    light.intensity = intensity;
+    return light;
+}
+
+/// A closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a panel.
+Scene room(float plate = 8.0f) {
+    SceneMaker maker(kSize);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
+    maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, plate), glm::uvec2(4));
+    maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
+    // Left-handed edges turn fronts outwards.
+    maker.box({0.2f, 1.2f, 0.05f}, {0.3f * kY, 0.3f * kX, 0.3f * kZ}, maker.material(0.5f), 4);
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
+    scene.lights.back().radius = 0.1f;
+    scene.lights.push_back(lightAt(LightType::Spot, {0.4f, 1.2f, 1.8f}, 9.0f, "Spot"));
+    scene.lights.push_back(lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel"));
+    scene.lights.back().size = {0.3f, 0.2f};
+    return scene;
+}
+
+constexpr BakeDesc kQuick{
+    .size = kSize, .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
+
+/// A bake of layers whose scene is edited.
+class Moving {
+public:
+    explicit Moving(Scene start, const BakeDesc& desc = kQuick)
+        : scene(std::move(start)), atlas_(buildAtlas(scene, desc.size)), baker_(makeBaker(scene, desc)) {
+        finish();
+    }
+
+    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    Baker& baker() { return *baker_; }
+    uint64_t rays() { return solver().progress().rays; }
+    void finish() {
+        while (!solver().done())
+            solver().step();
+    }
+    /// Whether the scene as it is now could be followed.
+    bool follow() {
+        while (!solver().atRest())
+            solver().step();
+        const std::optional<ObjectMove> move = baker_->moveObjects(atlas_);
+        if (!move) return false;
+        solver().moveObjects(*move);
+        solver().edit({});
+        return true;
+    }
+    void put(size_t first, size_t last, const glm::mat4& transform) {
+        for (size_t i = first; i < last; ++i)
+            scene.instances[i].transform = transform * scene.instances[i].transform;
+    }
+    void hide(size_t first, size_t last, bool hidden) {
+        for (size_t i = first; i < last; ++i)
+            scene.instances[i].hidden = hidden;
+    }
+    Light4 light() { return solver().light(); }
+    /// Of the composite, then of the layers.
+    std::vector<FloatImage> images() {
+        std::vector<FloatImage> all = {baker_->lightmap({.sew = false})};
+        for (const auto& layer : solver().layers())
+            all.push_back(makeLightmap(baker_->patches(), solver().layerLight(*layer), {.sew = false}));
+        return all;
+    }
+
+    Scene scene;
+
+private:
+    LightmapAtlas atlas_;
+    std::unique_ptr<Baker> baker_;
+};
+
+/// Follows the scene to its end and compares every texel of every layer with a fresh bake of it. Returns the
+/// share of a fresh bake's rays that it took.
+double followed(Moving& bake, const BakeDesc& desc = kQuick) {
+    const uint64_t before = bake.rays();
+    EXPECT_TRUE(bake.follow());
+    bake.finish();
+    const uint64_t rays = bake.rays() - before;
+    Moving fresh(bake.scene, desc);
+    const std::vector<FloatImage> edited = bake.images(), wanted = fresh.images();
+    EXPECT_EQ(edited.size(), wanted.size());
+    for (size_t i = 0; i < std::min(edited.size(), wanted.size()); ++i) {
+        size_t others = 0;
+        for (size_t channel = 0; channel < wanted[i].planes.size(); ++channel) {
+            const std::vector<float>&a = edited[i].planes[channel], &b = wanted[i].planes[channel];
+            for (size_t k = 0; k < b.size(); ++k)
+                others += a[k] != b[k];
+        }
+        EXPECT_EQ(others, 0u) << "of image " << i << ", which are off by "
+                              << relativeError(edited[i], wanted[i]);
+    }
+    EXPECT_EQ(bake.baker().invalidPatches(), fresh.baker().invalidPatches());
+    return static_cast<double>(rays) / static_cast<double>(fresh.rays());
+}
+
+glm::mat4 by(glm::vec3 offset) {
+    return glm::translate(glm::mat4(1.0f), offset);
+}
+
+glm::mat4 turned(float angle, glm::vec3 about, glm::vec3 axis) {
+    return by(about) * glm::rotate(glm::mat4(1.0f), angle, axis) * by(-about);
+}
+
+/// The host's tracer and gather, and every tracer of the device with the device's gather.
+class ObjectEdits : public testing::TestWithParam<int> {
+protected:
+    static BakeDesc desc() {
+        BakeDesc desc = kQuick;
+        const std::vector<TracerKind> tracers = tracersOfTestDevice();
+        if (GetParam() == 0) return desc;
+        desc.tracer = tracers[static_cast<size_t>(GetParam() - 1) % tracers.size()];
+        desc.deviceGather = true;
+        return desc;
+    }
+};
+
+} // namespace
+
+TEST_P(ObjectEdits, AMovedObjectIsAFreshBake) {
+    Moving bake(room(), desc());
+    bake.put(kShelf, kBlock, by({-0.3f, 0.4f, 0.2f}));
+    EXPECT_LT(followed(bake, desc()), 0.7);
+}
+
+TEST_P(ObjectEdits, ASmallObjectThatMovesTakesFewRays) {
+    Moving bake(room(), desc());
+    bake.put(kBlock, kBlockEnd, by({0.02f, 0.05f, 0.01f}));
+    EXPECT_LT(followed(bake, desc()), 0.35);
+}
+
+TEST_P(ObjectEdits, ATurnedAndScaledObjectIsAFreshBake) {
+    Moving bake(room(), desc());
+    bake.put(kBlock, kBlockEnd,
+             turned(0.5f, {0.35f, 1.35f, 0.2f}, kZ) * by({0.0f, 0.0f, 0.1f}) *
+                 glm::scale(glm::mat4(1.0f), {1.1f, 0.9f, 1.3f}));
+    followed(bake, desc());
+}
+
+TEST_P(ObjectEdits, AHiddenObjectIsAFreshBakeAndSoIsOneShownAgain) {
+    Moving bake(room(), desc());
+    const std::vector<FloatImage> first = bake.images();
+    bake.hide(kBlock, kBlockEnd, true);
+    EXPECT_LT(followed(bake, desc()), 0.5);
+    bake.hide(kBlock, kBlockEnd, false);
+    bake.put(kBlock, kBlockEnd, by({0.4f, 0.1f, 0.0f}));
+    followed(bake, desc());
+}
+
+TEST_P(ObjectEdits, ThereAndBackAreTheFirstBytes) {
+    Moving bake(room(), desc());
+    const Light4 first = bake.light();
+    const Scene before = bake.scene;
+    for (const glm::vec3& offset : {glm::vec3(0.2f, 0.0f, 0.3f), glm::vec3(0.5f, -0.6f, 0.1f)}) {
+        bake.put(kBlock, kBlockEnd, by(offset));
+        ASSERT_TRUE(bake.follow());
+        for (int i = 0; i < 9; ++i)
+            bake.solver().step();
+    }
+    bake.scene = before;
+    ASSERT_TRUE(bake.follow());
+    bake.finish();
+    EXPECT_EQ(bake.light(), first);
+    // Links are back as well: what is made of them is.
+    bake.scene.lights[0].transform = by({0.7f, 0.5f, 1.2f});
+    followed(bake, desc());
+}
+
+TEST_P(ObjectEdits, AnObjectThatShinesIsAFreshBake) {
+    Moving bake(room(), desc());
+    bake.put(kPlate, kPlate + 1, by({0.3f, 0.2f, -0.4f}));
+    followed(bake, desc());
+    bake.hide(kPlate, kPlate + 1, true);
+    followed(bake, desc());
+    bake.hide(kPlate, kPlate + 1, false);
+    followed(bake, desc());
+}
+
+TEST_P(ObjectEdits, AnObjectMovedIntoALampIsAFreshBake) {
+    Moving bake(room(), desc());
+    bake.put(kBlock, kBlockEnd, by({1.15f, 0.15f, 1.3f})); // around the bulb
+    followed(bake, desc());
+    EXPECT_EQ(bake.solver().layers()[1]->light, 0.0) << "its sides are backs, which let nothing out";
+    bake.put(kBlock, kBlockEnd, by({-0.6f, -0.2f, -0.8f}));
+    followed(bake, desc());
+    EXPECT_GT(bake.solver().layers()[1]->light, 0.0);
+}
+
+TEST_P(ObjectEdits, AnObjectBehindAWallIsAFreshBake) {
+    Moving bake(room(), desc());
+    bake.put(kBlock, kBlockEnd, by({0.0f, 0.0f, -2.0f})); // below the floor
+    followed(bake, desc());
+    bake.put(kBlock, kBlockEnd, by({0.3f, 0.1f, -0.2f}));
+    EXPECT_LT(followed(bake, desc()), 0.25) << "its own rays, and what looks towards it through the wall";
+}
+
+INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
+
+// Half in the floor and half out of it: texels of both change whether they lie inside something.
+TEST(ObjectEdits, TexelsInsideSomethingAreFoundAnew) {
+    SceneMaker maker(kSize);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
+    maker.box({0.5f, 0.5f, 0.3f}, {0.8f * kY, 0.8f * kX, 0.6f * kZ}, maker.material(0.5f), 8);
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.5f}, 3.0f, "Bulb"));
+    Moving bake(scene);
+    EXPECT_EQ(bake.baker().invalidPatches(), 0u);
+    bake.put(6, 12, by({0.1f, 0.2f, -0.6f}));
+    followed(bake);
+    EXPECT_GT(bake.baker().invalidPatches(), 10u);
+    bake.put(6, 12, by({0.0f, 0.0f, 0.5f}));
+    followed(bake);
+    EXPECT_EQ(bake.baker().invalidPatches(), 0u);
+}
+
+// The sky and the sun come from all around; a wall that leaves makes the scene another size.
+TEST(ObjectEdits, UnderSkyAndSunAreAFreshBake) {
+    SceneMaker maker(32);
+    maker.quad({-1, -1, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(16));
+    maker.quad({0, -1, 0}, 1.0f * kZ, 2.0f * kY, maker.material(0.5f), glm::uvec2(8));
+    maker.quad({-0.5f, -0.5f, 0.3f}, 0.3f * kX, 0.3f * kY, maker.material(0.5f), glm::uvec2(4));
+    Scene scene = maker.scene();
+    scene.sky.radiance = glm::vec3(2.0f);
+    Light sun = lightAt(LightType::Directional, {}, 5.0f, "Sun");
+    sun.transform = glm::rotate(glm::mat4(1.0f), 0.4f, kY);
+    sun.angle = 0.02f;
+    scene.lights.push_back(sun);
+    BakeDesc desc = kQuick;
+    desc.size = 32;
+    Moving bake(scene, desc);
+    bake.put(2, 3, by({-0.1f, 0.3f, 0.1f}));
+    EXPECT_LT(followed(bake, desc), 0.9);
+    bake.put(1, 2, by({1.5f, 0.3f, 0.1f}));
+    followed(bake, desc);
+}
+
+TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
+    SceneMaker maker(kSize);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
+    Material leaf;
+    leaf.metallic = 0.0f;
+    leaf.alphaMode = AlphaMode::Mask;
+    leaf.baseColorTexture.texture = maker.alphaTexture(2, 2, {255, 0, 0, 255});
+    maker.quad({0.7f, 0.7f, 1.0f}, 0.6f * kX, 0.6f * kY, maker.material(leaf), glm::uvec2(8));
+    maker.blocker({0.2f, 0.2f, 0.6f}, 0.4f * kX, 0.4f * kY, maker.material(0.5f));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.8f}, 3.0f, "Bulb"));
+    Moving bake(scene);
+    bake.put(6, 8, turned(0.3f, {1, 1, 1}, kX));
+    followed(bake);
+    bake.put(7, 8, by({0.5f, 0.5f, 0.1f}));
+    followed(bake);
+    bake.hide(6, 8, true);
+    followed(bake);
+}
+
+// Each edit comes before the one before was followed to its end, lamps move as well.
+TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
+    BakeDesc desc = kQuick;
+    desc.batchMs = 1.0;
+    desc.live = true;
+    Moving bake(room(), desc);
+    for (int i = 0; i < 12; ++i) {
+        bake.put(kBlock, kBlockEnd, by({0.03f, -0.02f, 0.01f}));
+        if (i % 3 == 0) bake.scene.lights[0].transform = by({0.3f + 0.04f * i, 0.5f, 1.2f});
+        ASSERT_TRUE(bake.follow());
+        for (int steps = 0; steps < 5 * i; ++steps)
+            bake.solver().step();
+        EXPECT_TRUE(bake.solver().liveLight().complete) << "what was shown stays until there is more";
+    }
+    followed(bake, desc);
+}
+
+// Where links of later rounds are not kept they are traced again as ever.
+TEST(ObjectEdits, LinksBeyondTheMemoryAreTracedWhereObjectsAre) {
+    BakeDesc desc = kQuick;
+    desc.samples = 64;
+    desc.cache.bytes = 2 * 16 * sizeof(uint32_t) * 4000;
+    Moving bake(room(), desc);
+    bake.put(kShelf, kBlock, by({-0.3f, 0.4f, 0.2f}));
+    followed(bake, desc);
+}
+
+TEST(ObjectEdits, WhatCannotBeFollowedIsToldAndChangesNothing) {
+    Scene scene = room();
+    scene.instances[kShelf].hidden = true;
+    Moving bake(scene);
+    const Light4 first = bake.light();
+    bake.hide(kShelf, kBlock, false);
+    EXPECT_FALSE(bake.follow()) << "it has no patches";
+    bake.hide(kShelf, kBlock, true);
+    bake.put(kBlock, kBlock + 1, glm::scale(glm::mat4(1.0f), glm::vec3(0.0f)));
+    EXPECT_FALSE(bake.follow()) << "its triangles have no area";
+    bake.scene = scene;
+    EXPECT_TRUE(bake.follow());
+    bake.finish();
+    EXPECT_EQ(bake.light(), first);
+}
+
+} // namespace relume
