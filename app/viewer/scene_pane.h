@@ -26,6 +26,7 @@ public:
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);
     void setSky(const SkySettings& sky);
+    void setPlacements(const std::vector<Placement>& placements);
     /// The links of a patch, over the scene in the view of what it sees.
     void setPaths(const InspectPaths& paths);
     void setVoxels(const InspectVoxels& voxels);
@@ -50,8 +51,9 @@ public:
     /// Device and host times of the newest frame that is known; empty before.
     std::vector<gl::Timer::Pass> endFrame();
 
-    /// What is at a pixel of the last picture, counted from its upper left corner.
-    std::optional<Pick> pick(const Look& look, glm::vec2 pixel);
+    /// What is at a pixel of the last picture, counted from its upper left corner; `without` an instance:
+    /// behind it.
+    std::optional<Pick> pick(const Look& look, glm::vec2 pixel, std::optional<uint32_t> without = {});
     /// Asks which tiles are seen; seenTiles() answers some frames later.
     void askTiles(const Look& look);
     bool tilesPending() const { return tiles_.pending(); }

@@ -111,7 +111,7 @@ std::string statusLine(const BakeStatus& status) {
 
 float Ui::drawMenus(const PanelContext& context) {
     if (!ImGui::BeginMainMenuBar()) return 0;
-    for (const char* group : {"File", "Edit", "Bake", "Light", "View", "Camera", "Capture", "Help"}) {
+    for (const char* group : {"File", "Edit", "Bake", "Light", "Move", "View", "Camera", "Capture", "Help"}) {
         if (!ImGui::BeginMenu(group)) continue;
         drawMenu(context, group);
         if (std::string(group) == "File") drawRecent(context, files_);

@@ -175,7 +175,7 @@ void Viewer::followScene() {
         view_.selected = -1;
         view_.seenTexel.reset();
         view_.light.reset();
-        lightDrag_.reset();
+        drag_.reset();
         newestEdit_.clear();
         editedAt_ = now();
         ownReference_ = false;
@@ -385,7 +385,7 @@ void Viewer::frame(const Redraw& redraw) {
     if (!gui_.animates()) scale_ = window_.contentScale() / pixelsPerPoint() * preferences_.uiScale;
     gui_.begin(scale_);
     area_ = ui_.draw(context(), hidden_, scale_);
-    drawLightOverlay();
+    drawOverlay();
     drawProgress();
     const double drawnUi = now();
     const bool anew = redraw.scene || sceneDirty_;

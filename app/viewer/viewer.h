@@ -100,9 +100,6 @@ private:
     void drawProgress();
 
     // viewer_lights.cpp
-    LightStage stage() const;
-    glm::vec2 pointAt(const glm::dvec2& at) const;
-    bool showsLights() const;
     void selectLight(const std::optional<LightKey>& key);
     void followLights();
     LightSpot lightSpot();
@@ -111,13 +108,23 @@ private:
     void editOnce(const std::string& name, const Document& next);
     void endEdit();
     void performLight(Action action, int argument);
-    void nudgeLight(const LightSource& source, int argument);
-    bool pressLights(const glm::dvec2& at);
-    void dragLight(const glm::dvec2& at);
-    void endLightDrag();
+
+    // viewer_gizmo.cpp
+    LightStage stage() const;
+    glm::vec2 pointAt(const glm::dvec2& at) const;
+    bool showsLights() const;
+    std::optional<uint32_t> movableObject() const;
+    glm::mat4* movable(Document& document) const;
+    std::string movableName() const;
+    void nudge(int argument);
+    void performObject(Action action);
+    bool pressGizmo(const glm::dvec2& at);
+    std::optional<glm::mat4> onSurface(const glm::dvec2& at);
+    void dragGizmo(const glm::dvec2& at);
+    void endDrag();
     void onDragKey(const WindowEvent& event);
-    void tellLightPlaces();
-    void drawLightOverlay();
+    void tellPlaces();
+    void drawOverlay();
 
     // viewer_actions.cpp
     void perform(Action action, int argument);
@@ -161,7 +168,7 @@ private:
     std::function<void()> afterSave_; // waits for the save under way
     bool quitting_ = false;           // edits are saved, or not wanted
     LightList lights_;
-    std::optional<GizmoDrag> lightDrag_;
+    std::optional<GizmoDrag> drag_;
     BakeBadge badge_;
     std::string newestEdit_; // its name, "": none since the scene came
     double editedAt_ = 0, convergedAt_ = 0;

@@ -1,5 +1,6 @@
 #include "app/viewer/viewer.h"
 
+#include "app/scene_edit.h"
 #include "assets/warnings.h"
 
 #include <filesystem>
@@ -120,7 +121,8 @@ void Viewer::followFile() {
         saves_ = session_->saves();
         preferences_.addRecent(session_->path());
         tell("saved", session_->path());
-        note("saved " + session_->path());
+        const std::string unsaved = unsavedPart(session_->document().edits);
+        note("saved " + session_->path() + (unsaved.empty() ? "" : ": " + unsaved));
     }
     if (afterSave_ && !session_->saving()) {
         const std::function<void()> go = std::exchange(afterSave_, {});

@@ -12,29 +12,9 @@ namespace relume {
 namespace {
 
 using namespace std::chrono_literals;
-using Place = std::pair<int, int>;
 
 class ViewerLights : public ViewerTest {
 protected:
-    /// Does something to a converged scene and waits until it has converged again.
-    template<typename Do>
-    static void edit(ViewerProcess& viewer, const std::string& name, Do what) {
-        viewer.mark();
-        what();
-        EXPECT_TRUE(viewer.says(name)) << viewer.output();
-        EXPECT_TRUE(viewer.says("badge: converged", 240)) << viewer.output();
-        std::this_thread::sleep_for(500ms);
-    }
-    std::unique_ptr<ViewerProcess> openConverged() {
-        auto viewer = openCornell();
-        EXPECT_TRUE(viewer->says("badge: converged", 60)) << viewer->output();
-        return viewer;
-    }
-    static Place placeOf(ViewerProcess& viewer, const std::string& name) {
-        const std::optional<Place> place = item(viewer, name);
-        EXPECT_TRUE(place) << name << ": " << viewer.output();
-        return place.value_or(Place{});
-    }
     /// Mean difference of two pictures from one column to another, as shares of their width.
     static double differenceBetween(const FloatImage& a, const FloatImage& b, double from, double to) {
         double sum = 0;
