@@ -72,7 +72,8 @@ void Viewer::exportLightmap(const std::string& path) {
     tell("export", path);
     if (!path.ends_with(".exr") && !path.ends_with(".png"))
         return note(path + ": a lightmap ends in .exr or .png", true);
-    bake_->exportLightmap(path, session_->document().lightmap);
+    bake_->exportLightmap(
+        {.path = path, .lightmap = session_->document().lightmap, .scene = session_->path()});
     note("writing " + path);
 }
 
