@@ -160,6 +160,13 @@ void SceneGpu::updateSky(const SkySettings& sky) {
     version_ = newVersion();
 }
 
+void SceneGpu::updateSkyPicture(const Sky& sky) {
+    skyPicture_ = {}; // before the new one takes its memory
+    skyPicture_ = makeSkyPicture(sky);
+    skyFile_ = sky.file;
+    version_ = newVersion();
+}
+
 void SceneGpu::updateMaterials(const Scene& scene) {
     const std::vector<shader::SceneMaterial> materials = describeAll(scene);
     ASSERT(materials.size() == textures_.size());

@@ -45,8 +45,11 @@ public:
     void updateMaterials(const Scene& scene);
     /// Draws instances where these are; as many as the scene's.
     void updatePlacements(const std::vector<Placement>& placements);
-    /// The sky as it is set now. Another picture than the scene had when this was made is not drawn.
+    /// The sky as it is set now. Another picture than the one that is here is not drawn.
     void updateSky(const SkySettings& sky);
+    /// The picture of that file.
+    void updateSkyPicture(const Sky& sky);
+    const std::string& skyFile() const { return skyFile_; } // whose picture is here, "": none
     /// Samples along the longer side of what a pixel covers of a texture, at most kAnisotropy; 1: none, which
     /// spares a software device a little of a textured scene's time and blurs its floors.
     void setAnisotropy(float samples);

@@ -35,6 +35,14 @@ void ScenePane::setSky(const SkySettings& sky) {
     if (gpu_) gpu_->updateSky(sky);
 }
 
+void ScenePane::setSkyPicture(const Sky& sky) {
+    if (gpu_) gpu_->updateSkyPicture(sky);
+}
+
+void ScenePane::askSurfaces(const ViewCamera& camera) {
+    if (gpu_) surfaces_.request(*gpu_, camera);
+}
+
 void ScenePane::setPlacements(const std::vector<Placement>& placements) {
     if (!gpu_) return;
     gpu_->updatePlacements(placements);
@@ -102,6 +110,7 @@ void ScenePane::reload() {
     if (flat_) flat_->reload();
     if (picker_) picker_->reload();
     tiles_.reload();
+    surfaces_.reload();
 }
 
 // What the map holds may still be of the view before.

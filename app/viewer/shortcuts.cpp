@@ -27,6 +27,8 @@ void addEditShortcuts(std::vector<Shortcut>& all) {
         {Action::MuteLight, 0, GLFW_KEY_M, kAlt, "Light", "Mute"},
         {Action::LightStrength, 1, GLFW_KEY_EQUAL, kAlt, "Light", "Stronger light"},
         {Action::LightStrength, -1, GLFW_KEY_MINUS, kAlt, "Light", "Weaker light"},
+        {Action::SkyPicture, 0, 0, 0, "Light", "Choose the sky's picture"},
+        {Action::NoSkyPicture, 0, 0, 0, "Light", "Sky without a picture"},
         {Action::Nudge, -1, GLFW_KEY_LEFT, kAlt, "Move", "Nudge left"},
         {Action::Nudge, 1, GLFW_KEY_RIGHT, kAlt, "Move", "Nudge right"},
         {Action::Nudge, 2, GLFW_KEY_UP, kAlt, "Move", "Nudge up"},

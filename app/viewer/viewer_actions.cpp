@@ -51,7 +51,7 @@ void Viewer::perform(Action action, int argument) {
     if (within(action, Action::Open, Action::Watch)) return performFile(action);
     if (within(action, Action::Undo, Action::Redo)) return performUndo(action);
     if (within(action, Action::MakePass, Action::Reset)) return performBake(action);
-    if (within(action, Action::AddLight, Action::LightStrength)) return performLight(action, argument);
+    if (within(action, Action::AddLight, Action::NoSkyPicture)) return performLight(action, argument);
     if (within(action, Action::Wipe, Action::StoreReference)) return performWipe(action);
     if (within(action, Action::View, Action::AutomaticExposure)) return performView(action, argument);
     if (within(action, Action::FrameAll, Action::StoreBookmark)) return performCamera(action);
@@ -118,6 +118,7 @@ void Viewer::performBake(Action action) {
 void Viewer::performView(Action action, int argument) {
     switch (action) {
     case Action::View:
+        if (viewEntries()[static_cast<size_t>(argument)].content == MapContent::Layer) return toggleAlone();
         view_.view = static_cast<size_t>(argument);
         break;
     case Action::UvTexture:

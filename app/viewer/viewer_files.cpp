@@ -46,7 +46,8 @@ void Viewer::performFile(Action action) {
     const fs::path scene(path);
     if (action == Action::Save) return save("");
     if (action == Action::SaveAs) {
-        const std::string name = (scene.parent_path() / scene.stem()).string() + "_edited";
+        std::string name = (scene.parent_path() / scene.stem()).string();
+        if (!name.ends_with("_edited")) name += "_edited";
         ui_.files().open({.title = "Save scene",
                           .path = freePath(name + scene.extension().string()),
                           .endings = {scene.extension().string()},
@@ -116,10 +117,22 @@ bool Viewer::closes() {
     return false;
 }
 
+// Another file has the bookmarks of the one that it was.
+void Viewer::followSavedPath() {
+    const std::string path = scenePath();
+    const auto known = preferences_.bookmarks.find(path_);
+    if (path != path_ && known != preferences_.bookmarks.end()) {
+        const std::vector<Bookmark> marks = known->second;
+        preferences_.bookmarks.try_emplace(path, marks);
+    }
+    path_ = path;
+}
+
 // The title tells what is not saved; what waited for a save goes on.
 void Viewer::followFile() {
     if (session_->saves() != saves_) {
         saves_ = session_->saves();
+        followSavedPath();
         preferences_.addRecent(session_->path());
         tell("saved", session_->path());
         const std::string unsaved = unsavedPart(session_->document().edits);

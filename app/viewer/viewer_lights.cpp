@@ -1,5 +1,7 @@
 #include "app/viewer/viewer.h"
 
+#include "app/viewer/views.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,23 +31,19 @@ void Viewer::selectLight(const std::optional<LightKey>& key) {
     changeScene();
 }
 
-// What is gone cannot stay selected; what is muted is dark.
+// What is gone cannot stay selected.
 void Viewer::followLights() {
-    if (!lights_.update(session_->scene(), *session_)) return;
+    const bool changed = lights_.update(session_->scene(), *session_);
     if (view_.light && lights_.find(*view_.light) == nullptr) view_.light.reset();
-    std::vector<Material> shown = session_->document().edits.materials;
-    std::vector<bool> shines(shown.size(), false), lights(shown.size(), false);
-    for (const LightSource& source : lights_.sources()) {
-        if (source.key.kind != Kind::Emitter) continue;
-        lights[source.key.material] = true;
-        if (session_->document().mix.shines(source.key)) shines[source.key.material] = true;
+    if (viewEntries()[view_.view].content == MapContent::Layer && !view_.light) {
+        view_.view = viewIndex("lit");
+        changeScene();
     }
-    for (size_t i = 0; i < shown.size(); ++i)
-        if (lights[i] && !shines[i]) shown[i].emission = glm::vec3(0.0f);
-    showMaterials(std::move(shown));
-    SkySettings sky = session_->document().edits.sky;
-    if (!session_->document().mix.shines({Kind::Sky, 0, 0})) sky.radiance = glm::vec3(0.0f);
-    pane_.setSky(sky);
+    const std::optional<LightKey> alone = loneLight();
+    if (!changed && alone == shownAlone_) return;
+    shownAlone_ = alone;
+    if (session_->scene() == nullptr) return;
+    showShining();
     pane_.setPlacements(session_->document().edits.placements);
     changeScene();
     pacer_.input();
@@ -104,6 +102,8 @@ void Viewer::performLight(Action action, int argument) {
     if (session_->scene() == nullptr) return note("there is no scene to light", true);
     if (action == Action::AddLight) return addLight(argument);
     if (action == Action::NextLight) return stepLight(argument);
+    if (action == Action::SkyPicture) return chooseSky();
+    if (action == Action::NoSkyPicture) return clearSky();
     const LightSource* found = view_.light ? lights_.find(*view_.light) : nullptr;
     if (found == nullptr) return note("no light is selected: click one, or press L");
     const LightSource source = *found;

@@ -25,7 +25,7 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
     }
     std::error_code code;
     const std::string path =
-        std::filesystem::absolute(scene.prepared.scene.path, code).lexically_normal().string();
+        std::filesystem::absolute(context.session.path(), code).lexically_normal().string();
     const auto found = context.preferences.bookmarks.find(path);
     if (found != context.preferences.bookmarks.end()) {
         std::vector<Bookmark>& marks = found->second;
