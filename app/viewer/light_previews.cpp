@@ -29,7 +29,8 @@ float exposureFor(const std::vector<glm::vec3>& seen) {
     for (const glm::vec3& value : seen)
         if (const float brightness = shader::luminance(value); brightness > 0.0f) lit.push_back(brightness);
     if (lit.empty()) return 0.0f;
-    const auto rank = static_cast<std::ptrdiff_t>((1.0f - kBrighter) * static_cast<float>(lit.size() - 1));
+    const auto rank =
+        static_cast<std::ptrdiff_t>(std::ceil((1.0f - kBrighter) * static_cast<float>(lit.size() - 1)));
     std::nth_element(lit.begin(), lit.begin() + rank, lit.end());
     return kBright / lit[static_cast<size_t>(rank)];
 }

@@ -47,12 +47,15 @@ TEST(ObjectEdits, ShearStaysWhereOneTurns) {
 class PlacedObject : public testing::Test {
 protected:
     PlacedObject() {
-        scene_.prepared.scene.instances = {{.name = "", .mesh = 0},
-                                           {.name = "Plate", .mesh = 1, .transform = plate_}};
+        std::vector<Instance>& instances = scene_.prepared.scene.instances;
+        instances.resize(2);
+        instances[1].name = "Plate";
+        instances[1].transform = plate_;
         WorldMesh& mesh = scene_.prepared.mesh;
         add(mesh, 0, kOne);
         add(mesh, 1, plate_);
-        scene_.geometry.draws = {{.instance = 0}, {.instance = 1}};
+        scene_.geometry.draws.resize(2);
+        scene_.geometry.draws[1].instance = 1;
         for (size_t i = 0; i < mesh.positions.size(); ++i)
             scene_.geometry.draws[mesh.instance[i / 3]].bounds.add(mesh.positions[i]);
         edits_ = editsOf(scene_.prepared.scene);
