@@ -7,6 +7,7 @@
 #include "app/solve.h"
 #include "assets/error.h"
 #include "assets/log.h"
+#include "assets/sky_picture.h"
 #include "bake/vk/device.h"
 
 namespace relume {
@@ -17,6 +18,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     PreparedScene prepared = prepareScene(request.prepare);
     const bool moved = editsOf(prepared.scene).placements != edits.placements;
     applyEdits(prepared.scene, edits);
+    readEditedPicture(prepared.scene.sky);
     if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
     const vk::Device device({.select = options.device});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);

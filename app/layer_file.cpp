@@ -70,12 +70,17 @@ void writeLayers(const std::string& path, const LayeredImage& image, ExrType typ
     }
 }
 
+std::vector<std::string> staleReasons(const LayerSolver& solver) {
+    std::vector<std::string> reasons;
+    for (const std::unique_ptr<Layer>& layer : solver.layers())
+        if (std::string reason = staleReason(*layer); !reason.empty()) reasons.push_back(std::move(reason));
+    return reasons;
+}
+
 std::string staleLayers(const LayerSolver& solver) {
     std::string text;
-    for (const std::unique_ptr<Layer>& layer : solver.layers()) {
-        const std::string reason = staleReason(*layer);
-        if (!reason.empty()) text += (text.empty() ? "" : "; ") + reason;
-    }
+    for (const std::string& reason : staleReasons(solver))
+        text += (text.empty() ? "" : "; ") + reason;
     return text;
 }
 

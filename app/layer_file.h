@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "assets/layered_exr.h"
 #include "bake/baker.h"
@@ -18,6 +19,8 @@ LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& 
 /// writeLayeredExr, and a line to the log about each layer.
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type);
 
+/// Of each layer that does not show the scene as it is.
+std::vector<std::string> staleReasons(const LayerSolver& solver);
 /// Of all layers, one line; "": all of them show the scene as it is.
 std::string staleLayers(const LayerSolver& solver);
 

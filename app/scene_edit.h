@@ -78,4 +78,7 @@ using SceneEdit = std::variant<SetEdit, MoveEdit, RotateEdit, AimEdit, AddLightE
 /// out of range; `edits` are as they were then.
 std::string applyEdit(const Scene& scene, const SceneEdit& edit, SceneEdits& edits);
 
+/// What a glTF file cannot hold of the edits, one line; "": it holds all.
+std::string unsavedPart(const SceneEdits& edits);
+
 } // namespace relume

@@ -25,7 +25,7 @@ struct SceneEdits {
 /// As the scene has it.
 SceneEdits editsOf(const Scene& scene);
 /// Makes the scene as the edits say. `scene` has the materials and instances that they began with. Of another
-/// sky picture than its own it takes nothing but the name.
+/// sky picture than its own it takes nothing but the name (readEditedPicture).
 void applyEdits(Scene& scene, const SceneEdits& edits);
 
 } // namespace relume

@@ -70,4 +70,8 @@ std::vector<std::string> readSkyPicture(Sky& sky) {
     return warnings;
 }
 
+void readEditedPicture(Sky& sky) {
+    if (!sky.file.empty() && sky.pixels.empty()) readSkyPicture(sky);
+}
+
 } // namespace relume

@@ -12,4 +12,7 @@ namespace relume {
 /// of the picture. Returns what was mended or looks wrong, as one line each about the file. Throws Error.
 std::vector<std::string> readSkyPicture(Sky& sky);
 
+/// The same where the sky has a file and no pixels of it: an edit took another picture.
+void readEditedPicture(Sky& sky);
+
 } // namespace relume

@@ -30,4 +30,12 @@ struct Box {
     }
 };
 
+/// The box around a box that was transformed; empty stays empty.
+inline Box transformed(const Box& box, const glm::mat4& transform) {
+    Box result;
+    for (int i = 0; i < 8 && !box.empty(); ++i)
+        result.add(glm::vec3(transform * glm::vec4(box.corner(i), 1.0f)));
+    return result;
+}
+
 } // namespace relume

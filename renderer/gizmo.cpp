@@ -256,8 +256,10 @@ glm::mat4 GizmoDrag::moved(const glm::vec2& point, bool steps) const {
     const glm::vec3 axis = index < 0 ? -forward(place_.view.camera) : unit(index);
     float angle = rotation(axis, point);
     if (steps) angle = kTurnStep * std::round(angle / kTurnStep);
-    result = glm::rotate(glm::mat4(1.0f), angle, axis) * transform_;
-    result[3] = transform_[3];
+    const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), angle, axis);
+    const glm::vec3 arm = glm::vec3(transform_[3]) - place_.origin;
+    result = turn * transform_;
+    result[3] = glm::vec4(place_.origin + glm::mat3(turn) * arm, 1.0f);
     return result;
 }
 

@@ -39,7 +39,7 @@ GizmoHandle gizmoAt(const GizmoPlace& place, const glm::vec2& point);
 /// A drag of a gizmo. All is counted from where it began, so nothing adds up on the way.
 class GizmoDrag {
 public:
-    /// handle: not None; transform: of what is dragged, to world, its origin at the place's.
+    /// handle: not None; transform: of what is dragged, to world: it is turned about the place's origin.
     GizmoDrag(const GizmoPlace& place, GizmoHandle handle, const glm::mat4& transform,
               const glm::vec2& point);
     /// Goes on along or about another one, from the same beginning.

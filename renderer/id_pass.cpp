@@ -36,6 +36,7 @@ void IdPass::draw(const Desc& desc, Output output, const gl::Framebuffer& to) {
     bindScene(desc.scene);
     std::vector<const gl::Program*> ready; // have the uniforms
     for (const SceneDraw* draw : visibleDraws(desc.scene, desc.viewProjection, desc.eye)) {
+        if (draw->instance == desc.without) continue;
         const SceneGpu::MaterialTextures& textures = desc.scene.textures(draw->material);
         const gl::Program& variant = program(textures, output);
         if (std::find(ready.begin(), ready.end(), &variant) == ready.end()) {
@@ -44,9 +45,8 @@ void IdPass::draw(const Desc& desc, Output output, const gl::Framebuffer& to) {
             variant.set(kLightmapSize, static_cast<GLuint>(desc.lightmapSize));
         }
         variant.set(kMaterial, static_cast<GLuint>(draw->material));
-        variant.use();
         glBindTextureUnit(0, textures.base);
-        issue(*draw);
+        issue(desc.scene, variant, *draw);
     }
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);

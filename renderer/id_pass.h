@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "renderer/camera.h"
 #include "renderer/gl/framebuffer.h"
 #include "renderer/gl/program_cache.h"
@@ -19,7 +21,8 @@ public:
         const SceneGpu& scene;
         glm::mat4 viewProjection{1.0f};
         glm::vec3 eye{0.0f};
-        uint32_t lightmapSize = 0; // edge [texels], > 0
+        uint32_t lightmapSize = 0;            // edge [texels], > 0
+        std::optional<uint32_t> without = {}; // an instance that is left out
     };
 
     /// Into a framebuffer of unsigned integers with depth: R32UI for Tile, else RGBA32UI. Throws Error when

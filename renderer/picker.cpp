@@ -37,7 +37,8 @@ std::optional<Pick> Picker::pick(const Query& query) {
     const IdPass::Desc desc{.scene = query.scene,
                             .viewProjection = viewProjection,
                             .eye = query.camera.eye,
-                            .lightmapSize = query.lightmapSize};
+                            .lightmapSize = query.lightmapSize,
+                            .without = query.without};
     const glm::uvec4 surface = look(desc, IdPass::Output::Surface);
     if (surface.x == 0) return std::nullopt;
     const glm::uvec4 position = look(desc, IdPass::Output::Position);

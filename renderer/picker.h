@@ -27,6 +27,7 @@ public:
         glm::vec2 pixel{0.0f};     // from the picture's upper left corner; a pixel's middle is at 0.5
         glm::vec2 size{1.0f};      // of the picture [pixels]
         uint32_t lightmapSize = 1; // edge [texels]
+        std::optional<uint32_t> without = {}; // an instance that is looked through
     };
     /// The nearest surface there, holes of masks left out; none where nothing is. Waits for the device.
     std::optional<Pick> pick(const Query& query);

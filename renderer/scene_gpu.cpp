@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include <glm/gtc/matrix_inverse.hpp>
 
 namespace relume {
 namespace {
@@ -68,6 +72,12 @@ std::vector<shader::SceneMaterial> describeAll(const Scene& scene) {
 
 } // namespace
 
+glm::mat4 placementBetween(const glm::mat4& from, const glm::mat4& to) {
+    if (std::abs(glm::determinant(glm::mat3(from))) < std::numeric_limits<float>::min())
+        return glm::mat4(1.0f);
+    return to * glm::inverse(from);
+}
+
 GLuint SceneGpu::textureOf(const Scene& scene, const TextureRef& use, bool srgb) {
     if (use.texture < 0) return 0;
     const Texture& texture = scene.textures[static_cast<size_t>(use.texture)];
@@ -110,15 +120,50 @@ SceneGpu::SceneGpu(const Scene& scene, const SceneGeometry& geometry)
                              .data = materials.data(),
                              .flags = GL_DYNAMIC_STORAGE_BIT,
                              .name = "materials"});
+    made_ = placements_ = editsOf(scene).placements;
+    places_.resize(made_.size());
+    for (size_t i = 0; i < made_.size(); ++i)
+        places_[i].hidden = made_[i].hidden;
     sky_ = scene.sky;
     skyFile_ = sky_.file;
     if (!scene.sky.pixels.empty()) skyPicture_ = makeSkyPicture(scene.sky);
     setAnisotropy(kAnisotropy);
 }
 
+void SceneGpu::updatePlacements(const std::vector<Placement>& placements) {
+    ASSERT(placements.size() == made_.size());
+    if (placements_ == placements) return;
+    placements_ = placements;
+    for (size_t i = 0; i < made_.size(); ++i) {
+        places_[i] = {};
+        places_[i].hidden = placements[i].hidden;
+        if (placements[i].transform == made_[i].transform) continue;
+        places_[i].transform = placementBetween(made_[i].transform, placements[i].transform);
+        const glm::mat3 turned(places_[i].transform);
+        places_[i].normals = glm::inverseTranspose(turned);
+        places_[i].mirrored = glm::determinant(turned) < 0.0f;
+    }
+    bounds_ = {};
+    for (const SceneDraw& draw : draws_)
+        bounds_.add(boundsOf(draw));
+    version_ = newVersion();
+}
+
+Box SceneGpu::boundsOf(const SceneDraw& draw) const {
+    const Place& place = places_[draw.instance];
+    return place.transform == glm::mat4(1.0f) ? draw.bounds : transformed(draw.bounds, place.transform);
+}
+
 void SceneGpu::updateSky(const SkySettings& sky) {
     if (sky_ == sky) return;
     sky_ = sky;
+    version_ = newVersion();
+}
+
+void SceneGpu::updateSkyPicture(const Sky& sky) {
+    skyPicture_ = {}; // before the new one takes its memory
+    skyPicture_ = makeSkyPicture(sky);
+    skyFile_ = sky.file;
     version_ = newVersion();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "assets/scene_edits.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
 #include "renderer/gl/vertex_array.h"
@@ -12,6 +13,10 @@
 #include "renderer/version.h"
 
 namespace relume {
+
+/// What brings points of an instance from where it stood to where it stands; the identity where it had no
+/// volume.
+glm::mat4 placementBetween(const glm::mat4& from, const glm::mat4& to);
 
 /// A scene in OpenGL's memory: vertices, textures with their mips, materials. Belongs to the context that is
 /// current when it is made; needs neither scene nor mesh afterwards.
@@ -21,6 +26,12 @@ public:
     struct MaterialTextures {
         GLuint base = 0, emission = 0, metallic = 0;
         bool masked = false; // has holes
+    };
+    /// Where an instance stands, seen from where it was when this was made.
+    struct Place {
+        glm::mat4 transform{1.0f};
+        glm::mat3 normals{1.0f}; // of any length
+        bool hidden = false, mirrored = false;
     };
     // Floors seen at a flat angle are blurred without it; more than 8 samples show no difference.
     static constexpr float kAnisotropy = 8.0f;
@@ -32,13 +43,21 @@ public:
     /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
     /// the alpha mode and the number of materials must be as they were.
     void updateMaterials(const Scene& scene);
-    /// The sky as it is set now. Another picture than the scene had when this was made is not drawn.
+    /// Draws instances where these are; as many as the scene's.
+    void updatePlacements(const std::vector<Placement>& placements);
+    /// The sky as it is set now. Another picture than the one that is here is not drawn.
     void updateSky(const SkySettings& sky);
+    /// The picture of that file.
+    void updateSkyPicture(const Sky& sky);
+    const std::string& skyFile() const { return skyFile_; } // whose picture is here, "": none
     /// Samples along the longer side of what a pixel covers of a texture, at most kAnisotropy; 1: none, which
     /// spares a software device a little of a textured scene's time and blurs its floors.
     void setAnisotropy(float samples);
 
     const std::vector<SceneDraw>& draws() const { return draws_; }
+    const Place& place(uint32_t instance) const { return places_[instance]; }
+    /// Of a draw as it is placed.
+    Box boundsOf(const SceneDraw& draw) const;
     const MaterialTextures& textures(uint32_t material) const { return textures_[material]; }
     const SkySettings& sky() const { return sky_; }
     GLuint skyPicture() const { return sky_.file == skyFile_ ? skyPicture_.get() : 0; } // 0: one radiance
@@ -52,6 +71,8 @@ private:
     GLuint textureOf(const Scene& scene, const TextureRef& use, bool srgb);
 
     std::vector<SceneDraw> draws_;
+    std::vector<Placement> made_, placements_; // of the instances: when this was made, and now
+    std::vector<Place> places_;                // that follow from them
     Box bounds_;
     float medianDensity_ = 0;
     gl::Buffer vertices_, indices_, materials_;

@@ -182,11 +182,10 @@ void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
         }
         const SceneGpu::MaterialTextures& textures = frame.scene.textures(draw->material);
         program.set(kMaterial, static_cast<GLuint>(draw->material));
-        program.use();
         glBindTextureUnit(0, textures.base);
         glBindTextureUnit(1, textures.emission);
         glBindTextureUnit(2, textures.metallic);
-        issue(*draw);
+        issue(frame.scene, program, *draw);
     }
 }
 

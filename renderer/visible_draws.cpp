@@ -3,9 +3,13 @@
 #include "renderer/frustum.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace relume {
 namespace {
+
+// Uniforms, as scene.vert numbers them.
+constexpr GLint kPlacement = 13, kTurning = 14;
 
 float farthest(const Box& box, const glm::vec3& eye) { // squared
     const glm::vec3 reach = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
@@ -17,14 +21,20 @@ float farthest(const Box& box, const glm::vec3& eye) { // squared
 std::vector<const SceneDraw*> visibleDraws(const SceneGpu& scene, const glm::mat4& viewProjection,
                                            const glm::vec3& eye) {
     const Frustum frustum(viewProjection);
-    std::vector<const SceneDraw*> visible;
-    visible.reserve(scene.draws().size());
-    for (const SceneDraw& draw : scene.draws())
-        if (frustum.sees(draw.bounds)) visible.push_back(&draw);
+    std::vector<std::pair<float, const SceneDraw*>> seen;
+    seen.reserve(scene.draws().size());
+    for (const SceneDraw& draw : scene.draws()) {
+        if (scene.place(draw.instance).hidden) continue;
+        const Box bounds = scene.boundsOf(draw);
+        if (frustum.sees(bounds)) seen.emplace_back(farthest(bounds, eye), &draw);
+    }
     // By the far ends: a room is behind what stands in it.
-    std::stable_sort(visible.begin(), visible.end(), [&](const SceneDraw* a, const SceneDraw* b) {
-        return farthest(a->bounds, eye) < farthest(b->bounds, eye);
-    });
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<const SceneDraw*> visible;
+    visible.reserve(seen.size());
+    for (const auto& [distance, draw] : seen)
+        visible.push_back(draw);
     return visible;
 }
 
@@ -33,7 +43,12 @@ void bindScene(const SceneGpu& scene) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, scene.materials().get());
 }
 
-void issue(const SceneDraw& draw) {
+void issue(const SceneGpu& scene, const gl::Program& program, const SceneDraw& draw) {
+    const SceneGpu::Place& place = scene.place(draw.instance);
+    program.set(kPlacement, place.transform);
+    program.set(kTurning, place.normals);
+    program.use();
+    glFrontFace(place.mirrored ? GL_CW : GL_CCW);
     if (draw.doubleSided)
         glDisable(GL_CULL_FACE);
     else

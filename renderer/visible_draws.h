@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "renderer/gl/framebuffer.h"
+#include "renderer/gl/program.h"
 #include "renderer/scene_gpu.h"
 
 namespace relume {
@@ -14,8 +15,9 @@ std::vector<const SceneDraw*> visibleDraws(const SceneGpu& scene, const glm::mat
 
 /// Binds a scene's vertices and materials.
 void bindScene(const SceneGpu& scene);
-/// Draws with the program in use and that culling of backs which the draw asks for; bindScene before.
-void issue(const SceneDraw& draw);
+/// Draws with a program that has scene.vert, where the instance stands and with that culling of backs which
+/// the draw asks for; bindScene before.
+void issue(const SceneGpu& scene, const gl::Program& program, const SceneDraw& draw);
 
 /// Binds a framebuffer of reversed depth (1 near, 0 infinitely far) and sets all the state that a scene is
 /// drawn with; clears nothing.

@@ -47,10 +47,8 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    const auto isHidden = [](const Placement& placement) { return placement.hidden; };
-    if (!options.output.empty() && std::any_of(edits.placements.begin(), edits.placements.end(), isHidden))
-        spdlog::warn("{}: a glTF file cannot say that an object is hidden: it is shown when it is read again",
-                     options.output);
+    if (const std::string unsaved = unsavedPart(edits); !options.output.empty() && !unsaved.empty())
+        spdlog::warn("{}: {}", options.output, unsaved);
     Scene after = partsOfEdits(before);
     applyEdits(after, edits);
     if (!options.output.empty()) {

@@ -31,7 +31,16 @@ struct InspectRequest {
     uint32_t mip = 0;          // of ligIn and ligOut, 0..4: means over 2^mip texels squared
     uint32_t texel = 0;        // Seen: v * size + u of the chosen patch
     PairSettings preview = {}; // Leaves, where the method has no quad-tree of its own
+    LightKey light = {};       // Layer: which one ...
+    glm::vec3 weight{0.0f};    // ... and what its light for a unit is multiplied with
     bool operator==(const InspectRequest& other) const;
+};
+
+/// Texels at which each light's layer is to be told, through the exchange, now and whenever it is another
+/// one.
+struct ProbeRequest {
+    uint64_t number = 0;          // that the answers bear
+    std::vector<uint32_t> texels; // v * size + u, shader::kNoPatch: nothing; empty: no more
 };
 
 /// Light paths from a chosen patch, and voxels: what no map can hold.
@@ -58,6 +67,9 @@ struct BakeStatus {
     uint64_t bake = 0;     // number of the one that this tells of, see LiveBake::start()
     BakeSettings settings; // of it
     uint32_t patches = 0;
+    bool layered = false;           // each light has a layer
+    std::string remark;             // why not though it was asked for, with the mend, one line; "": nothing
+    std::vector<std::string> stale; // what of the edits its light does not show yet, one line each
     SolverProgress progress;
     double raysPerSecond = 0; // over the last second or so
     double secondsLeft = -1;  // until the error that is asked for, by how it fell so far; negative: unknown
@@ -84,6 +96,7 @@ struct BakeOrders {
     struct Export {
         std::string path; // .exr or .png
         LightmapDesc lightmap;
+        std::string scene; // the file that it names as its scene's
     };
     std::optional<Start> start;
     bool reset = false, abort = false, reload = false;
@@ -91,6 +104,7 @@ struct BakeOrders {
     std::optional<double> batchMs;
     std::optional<std::vector<uint32_t>> seenTiles;
     std::optional<InspectRequest> inspect;
+    std::optional<ProbeRequest> probes;
     std::optional<uint32_t> voxels; // resolution
     std::vector<Export> exports;
     bool quit = false;

@@ -2,9 +2,11 @@
 
 #include "app/bake_settings.h"
 #include "app/layer_file.h"
+#include "app/live/layer_remark.h"
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
 #include "assets/log.h"
+#include "assets/sky_picture.h"
 #include "renderer/shader_types.h"
 #include "shaders/shader_library.h"
 
@@ -129,7 +131,7 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
     const auto something = [&] {
         const BakeOrders& o = desk_.orders;
         return o.quit || o.start || o.reset || o.abort || o.reload || o.run != BakeOrders::Run::Keep ||
-               o.batchMs || o.seenTiles || o.inspect || o.voxels || !o.exports.empty();
+               o.batchMs || o.seenTiles || o.inspect || o.probes || o.voxels || !o.exports.empty();
     };
     if (status_.phase != Phase::Baking) {
         if (maps_ && maps_->owes())
@@ -147,6 +149,7 @@ void BakeLoop::obey(BakeOrders& orders) {
     if (orders.batchMs) desc_.batchMs = *orders.batchMs;
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
     if (orders.inspect) inspect_ = *orders.inspect;
+    if (orders.probes) maps_->setProbes(std::move(*orders.probes));
     if (orders.start) prepare(*orders.start);
     if (!baker_) return;
     if (orders.reload) reloadShaders();
@@ -173,6 +176,7 @@ bool BakeLoop::onlyEdits(const BakeOrders::Start& start) const {
     return layered() && start.scene == prepared_ && describeSettings(wanted) == describeSettings(settings_) &&
            wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
            wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
+            start.edits.sky.file == scene_.sky.file &&
            sameForPatches(start.edits.materials, scene_.materials) &&
            layered()->holds(start.edits.lights.size());
 }
@@ -222,6 +226,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     settings_.solver.live = true;
     settings_.solver.layers.on = start.settings.solver.layers.on && canHaveLayers(settings_.solver);
     settings_.solver.layers.optional = true;
+    wantsLayers_ = start.settings.solver.layers.on;
     rings_ = start.rings;
     status_.bake = start.number;
     status_.settings = settings_;
@@ -234,6 +239,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         baker_.reset(); // before the new one takes its memory
         scene_ = start.scene->scene;
         applyEdits(scene_, start.edits);
+        readEditedPicture(scene_.sky);
         const bool moved = editsOf(start.scene->scene).placements != start.edits.placements;
         WorldMesh mesh = moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh;
         prepared_ = start.scene;
@@ -304,6 +310,8 @@ void BakeLoop::ready() {
     status_.doing.clear();
     status_.fraction = 1;
     status_.patches = baker_->patches().count;
+    status_.layered = layered() != nullptr;
+    status_.remark = status_.layered ? "" : layerRemark(wantsLayers_, settings_.solver, *baker_, scene_);
     status_.tracer = baker_->tracerChoice();
     applySeen();
     report(true);
@@ -394,7 +402,7 @@ void BakeLoop::exportAll(const BakeOrders& orders) {
             const bool done = baker_->solver().done();
             FloatImage image =
                 done ? baker_->lightmap(desc) : makeLightmap(baker_->patches(), maps_->lightNow(), desc);
-            addLightmapAttributes(image, scene_.path, settings_, wanted.lightmap,
+            addLightmapAttributes(image, wanted.scene, settings_, wanted.lightmap,
                                   baker_->solver().progress());
             const std::string stale = layered() ? staleLayers(*layered()) : "";
             if (!stale.empty()) image.attributes[layer_attribute::kStale] = stale;
@@ -439,6 +447,7 @@ void BakeLoop::follow() {
     if (!baker_) return;
     const SolverProgress& now = baker_->solver().progress();
     status_.progress = now;
+    status_.stale = layered() ? staleReasons(*layered()) : std::vector<std::string>();
     std::vector<ConvergencePoint>& history = status_.history;
     if (now.error < 1 && (history.empty() || history.back().error != now.error)) {
         history.push_back({now.seconds, now.error});

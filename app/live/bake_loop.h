@@ -59,6 +59,7 @@ private:
     const PreparedScene* prepared_ = nullptr;  // that it came from; only its address counts
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
     BakeSettings settings_;
+    bool wantsLayers_ = true;      // whatever settings_ can have
     uint32_t rings_ = 4;           // of texels filled around charts, on screen
     std::unique_ptr<Baker> baker_; // of scene_
     BakeStatus status_;            // the desk's, as it will be

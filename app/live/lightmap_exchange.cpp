@@ -122,4 +122,27 @@ void LightmapExchange::retire(uint32_t set) {
     retired_ = std::max(retired_, set);
 }
 
+void LightmapExchange::publish(LayerProbe probe) {
+    const std::lock_guard lock(mutex_);
+    const auto same = std::find_if(probes_.begin(), probes_.end(),
+                                   [&](const LayerProbe& other) { return other.key == probe.key; });
+    if (same != probes_.end())
+        *same = std::move(probe);
+    else
+        probes_.push_back(std::move(probe));
+}
+
+std::optional<LayerProbe> LightmapExchange::takeProbe() {
+    const std::lock_guard lock(mutex_);
+    if (probes_.empty()) return std::nullopt;
+    LayerProbe oldest = std::move(probes_.front());
+    probes_.erase(probes_.begin());
+    return oldest;
+}
+
+bool LightmapExchange::hasProbe() const {
+    const std::lock_guard lock(mutex_);
+    return !probes_.empty();
+}
+
 } // namespace relume

@@ -9,6 +9,8 @@
 
 #include <glm/glm.hpp>
 
+#include "bake/light_source.h"
+
 namespace relume {
 
 /// What the texels of a published map hold; beside lighting the texture group and other things one looks at.
@@ -23,6 +25,7 @@ enum class MapContent : uint32_t {
     Leaves,   // quad-tree: r log2 of a leaf's edge [texels], g 1 along its border, b in [0, 1) tells leaves
               // apart
     Error,    // r: how far the light may still be off, in lighting's unit
+    Layer,    // as Light, of one of the lights alone
     Seen, // from the chosen patch: r 1 where it sees, g that one's form factor over the largest, b 1 itself
 };
 
@@ -46,6 +49,13 @@ struct PublishedMap {
     bool filled = true;      // all around charts so far that no filter meets an empty texel
     bool radiance = false;   // Light holds RTRad's radiosity: albedo and emission are in it
     RowRange changed = {};   // since the map before
+};
+
+/// What a light's layer holds at the texels of a ProbeRequest.
+struct LayerProbe {
+    uint64_t request = 0; // its number
+    LightKey key;
+    std::vector<glm::vec3> light; // lighting for a unit of its weight, 0 where no patch is
 };
 
 /// Three slots of one size that the bake thread wants: images of its own to be imported, or plain memory.
@@ -76,6 +86,8 @@ public:
     std::span<std::byte> memory(uint32_t slot);
     /// The claimed slot is finished.
     void publish(const PublishedMap& map);
+    /// Replaces what was not taken of the same light.
+    void publish(LayerProbe probe);
     /// The claimed slot was not written after all.
     void giveUp(uint32_t slot);
     /// Whether the drawing thread has let go of all sets before this one.
@@ -91,6 +103,9 @@ public:
     bool refused() const; // the bake thread's question
     /// The newest map, once; it stays readable until it is released.
     std::optional<PublishedMap> take();
+    /// The oldest probe, each once.
+    std::optional<LayerProbe> takeProbe();
+    bool hasProbe() const;
     /// The drawing thread reads this slot no more.
     void release(uint32_t set, uint32_t slot);
     /// The drawing thread has let go of all that belonged to the set.
@@ -108,6 +123,7 @@ private:
     std::array<State, kSlots> states_{};
     std::array<std::span<std::byte>, kSlots> memory_{};
     PublishedMap waiting_;
+    std::vector<LayerProbe> probes_; // the oldest first
 };
 
 } // namespace relume

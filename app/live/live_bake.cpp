@@ -8,7 +8,8 @@ namespace relume {
 
 bool InspectRequest::operator==(const InspectRequest& other) const {
     return content == other.content && mip == other.mip && texel == other.texel &&
-           preview.node == other.preview.node && preview.threshold == other.preview.threshold;
+           preview.node == other.preview.node && preview.threshold == other.preview.threshold &&
+           light == other.light && weight == other.weight;
 }
 
 const char* phaseName(BakeStatus::Phase phase) {
@@ -106,8 +107,12 @@ void LiveBake::askVoxels(uint32_t resolution) {
     order([&](BakeOrders& orders) { orders.voxels = resolution; });
 }
 
-void LiveBake::exportLightmap(const std::string& path, const LightmapDesc& desc) {
-    order([&](BakeOrders& orders) { orders.exports.push_back({path, desc}); });
+void LiveBake::askProbes(ProbeRequest request) {
+    order([&](BakeOrders& orders) { orders.probes = std::move(request); });
+}
+
+void LiveBake::exportLightmap(BakeOrders::Export wanted) {
+    order([&](BakeOrders& orders) { orders.exports.push_back(std::move(wanted)); });
 }
 
 BakeStatus LiveBake::status() const {

@@ -52,8 +52,10 @@ public:
     void inspect(const InspectRequest& request);
     /// Voxels of this resolution; answered by takeVoxels().
     void askVoxels(uint32_t resolution);
+    /// Answered by exchange().takeProbe(), where each light has a layer.
+    void askProbes(ProbeRequest request);
     /// Writes the lightmap as it stands; the log tells how it went.
-    void exportLightmap(const std::string& path, const LightmapDesc& desc);
+    void exportLightmap(BakeOrders::Export wanted);
 
     BakeStatus status() const;
     LightmapExchange& exchange() { return desk_->exchange; }

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/log.h"
+#include "bake/layer_solver.h"
 #include "bake/vk/buffer.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ constexpr uint32_t kPaths = 64;
 // What changes while a bake goes on.
 bool follows(MapContent content) {
     return content == MapContent::LigIn || content == MapContent::LigOut || content == MapContent::Leaves ||
-           content == MapContent::Error;
+           content == MapContent::Error || content == MapContent::Layer;
 }
 
 // What is drawn as it is: colours, directions, marks.
@@ -54,7 +55,7 @@ RowRange rowsOf(const std::vector<TexelArea>& areas) {
 } // namespace
 
 MapPublisher::MapPublisher(const vk::Device& device, LightmapExchange& exchange, const Desc& desc)
-    : device_(device), exchange_(exchange), desc_(desc) {
+    : device_(device), exchange_(exchange), desc_(desc), probes_(device) {
     choose();
 }
 
@@ -102,6 +103,7 @@ void MapPublisher::begin(const Bake& bake) {
     drawnVersion_ = 0;
     edited_ = false;
     inspectedVersion_ = 0;
+    probes_.forget();
 }
 
 void MapPublisher::edited(uint64_t number) {
@@ -133,7 +135,19 @@ LiveLight MapPublisher::askSolver() {
 bool MapPublisher::publish(const InspectRequest& request) {
     takeBackFormer();
     owes_ = false;
-    return request.content == MapContent::Light ? publishLight() : publishInspected(request);
+    const bool map = request.content == MapContent::Light ? publishLight() : publishInspected(request);
+    return publishProbe() || map;
+}
+
+bool MapPublisher::publishProbe() {
+    const auto* solver = bake_ ? dynamic_cast<const LayerSolver*>(&bake_->baker.solver()) : nullptr;
+    if (solver == nullptr) return false;
+    std::optional<LayerProbe> probe =
+        probes_.next(*solver, [this](uint32_t texel) { return patchAt(texel); });
+    if (!probe) return false;
+    exchange_.publish(std::move(*probe));
+    owes_ = true; // there may be more
+    return true;
 }
 
 bool MapPublisher::publishLight() {
@@ -187,6 +201,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     inspected_.publisher->update({.values = vk::makeBuffer(device_, values, "inspected"),
                                   .chunks = inspected_.publisher->allChunks(),
                                   .unit = unit});
+    inspected_.bake = bake_->number; // which edits change
     write(inspected_, *slot,
           {.content = request.content,
            .complete = live.complete,
@@ -228,10 +243,26 @@ PatchValues MapPublisher::inspect(const InspectRequest& request) {
         if (patch != shader::kNoPatch) return inspector.seenFrom(patch);
         break; // beside all charts nothing is seen
     }
+    case MapContent::Layer:
+        return layerOf(request);
     case MapContent::Light:
         break;
     }
     return PatchValues(bake_->baker.patches().scene.patches.size(), glm::vec4(0.0f));
+}
+
+// No ray is traced for it: its layer, weighed alone. Dark where it has none.
+PatchValues MapPublisher::layerOf(const InspectRequest& request) {
+    PatchValues values(bake_->baker.patches().scene.patches.size(), glm::vec4(0.0f));
+    const auto* solver = dynamic_cast<const LayerSolver*>(&bake_->baker.solver());
+    if (solver == nullptr) return values;
+    for (const std::unique_ptr<Layer>& layer : solver->layers()) {
+        const Layer* shown = layer->source.key == request.light ? layer->shown() : nullptr;
+        if (shown != nullptr) values = solver->layerLight(*shown);
+    }
+    for (glm::vec4& value : values)
+        value = glm::vec4(glm::vec3(value) * request.weight, 0.0f);
+    return values;
 }
 
 PatchValues MapPublisher::leafColors(const PairSettings& preview) {

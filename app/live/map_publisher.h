@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/live/bake_desk.h"
+#include "app/live/layer_probes.h"
 #include "assets/clock.h"
 #include "bake/patch_inspector.h"
 #include "bake/publisher.h"
@@ -40,6 +41,9 @@ public:
     void edited(uint64_t number);
     void end();
 
+    /// Layers at these texels go to the exchange, one with each publish() while there are any to tell.
+    void setProbes(ProbeRequest request) { probes_.ask(std::move(request)); }
+
     /// Publishes what was asked for, where there is something new and a slot to write. True when it did.
     bool publish(const InspectRequest& request);
     /// Whether something new waits for a slot.
@@ -69,6 +73,8 @@ private:
     bool publishLight();
     bool publishInspected(const InspectRequest& request);
     PatchValues inspect(const InspectRequest& request);
+    PatchValues layerOf(const InspectRequest& request);
+    bool publishProbe();
     PatchValues leafColors(const PairSettings& preview);
     uint32_t patchAt(uint32_t texel) const;
     void offer();
@@ -84,6 +90,7 @@ private:
     uint32_t set_ = 0, setSize_ = 0;
     std::array<vk::SharedImage, Publisher::kSlots> images_;
     std::vector<FormerImages> former_;
+    LayerProbes probes_;
 
     std::optional<Bake> bake_;
     std::optional<PatchInspector> inspector_;

@@ -14,8 +14,17 @@ State stateOf(const BakeBadgeDesc& desc) {
     const bool follows = desc.status.bake == desc.newestBake && phase != Phase::Preparing;
     const bool shown = desc.map != nullptr && desc.map->bake == desc.newestBake;
     if (!follows || !shown) return State::Stale;
+    // Before the first edit there is no light that could be of another scene.
+    if (!desc.edit.empty() && !desc.status.stale.empty()) return State::Stale;
     if (phase == Phase::Done && desc.map->complete) return State::Converged;
     return phase == Phase::Paused ? State::Paused : State::Refining;
+}
+
+// What the bake says of its layers; before it knows of the edit, the edit.
+std::string reasonOf(const BakeBadgeDesc& desc) {
+    const std::vector<std::string>& stale = desc.status.stale;
+    if (desc.status.bake != desc.newestBake || stale.empty()) return desc.edit;
+    return stale.front() + (stale.size() > 1 ? fmt::format(" and {} more", stale.size() - 1) : "");
 }
 
 } // namespace
@@ -41,7 +50,7 @@ BakeBadge bakeBadge(const BakeBadgeDesc& desc) {
     if (badge.state == State::None) return badge;
     badge.text = badgeName(badge.state);
     if (badge.state == State::Stale) {
-        if (!desc.edit.empty()) badge.text += ": " + desc.edit;
+        if (const std::string reason = reasonOf(desc); !reason.empty()) badge.text += ": " + reason;
     } else if (desc.status.progress.error < 1.0) {
         badge.text += fmt::format(", error {:.2g}", desc.status.progress.error);
     }

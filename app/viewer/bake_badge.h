@@ -10,7 +10,7 @@ namespace relume {
 struct BakeBadge {
     enum class State {
         None,     // no scene, or no bake
-        Stale,    // light of before the newest edit
+        Stale,    // some light of before the newest edit
         Refining, // of this document, and becoming better
         Paused,
         Converged,

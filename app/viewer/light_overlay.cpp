@@ -98,8 +98,9 @@ const Light* selectedLamp(const LightStage& stage) {
 
 std::optional<GizmoPlace> gizmoOf(const LightStage& stage) {
     const Light* light = selectedLamp(stage);
-    if (light == nullptr) return std::nullopt;
-    return GizmoPlace{stage.screen, glm::vec3(light->transform[3]), stage.view.gizmo};
+    if (light == nullptr && !stage.object) return std::nullopt;
+    const glm::vec3 origin = light != nullptr ? glm::vec3(light->transform[3]) : *stage.object;
+    return GizmoPlace{stage.screen, origin, stage.view.gizmo};
 }
 
 std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point) {

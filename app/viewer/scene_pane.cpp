@@ -35,6 +35,20 @@ void ScenePane::setSky(const SkySettings& sky) {
     if (gpu_) gpu_->updateSky(sky);
 }
 
+void ScenePane::setSkyPicture(const Sky& sky) {
+    if (gpu_) gpu_->updateSkyPicture(sky);
+}
+
+void ScenePane::askSurfaces(const ViewCamera& camera) {
+    if (gpu_) surfaces_.request(*gpu_, camera);
+}
+
+void ScenePane::setPlacements(const std::vector<Placement>& placements) {
+    if (!gpu_) return;
+    gpu_->updatePlacements(placements);
+    bounds_ = gpu_->bounds();
+}
+
 bool ScenePane::storeReference(const Look& look) {
     if (look.map == nullptr || look.map->content != MapContent::Light || look.lightmap.texture == 0)
         return false;
@@ -96,6 +110,7 @@ void ScenePane::reload() {
     if (flat_) flat_->reload();
     if (picker_) picker_->reload();
     tiles_.reload();
+    surfaces_.reload();
 }
 
 // What the map holds may still be of the view before.
@@ -199,7 +214,7 @@ std::vector<gl::Timer::Pass> ScenePane::endFrame() {
     return renderer_->timer().passes();
 }
 
-std::optional<Pick> ScenePane::pick(const Look& look, glm::vec2 pixel) {
+std::optional<Pick> ScenePane::pick(const Look& look, glm::vec2 pixel, std::optional<uint32_t> without) {
     if (!gpu_ || picture_.get() == 0) return std::nullopt;
     const glm::vec2 size(picture_.width(), picture_.height());
     if (look.state.uv) {
@@ -216,7 +231,8 @@ std::optional<Pick> ScenePane::pick(const Look& look, glm::vec2 pixel) {
                           .camera = look.camera,
                           .pixel = pixel,
                           .size = size,
-                          .lightmapSize = std::max(look.lightmap.size, 1u)});
+                          .lightmapSize = std::max(look.lightmap.size, 1u),
+                          .without = without});
 }
 
 void ScenePane::askTiles(const Look& look) {

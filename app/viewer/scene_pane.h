@@ -9,6 +9,7 @@
 #include "renderer/overlays.h"
 #include "renderer/picker.h"
 #include "renderer/scene_renderer.h"
+#include "renderer/surface_ids.h"
 #include "renderer/tile_ids.h"
 #include "renderer/uv_view.h"
 
@@ -26,6 +27,9 @@ public:
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);
     void setSky(const SkySettings& sky);
+    void setSkyPicture(const Sky& sky);
+    std::string skyFile() const { return gpu_ ? gpu_->skyFile() : ""; }
+    void setPlacements(const std::vector<Placement>& placements);
     /// The links of a patch, over the scene in the view of what it sees.
     void setPaths(const InspectPaths& paths);
     void setVoxels(const InspectVoxels& voxels);
@@ -50,12 +54,18 @@ public:
     /// Device and host times of the newest frame that is known; empty before.
     std::vector<gl::Timer::Pass> endFrame();
 
-    /// What is at a pixel of the last picture, counted from its upper left corner.
-    std::optional<Pick> pick(const Look& look, glm::vec2 pixel);
+    /// What is at a pixel of the last picture, counted from its upper left corner; `without` an instance:
+    /// behind it.
+    std::optional<Pick> pick(const Look& look, glm::vec2 pixel, std::optional<uint32_t> without = {});
     /// Asks which tiles are seen; seenTiles() answers some frames later.
     void askTiles(const Look& look);
     bool tilesPending() const { return tiles_.pending(); }
     std::optional<std::vector<uint32_t>> seenTiles() { return tiles_.poll(); }
+
+    /// Asks which surfaces are seen, for small pictures; surfaces() answers some frames later.
+    void askSurfaces(const ViewCamera& camera);
+    bool surfacesPending() const { return surfaces_.pending(); }
+    std::optional<std::vector<SurfaceIds::Surface>> surfaces() { return surfaces_.poll(); }
 
     /// Compiles the shaders in use anew. Throws Error and keeps the old ones when one does not compile.
     void reload();
@@ -76,6 +86,7 @@ private:
     std::unique_ptr<SceneRenderer> renderer_; // made when there is first something to draw
     std::unique_ptr<UvView> flat_;
     TileIds tiles_;
+    SurfaceIds surfaces_;
     std::unique_ptr<Picker> picker_;
     std::unique_ptr<SceneGpu> gpu_;
     Box bounds_;

@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kCtrl = GLFW_MOD_CONTROL, kShift = GLFW_MOD_SHIFT, kAlt = GLFW_MOD_ALT;
 
-void addLightShortcuts(std::vector<Shortcut>& all) {
-    const std::vector<Shortcut> lights = {
+void addEditShortcuts(std::vector<Shortcut>& all) {
+    const std::vector<Shortcut> edits = {
         {Action::DuplicateLight, 0, GLFW_KEY_D, kCtrl, "Light", "Duplicate light"},
         {Action::DeleteLight, 0, GLFW_KEY_DELETE, 0, "Light", "Delete light"},
         {Action::NextLight, 1, GLFW_KEY_L, 0, "Light", "Next light"},
@@ -27,16 +27,20 @@ void addLightShortcuts(std::vector<Shortcut>& all) {
         {Action::MuteLight, 0, GLFW_KEY_M, kAlt, "Light", "Mute"},
         {Action::LightStrength, 1, GLFW_KEY_EQUAL, kAlt, "Light", "Stronger light"},
         {Action::LightStrength, -1, GLFW_KEY_MINUS, kAlt, "Light", "Weaker light"},
-        {Action::NudgeLight, -1, GLFW_KEY_LEFT, kAlt, "Light", "Nudge left"},
-        {Action::NudgeLight, 1, GLFW_KEY_RIGHT, kAlt, "Light", "Nudge right"},
-        {Action::NudgeLight, 2, GLFW_KEY_UP, kAlt, "Light", "Nudge up"},
-        {Action::NudgeLight, -2, GLFW_KEY_DOWN, kAlt, "Light", "Nudge down"},
-        {Action::NudgeLight, 3, GLFW_KEY_PAGE_UP, kAlt, "Light", "Nudge away"},
-        {Action::NudgeLight, -3, GLFW_KEY_PAGE_DOWN, kAlt, "Light", "Nudge closer"},
-        {Action::Gizmo, static_cast<int>(GizmoMode::Translate), GLFW_KEY_T, 0, "Light", "Move by the gizmo"},
-        {Action::Gizmo, static_cast<int>(GizmoMode::Rotate), GLFW_KEY_R, 0, "Light", "Turn by the gizmo"},
+        {Action::SkyPicture, 0, 0, 0, "Light", "Choose the sky's picture"},
+        {Action::NoSkyPicture, 0, 0, 0, "Light", "Sky without a picture"},
+        {Action::Nudge, -1, GLFW_KEY_LEFT, kAlt, "Move", "Nudge left"},
+        {Action::Nudge, 1, GLFW_KEY_RIGHT, kAlt, "Move", "Nudge right"},
+        {Action::Nudge, 2, GLFW_KEY_UP, kAlt, "Move", "Nudge up"},
+        {Action::Nudge, -2, GLFW_KEY_DOWN, kAlt, "Move", "Nudge down"},
+        {Action::Nudge, 3, GLFW_KEY_PAGE_UP, kAlt, "Move", "Nudge away"},
+        {Action::Nudge, -3, GLFW_KEY_PAGE_DOWN, kAlt, "Move", "Nudge closer"},
+        {Action::Gizmo, static_cast<int>(GizmoMode::Translate), GLFW_KEY_T, 0, "Move", "Move by the gizmo"},
+        {Action::Gizmo, static_cast<int>(GizmoMode::Rotate), GLFW_KEY_R, 0, "Move", "Turn by the gizmo"},
+        {Action::HideObject, 0, GLFW_KEY_H, 0, "Move", "Hide or show object"},
+        {Action::ShowObjects, 0, GLFW_KEY_H, kAlt, "Move", "Show all objects"},
     };
-    all.insert(all.end(), lights.begin(), lights.end());
+    all.insert(all.end(), edits.begin(), edits.end());
     constexpr std::array kLights = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
     static_assert(kLights.size() == kAddSky + 1);
     for (int i = 0; i <= kAddSky; ++i)
@@ -83,7 +87,7 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::HideUi, 0, GLFW_KEY_F2, 0, "Help", "Hide panels"},
         {Action::ReloadShaders, 0, GLFW_KEY_F5, 0, "Help", "Reload shaders"},
     };
-    addLightShortcuts(all);
+    addEditShortcuts(all);
     const std::vector<ViewEntry>& views = viewEntries();
     for (size_t i = 0; i < views.size(); ++i)
         all.push_back({Action::View, static_cast<int>(i), views[i].key, views[i].mods, "View",
@@ -170,7 +174,7 @@ const std::vector<MouseHint>& mouseHints() {
         {"Look around", "right drag"},
         {"Fly (Shift: faster)", "W A S D, E up, Q down"},
         {"Select a light or an instance", "click"},
-        {"Move or turn the selected light", "left drag of the gizmo"},
+        {"Move or turn the selected light or object", "left drag of the gizmo"},
         {"Along one axis; not at all", "X, Y, Z; Esc while dragging"},
         {"On the surface below; in steps", "Ctrl while moving; turning"},
         {"Visible from here", "Ctrl + click"},

@@ -28,8 +28,12 @@ enum class Action : uint8_t {
     SoloLight,
     MuteLight,
     LightStrength, // argument: 1 up, -1 down
-    NudgeLight,    // argument: 1, 2, 3 along the picture's right, up and forward, less than 0 against it
-    Gizmo,         // argument: a GizmoMode
+    SkyPicture,
+    NoSkyPicture,
+    Nudge, // argument: 1, 2, 3 along the picture's right, up and forward, less than 0 against it
+    Gizmo, // argument: a GizmoMode
+    HideObject,
+    ShowObjects,
     LightIcons,
     Wipe,
     StoreReference,

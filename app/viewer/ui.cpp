@@ -109,9 +109,15 @@ std::string statusLine(const BakeStatus& status) {
     return text;
 }
 
+std::string viewTitle(const ViewState& view, const LightList& lights) {
+    const ViewEntry& entry = viewEntries()[view.view];
+    const LightSource* source = view.light ? lights.find(*view.light) : nullptr;
+    return entry.content == MapContent::Layer && source != nullptr ? "Light: " + source->name : entry.title;
+}
+
 float Ui::drawMenus(const PanelContext& context) {
     if (!ImGui::BeginMainMenuBar()) return 0;
-    for (const char* group : {"File", "Edit", "Bake", "Light", "View", "Camera", "Capture", "Help"}) {
+    for (const char* group : {"File", "Edit", "Bake", "Light", "Move", "View", "Camera", "Capture", "Help"}) {
         if (!ImGui::BeginMenu(group)) continue;
         drawMenu(context, group);
         if (std::string(group) == "File") drawRecent(context, files_);
@@ -141,8 +147,9 @@ float Ui::drawStatus(const PanelContext& context) {
     }
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(statusLine(status).c_str());
-    const std::string right = fmt::format("{}, {:+.1f} EV, {:.1f} ms", viewEntries()[context.view.view].title,
-                                          context.exposure, context.figures.total);
+    const std::string right =
+        fmt::format("{}, {:+.1f} EV, {:.1f} ms", viewTitle(context.view, context.lights), context.exposure,
+                    context.figures.total);
     const float width = ImGui::CalcTextSize(right.c_str()).x;
     ImGui::SameLine(std::max(window.x - width - ImGui::GetFontSize(), 0.0f));
     ImGui::TextUnformatted(right.c_str());

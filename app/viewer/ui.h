@@ -51,6 +51,9 @@ private:
     int wantedPanel_ = -1;
 };
 
+/// How the scene is looked at: "Lit", "Light: Lamp".
+std::string viewTitle(const ViewState& view, const LightList& lights);
+
 /// One line about the bake: phase, method, pass, error, rays. Of status bars and captions.
 std::string statusLine(const BakeStatus& status);
 

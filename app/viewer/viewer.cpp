@@ -124,7 +124,10 @@ double Viewer::idleSeconds(double time) const {
     if (status_.phase == Phase::Baking || status_.phase == Phase::Preparing) idle = kIdleBaking;
     if (session_->watchesFile()) idle = std::min(idle, kIdleWatching);
     if (session_->loading()) idle = std::min(idle, kIdleLoading);
-    if (bridge_->waiting() || pane_.tilesPending()) idle = std::min(idle, kIdleFence);
+    if (!skies_.reading().empty()) idle = std::min(idle, kIdleLoading);
+    const bool previews =
+        previewsDue_ || pane_.surfacesPending() || (previews_.wanted && bake_->exchange().hasProbe());
+    if (bridge_->waiting() || pane_.tilesPending() || previews) idle = std::min(idle, kIdleFence);
     if (time - moved_ < kRestsAfter) idle = std::min(idle, kRestsAfter); // then the bake gets its budget back
     const double message = ui_.messages().nextExpiry(time + idle);
     return std::clamp(message - time, 0.0, idle);
@@ -152,6 +155,7 @@ void Viewer::follow(double time) {
     followScene();
     followBake(time);
     followCamera(time);
+    followPreviews(time);
     followLog();
     const bool messages = !ui_.messages().shown().empty();
     ui_.messages().expire(time);
@@ -175,7 +179,10 @@ void Viewer::followScene() {
         view_.selected = -1;
         view_.seenTexel.reset();
         view_.light.reset();
-        lightDrag_.reset();
+        drag_.reset();
+        previews_.clear();
+        previewed_.reset();
+        badSky_.clear();
         newestEdit_.clear();
         editedAt_ = now();
         ownReference_ = false;
@@ -193,6 +200,7 @@ void Viewer::followScene() {
             camera_.setHome(camera);
             preferences_.addRecent(scene.prepared.scene.path);
         }
+        path_ = scenePath();
         askedBake_ = 0;
         tell("scene", scene.prepared.scene.path);
         changeScene();
@@ -202,6 +210,7 @@ void Viewer::followScene() {
         session_->clearError();
     }
     followLights();
+    followSky();
     followFile();
 }
 
@@ -284,6 +293,12 @@ void Viewer::inspect() {
     InspectRequest request;
     if (entry.readsMap) request.content = entry.content;
     if (hasMips(request.content)) request.mip = view_.mip;
+    if (request.content == MapContent::Layer) {
+        const LightSource* source = view_.light ? lights_.find(*view_.light) : nullptr;
+        if (source == nullptr) return;
+        request.light = source->key;
+        request.weight = source->weight;
+    }
     if (request.content == MapContent::Leaves) request.preview = view_.preview;
     if (request.content == MapContent::Seen) {
         if (!view_.seenTexel) return; // nothing was chosen yet
@@ -321,6 +336,7 @@ PanelContext Viewer::context() {
             .figures = figures_,
             .log = log_,
             .lights = lights_,
+            .previews = previews_,
             .map = map(),
             .exposure = pane_.exposure(),
             .budgetMs = desc_.budgetMs,
@@ -384,8 +400,9 @@ void Viewer::frame(const Redraw& redraw) {
     const double begin = now();
     if (!gui_.animates()) scale_ = window_.contentScale() / pixelsPerPoint() * preferences_.uiScale;
     gui_.begin(scale_);
+    previews_.wanted = false; // the panel says
     area_ = ui_.draw(context(), hidden_, scale_);
-    drawLightOverlay();
+    drawOverlay();
     drawProgress();
     const double drawnUi = now();
     const bool anew = redraw.scene || sceneDirty_;

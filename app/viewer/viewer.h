@@ -12,9 +12,11 @@
 #include "app/viewer/gui.h"
 #include "app/viewer/light_edits.h"
 #include "app/viewer/light_overlay.h"
+#include "app/viewer/light_previews.h"
 #include "app/viewer/lightmap_bridge.h"
 #include "app/viewer/redraw_pacer.h"
 #include "app/viewer/scene_pane.h"
+#include "app/viewer/sky_pictures.h"
 #include "app/viewer/ui.h"
 #include "app/viewer/window.h"
 
@@ -89,6 +91,7 @@ private:
     void quit();
     bool closes();
     void followFile();
+    void followSavedPath();
 
     // viewer_progress.cpp
     void followBadge(double time);
@@ -100,9 +103,6 @@ private:
     void drawProgress();
 
     // viewer_lights.cpp
-    LightStage stage() const;
-    glm::vec2 pointAt(const glm::dvec2& at) const;
-    bool showsLights() const;
     void selectLight(const std::optional<LightKey>& key);
     void followLights();
     LightSpot lightSpot();
@@ -111,13 +111,33 @@ private:
     void editOnce(const std::string& name, const Document& next);
     void endEdit();
     void performLight(Action action, int argument);
-    void nudgeLight(const LightSource& source, int argument);
-    bool pressLights(const glm::dvec2& at);
-    void dragLight(const glm::dvec2& at);
-    void endLightDrag();
+
+    // viewer_layers.cpp
+    std::optional<LightKey> loneLight() const;
+    void toggleAlone();
+    void showShining();
+    void followPreviews(double time);
+    void chooseSky();
+    void clearSky();
+    void followSky();
+    void takeSky(const SkyPictures::Result& result);
+
+    // viewer_gizmo.cpp
+    LightStage stage() const;
+    glm::vec2 pointAt(const glm::dvec2& at) const;
+    bool showsLights() const;
+    std::optional<uint32_t> movableObject() const;
+    glm::mat4* movable(Document& document) const;
+    std::string movableName() const;
+    void nudge(int argument);
+    void performObject(Action action);
+    bool pressGizmo(const glm::dvec2& at);
+    std::optional<glm::mat4> onSurface(const glm::dvec2& at);
+    void dragGizmo(const glm::dvec2& at);
+    void endDrag();
     void onDragKey(const WindowEvent& event);
-    void tellLightPlaces();
-    void drawLightOverlay();
+    void tellPlaces();
+    void drawOverlay();
 
     // viewer_actions.cpp
     void perform(Action action, int argument);
@@ -157,11 +177,25 @@ private:
     ViewState view_;
     CameraControl camera_;
     uint64_t saves_ = 0;              // that were told
-    std::string title_;               // of the window
+    std::string title_, path_;        // of the window, and of the scene when it was loaded or saved
     std::function<void()> afterSave_; // waits for the save under way
     bool quitting_ = false;           // edits are saved, or not wanted
     LightList lights_;
-    std::optional<GizmoDrag> lightDrag_;
+    std::optional<LightKey> shownAlone_; // in the last picture, as by loneLight()
+    LightPreviews previews_;
+    struct Previewed { // what previews are of
+        ViewCamera camera;
+        uint64_t scene = 0; // its number
+        std::vector<Placement> placements;
+        uint32_t size = 0; // of the lightmap
+
+        bool operator==(const Previewed&) const = default;
+    };
+    std::optional<Previewed> previewed_; // none: nothing is asked for
+    bool previewsDue_ = false;           // some may be left to be drawn
+    SkyPictures skies_;
+    std::string badSky_; // picture of the document's that could not be read
+    std::optional<GizmoDrag> drag_;
     BakeBadge badge_;
     std::string newestEdit_; // its name, "": none since the scene came
     double editedAt_ = 0, convergedAt_ = 0;

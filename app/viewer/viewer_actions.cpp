@@ -1,5 +1,6 @@
 #include "app/viewer/viewer.h"
 
+#include "app/viewer/object_edits.h"
 #include "app/viewer/views.h"
 #include "assets/error.h"
 #include "shaders/shader_library.h"
@@ -50,7 +51,7 @@ void Viewer::perform(Action action, int argument) {
     if (within(action, Action::Open, Action::Watch)) return performFile(action);
     if (within(action, Action::Undo, Action::Redo)) return performUndo(action);
     if (within(action, Action::MakePass, Action::Reset)) return performBake(action);
-    if (within(action, Action::AddLight, Action::NudgeLight)) return performLight(action, argument);
+    if (within(action, Action::AddLight, Action::NoSkyPicture)) return performLight(action, argument);
     if (within(action, Action::Wipe, Action::StoreReference)) return performWipe(action);
     if (within(action, Action::View, Action::AutomaticExposure)) return performView(action, argument);
     if (within(action, Action::FrameAll, Action::StoreBookmark)) return performCamera(action);
@@ -61,6 +62,11 @@ void Viewer::perform(Action action, int argument) {
     case Action::Close:
         if (!ui_.closeDialog() && status_.phase == BakeStatus::Phase::Baking) bake_->abortPass();
         return;
+    case Action::Nudge:
+        return nudge(argument);
+    case Action::HideObject:
+    case Action::ShowObjects:
+        return performObject(action);
     case Action::Gizmo:
         view_.gizmo = static_cast<GizmoMode>(argument);
         return;
@@ -112,6 +118,7 @@ void Viewer::performBake(Action action) {
 void Viewer::performView(Action action, int argument) {
     switch (action) {
     case Action::View:
+        if (viewEntries()[static_cast<size_t>(argument)].content == MapContent::Layer) return toggleAlone();
         view_.view = static_cast<size_t>(argument);
         break;
     case Action::UvTexture:
@@ -156,10 +163,12 @@ void Viewer::performCamera(Action action) {
     case Action::FrameSelected: {
         if (view_.selected < 0) return note("nothing is selected: click something");
         const WorldMesh& mesh = scene->prepared.mesh;
+        const glm::mat4 placement =
+            placementOf(*scene, session_->document().edits, static_cast<uint32_t>(view_.selected));
         Box box;
         for (size_t i = 0; i < mesh.triangleCount(); ++i)
             for (size_t k = 0; k < 3 && mesh.instance[i] == static_cast<uint32_t>(view_.selected); ++k)
-                box.add(mesh.positions[3 * i + k]);
+                box.add(glm::vec3(placement * glm::vec4(mesh.positions[3 * i + k], 1.0f)));
         camera_.frame(box, aspect);
         break;
     }

@@ -1,5 +1,6 @@
 #include "app/viewer/viewer.h"
 
+#include "app/scene_edit.h"
 #include "assets/warnings.h"
 
 #include <filesystem>
@@ -45,7 +46,8 @@ void Viewer::performFile(Action action) {
     const fs::path scene(path);
     if (action == Action::Save) return save("");
     if (action == Action::SaveAs) {
-        const std::string name = (scene.parent_path() / scene.stem()).string() + "_edited";
+        std::string name = (scene.parent_path() / scene.stem()).string();
+        if (!name.ends_with("_edited")) name += "_edited";
         ui_.files().open({.title = "Save scene",
                           .path = freePath(name + scene.extension().string()),
                           .endings = {scene.extension().string()},
@@ -71,7 +73,8 @@ void Viewer::exportLightmap(const std::string& path) {
     tell("export", path);
     if (!path.ends_with(".exr") && !path.ends_with(".png"))
         return note(path + ": a lightmap ends in .exr or .png", true);
-    bake_->exportLightmap(path, session_->document().lightmap);
+    bake_->exportLightmap(
+        {.path = path, .lightmap = session_->document().lightmap, .scene = session_->path()});
     note("writing " + path);
 }
 
@@ -114,13 +117,26 @@ bool Viewer::closes() {
     return false;
 }
 
+// Another file has the bookmarks of the one that it was.
+void Viewer::followSavedPath() {
+    const std::string path = scenePath();
+    const auto known = preferences_.bookmarks.find(path_);
+    if (path != path_ && known != preferences_.bookmarks.end()) {
+        const std::vector<Bookmark> marks = known->second;
+        preferences_.bookmarks.try_emplace(path, marks);
+    }
+    path_ = path;
+}
+
 // The title tells what is not saved; what waited for a save goes on.
 void Viewer::followFile() {
     if (session_->saves() != saves_) {
         saves_ = session_->saves();
+        followSavedPath();
         preferences_.addRecent(session_->path());
         tell("saved", session_->path());
-        note("saved " + session_->path());
+        const std::string unsaved = unsavedPart(session_->document().edits);
+        note("saved " + session_->path() + (unsaved.empty() ? "" : ": " + unsaved));
     }
     if (afterSave_ && !session_->saving()) {
         const std::function<void()> go = std::exchange(afterSave_, {});

@@ -87,7 +87,7 @@ void Viewer::onKey(const WindowEvent& event) {
     // A press of Ctrl itself does not count among its modifiers.
     const bool control = event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL;
     control_ = control ? event.pressed : (event.mods & GLFW_MOD_CONTROL) != 0;
-    if (lightDrag_) return control ? dragLight(cursor_) : onDragKey(event);
+    if (drag_) return control ? dragGizmo(cursor_) : onDragKey(event);
     if (flightOf(event.place) != glm::ivec3(0)) {
         std::erase(keys_, event.place);
         const bool alone = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0;
@@ -102,7 +102,7 @@ void Viewer::onKey(const WindowEvent& event) {
     if (shortcut == nullptr) return;
     const bool repeats = shortcut->action == Action::Darker || shortcut->action == Action::Brighter ||
                          shortcut->action == Action::Undo || shortcut->action == Action::Redo ||
-                         shortcut->action == Action::LightStrength || shortcut->action == Action::NudgeLight;
+                         shortcut->action == Action::LightStrength || shortcut->action == Action::Nudge;
     if (event.repeated && !repeats) return;
     // Letters, and Ctrl with one, are the text's while one types; Esc leaves a field, or closes a dialog.
     const bool closes = shortcut->action == Action::Close && ui_.files().isOpen();
@@ -121,8 +121,8 @@ void Viewer::onButton(const WindowEvent& event) {
         if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) wipeDrag_ = false;
         return;
     }
-    if (lightDrag_) {
-        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) endLightDrag();
+    if (drag_) {
+        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) endDrag();
         return;
     }
     if (!event.pressed) {
@@ -140,7 +140,7 @@ void Viewer::onButton(const WindowEvent& event) {
         wipeDrag_ = true;
         return;
     }
-    if (event.code == GLFW_MOUSE_BUTTON_LEFT && pressLights(event.at)) return;
+    if (event.code == GLFW_MOUSE_BUTTON_LEFT && pressGizmo(event.at)) return;
     button_ = event.code;
     pressed_ = event.at;
     dragged_ = false;
@@ -157,7 +157,7 @@ void Viewer::onCursor(const WindowEvent& event) {
     const glm::dvec2 before = cursor_;
     cursor_ = event.at;
     if (wipeDrag_) return dragWipe(event.at);
-    if (lightDrag_) return dragLight(event.at);
+    if (drag_) return dragGizmo(event.at);
     // A click that trembles is no drag: it would leave the camera a little beside.
     if (!camera_.dragging() || area_.size.y <= 0) return;
     if (!dragged_ && glm::distance(event.at, pressed_) <= kClickSlack) return;

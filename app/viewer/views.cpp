@@ -49,6 +49,8 @@ std::vector<ViewEntry> makeEntries() {
               GLFW_KEY_9),
         ofMap("error", "Error", "how far the light may still be off", MapContent::Error, View::InspectHeat,
               GLFW_KEY_0),
+        ofMap("layer", "Light alone", "the selected light and nothing else", MapContent::Layer, View::Lit,
+              GLFW_KEY_L, GLFW_MOD_ALT),
         ofMap("leaves", "Quad-tree", "leaves of the adaptive method", MapContent::Leaves, View::InspectLeaves,
               GLFW_KEY_1, kShift),
         ofMap("seen", "Visible from here", "patches that the clicked one sees, and its links",

@@ -38,6 +38,9 @@ public:
     void set(GLint location, const glm::vec4& value) const {
         glProgramUniform4fv(get(), location, 1, &value.x);
     }
+    void set(GLint location, const glm::mat3& value) const {
+        glProgramUniformMatrix3fv(get(), location, 1, GL_FALSE, &value[0].x);
+    }
     void set(GLint location, const glm::mat4& value) const {
         glProgramUniformMatrix4fv(get(), location, 1, GL_FALSE, &value[0].x);
     }

@@ -1,4 +1,4 @@
-// A vertex of the scene, in world space already.
+// A vertex of the scene, in world space as it was loaded.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -10,6 +10,8 @@ layout(location = 6) in vec4 color;
 layout(location = 7) in uvec2 ids; // instance; 1 where there are lightmap UVs
 
 layout(location = 0) uniform mat4 viewProjection;
+layout(location = 13) uniform mat4 placement; // from where its instance was loaded to where it stands
+layout(location = 14) uniform mat3 turning;   // the same of normals, of any length
 
 out vec3 fragPosition;
 out vec3 fragNormal;
@@ -21,13 +23,14 @@ out vec4 fragColor;
 flat out uvec2 fragIds;
 
 void main() {
-    fragPosition = position;
-    fragNormal = normal;
+    vec4 placed = placement * vec4(position, 1.0);
+    fragPosition = placed.xyz;
+    fragNormal = turning * normal;
     fragBaseUv = baseUv;
     fragEmissionUv = emissionUv;
     fragMetallicUv = metallicUv;
     fragLightmapUv = lightmapUv;
     fragColor = color;
     fragIds = ids;
-    gl_Position = viewProjection * vec4(position, 1.0);
+    gl_Position = viewProjection * placed;
 }

@@ -19,6 +19,8 @@
 #include <memory>
 #include <thread>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace relume {
 namespace {
 
@@ -75,6 +77,34 @@ TEST(ViewerRenderer, DrawsOnlyWhatChanged) {
     viewer.frame.lightmap.version = 0; // texels that may have changed
     EXPECT_TRUE(viewer.draw());
     EXPECT_TRUE(viewer.draw());
+}
+
+TEST(ViewerRenderer, DrawsInstancesWhereTheyAre) {
+    Viewer viewer;
+    viewer.draw();
+    const glm::ivec3 wall(encoded(0.25));
+    EXPECT_EQ(viewer.pixel(), wall);
+    std::vector<Placement> placements = editsOf(viewer.scene).placements;
+    const auto show = [&](const glm::mat4& placement, bool hidden) {
+        placements[0] = {placement * viewer.scene.instances[0].transform, hidden};
+        viewer.gpu.updatePlacements(placements);
+        EXPECT_TRUE(viewer.draw());
+        EXPECT_FALSE(viewer.draw());
+        return viewer.pixel();
+    };
+    const glm::ivec3 nothing = show(glm::mat4(1.0f), true);
+    EXPECT_NE(nothing, wall) << "hidden";
+    EXPECT_EQ(show(glm::mat4(1.0f), false), wall);
+    EXPECT_EQ(show(glm::translate(glm::mat4(1.0f), {50.0f, 0.0f, 0.0f}), false), nothing);
+    EXPECT_EQ(show(glm::scale(glm::mat4(1.0f), {-1.0f, 1.0f, 1.0f}), false), wall) << "mirrored";
+    EXPECT_EQ(show(glm::scale(glm::mat4(1.0f), {1.0f, 1.0f, -1.0f}), false), nothing) << "seen from behind";
+    EXPECT_LT(viewer.gpu.bounds().size().z, 1e-6f);
+    // Turned towards +y: its normal, too.
+    viewer.frame.settings.view = View::Normal;
+    const glm::mat4 half = glm::rotate(glm::mat4(1.0f), glm::radians(-45.0f), {1.0f, 0.0f, 0.0f});
+    const glm::ivec3 tilted = show(half, false);
+    EXPECT_NEAR(tilted.y, tilted.z, 1);
+    EXPECT_GT(tilted.y, tilted.x);
 }
 
 TEST(ViewerRenderer, TakesOtherMaterials) {

@@ -146,7 +146,7 @@ TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
             bake_.setBatchMs(ms = ms > 20 ? 1 : 1.3 * ms);
             return bake_.status().phase == BakeStatus::Phase::Done && bake_.status().bake == newest_;
         }));
-        bake_.exportLightmap(folder.path("live.exr"), {});
+        bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
         ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
 
         const vk::Device& device = testDevice();
@@ -216,11 +216,77 @@ TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
     while (!baker.solver().done())
         baker.solver().step();
     const TemporaryFolder folder;
-    bake_.exportLightmap(folder.path("live.exr"), {});
+    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
     ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
     const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
     for (size_t c = 0; c < expected.planes.size(); ++c)
         EXPECT_EQ(got.planes[c], expected.planes[c]);
+}
+
+TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    EXPECT_TRUE(bake_.status().layered);
+    EXPECT_TRUE(bake_.status().stale.empty());
+    const double whole = screen_.mean(); // of the only light
+    const std::vector<LightSource> sources = lightSources(scene_.scene);
+    ASSERT_EQ(sources.size(), 1u);
+    InspectRequest alone{.content = MapContent::Layer, .light = sources[0].key, .weight = sources[0].weight};
+    bake_.inspect(alone);
+    const auto shows = [&](double factor) {
+        return until(
+            [&] {
+                return screen_.map()->content == MapContent::Layer &&
+                       std::abs(screen_.mean() - factor * whole) < 1e-3 * whole;
+            },
+            20);
+    };
+    EXPECT_TRUE(shows(1)) << screen_.mean() << " for " << whole;
+    alone.weight *= 3.0f;
+    bake_.inspect(alone);
+    EXPECT_TRUE(shows(3)) << "weighed anew, no bake";
+    EXPECT_EQ(bake_.status().phase, BakeStatus::Phase::Done);
+
+    const TemporaryFolder folder;
+    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "saved.glb"});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
+    const FloatImage map = readImage(folder.path("live.exr"));
+    EXPECT_EQ(map.attributes.at("relume:scene"), "saved.glb");
+    std::vector<uint32_t> texels = {shader::kNoPatch};
+    for (uint32_t texel = 0; texel < kSize * kSize; ++texel)
+        if (map.find("coverage")->at(texel) == 1.0f) texels.push_back(texel);
+    bake_.askProbes({.number = 7, .texels = texels});
+    std::optional<LayerProbe> probe;
+    ASSERT_TRUE(until([&] { return (probe = bake_.exchange().takeProbe()).has_value(); }, 20));
+    EXPECT_EQ(probe->request, 7u);
+    EXPECT_EQ(probe->key, sources[0].key);
+    ASSERT_EQ(probe->light.size(), texels.size());
+    EXPECT_EQ(probe->light[0], glm::vec3(0));
+    for (size_t i = 1; i < texels.size(); ++i)
+        EXPECT_NEAR(probe->light[i].g * sources[0].weight.g, map.find("G")->at(texels[i]), 1e-4) << texels[i];
+    EXPECT_FALSE(until([&] { return bake_.exchange().hasProbe(); }, 0.3)) << "told once";
+}
+
+TEST_F(LiveBakeTest, SaysWhyThereAreNoLayers) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    settings.solver.layers.bytes = 1;
+    start(settings, false);
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
+    EXPECT_FALSE(bake_.status().layered);
+    EXPECT_NE(bake_.status().remark.find("1 lights are baked as one"), std::string::npos)
+        << bake_.status().remark;
+    settings.solver.layers.bytes = 0;
+    settings.solver.method = Method::Directional;
+    start(settings, false);
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
+    EXPECT_NE(bake_.status().remark.find("choose hybrid"), std::string::npos) << bake_.status().remark;
+    settings.solver.layers.on = false;
+    start(settings, false);
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
+    EXPECT_EQ(bake_.status().remark, "");
 }
 
 TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {

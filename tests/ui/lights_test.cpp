@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <thread>
 
@@ -12,29 +14,9 @@ namespace relume {
 namespace {
 
 using namespace std::chrono_literals;
-using Place = std::pair<int, int>;
 
 class ViewerLights : public ViewerTest {
 protected:
-    /// Does something to a converged scene and waits until it has converged again.
-    template<typename Do>
-    static void edit(ViewerProcess& viewer, const std::string& name, Do what) {
-        viewer.mark();
-        what();
-        EXPECT_TRUE(viewer.says(name)) << viewer.output();
-        EXPECT_TRUE(viewer.says("badge: converged", 240)) << viewer.output();
-        std::this_thread::sleep_for(500ms);
-    }
-    std::unique_ptr<ViewerProcess> openConverged() {
-        auto viewer = openCornell();
-        EXPECT_TRUE(viewer->says("badge: converged", 60)) << viewer->output();
-        return viewer;
-    }
-    static Place placeOf(ViewerProcess& viewer, const std::string& name) {
-        const std::optional<Place> place = item(viewer, name);
-        EXPECT_TRUE(place) << name << ": " << viewer.output();
-        return place.value_or(Place{});
-    }
     /// Mean difference of two pictures from one column to another, as shares of their width.
     static double differenceBetween(const FloatImage& a, const FloatImage& b, double from, double to) {
         double sum = 0;
@@ -210,6 +192,146 @@ TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
     viewer->keys({"Return"});
     EXPECT_EQ(viewer->ended(10), 0) << viewer->output();
     EXPECT_EQ(loadGltf(file).lights.size(), 2u);
+}
+
+// No edit, and the same as solo shows.
+TEST_F(ViewerLights, AreLookedAtAlone) {
+    auto viewer = openConverged();
+    edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
+    const FloatImage both = screenshot(*viewer);
+    viewer->mark();
+    viewer->keys({"alt+l"});
+    EXPECT_TRUE(viewer->says("map: layer complete")) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    const FloatImage point = screenshot(*viewer);
+    viewer->keys({"l"}); // the emitter
+    std::this_thread::sleep_for(1s);
+    const FloatImage emitter = screenshot(*viewer);
+    EXPECT_GT(difference(both, point), 0.01);
+    EXPECT_GT(difference(both, emitter), 0.01);
+    EXPECT_GT(difference(point, emitter), 0.01);
+    viewer->mark();
+    viewer->keys({"alt+l"});
+    EXPECT_TRUE(viewer->says("map: light complete")) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    EXPECT_LT(difference(both, screenshot(*viewer)), 0.002);
+    edit(*viewer, "edit: Solo of Light", [&] { viewer->keys({"alt+s"}); });
+    EXPECT_LT(difference(emitter, screenshot(*viewer)), 0.003);
+    quit(*viewer);
+}
+
+TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
+    auto viewer = openConverged();
+    edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
+    viewer->keys({"alt+4"});
+    std::this_thread::sleep_for(500ms);
+    const auto look = [&](const char* name) {
+        const Place middle = placeOf(*viewer, name);
+        const FloatImage window = screenshot(*viewer, "shift+F12");
+        std::vector<double> pixels;
+        for (int y = middle.second - 15; y <= middle.second + 15; ++y)
+            for (int x = middle.first - 30; x <= middle.first + 30; ++x)
+                pixels.push_back(
+                    window.planes[1][static_cast<size_t>(y) * window.width + static_cast<size_t>(x)]);
+        return pixels;
+    };
+    // Flat before it is there.
+    const auto isFlat = [](const std::vector<double>& pixels) {
+        const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end());
+        return *most - *least < 0.1;
+    };
+    std::vector<std::vector<double>> seen;
+    for (const char* name : {"Lights/Light/Preview", "Lights/Point/Preview"}) {
+        seen.push_back(look(name));
+        for (int tries = 0; tries < 30 && isFlat(seen.back()); ++tries) {
+            std::this_thread::sleep_for(1s);
+            seen.back() = look(name);
+        }
+        EXPECT_FALSE(isFlat(seen.back())) << name;
+    }
+    double off = 0;
+    for (size_t i = 0; i < seen[0].size(); ++i)
+        off += std::abs(seen[0][i] - seen[1][i]);
+    EXPECT_GT(off / static_cast<double>(seen[0].size()), 0.02) << "each shows its own light";
+    quit(*viewer);
+}
+
+TEST_F(ViewerLights, TheSkyTakesAPicture) {
+    const std::string file = home_.path("scene.glb"), picture = home_.path("sky.exr");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", file);
+    FloatImage image{.width = 16, .height = 8, .channels = {}, .planes = {}, .attributes = {}};
+    for (const char* channel : {"R", "G", "B"}) {
+        std::vector<float>& plane = image.add(channel);
+        std::fill(plane.begin(), plane.begin() + 64, 40.0f); // the upper half
+    }
+    writeImage(picture, image);
+    auto viewer = open({"view", file});
+    EXPECT_TRUE(viewer->says("badge: converged", 240)) << viewer->output();
+    viewer->keys({"bracketleft"});
+    edit(*viewer, "edit: Add sky", [&] { viewer->keys({"ctrl+6"}); });
+    const FloatImage even = screenshot(*viewer);
+    viewer->keys({"alt+4"});
+    std::this_thread::sleep_for(500ms);
+    const auto choose = [&](const std::string& name) {
+        const Place button = placeOf(*viewer, "Lights/Selected/Choose picture");
+        viewer->click(button.first, button.second);
+        std::this_thread::sleep_for(500ms);
+        viewer->keys({"ctrl+a"});
+        viewer->type(name);
+        viewer->keys({"Return"});
+    };
+    viewer->mark();
+    choose(home_.path("none.exr"));
+    EXPECT_TRUE(viewer->says("error: " + home_.path("none.exr"))) << viewer->output();
+    std::this_thread::sleep_for(500ms);
+    edit(*viewer, "edit: Picture of the sky", [&] { choose(picture); });
+    EXPECT_GT(difference(even, screenshot(*viewer)), 0.005) << "from above, and of another strength";
+    viewer->mark();
+    viewer->keys({"ctrl+s"});
+    EXPECT_TRUE(viewer->says("saved: " + file)) << viewer->output();
+    const Sky saved = loadGltf(file).sky;
+    EXPECT_EQ(std::filesystem::path(saved.file).filename(), "sky.exr");
+    EXPECT_EQ(saved.width, 16u);
+    std::this_thread::sleep_for(300ms);
+    const Place none = placeOf(*viewer, "Lights/Selected/No picture");
+    edit(*viewer, "edit: Sky without a picture", [&] { viewer->click(none.first, none.second); });
+    edit(*viewer, "undo: Sky without a picture", [&] { viewer->keys({"ctrl+z"}); });
+    edit(*viewer, "undo: Picture of the sky", [&] { viewer->keys({"ctrl+z"}); });
+    EXPECT_LT(difference(even, screenshot(*viewer)), 0.003);
+    quit(*viewer);
+}
+
+// What was saved as another file is that file from then on.
+TEST_F(ViewerLights, AreSavedAsAnotherFile) {
+    const std::string first = home_.path("first.glb"), second = home_.path("second.glb");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", first);
+    auto viewer = open({"view", first});
+    EXPECT_TRUE(viewer->says("scene: ", 60)) << viewer->output();
+    viewer->keys({"ctrl+b", "ctrl+1"});
+    EXPECT_TRUE(viewer->says("title: first.glb* - Relume")) << viewer->output();
+    viewer->keys({"ctrl+shift+s"});
+    std::this_thread::sleep_for(500ms);
+    viewer->keys({"ctrl+a"});
+    viewer->type(second);
+    viewer->keys({"Return"});
+    EXPECT_TRUE(viewer->says("saved: " + second)) << viewer->output();
+    EXPECT_TRUE(viewer->says("title: second.glb - Relume")) << viewer->output();
+    std::this_thread::sleep_for(300ms);
+    viewer->mark();
+    viewer->keys({"ctrl+2"});
+    EXPECT_TRUE(viewer->says("title: second.glb* - Relume")) << viewer->output();
+    viewer->keys({"ctrl+s"});
+    EXPECT_TRUE(viewer->says("saved: " + second)) << viewer->output();
+    EXPECT_EQ(loadGltf(second).lights.size(), 2u);
+    EXPECT_EQ(loadGltf(first).lights.size(), 0u);
+    // Its bookmarks, and what is offered for an export.
+    viewer->keys({"alt+3"});
+    std::this_thread::sleep_for(500ms);
+    placeOf(*viewer, "Scene/bookmark 1");
+    viewer->mark();
+    viewer->keys({"ctrl+e", "Return"});
+    EXPECT_TRUE(viewer->says("export: " + home_.path("second_lightmap.exr"))) << viewer->output();
+    quit(*viewer);
 }
 
 } // namespace

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,8 @@ constexpr int kWidth = 1280, kHeight = 800;
 /// A display of all tests, and a home of each.
 class ViewerTest : public testing::Test {
 protected:
+    using Place = std::pair<int, int>;
+
     static void SetUpTestSuite() { display_ = std::make_unique<VirtualDisplay>(kWidth, kHeight); }
     static void TearDownTestSuite() { display_.reset(); }
 
@@ -52,6 +55,25 @@ protected:
         return place;
     }
 
+    /// Does something to a converged scene and waits until it has converged again.
+    template<typename Do>
+    static void edit(ViewerProcess& viewer, const std::string& name, Do what) {
+        viewer.mark();
+        what();
+        EXPECT_TRUE(viewer.says(name)) << viewer.output();
+        EXPECT_TRUE(viewer.says("badge: converged", 240)) << viewer.output();
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    }
+    std::unique_ptr<ViewerProcess> openConverged() {
+        auto viewer = openCornell();
+        EXPECT_TRUE(viewer->says("badge: converged", 60)) << viewer->output();
+        return viewer;
+    }
+    static Place placeOf(ViewerProcess& viewer, const std::string& name) {
+        const std::optional<Place> place = item(viewer, name);
+        EXPECT_TRUE(place) << name << ": " << viewer.output();
+        return place.value_or(Place{});
+    }
     /// Takes a screenshot by its key and reads it.
     FloatImage screenshot(ViewerProcess& viewer, const std::string& key = "F12") {
         viewer.mark();

@@ -251,6 +251,8 @@ TEST_F(Viewer, SurvivesRandomInput) {
                                            "ctrl+1",      "ctrl+2",
                                            "ctrl+4",      "ctrl+6",
                                            "ctrl+d",      "Delete",
+                                           "h",           "alt+h",
+                                           "alt+l",       "shift+l",
                                            "l",           "alt+s",
                                            "alt+m",       "alt+Left",
                                            "r",           "i",

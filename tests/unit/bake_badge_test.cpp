@@ -41,6 +41,18 @@ TEST_F(Badge, LightOfBeforeAnEditIsStale) {
     EXPECT_EQ(of(4).state, State::Stale);
 }
 
+TEST_F(Badge, SaysWhichLightsAreStale) {
+    status_.stale = {"light 'Lamp' moved"};
+    EXPECT_EQ(of().state, State::Stale) << "the bake knows of the edit, the picture shows it not";
+    EXPECT_EQ(of().text, "stale: light 'Lamp' moved, 2.0 s");
+    EXPECT_EQ(of(4).text, "stale: Move Lamp, 2.0 s") << "of an edit before that one";
+    status_.stale.insert(status_.stale.end(), 2, "light 'Spot' has another form");
+    EXPECT_EQ(of().text, "stale: light 'Lamp' moved and 2 more, 2.0 s");
+    const BakeBadge first =
+        bakeBadge({.status = status_, .map = shown_, .newestBake = 3, .edit = "", .seconds = 2.04});
+    EXPECT_EQ(first.state, State::Refining) << "a scene that was just opened";
+}
+
 TEST_F(Badge, TellsErrorAndTime) {
     EXPECT_EQ(of().text, "refining, error 0.05, 2.0 s");
     status_.progress.error = 1.0; // not known yet

@@ -124,6 +124,16 @@ TEST(Gizmo, ARingTurnsByTheAngleUnderTheCursor) {
     EXPECT_LT(glm::distance(stepped[0], turn * begin[0]), 1e-4f);
 }
 
+TEST(Gizmo, WhatStandsElsewhereIsTurnedAboutIt) {
+    const glm::vec3 origin(0.3f, 0.4f, -0.6f), off(1.0f, 2.0f, 0.0f);
+    const GizmoPlace place{viewFrom({0.0f, 0.0f, 5.0f}, glm::vec3(0.0f)), origin, GizmoMode::Rotate};
+    const GizmoDrag drag(place, GizmoHandle::Screen, at(origin + off),
+                         pointOf(place.view, origin + glm::vec3(1, 0, 0)));
+    const glm::mat4 moved = drag.moved(pointOf(place.view, origin + glm::vec3(0, 1, 0)));
+    EXPECT_LT(glm::distance(glm::vec3(moved[3]), origin + glm::vec3(-2.0f, 1.0f, 0.0f)), 1e-3f);
+    EXPECT_LT(glm::distance(glm::vec3(moved[0]), glm::vec3(0, 1, 0)), 1e-3f);
+}
+
 // The front of a ring that is seen as a line goes along with the cursor.
 TEST(Gizmo, ARingSeenFromItsEdgeTurnsByTheWayAlongIt) {
     const GizmoPlace place{viewFrom({0.0f, 0.0f, 5.0f}, glm::vec3(0.0f)), glm::vec3(0.0f), GizmoMode::Rotate};

@@ -165,7 +165,7 @@ TEST(LightOverlay, TheNearestIconIsTaken) {
     ScreenView screen;
     screen.camera.eye = {0, 0, 5};
     screen.size = {800, 600};
-    const LightStage stage{document.edits, document.mix, state, screen, 1.0f};
+    const LightStage stage{document.edits, document.mix, state, screen, {}, 1.0f};
     const glm::vec2 second = project(screen, {0.1f, 0, 0}).value();
     EXPECT_EQ(iconAt(stage, {400, 300}), lamp(0));
     EXPECT_EQ(iconAt(stage, second + 2.0f), lamp(1));

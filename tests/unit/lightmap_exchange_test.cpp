@@ -158,5 +158,21 @@ TEST(LightmapExchange, NoMapIsTornInAThousandSwaps) {
     EXPECT_EQ(swaps, kMaps);
 }
 
+TEST(LightmapExchange, OfEachLightTheNewestProbeIsTaken) {
+    LightmapExchange exchange;
+    EXPECT_FALSE(exchange.takeProbe());
+    const LightKey lamp{LightKey::Kind::Lamp, 0, 0}, sky{LightKey::Kind::Sky, 0, 0};
+    exchange.publish(LayerProbe{1, lamp, {}});
+    exchange.publish(LayerProbe{1, sky, {}});
+    exchange.publish(LayerProbe{2, lamp, {glm::vec3(3)}});
+    EXPECT_TRUE(exchange.hasProbe());
+    const std::optional<LayerProbe> first = exchange.takeProbe(), second = exchange.takeProbe();
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->key, lamp);
+    EXPECT_EQ(first->request, 2u);
+    EXPECT_EQ(second->key, sky);
+    EXPECT_FALSE(exchange.hasProbe());
+}
+
 } // namespace
 } // namespace relume

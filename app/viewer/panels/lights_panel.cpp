@@ -123,8 +123,30 @@ void drawNumber(const Editor& editor, const char* what, const char* label, bool 
 
 } // namespace
 
+void LightsPanel::drawPreview(const PanelContext& context, const LightSource& source) {
+    const float height = 2.0f * ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
+    const float width = height * SurfaceIds::kWidth / SurfaceIds::kHeight;
+    const bool pressed = ImGui::InvisibleButton("preview", {width, height});
+    ui::mark("Preview", false);
+    ui::tip("What it lights, exposed by itself. Alt+L: the whole scene so");
+    if (pressed) context.selectLight(source.key);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const uint32_t texture = context.previews.texture(source.key);
+    const bool dark = !context.session.document().mix.shines(source.key);
+    const ImU32 tint = dark ? IM_COL32(255, 255, 255, 70) : IM_COL32_WHITE;
+    list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    if (texture != 0)
+        list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), low, high, {0, 0},
+                      {1, 1}, tint);
+    if (context.view.light == source.key) list.AddRect(low, high, ImGui::GetColorU32(ImGuiCol_HeaderActive));
+}
+
 void LightsPanel::drawRow(const PanelContext& context, const LightSource& source) {
     const ui::ItemLog::Scope scope(context.items, source.name);
+    drawPreview(context, source);
+    ImGui::SameLine();
+    ImGui::BeginGroup();
     Editor editor(context, source);
     SceneEdits& edits = editor.next.edits;
     LightPower power = powerOf(edits, source.key);
@@ -161,6 +183,7 @@ void LightsPanel::drawRow(const PanelContext& context, const LightSource& source
     ui::mark("Intensity", false);
     tellShared(context, source.key);
     editor.follow("Intensity", change(changed));
+    ImGui::EndGroup();
 }
 
 void LightsPanel::drawBoard(const PanelContext& context) {
@@ -303,6 +326,11 @@ void LightsPanel::drawInspector(const PanelContext& context) {
     drawNumber(editor, "Rotation", "Rotation [deg]", turned);
     ImGui::TextWrapped("%s", edits.sky.file.empty() ? "No picture: one radiance all around"
                                                     : ("Picture " + edits.sky.file).c_str());
+    if (ui::button("Choose picture")) context.perform(Action::SkyPicture, 0);
+    ui::tip("An equirectangular .exr or .hdr");
+    if (edits.sky.file.empty()) return;
+    ImGui::SameLine();
+    if (ui::button("No picture")) context.perform(Action::NoSkyPicture, 0);
 }
 
 void LightsPanel::draw(const PanelContext& context) {
@@ -310,6 +338,9 @@ void LightsPanel::draw(const PanelContext& context) {
         ImGui::TextWrapped("No scene: drop a file on the window, or press Ctrl+O.");
         return;
     }
+    context.previews.wanted = context.status.layered;
+    if (!context.status.remark.empty())
+        ImGui::TextWrapped("%s", (context.status.remark + ". Till then each edit bakes anew.").c_str());
     drawBoard(context);
     ImGui::Separator();
     drawAdd(context);

@@ -13,6 +13,7 @@ public:
 
 private:
     void drawBoard(const PanelContext& context);
+    void drawPreview(const PanelContext& context, const LightSource& source);
     void drawRow(const PanelContext& context, const LightSource& source);
     void drawAdd(const PanelContext& context);
     void drawInspector(const PanelContext& context);

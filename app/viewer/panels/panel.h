@@ -6,6 +6,7 @@
 #include "app/viewer/camera_control.h"
 #include "app/viewer/frame_figures.h"
 #include "app/viewer/light_edits.h"
+#include "app/viewer/light_previews.h"
 #include "app/viewer/log_buffer.h"
 #include "app/viewer/panels/item_log.h"
 #include "app/viewer/preferences.h"
@@ -24,6 +25,7 @@ struct PanelContext {
     const FrameFigures& figures;
     const LogBuffer& log;
     const LightList& lights;
+    LightPreviews& previews;
     const PublishedMap* map; // that is shown, nullptr: none yet
     float exposure = 0;      // of the last picture [EV]
     double& budgetMs;        // aim of a batch while the camera is still

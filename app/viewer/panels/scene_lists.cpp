@@ -25,7 +25,7 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
     }
     std::error_code code;
     const std::string path =
-        std::filesystem::absolute(scene.prepared.scene.path, code).lexically_normal().string();
+        std::filesystem::absolute(context.session.path(), code).lexically_normal().string();
     const auto found = context.preferences.bookmarks.find(path);
     if (found != context.preferences.bookmarks.end()) {
         std::vector<Bookmark>& marks = found->second;
@@ -52,15 +52,18 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
 
 void drawInstances(const PanelContext& context, const LoadedScene& scene) {
     const std::vector<Instance>& instances = scene.prepared.scene.instances;
+    const std::vector<Placement>& placements = context.session.document().edits.placements;
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(instances.size()));
     while (clipper.Step()) {
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             ImGui::PushID(i);
             const auto index = static_cast<size_t>(i);
-            const std::string title = nameOf(instances[index].name, "instance", index) + "###instance";
+            const std::string title = nameOf(instances[index].name, "instance", index) +
+                                      (placements[index].hidden ? " (hidden)" : "") + "###instance";
             if (ui::selectable(title.c_str(), context.view.selected == i)) {
                 context.view.selected = context.view.selected == i ? -1 : i;
+                context.view.light.reset();
                 context.sceneChanged();
             }
             ui::tip("F frames what is selected");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -103,6 +104,25 @@ void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
     if (ended) context.endEdit();
 }
 
+// With the materials that it has.
+void ScenePanel::drawObject(const PanelContext& context, const Scene& scene) {
+    const auto instance = static_cast<uint32_t>(context.view.selected);
+    const ui::ItemLog::Scope scope(context.items, "Object");
+    ImGui::PushItemWidth(ImGui::GetFontSize() * -9.0f);
+    object_.draw(context, instance);
+    std::set<size_t> materials;
+    for (const Primitive& primitive :
+         scene.meshes[static_cast<size_t>(scene.instances[instance].mesh)].primitives)
+        if (primitive.material >= 0) materials.insert(static_cast<size_t>(primitive.material));
+    for (const size_t index : materials) {
+        ImGui::PushID(static_cast<int>(index));
+        ImGui::TextUnformatted(nameOf(scene.materials[index].name, "material", index).c_str());
+        drawMaterial(context, index);
+        ImGui::PopID();
+    }
+    ImGui::PopItemWidth();
+}
+
 void ScenePanel::drawMaterials(const PanelContext& context) {
     const std::vector<Material>& materials = context.session.document().edits.materials;
     for (size_t i = 0; i < materials.size(); ++i) {
@@ -134,6 +154,8 @@ void ScenePanel::draw(const PanelContext& context) {
         return;
     }
     measure(*scene, context.session.document().bake.size);
+    if (context.view.selected >= 0 && ui::header("Object", ImGuiTreeNodeFlags_DefaultOpen))
+        drawObject(context, scene->prepared.scene);
     if (ui::header("Materials", ImGuiTreeNodeFlags_DefaultOpen)) drawMaterials(context);
     if (ui::header("Cameras and bookmarks", ImGuiTreeNodeFlags_DefaultOpen)) drawCameras(context, *scene);
     if (ui::header("Instances")) drawInstances(context, *scene);
