@@ -150,7 +150,7 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
 
 // Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
 // new layer goes as far as the one before was.
-void LayerSolver::keepDirect(const Layer& from, Layer& to) {
+void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
     alike.objects = to.pattern.objects;

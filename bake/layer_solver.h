@@ -141,7 +141,7 @@ private:
     void recycle(Layer& layer);
     std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
     void archive(std::unique_ptr<Layer> layer);
-    static void keepDirect(const Layer& from, Layer& to);
+    void keepDirect(const Layer& from, Layer& to) const;
     void updateEmitters(const std::vector<LightSource>& sources);
 
     // layer_sum.cpp

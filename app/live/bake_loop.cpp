@@ -176,7 +176,7 @@ bool BakeLoop::onlyEdits(const BakeOrders::Start& start) const {
     return layered() && start.scene == prepared_ && describeSettings(wanted) == describeSettings(settings_) &&
            wanted.tracer == settings_.tracer && wanted.solver.cache.kind == settings_.solver.cache.kind &&
            wanted.solver.cache.bytes == settings_.solver.cache.bytes && start.rings == rings_ &&
-            start.edits.sky.file == scene_.sky.file &&
+           start.edits.sky.file == scene_.sky.file &&
            sameForPatches(start.edits.materials, scene_.materials) &&
            layered()->holds(start.edits.lights.size());
 }

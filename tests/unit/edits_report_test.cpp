@@ -25,7 +25,7 @@ EditsRun made(uint32_t lamps, double first) {
     run.layers = {
         .seconds5 = 1, .seconds2 = 3, .seconds = 4, .compositeError = 0.01, .curve = {{1, {}, 0.05, {}}}};
     run.hybrid = {.seconds5 = {}, .seconds2 = {}, .seconds = 2, .compositeError = 0.1, .curve = {}};
-    run.albedo = AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .seconds = 0.2, .rays = 0};
+    run.albedo = AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
     return run;
 }
 
