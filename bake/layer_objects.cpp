@@ -57,6 +57,18 @@ std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked)
     return merged(std::move(ranges));
 }
 
+// A GPU's submit takes as long as rays from about so many chunks: they are made again with those around them.
+constexpr uint32_t kGap = 256;
+
+void closeGaps(std::vector<uint8_t>& marks, uint32_t most) {
+    uint32_t end = 0; // of the run before; 0: there is none
+    for (uint32_t i = 0; i < marks.size(); ++i) {
+        if (marks[i] == 0) continue;
+        if (end > 0 && i - end <= most) std::fill(marks.begin() + end, marks.begin() + i, uint8_t{1});
+        end = i + 1;
+    }
+}
+
 } // namespace
 
 void LayerSolver::moveObjects(const ObjectMove& move) {
@@ -151,6 +163,7 @@ void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     to.stale.resize(reached.size(), 0);
     for (size_t i = 0; i < reached.size(); ++i)
         to.stale[i] |= reached[i];
+    if (!gatherPass_.onCpu()) closeGaps(to.stale, kGap);
     if (std::find(to.stale.begin(), to.stale.end(), 1) == to.stale.end()) to.stale.clear();
 }
 

@@ -66,6 +66,12 @@ void expectCount(const nlohmann::json& run) {
     EXPECT_GT(albedo.at("firstSeconds"), 0.0);
     EXPECT_LE(albedo.at("firstSeconds"), albedo.at("seconds"));
     EXPECT_EQ(albedo.at("rays"), 0);
+    const auto& object = run.at("object");
+    EXPECT_GT(object.at("shareOfTriangles"), 0.0);
+    EXPECT_LT(object.at("followSeconds"), object.at("seconds"));
+    EXPECT_GT(object.at("rays"), 0);
+    EXPECT_LT(object.at("rays"), object.at("freshRays"));
+    EXPECT_LT(object.at("difference"), 0.1); // both have the error that was asked for, at levels of their own
     const auto& links = run.at("links");
     EXPECT_GT(links.at("perSecondMove"), 0.0);
     EXPECT_GT(links.at("perSecondAlbedo"), 0.0);

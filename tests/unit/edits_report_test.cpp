@@ -25,7 +25,9 @@ EditsRun made(uint32_t lamps, double first) {
     run.layers = {
         .seconds5 = 1, .seconds2 = 3, .seconds = 4, .compositeError = 0.01, .curve = {{1, {}, 0.05, {}}}};
     run.hybrid = {.seconds5 = {}, .seconds2 = {}, .seconds = 2, .compositeError = 0.1, .curve = {}};
-    run.albedo = AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
+    run.albedo =
+        AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
+    run.object = ObjectEdit{.object = "Chair", .share = 0.01, .seconds = 0.5, .freshSeconds = 3.0};
     return run;
 }
 
@@ -60,6 +62,8 @@ TEST(EditsReport, JsonHasEveryFigure) {
     EXPECT_EQ(run.at("freshHybrid").at("overMove"), 4.0);
     EXPECT_TRUE(run.at("freshHybrid").at("overMoveTo5Percent").is_null());
     EXPECT_EQ(run.at("albedo").at("material"), "Wall");
+    EXPECT_EQ(run.at("object").at("object"), "Chair");
+    EXPECT_DOUBLE_EQ(run.at("object").at("overObject"), 6.0);
 }
 
 TEST(EditsReport, AlbedoMayBeMissing) {
