@@ -268,6 +268,8 @@ TEST_F(ViewerLights, TheSkyTakesAPicture) {
     auto viewer = open({"view", file});
     EXPECT_TRUE(viewer->says("badge: converged", 240)) << viewer->output();
     viewer->keys({"bracketleft"});
+    viewer->moveTo(800, 400);
+    viewer->wheel(-12); // the room is closed: the sky is behind it
     edit(*viewer, "edit: Add sky", [&] { viewer->keys({"ctrl+6"}); });
     const FloatImage even = screenshot(*viewer);
     viewer->keys({"alt+4"});
@@ -275,8 +277,9 @@ TEST_F(ViewerLights, TheSkyTakesAPicture) {
     const auto choose = [&](const std::string& name) {
         const Place button = placeOf(*viewer, "Lights/Selected/Choose picture");
         viewer->click(button.first, button.second);
-        std::this_thread::sleep_for(500ms);
-        viewer->keys({"ctrl+a"});
+        EXPECT_TRUE(viewer->says("action: Choose the sky's picture")) << viewer->output();
+        std::this_thread::sleep_for(1s); // the field takes the keyboard with its second frame
+        viewer->keys({"ctrl+a", "BackSpace"});
         viewer->type(name);
         viewer->keys({"Return"});
     };
