@@ -2,6 +2,7 @@
 // to.
 #include "bake/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/gpu/light_at.h"
 
 #include <gtest/gtest.h>
 
@@ -18,15 +19,6 @@ namespace {
 using Light4 = std::vector<glm::vec4>;
 
 const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
-Light lightAt(LightType type, glm::vec3 position, float intensity, const std::string& name) {
-    Light light;
-    light.name = name;
-    light.type = type;
-    light.transform = glm::translate(glm::mat4(1.0f), position);
-    light.intensity = intensity;
-    return light;
-}
 
 /// A closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
 Scene room(float albedo = 0.6f) {

@@ -3,6 +3,7 @@
 #include "assets/lightmap_atlas.h"
 #include "bake/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/gpu/light_at.h"
 
 #include <gtest/gtest.h>
 
@@ -20,15 +21,6 @@ const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 constexpr uint32_t kSize = 64;
 // Instances of the room below: walls, plate, shelf, block, wall light.
 constexpr size_t kPlate = 6, kShelf = 7, kBlock = 8, kBlockEnd = 14;
-
-Light lightAt(LightType type, glm::vec3 position, float intensity, const std::string& name) {
-    Light light;
-    light.name = name;
-    light.type = type;
-    light.transform = glm::translate(glm::mat4(1.0f), position);
-    light.intensity = intensity;
-    return light;
-}
 
 /// A closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a panel.
 Scene room(float plate = 8.0f) {

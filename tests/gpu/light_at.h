@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "assets/scene.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace relume {
+
+/// A light of this intensity, in its type's unit, that looks along -z.
+inline Light lightAt(LightType type, glm::vec3 position, float intensity, const std::string& name) {
+    Light light;
+    light.name = name;
+    light.type = type;
+    light.transform = glm::translate(glm::mat4(1.0f), position);
+    light.intensity = intensity;
+    return light;
+}
+
+} // namespace relume

@@ -1,0 +1,201 @@
+// The session without a Vulkan device: what is saved, and what is known to be saved.
+#include "app/live/session.h"
+
+#include "app/viewer/light_edits.h"
+#include "assets/error.h"
+#include "assets/gltf.h"
+#include "assets/log.h"
+#include "tests/unit/session_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+namespace relume {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+/// Edits saved into the scene's file.
+class SessionSaveTest : public SessionTest {
+protected:
+    void change(const std::string& name, const std::function<void(SceneEdits&)>& what) {
+        Document next = session_.document();
+        what(next.edits);
+        session_.edit(name, next);
+        session_.endEdit();
+    }
+    void addLamp(const std::string& name) {
+        change("Add", [&](SceneEdits& edits) {
+            edits.lights.emplace_back().name = name;
+            edits.lights.back().transform[3] = {1, 2, 3, 1};
+        });
+    }
+    bool save(const std::string& path = "") {
+        session_.save(path);
+        return until([&] { return !session_.saving(); }) && session_.lastError().empty();
+    }
+    static size_t nodesOf(const std::string& path) {
+        const std::string bytes = bytesOf(path);
+        size_t count = 0;
+        for (size_t at = bytes.find("\"light\":"); at != std::string::npos;
+             at = bytes.find("\"light\":", at + 1))
+            ++count;
+        return count;
+    }
+    static std::string bytesOf(const std::string& path) {
+        std::ifstream stream(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    }
+};
+
+TEST_F(SessionSaveTest, WhatIsEditedIsUnsavedUntilItIsSaved) {
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_EQ(session_.path(), "");
+    session_.save(); // nothing there
+    open();
+    const std::string before = bytesOf(file());
+    EXPECT_FALSE(session_.dirty());
+    dim(0.5f);
+    session_.endEdit();
+    EXPECT_TRUE(session_.dirty());
+    session_.undo();
+    EXPECT_FALSE(session_.dirty()) << "as the file has it";
+    session_.redo();
+    ASSERT_TRUE(save());
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_EQ(session_.saves(), 1u);
+    EXPECT_NE(bytesOf(file()), before);
+    float saved = 0;
+    for (const Material& material : loadGltf(file()).materials)
+        saved = std::max(saved, material.emission.r);
+    EXPECT_EQ(saved, brightest());
+    session_.undo();
+    EXPECT_TRUE(session_.dirty()) << "not as the file has it now";
+    change("Hide", [](SceneEdits& edits) { edits.placements[0].hidden = true; });
+    ASSERT_TRUE(save());
+    EXPECT_FALSE(session_.dirty()) << "a file cannot hide";
+    EXPECT_EQ(bytesOf(file()), before) << "a value that is edited back is what it was";
+}
+
+TEST_F(SessionSaveTest, ALampIsAddedToTheFileOnce) {
+    open();
+    addLamp("A");
+    ASSERT_TRUE(save());
+    ASSERT_EQ(loadGltf(file()).lights.size(), 1u);
+    addLamp("B");
+    change("Move", [](SceneEdits& edits) { edits.lights[0].transform[3].x = 9; });
+    ASSERT_TRUE(save());
+    const std::string both = bytesOf(file());
+    Scene scene = loadGltf(file());
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights[0].name, "A");
+    EXPECT_EQ(scene.lights[0].transform[3].x, 9);
+    EXPECT_EQ(scene.lights[1].name, "B");
+    EXPECT_EQ(nodesOf(file()), 2u);
+
+    change("Delete A", [](SceneEdits& edits) { edits.lights.erase(edits.lights.begin()); });
+    ASSERT_TRUE(save());
+    scene = loadGltf(file());
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].name, "B");
+    session_.undo();
+    ASSERT_TRUE(save());
+    scene = loadGltf(file());
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.lights[0].name, "A") << "back in its node";
+    EXPECT_EQ(bytesOf(file()).size(), both.size());
+
+    change("Kind", [](SceneEdits& edits) { edits.lights[1].type = LightType::Rectangle; });
+    ASSERT_TRUE(save());
+    EXPECT_EQ(loadGltf(file()).lights[1].type, LightType::Rectangle);
+    session_.undo();
+    ASSERT_TRUE(save());
+    EXPECT_EQ(loadGltf(file()).lights[1].type, LightType::Point);
+}
+
+TEST_F(SessionSaveTest, SavedAsItGoesOnThere) {
+    open();
+    const std::string first = bytesOf(file()), other = folder_.path("other.glb");
+    addLamp("A");
+    ASSERT_TRUE(save(other));
+    EXPECT_EQ(session_.path(), other);
+    EXPECT_EQ(bytesOf(file()), first);
+    EXPECT_EQ(loadGltf(other).lights.size(), 1u);
+    addLamp("B");
+    ASSERT_TRUE(save());
+    EXPECT_EQ(bytesOf(file()), first);
+    EXPECT_EQ(loadGltf(other).lights.size(), 2u);
+}
+
+TEST_F(SessionSaveTest, ItsOwnSaveIsNotReadAgain) {
+    open();
+    session_.watchFile(true);
+    addLamp("A");
+    ASSERT_TRUE(save());
+    EXPECT_FALSE(until([&] { return loads_ > 1; }, 2));
+    writeFile(kScenes + "cornell_small.glb"); // by another program
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_TRUE(session_.document().edits.lights.empty()) << "as the file has it";
+    EXPECT_FALSE(session_.dirty());
+}
+
+TEST_F(SessionSaveTest, AnotherSizeLosesNoEdit) {
+    open();
+    addLamp("A");
+    ASSERT_TRUE(save());
+    addLamp("B");
+    const Document wanted = session_.document();
+    Document next = wanted;
+    next.bake.size = 2 * kSize;
+    session_.edit("Size", next);
+    session_.save(); // waits for the atlas
+    ASSERT_TRUE(until([&] { return loads_ == 2 && !session_.saving(); }));
+    EXPECT_EQ(session_.document().edits.lights, wanted.edits.lights);
+    EXPECT_EQ(loadGltf(file()).lights.size(), 2u);
+    EXPECT_EQ(nodesOf(file()), 2u);
+    EXPECT_FALSE(session_.dirty());
+}
+
+TEST_F(SessionSaveTest, TheNewestWishCounts) {
+    open();
+    for (int i = 0; i < 20; ++i) {
+        change("Dim",
+               [](SceneEdits& edits) { edits.materials[0].emission = edits.materials[0].emission + 1.0f; });
+        session_.save();
+    }
+    const float wanted = session_.document().edits.materials[0].emission.r;
+    ASSERT_TRUE(until([&] { return !session_.saving(); }));
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_EQ(loadGltf(file()).materials[0].emission.r, wanted);
+    EXPECT_LT(session_.saves(), 20u);
+}
+
+TEST_F(SessionSaveTest, AFailureIsToldAndTheFileStays) {
+    open();
+    addLamp("A");
+    const std::string before = bytesOf(file());
+    EXPECT_FALSE(save(folder_.path("none/a.glb")));
+    EXPECT_NE(session_.lastError().find("none"), std::string::npos) << session_.lastError();
+    EXPECT_TRUE(session_.dirty());
+    EXPECT_EQ(session_.path(), file());
+    session_.clearError();
+    EXPECT_FALSE(save(folder_.path("a.gltf")));
+    EXPECT_NE(session_.lastError().find(".glb"), std::string::npos);
+    session_.clearError();
+    EXPECT_EQ(bytesOf(file()), before);
+    ASSERT_TRUE(save());
+    EXPECT_EQ(loadGltf(file()).lights.size(), 1u);
+    session_.open(kScenes + "cornell_geom.glb");
+    session_.save();
+    EXPECT_NE(session_.lastError().find("not saved while"), std::string::npos);
+    ASSERT_TRUE(untilLoaded());
+}
+
+} // namespace
+} // namespace relume
