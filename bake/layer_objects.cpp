@@ -172,8 +172,7 @@ void LayerSolver::keepStale(const Layer& from, Layer& to) const {
 void LayerSolver::beginMending() {
     Layer& layer = *layers_[work_->layer];
     if (raysOf(layer) == 0) { // as all of it
-        layer.stale.clear();
-        return begin(work_->layer, work_->target);
+        return endMending();
     }
     work_->mended = 0;
     work_->round = 0;
@@ -213,8 +212,24 @@ void LayerSolver::endMendingRound() {
     recordRayCount(cmd);
     run(cmd);
     countRays();
-    layer.stale.clear();
-    begin(work_->layer, work_->target);
+    endMending();
+}
+
+// A viewer gets all direct light first, so that the sum of all lights can be shown.
+void LayerSolver::endMending() {
+    const Work work = *work_;
+    layers_[work.layer]->stale.clear();
+    if (staleLayer()) return work_.reset();
+    sumDue_ = wantsSum();
+    if (sumDue_) return work_.reset();
+    begin(work.layer, work.target);
+}
+
+// Whose direct light is to be made anew before any layer goes on; nothing: none, or nobody looks.
+std::optional<size_t> LayerSolver::staleLayer() const {
+    for (size_t i = 0; settings_.live && i < layers_.size(); ++i)
+        if (layers_[i]->source.weight != glm::vec3(0.0f) && !layers_[i]->stale.empty()) return i;
+    return std::nullopt;
 }
 
 } // namespace relume

@@ -96,7 +96,7 @@ void LayerSolver::step() {
 
 void LayerSolver::plan() {
     if (sumDue_) return beginSum();
-    const std::optional<size_t> next = nextLayer();
+    const std::optional<size_t> stale = staleLayer(), next = stale ? stale : nextLayer();
     if (!next) {
         done_ = true;
         return;

@@ -158,6 +158,8 @@ private:
     void beginMending();
     void orderStale();
     void endMendingRound();
+    void endMending();
+    std::optional<size_t> staleLayer() const;
 
     // layer_mix.cpp
     std::vector<shader::LayerWeight> shares(std::optional<size_t> without, std::optional<size_t> only) const;
