@@ -70,7 +70,7 @@ void expectCount(const nlohmann::json& run) {
     EXPECT_GT(object.at("shareOfTriangles"), 0.0);
     EXPECT_LT(object.at("followSeconds"), object.at("seconds"));
     EXPECT_GT(object.at("rays"), 0);
-    EXPECT_GT(object.at("freshRays"), 0); // of a box in a box there is little to save
+    EXPECT_GT(object.at("freshRays"), 0);    // of a box in a box there is little to save
     EXPECT_LT(object.at("difference"), 0.1); // both have the error that was asked for, at levels of their own
     const auto& links = run.at("links");
     EXPECT_GT(links.at("perSecondMove"), 0.0);
