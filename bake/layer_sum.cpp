@@ -37,6 +37,7 @@ bool LayerSolver::current() const {
 
 void LayerSolver::beginSum() {
     sumDue_ = false;
+    if (!wantsSum()) return hideSum(); // a light that shines again may have nothing yet
     if (!sum_) {
         sum_ = std::make_unique<Layer>();
         sum_->direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of all layers"));

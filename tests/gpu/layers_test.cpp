@@ -351,6 +351,22 @@ TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
     EXPECT_GT(distance(atOnce, after), 0.05);
 }
 
+TEST(Layers, ALightUnmutedWhileAllAreSeenAtOnceIsBaked) {
+    BakeDesc desc = kQuick;
+    desc.live = true;
+    Layered bake(room(), desc);
+    bake.edit({.muted = {{LightKey::Kind::Lamp, 0, 0}}, .solo = {}});
+    bake.finish();
+    bake.scene.materials[0].baseColor.g = 0.2f;
+    bake.edit({.muted = {{LightKey::Kind::Lamp, 0, 0}}, .solo = {}});
+    while (!bake.solver().current())
+        bake.solver().step();
+    bake.solver().step(); // a layer is under way
+    bake.solver().edit({});
+    bake.finish();
+    EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, desc)));
+}
+
 TEST(Layers, MuteAndSoloWeighLightsWithNothing) {
     Layered bake(room());
     bake.finish();
