@@ -27,6 +27,22 @@ std::vector<ChunkRange> merged(std::vector<ChunkRange> ranges) {
     return result;
 }
 
+std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked) {
+    std::vector<ChunkRange> ranges;
+    for (uint32_t chunk = 0; chunk < marks.size(); ++chunk)
+        if ((marks[chunk] != 0) == marked) ranges.push_back({chunk, 1});
+    return merged(std::move(ranges));
+}
+
+void closeGaps(std::vector<uint8_t>& marks, uint32_t most) {
+    uint32_t end = 0; // of the run before; 0: there is none
+    for (uint32_t i = 0; i < marks.size(); ++i) {
+        if (marks[i] == 0) continue;
+        if (end > 0 && i - end <= most) std::fill(marks.begin() + end, marks.begin() + i, uint8_t{1});
+        end = i + 1;
+    }
+}
+
 void ChunkOrder::begin(uint32_t count, const std::vector<uint8_t>& seen) {
     ASSERT(count <= marks_.size());
     std::fill_n(marks_.begin(), count, kLeft);

@@ -14,6 +14,11 @@ struct ChunkRange {
 /// The same chunks in ascending order, each once, in as few ranges as possible.
 std::vector<ChunkRange> merged(std::vector<ChunkRange> ranges);
 
+/// Those whose mark is not 0 (`marked`) or is, one mark per chunk, as few ranges as possible.
+std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked);
+/// Marks runs of up to `most` chunks between marked ones, too.
+void closeGaps(std::vector<uint8_t>& marks, uint32_t most);
+
 /// Which chunks of a pass are still to be done, and which of them come next.
 class ChunkOrder {
 public:

@@ -13,16 +13,18 @@ using shader::kReplicates;
 
 // Rays of one group, per patch: two words of bits. A lamp with more is a group by itself.
 constexpr uint32_t kGroupRays = 64;
-// Chunks of one batch: their targets are 64 KiB each.
+// Chunks of one batch of such groups, whose targets are 64 KiB each; of smaller groups more.
 constexpr uint32_t kGpuBatch = 2048, kSoftwareBatch = 512;
+constexpr uint32_t kMostChunks = 32768;  // that every device's dispatches take in x
 constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
 
 uint32_t wordsOf(uint32_t targets) {
     return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
 }
 
-uint32_t mostChunks(uint32_t chunkCount, bool software) {
-    return std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
+uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
+    const uint32_t smaller = kGroupRays / std::clamp(rays, 1u, kGroupRays);
+    return std::min({chunkCount, kMostChunks, (software ? kSoftwareBatch : kGpuBatch) * smaller});
 }
 
 } // namespace
@@ -70,19 +72,19 @@ void LampLight::group() {
     else
         lamps_ = vk::makeBuffer(device_, lamps, "lamps");
     if (room_ == 0) {
-        batchChunks_ = mostChunks(chunkCount_, device_.info().software());
         samples_ = vk::ComputeProgram(device_, "lamp_samples");
         gather_ = vk::ComputeProgram(device_, "lamp_gather");
     }
     if (most <= room_) return;
     room_ = most;
+    batchChunks_ = mostChunks(chunkCount_, device_.info().software(), most);
     const uint64_t places = uint64_t{batchChunks_} * kChunk;
     targets_ = vk::Buffer(device_, {.size = places * most * sizeof(glm::vec4), .name = "points on lamps"});
     bits_ = vk::Buffer(device_, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
 }
 
 uint64_t LampLight::bytes(uint32_t chunkCount, bool software) {
-    const uint64_t places = uint64_t{mostChunks(chunkCount, software)} * kChunk;
+    const uint64_t places = uint64_t{mostChunks(chunkCount, software, kGroupRays)} * kChunk;
     return places * (kGroupRays * sizeof(glm::vec4) + wordsOf(kGroupRays) * sizeof(uint32_t));
 }
 
@@ -94,6 +96,8 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .bits = bits_.address(),
             .skyPixels = skyPixels_.address(),
             .skyRows = skyRows_.address(),
+            .parts = work.penumbra ? work.penumbra->parts.address() : 0,
+            .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
             .skySize = set_.skySize,
             .skyRotation = set_.skyRotation,
             .reach = set_.reach,

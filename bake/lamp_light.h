@@ -3,6 +3,7 @@
 #include "bake/chunk_order.h"
 #include "bake/lamps.h"
 #include "bake/light_buffers.h"
+#include "bake/penumbra.h"
 #include "bake/trace/tracer.h"
 #include "bake/vk/program.h"
 
@@ -36,6 +37,8 @@ public:
         uint32_t group = 0;
         uint32_t round = 0;
         ChunkRange range; // count: at most batchChunks()
+        // Found by the first round, heeded by later ones; nullptr: all patches take part in every round.
+        const Penumbra* penumbra = nullptr;
     };
     /// Barriers are the caller's, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;

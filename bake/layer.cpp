@@ -1,5 +1,9 @@
 #include "bake/layer.h"
 
+#include "bake/shader_types.h"
+
+#include <algorithm>
+
 namespace relume {
 
 LightPattern patternOf(const Scene& scene, const LightKey& key) {
@@ -22,6 +26,13 @@ LightPattern patternOf(const Scene& scene, const LightKey& key) {
         break;
     }
     return pattern;
+}
+
+double Layer::directShare() const {
+    if (penumbra.empty()) return 1.0;
+    const auto within = static_cast<double>(std::count(penumbra.begin(), penumbra.end(), 1));
+    const double share = within / static_cast<double>(penumbra.size());
+    return share + (1.0 - share) / shader::kPenumbraRounds;
 }
 
 std::string staleReason(const Layer& layer) {

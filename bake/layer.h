@@ -45,7 +45,12 @@ struct Layer {
     uint32_t directRounds = 0;          // in direct
     // directRounds after each level that took more; what is summed together decides the last bits.
     std::vector<uint32_t> directSteps;
-    // Per chunk 1 where direct is of objects that have moved since; empty: nowhere.
+    // Per part of a tile (TileParts) 1 where the first round's rays met the light's penumbra or the edge of
+    // its shadow; patches elsewhere take each kPenumbraRounds-th round alone.
+    std::vector<uint8_t> penumbra;
+    // Per chunk 1 where direct is of objects that have moved since, kBeside where neighbours are: only where
+    // these now are in a penumbra or are no longer it is made anew. Empty: nowhere.
+    static constexpr uint8_t kBeside = 2;
     std::vector<uint8_t> stale;
     LayerLevel level;            // of result; no rounds: there is none yet
     SmoothingWidth width;        // of the last result
@@ -56,6 +61,8 @@ struct Layer {
     bool converged = false;         // error below the aim, or all samples taken
     std::unique_ptr<Layer> before;  // shown until there is a result
 
+    /// Of the patches, the share that takes a round of direct light, in the mean; 1 before the first.
+    double directShare() const;
     bool has() const { return level.linkRounds > 0 || level.directRounds > 0; }
     /// What is to be seen of it: itself or the one before; nullptr: nothing.
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }

@@ -158,6 +158,7 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.direct = from.direct;
     to.directRounds = from.directRounds;
     to.directSteps = from.directSteps;
+    to.penumbra = from.penumbra;
     keepStale(from, to);
     to.redo = from.has() ? std::optional(from.level) : from.redo;
 }

@@ -43,8 +43,8 @@ LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     const double off = layer.error / settings_.error;
     const auto wanted = static_cast<uint32_t>(std::clamp(off * off, 2.0, double{kMostGrowth}));
     const uint32_t growth = std::bit_floor(wanted);
-    const double direct =
-        layer.directVariance / (now.directRounds * kSegmentCost * std::max(1u, raysOf(layer)));
+    const double directCost = kSegmentCost * std::max(1u, raysOf(layer)) * layer.directShare();
+    const double direct = layer.directVariance / (now.directRounds * directCost);
     const double indirect = layer.indirectVariance / (std::max(1u, now.linkRounds) * linksOfRound_);
     LayerLevel next = now;
     const bool linksLeft = now.linkRounds < last.linkRounds,

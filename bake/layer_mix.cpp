@@ -145,6 +145,8 @@ SolverState LayerSolver::state() {
         own.converged = layer->converged;
         const auto* bytes = reinterpret_cast<const uint8_t*>(&own);
         state.own.insert(state.own.end(), bytes, bytes + sizeof own);
+        layer->penumbra.resize(parts_.count, 0);
+        state.own.insert(state.own.end(), layer->penumbra.begin(), layer->penumbra.end());
     }
     return state;
 }
@@ -162,7 +164,8 @@ std::vector<StatePart> LayerSolver::stateParts() {
 }
 
 void LayerSolver::restore(const SolverState& state) {
-    if (state.own.size() != layers_.size() * sizeof(LayerState))
+    const size_t each = sizeof(LayerState) + parts_.count;
+    if (state.own.size() != layers_.size() * each)
         throw Error("this state is not of such a solver: bake from the start");
     abortPass();
     const SolverCounters own = progress_;
@@ -171,8 +174,10 @@ void LayerSolver::restore(const SolverState& state) {
     progress_.cacheBytes = own.cacheBytes;
     for (size_t i = 0; i < layers_.size(); ++i) {
         LayerState from;
-        std::memcpy(&from, state.own.data() + i * sizeof from, sizeof from);
+        const uint8_t* bytes = state.own.data() + i * each;
+        std::memcpy(&from, bytes, sizeof from);
         Layer& layer = *layers_[i];
+        layer.penumbra.assign(bytes + sizeof from, bytes + each);
         layer.directRounds = from.directRounds;
         layer.directSteps.assign(1, from.directRounds);
         layer.level = from.level;

@@ -50,25 +50,6 @@ LightPlace placeOfEmitter(const WorldMesh& mesh, const LightPattern& pattern) {
     return grown(place);
 }
 
-std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked) {
-    std::vector<ChunkRange> ranges;
-    for (uint32_t chunk = 0; chunk < marks.size(); ++chunk)
-        if ((marks[chunk] != 0) == marked) ranges.push_back({chunk, 1});
-    return merged(std::move(ranges));
-}
-
-// A GPU's submit takes as long as rays from about so many chunks: they are made again with those around them.
-constexpr uint32_t kGap = 256;
-
-void closeGaps(std::vector<uint8_t>& marks, uint32_t most) {
-    uint32_t end = 0; // of the run before; 0: there is none
-    for (uint32_t i = 0; i < marks.size(); ++i) {
-        if (marks[i] == 0) continue;
-        if (end > 0 && i - end <= most) std::fill(marks.begin() + end, marks.begin() + i, uint8_t{1});
-        end = i + 1;
-    }
-}
-
 } // namespace
 
 void LayerSolver::moveObjects(const ObjectMove& move) {
@@ -162,40 +143,40 @@ void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     if (!itself && !(far && reachMoved_)) reached = chunksReached(input_.patches, placeOf(to), *moved_);
     to.stale.resize(reached.size(), 0);
     for (size_t i = 0; i < reached.size(); ++i)
-        to.stale[i] |= reached[i];
-    if (!gatherPass_.onCpu()) closeGaps(to.stale, kGap);
+        if (reached[i] != 0) to.stale[i] = 1;
+    growToParts(to.stale);
     if (std::find(to.stale.begin(), to.stale.end(), 1) == to.stale.end()) to.stale.clear();
+}
+
+// Neighbours of what is stale: that decides on their rounds, too.
+void LayerSolver::growToParts(std::vector<uint8_t>& stale) const {
+    std::vector<uint8_t> parts(parts_.count, 0);
+    for (uint32_t i = 0; i < stale.size(); ++i)
+        if (stale[i] == 1) parts_.mark(i, parts);
+    for (uint32_t i = 0; i < stale.size(); ++i)
+        if (stale[i] == 0 && parts_.any(i, parts)) stale[i] = Layer::kBeside;
 }
 
 // Direct light of stale chunks, made of the same rounds in the same steps as that of all others. Meanwhile
 // ligOut, which nobody else needs, holds the layer's direct light.
 void LayerSolver::beginMending() {
     Layer& layer = *layers_[work_->layer];
-    if (raysOf(layer) == 0) { // as all of it
-        return endMending();
-    }
+    if (raysOf(layer) == 0) return endMending(); // as all of it
     work_->mended = 0;
     work_->round = 0;
     beginPass(Stage::Direct);
-    orderStale();
+    seekRound();
 }
 
-void LayerSolver::orderStale() {
-    order_.begin(input_.patches.chunkCount(), seen_);
-    for (const ChunkRange& range : rangesOf(layers_[work_->layer]->stale, false))
-        order_.finish(range);
-}
-
-void LayerSolver::endMendingRound() {
+void LayerSolver::endMendingStep() {
     Layer& layer = *layers_[work_->layer];
     const uint32_t step = *work_->mended;
-    if (++work_->round < layer.directSteps[step]) return orderStale();
     const uint32_t before = step > 0 ? layer.directSteps[step - 1] : 0;
     VkCommandBuffer cmd = commands_.begin();
     const uint32_t rounds = std::exchange(layer.directRounds, before);
     const auto kept =
         std::exchange(layer.direct, std::make_shared<vk::Buffer>(std::move(input_.light.ligOut)));
-    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, work_->round - before);
+    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, penumbra_, work_->round - before);
     input_.light.ligOut = std::move(*layer.direct);
     layer.direct = kept;
     layer.directRounds = rounds;
@@ -203,7 +184,8 @@ void LayerSolver::endMendingRound() {
     work_->begun = false;
     if (step + 1 < layer.directSteps.size()) {
         run(cmd);
-        return orderStale();
+        if (!seekRound()) endMendingStep();
+        return;
     }
     vk::barrier(cmd);
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);

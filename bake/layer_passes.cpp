@@ -10,13 +10,22 @@ using shader::kChunk;
 } // namespace
 
 void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
-                             const vk::Buffer& sums, uint32_t rounds) const {
-    const auto added = static_cast<float>(rounds);
-    const shader::LayerDirectPush push{.sums = sums.address(),
-                                       .direct = layer.direct->address(),
-                                       .patchCount = light.chunkCount * kChunk,
-                                       .scale = 1.0f / added,
-                                       .share = added / static_cast<float>(layer.directRounds + rounds)};
+                             const vk::Buffer& sums, const Penumbra& penumbra, uint32_t rounds) const {
+    shader::LayerDirectPush push{.sums = sums.address(),
+                                 .direct = layer.direct->address(),
+                                 .parts = penumbra.parts.address(),
+                                 .penumbra = penumbra.lights.address(),
+                                 .patchCount = light.chunkCount * kChunk,
+                                 .scale = glm::vec2(0.0f),
+                                 .share = glm::vec2(0.0f)};
+    const uint32_t every[] = {shader::kPenumbraRounds, 1};
+    for (int i = 0; i < 2; ++i) {
+        const auto taken = [&](uint32_t of) { return (of + every[i] - 1) / every[i]; };
+        const uint32_t all = taken(layer.directRounds + rounds), added = all - taken(layer.directRounds);
+        if (added == 0) continue;
+        push.scale[i] = 1.0f / static_cast<float>(added);
+        push.share[i] = static_cast<float>(added) / static_cast<float>(all);
+    }
     dispatchChunks(direct_, cmd, push, light.chunkCount);
 }
 

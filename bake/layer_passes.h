@@ -5,6 +5,7 @@
 
 #include "bake/layer.h"
 #include "bake/light_buffers.h"
+#include "bake/penumbra.h"
 #include "bake/vk/program.h"
 
 namespace relume {
@@ -17,9 +18,9 @@ public:
           mixDirect_(device, "layer_mix_direct") {}
 
     /// Takes the sums of `rounds` new rounds, vec4[kReplicates][patches], into layer.direct, which holds
-    /// layer.directRounds of them.
+    /// layer.directRounds of them. penumbra: that of the layer.
     void recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
-                      const vk::Buffer& sums, uint32_t rounds) const;
+                      const vk::Buffer& sums, const Penumbra& penumbra, uint32_t rounds) const;
     /// layer.result = layer.direct + indirect; vec4 per chunk in chunkSums: light, variance of the direct
     /// part, number of patches. indirect: as result; nullptr: none.
     void recordResult(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,

@@ -14,6 +14,8 @@ using shader::kChunk;
 
 // A GPU is not filled by less than this: unseen chunks that take no longer come along with seen ones.
 constexpr double kWorthASubmit = 0.5; // [ms]
+// A GPU's submit takes as long as rays from about so many chunks: they come along with those around them.
+constexpr uint32_t kGap = 256;
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
     ASSERT(settings.method == Method::Hybrid && !settings.transport.rtrad);
@@ -40,8 +42,8 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                             .batch = buffers_.batchChunks,
                             .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       radiancePass_(input.device), gatherPass_(input.device, settings.transport), resolvePass_(input.device),
-      layerPass_(input.device), commands_(input.device), timestamps_(input.device, 3),
-      order_(input.patches.chunkCount()), layerBytes_(settings.layers.bytes) {
+      layerPass_(input.device), parts_(makeTileParts(input.patches)), commands_(input.device),
+      timestamps_(input.device, 3), order_(input.patches.chunkCount()), layerBytes_(settings.layers.bytes) {
     batchMs_ = settings.batchMs;
     settings_.transport.reflectedOnly = true;
     const VkDeviceSize lightBytes = LightBuffers::lightBytes(input.patches);
@@ -52,10 +54,12 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
             vk::Buffer(input.device, {.size = lightBytes / sizeof(glm::vec4) * sizeof(glm::uvec2),
                                       .name = "packed radiance"});
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
-    back_ =
-        vk::Buffer(input.device, {.size = std::max<uint64_t>(buffers_.chunkSums.size(), buffers_.rays.size()),
-                                  .memory = vk::Memory::Host,
-                                  .name = "sums for the CPU"});
+    penumbra_ = {vk::makeBuffer(input.device, parts_.ofPatch, "parts of tiles"),
+                 vk::Buffer(input.device, {.size = parts_.count * sizeof(glm::uvec2), .name = "penumbra"})};
+    back_ = vk::Buffer(input.device, {.size = std::max(buffers_.chunkSums.size(),
+                                                       buffers_.rays.size() + penumbra_.lights.size()),
+                                      .memory = vk::Memory::Host,
+                                      .name = "sums for the CPU"});
     countSenders();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.rays, &composite_, &input.light.ligIn, &input.light.ligOut})
@@ -105,16 +109,17 @@ void LayerSolver::plan() {
     begin(*next, layer.has() ? nextLevel(layer) : layer.redo.value_or(firstLevel()));
 }
 
-void LayerSolver::begin(size_t layer, LayerLevel target) {
-    work_ = Work{.layer = layer, .target = target};
-    if (!layers_[layer]->stale.empty()) return beginMending();
-    work_->round = layers_[layer]->directRounds;
+void LayerSolver::begin(size_t index, LayerLevel target) {
+    work_ = Work{.layer = index, .target = target};
+    Layer& layer = *layers_[index];
+    if (!layer.stale.empty()) return beginMending();
+    work_->round = layer.directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
+    if (raysOf(layer) == 0) layer.penumbra.assign(parts_.count, 0); // nothing in it shines
+    if (!layer.penumbra.empty()) uploadPenumbra(layer);
     beginPass(Stage::Direct);
-    if (raysOf(*layers_[layer]) == 0) { // nothing in it shines
-        work_->round = target.directRounds - 1;
-        endDirectRound();
-    }
+    if (raysOf(layer) == 0) return endDirectStep();
+    if (!seekRound()) endDirectStep();
 }
 
 void LayerSolver::beginPass(Stage stage) {
@@ -124,9 +129,10 @@ void LayerSolver::beginPass(Stage stage) {
 }
 
 // Into back_, whose former contents are over with.
-void LayerSolver::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes) {
+void LayerSolver::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes,
+                             VkDeviceSize at) {
     vk::barrier(cmd);
-    const VkBufferCopy all{0, 0, bytes};
+    const VkBufferCopy all{0, at, bytes};
     vkCmdCopyBuffer(cmd, from.handle(), back_.handle(), 1, &all);
 }
 
@@ -162,11 +168,15 @@ void LayerSolver::directBatch() {
 
 template<typename Lights>
 void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange range) {
-    const typename Lights::Work work{.group = group, .round = work_->round, .range = range};
+    const typename Lights::Work work{
+        .group = group, .round = work_->round, .range = range, .penumbra = &penumbra_};
     const PointTimes times = tracePoints(
         {commands_, timestamps_, input_.tracer}, lights.segments(work, buffers_.rays),
         [&](VkCommandBuffer cmd) {
             if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
+            if (!work_->begun && work_->round == 0)
+                vkCmdFillBuffer(cmd, penumbra_.lights.handle(), 0, VK_WHOLE_SIZE, 0);
+            vk::barrier(cmd);
             lights.recordSamples(cmd, input_.light, work);
         },
         [&](VkCommandBuffer cmd) {
@@ -177,22 +187,99 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
     progress_.gatherSeconds += times.gather;
 }
 
+// Of the round, where this step ends.
+uint32_t LayerSolver::directEnd() const {
+    return work_->mended ? layers_[work_->layer]->directSteps[*work_->mended] : work_->target.directRounds;
+}
+
+// Which chunks take part in the round; whether any does.
+bool LayerSolver::orderRound() {
+    const Layer& layer = *layers_[work_->layer];
+    order_.begin(input_.patches.chunkCount(), seen_);
+    std::vector<uint8_t> take(order_.count(), 1);
+    for (size_t i = 0; work_->mended && i < take.size(); ++i)
+        take[i] = layer.stale[i] != 0;
+    if (work_->round % shader::kPenumbraRounds != 0) {
+        for (uint32_t i = 0; i < take.size(); ++i)
+            take[i] &= static_cast<uint8_t>(parts_.any(i, layer.penumbra));
+    }
+    if (!input_.tracer.onCpu()) closeGaps(take, kGap);
+    for (const ChunkRange& range : rangesOf(take, false))
+        order_.finish(range);
+    return order_.left() > 0;
+}
+
+// Goes on to a round in which any chunk takes part; whether the step has one.
+bool LayerSolver::seekRound() {
+    for (; work_->round < directEnd(); ++work_->round)
+        if (orderRound()) return true;
+    return false;
+}
+
 void LayerSolver::endDirectRound() {
-    if (work_->mended) return endMendingRound();
+    if (work_->round == 0 && (work_->mended || directEnd() > 1)) {
+        VkCommandBuffer cmd = commands_.begin();
+        recordPenumbra(cmd);
+        run(cmd);
+        learnPenumbra();
+    }
+    ++work_->round;
+    if (seekRound()) return;
+    work_->mended ? endMendingStep() : endDirectStep();
+}
+
+void LayerSolver::endDirectStep() {
     Layer& layer = *layers_[work_->layer];
-    if (++work_->round < work_->target.directRounds) return order_.begin(input_.patches.chunkCount(), seen_);
     const uint32_t rounds = work_->target.directRounds - layer.directRounds;
     VkCommandBuffer cmd = commands_.begin();
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
-    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, rounds);
+    layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, penumbra_, rounds);
     recordRayCount(cmd);
+    recordPenumbra(cmd);
     run(cmd);
     countRays();
+    learnPenumbra();
     layer.directRounds = work_->target.directRounds;
     layer.directSteps.push_back(layer.directRounds);
     beginBounces();
+}
+
+void LayerSolver::recordPenumbra(VkCommandBuffer cmd) {
+    recordBack(cmd, penumbra_.lights, penumbra_.lights.size(), buffers_.rays.size());
+}
+
+// Where direct light is mended, of parts that are mended as a whole; chunks beside stale ones are done with
+// where that is what it was.
+void LayerSolver::learnPenumbra() {
+    Layer& layer = *layers_[work_->layer];
+    const auto* lights = reinterpret_cast<const glm::uvec2*>(back_.as<uint8_t>() + buffers_.rays.size());
+    const auto within = [&](size_t part) { return uint8_t{(lights[part].x & lights[part].y) != 0}; };
+    if (!work_->mended) {
+        layer.penumbra.resize(parts_.count);
+        for (size_t i = 0; i < parts_.count; ++i)
+            layer.penumbra[i] = within(i);
+        return;
+    }
+    std::vector<uint8_t> cut(parts_.count, 0), differs(parts_.count, 0);
+    for (uint32_t i = 0; i < layer.stale.size(); ++i)
+        if (layer.stale[i] == 0) parts_.mark(i, cut);
+    for (size_t i = 0; i < parts_.count; ++i) {
+        differs[i] = cut[i] == 0 && layer.penumbra[i] != within(i);
+        if (differs[i] != 0) layer.penumbra[i] = within(i);
+    }
+    for (uint32_t i = 0; i < layer.stale.size(); ++i)
+        if (layer.stale[i] == Layer::kBeside) layer.stale[i] = parts_.any(i, differs);
+    uploadPenumbra(layer);
+}
+
+void LayerSolver::uploadPenumbra(const Layer& layer) {
+    std::vector<glm::uvec2> lights;
+    lights.reserve(parts_.count);
+    for (const uint8_t within : layer.penumbra)
+        lights.emplace_back(within);
+    vk::upload(input_.device, penumbra_.lights, lights.data(), penumbra_.lights.size());
 }
 
 // Of direct light that a layer shares with one that is to stay as it is, a copy. Returns what that was made

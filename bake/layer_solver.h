@@ -12,6 +12,7 @@
 #include "bake/link_passes.h"
 #include "bake/object_move.h"
 #include "bake/settling.h"
+#include "bake/tile_parts.h"
 #include "bake/vk/commands.h"
 
 namespace relume {
@@ -98,14 +99,21 @@ private:
     void directBatch();
     template<typename Lights>
     void directBatchOf(const Lights& lights, uint32_t group, ChunkRange range);
+    uint32_t directEnd() const;
+    bool orderRound();
+    bool seekRound();
     void endDirectRound();
+    void endDirectStep();
+    void recordPenumbra(VkCommandBuffer cmd);
+    void learnPenumbra();
+    void uploadPenumbra(const Layer& layer);
     std::shared_ptr<vk::Buffer> recordOwnDirect(VkCommandBuffer cmd, Layer& layer);
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
     uint32_t raysOf(const Layer& layer) const;
     ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
     void beginPass(Stage stage);
-    void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes);
+    void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at = 0);
     void run(VkCommandBuffer cmd);
 
     // layer_links.cpp
@@ -155,9 +163,9 @@ private:
     void relinkBatch();
     LightPlace placeOf(const Layer& layer) const;
     void keepStale(const Layer& from, Layer& to) const;
+    void growToParts(std::vector<uint8_t>& stale) const;
     void beginMending();
-    void orderStale();
-    void endMendingRound();
+    void endMendingStep();
     void endMending();
     std::optional<size_t> staleLayer() const;
 
@@ -179,7 +187,9 @@ private:
     LinkGatherPass gatherPass_;
     ResolvePass resolvePass_;
     LayerPass layerPass_;
-    vk::Buffer back_; // what the CPU reads after a submit: sums per chunk, or counters of rays
+    TileParts parts_;
+    Penumbra penumbra_; // of the layer whose direct light is under way
+    vk::Buffer back_;   // what the CPU reads after a submit: sums per chunk, or counters of rays
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     ChunkOrder order_;              // of the pass under way

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { DirectPush push; };
+#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -20,7 +21,10 @@ bool seen(uint target) {
 void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    if (roundLeftOut(index)) return;
     bool all = push.all != 0u;
+    uint reachedEmitters = 0u, hiddenEmitters = 0u;
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     for (uint pick = 0u; pick < push.pickCount; ++pick) {
@@ -40,6 +44,10 @@ void main() {
             }
         }
         float share = sum > 0.0 ? visible / sum : 0.0;
+        uint bit = light != vec3(0.0) ? 1u << (pick % 32u) : 0u;
+        if (visible > 0.0) reachedEmitters |= bit;
+        if (visible < sum) hiddenEmitters |= bit;
+        if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
         for (uint q = 0u; q < kReplicates; ++q) {
             // A ratio's error comes from the residuals V - share alone: what is seen as a whole is exact
             // [Cochran 1977, Sampling Techniques, 6.3].
@@ -48,7 +56,7 @@ void main() {
             else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
         }
     }
-    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    noteLights(index, reachedEmitters, hiddenEmitters);
     vec3 total = vec3(0.0);
     Vec4s sums = Vec4s(push.sums);
     for (uint q = 0u; q < kReplicates; ++q) {

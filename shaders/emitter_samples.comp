@@ -9,6 +9,7 @@
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
 #include "lib/pick_emitter.glsl"
+#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -17,7 +18,8 @@ const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
 
 void main() {
     uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
-    Patch p = loadPatch(push.patches, (push.firstChunk + chunk) * kChunk + lane);
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
     uint base = (chunk * push.pickCount + pick) * push.pointCount;
     uint key = seedKey(p);
     bool all = push.all != 0u;
@@ -32,7 +34,7 @@ void main() {
     }
     vec3 light = vec3(0.0);
     EmitterPolygon e;
-    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u) {
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !roundLeftOut(index)) {
         e = loadEmitterPolygon(push.polygons, emitter);
         light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
     }
@@ -43,9 +45,9 @@ void main() {
         if (shines) {
             // All emitters: a patch's points take turns among the replicates. Picked ones: a pick's belong to one.
             uint number = all ? push.round * push.pointCount + s : pick;
-            uint index = all ? replicateIndex(number) : sequence + s;
+            uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
-            vec3 y = emitterPoint(e, sobolPoint(index, seed));
+            vec3 y = emitterPoint(e, sobolPoint(turn, seed));
             float f = emitterPointFactor(p.position, p.shading, e, y);
             // Below the geometric horizon it is hidden, and not asked for.
             bool above = dot(y - p.position, p.normal) > p.offset;

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"
+#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -20,9 +21,11 @@ void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
+    if (roundLeftOut(index)) return;
     Patch p = loadPatch(push.patches, index);
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
+    uint reachedLamps = 0u, hiddenLamps = 0u;
     for (uint k = 0u; k < push.lampCount; ++k) {
         Lamp l = loadLamp(k);
         vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
@@ -33,11 +36,15 @@ void main() {
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
             all += ray.light.r;
+            uint bit = ray.light != vec3(0.0) ? 1u << (k % 32u) : 0u;
+            if (reached) reachedLamps |= bit;
+            else hiddenLamps |= bit;
             if (!reached) continue;
             partSeen[s % kReplicates] += ray.light;
             visible += ray.light.r;
         }
         float whole = lampWhole(l, p), share = all > 0.0 ? visible / all : 0.0;
+        if (l.samples > 1u && whole < 0.0 && all > 0.0) reachedLamps = hiddenLamps = ~0u; // no share is known
         for (uint q = 0u; q < kReplicates; ++q) {
             vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
             if (l.samples == 1u) {
@@ -50,6 +57,7 @@ void main() {
         }
     }
     if ((p.flags & kPatchSends) == 0u) return;
+    noteLights(index, reachedLamps, hiddenLamps);
     vec3 total = vec3(0.0);
     Vec4s sums = Vec4s(push.sums);
     for (uint q = 0u; q < kReplicates; ++q) {

@@ -3,16 +3,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"
+#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
 void main() {
     uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-    Patch p = loadPatch(push.patches, (push.firstChunk + chunk) * kChunk + lane);
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
+    bool leftOut = roundLeftOut(index);
     for (uint s = 0u; s < l.samples; ++s) {
-        LampRay ray = lampRay(l, p, s);
-        Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane] =
-            vec4(ray.target, ray.traced ? 1.0 : 0.0);
+        vec4 target = vec4(0.0);
+        if (!leftOut) {
+            LampRay ray = lampRay(l, p, s);
+            target = vec4(ray.target, ray.traced ? 1.0 : 0.0);
+        }
+        Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane] = target;
     }
 }

@@ -5,24 +5,28 @@
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { LayerDirectPush push; };
 #include "lib/replicates.glsl"
+#include "lib/penumbra.glsl"
 
 layout(local_size_x = 64) in;
 
 void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
+    uint kind = inPenumbra(index) ? 1u : 0u;
+    float scale = push.scale[kind], share = push.share[kind];
+    if (share == 0.0) return;
     vec3 value[kReplicates], sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) {
-        value[q] = push.scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+        value[q] = scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
         sum += value[q];
     }
     vec3 mean = max(sum / float(kReplicates), 0.0);
     float variance = spread(value);
-    if (push.share < 1.0) {
+    if (share < 1.0) {
         vec4 before = Vec4s(push.direct).items[index];
-        float rest = 1.0 - push.share;
-        mean = push.share * mean + rest * before.rgb;
-        variance = push.share * push.share * variance + rest * rest * before.w;
+        float rest = 1.0 - share;
+        mean = share * mean + rest * before.rgb;
+        variance = share * share * variance + rest * rest * before.w;
     }
     Vec4s(push.direct).items[index] = vec4(mean, variance);
 }

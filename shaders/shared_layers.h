@@ -1,13 +1,21 @@
 // Of layers, one light's share of the lightmap each: what their kernels are told. Part of shared.h, which
 // includes it.
 
+// Of the rounds of direct light that patches in a penumbra take, the others take the first and each so many
+// behind it.
+const uint kPenumbraRounds = 8u;
+
 // Adds some rounds of direct light to those before.
 struct LayerDirectPush {
     ADDRESS sums;   // vec4[kReplicates][patchCount], of these rounds
     ADDRESS direct; // vec4[patchCount]: lighting, and the variance of R, G and B together
+    ADDRESS parts;  // lib/penumbra.glsl
+    ADDRESS penumbra;
     uint patchCount;
-    float scale; // from a replicate's sum to its mean
-    float share; // of these rounds among all
+    // Outside penumbrae and within: from a replicate's sum to its mean, and the share of these rounds among
+    // all; 0: none.
+    vec2 scale;
+    vec2 share;
 };
 struct LayerResultPush {
     ADDRESS patches;

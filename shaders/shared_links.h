@@ -5,6 +5,8 @@ struct EmitterSamplesPush {
     ADDRESS nodes;    // EmitterNode[]
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
     ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
+    ADDRESS parts;    // lib/penumbra.glsl, as penumbra
+    ADDRESS penumbra; // 0: every patch takes every round
     uint firstChunk;
     uint round;
     uint pickCount;
@@ -17,7 +19,10 @@ struct DirectPush {
     ADDRESS bits;
     ADDRESS sums;   // vec4[kReplicates][patchCount]
     ADDRESS direct; // vec4[patchCount]: the mean so far
+    ADDRESS parts;
+    ADDRESS penumbra; // as of EmitterSamplesPush
     uint firstChunk;
+    uint round;
     uint pickCount;
     uint pointCount;
     uint all;
@@ -33,6 +38,8 @@ struct LampPush {
     ADDRESS direct;    // vec4[patchCount]: the mean so far
     ADDRESS skyPixels; // vec4[height][width]: lib/sky.glsl
     ADDRESS skyRows;   // float[height]
+    ADDRESS parts;
+    ADDRESS penumbra;  // as of EmitterSamplesPush
     uvec2 skySize;     // 0: one radiance
     float skyRotation; // [rad]
     float reach;       // [m], out of the scene from anywhere in it

@@ -1,0 +1,15 @@
+// Which patches take part in push.round of direct light; push.penumbra 0: all.
+#include "lib/penumbra.glsl"
+
+bool roundLeftOut(uint patchIndex) {
+    return push.penumbra != 0ul && push.round % kPenumbraRounds != 0u && !inPenumbra(patchIndex);
+}
+
+// The first round says what the others are to do; bit i: one of the lights i % 32.
+void noteLights(uint patchIndex, uint reached, uint hidden) {
+    if (push.penumbra == 0ul || push.round != 0u) return;
+    uint part = Words(push.parts).items[patchIndex];
+    uvec2 lights = Penumbrae(push.penumbra).items[part];
+    if ((reached & ~lights.x) != 0u) atomicOr(Penumbrae(push.penumbra).items[part].x, reached);
+    if ((hidden & ~lights.y) != 0u) atomicOr(Penumbrae(push.penumbra).items[part].y, hidden);
+}

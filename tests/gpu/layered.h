@@ -1,0 +1,91 @@
+#pragma once
+
+// A bake of layers whose scene is edited, and the room that is baked.
+#include "bake/layer_solver.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/gpu/light_at.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace relume {
+
+using Light4 = std::vector<glm::vec4>;
+
+inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
+/// A closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
+inline Scene room(float albedo = 0.6f) {
+    SceneMaker maker(64);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(albedo), 16);
+    maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, 8.0f), glm::uvec2(4));
+    maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
+    scene.lights.back().radius = 0.1f;
+    scene.lights.push_back(lightAt(LightType::Spot, {0.4f, 1.2f, 1.8f}, 9.0f, "Spot"));
+    scene.lights.back().color = {0.2f, 0.5f, 1.0f};
+    scene.lights.push_back(lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel"));
+    scene.lights.back().size = {0.3f, 0.2f};
+    return scene;
+}
+
+inline constexpr BakeDesc kQuick{
+    .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
+
+/// A bake of layers whose scene is edited.
+class Layered {
+public:
+    explicit Layered(Scene start, const BakeDesc& desc = kQuick)
+        : scene(std::move(start)), baker_(makeBaker(scene, desc)) {}
+
+    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    const SolverProgress& progress() { return solver().progress(); }
+    void finish() {
+        while (!solver().done())
+            solver().step();
+    }
+    void edit(const LightMix& mix = {}) {
+        while (!solver().atRest())
+            solver().step();
+        baker_->updateMaterials();
+        solver().edit(mix);
+    }
+    Light4 light() { return solver().light(); }
+    Light4 layer(size_t i) { return solver().layerLight(*solver().layers()[i]); }
+    const PatchSet& patches() const { return baker_->patches(); }
+    FloatImage image() const { return baker_->lightmap({.sew = false}); }
+
+    Scene scene;
+
+private:
+    std::unique_ptr<Baker> baker_;
+};
+
+inline Light4 freshLight(const Scene& scene, const BakeDesc& desc = kQuick) {
+    Layered fresh(scene, desc);
+    fresh.finish();
+    return fresh.light();
+}
+
+inline bool sameBytes(const Light4& a, const Light4& b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                              [](const glm::vec4& x, const glm::vec4& y) { return x == y; });
+}
+
+inline double meanOf(const Light4& light) {
+    double sum = 0;
+    for (const glm::vec4& v : light)
+        sum += double{v.r} + v.g + v.b;
+    return sum / (3.0 * static_cast<double>(light.size()));
+}
+
+inline glm::mat4 at(glm::vec3 position) {
+    return glm::translate(glm::mat4(1.0f), position);
+}
+
+} // namespace relume

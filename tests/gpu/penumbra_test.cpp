@@ -1,0 +1,87 @@
+// Direct light of layers, whose rays go where neighbours see a light unalike.
+#include "bake/tile_parts.h"
+#include "tests/gpu/layered.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kPoints = 1024; // on the light, per patch
+constexpr BakeDesc kDirect{.passes = 1, .method = Method::Hybrid, .samples = kPoints, .layers = true};
+
+/// A floor of 2 m below a panel, and a plate of a quarter of its edge between them.
+Scene shaded(LightType type = LightType::Rectangle) {
+    SceneMaker maker(64);
+    maker.quad({0, 0, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(40));
+    maker.quad({0.75f, 0.75f, 0.4f}, 0.5f * kX, 0.5f * kY, maker.material(0.5f), glm::uvec2(8));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(type, {1.0f, 1.0f, 1.5f}, 20.0f, "Panel"));
+    scene.lights.back().size = {0.3f, 0.3f};
+    scene.lights.back().radius = 0.15f;
+    return scene;
+}
+
+/// What every patch taking every ray would find.
+FloatImage everyRay(const Scene& scene) {
+    BakeDesc all = kDirect;
+    all.layers = false;
+    return bakeScene(scene, all).lighting;
+}
+
+} // namespace
+
+// Rays of every patch would be kPoints; the penumbra is an eighth of the floor.
+TEST(Penumbra, TakesTheRays) {
+    const Scene scene = shaded();
+    Layered bake(scene, kDirect);
+    bake.finish();
+    uint64_t patches = 0;
+    for (const shader::Patch& patch : bake.patches().scene.patches)
+        patches += (patch.flags & shader::kPatchSends) != 0;
+    const double perPatch = static_cast<double>(bake.progress().rays) / static_cast<double>(patches);
+    EXPECT_LT(perPatch, 0.6 * kPoints);
+    EXPECT_GT(perPatch, 0.15 * kPoints);
+    EXPECT_LE(relativeError(bake.image(), everyRay(scene)), 2e-3);
+    EXPECT_LE(bake.progress().error, 2e-3);
+}
+
+// Where no share is known each sample counts, and nothing may be left out.
+TEST(Penumbra, IsEverywhereWhereTheWholeLightIsUnknown) {
+    const Scene scene = shaded(LightType::Disc);
+    Layered bake(scene, kDirect);
+    bake.finish();
+    EXPECT_LE(relativeError(bake.image(), everyRay(scene)), 2e-3);
+    EXPECT_DOUBLE_EQ(bake.solver().layers()[0]->directShare(), 1.0);
+}
+
+// Step by step as far as at once, but for rounding.
+TEST(Penumbra, IsThatOfTheFirstRound) {
+    const Scene scene = shaded();
+    Layered few(scene, {.passes = 1, .method = Method::Hybrid, .samples = 8, .layers = true}),
+        many(scene, kDirect);
+    few.finish();
+    many.finish();
+    EXPECT_EQ(few.solver().layers()[0]->penumbra, many.solver().layers()[0]->penumbra);
+    EXPECT_EQ(few.solver().layers()[0]->directRounds, 1u);
+}
+
+TEST(Penumbra, PartsAreThoseOfOneTileAndObject) {
+    Layered bake(room());
+    const PatchSet& set = bake.patches();
+    const TileParts parts = makeTileParts(set);
+    std::vector<std::set<std::pair<uint32_t, uint32_t>>> tiles(parts.count); // and objects
+    for (size_t i = 0; i < set.scene.patches.size(); ++i) {
+        const uint32_t texel = set.scene.patches[i].flags >> 8, size = set.scene.size;
+        tiles[parts.ofPatch[i]].insert({texel / size / 8 * size + texel % size / 8, set.instance[i]});
+        const auto own = parts.of(static_cast<uint32_t>(i / shader::kChunk));
+        EXPECT_NE(std::find(own.begin(), own.end(), parts.ofPatch[i]), own.end());
+    }
+    for (const auto& part : tiles)
+        EXPECT_EQ(part.size(), 1u);
+}
+
+} // namespace relume
