@@ -35,7 +35,7 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
         const bool all = emitters <= kAllEmitters;
         groups_.push_back({.polygons = vk::makeBuffer(device_, set.polygons, "emitters"),
                            .nodes = vk::makeBuffer(device_, set.nodes, "light tree"),
-                           .picks = all ? emitters : links_ / kPointsPerPick,
+                           .picks = all ? emitters : std::max(links_ / kPointsPerPick, kReplicates),
                            .points = all ? links_ : kPointsPerPick,
                            .all = all});
         picks = std::max(picks, groups_.back().picks);

@@ -15,7 +15,8 @@ namespace relume {
 /// each sampled by itself: for each group record samples, trace segments(), then gather.
 class EmitterLight {
 public:
-    /// links: of a round; as many points on emitters are about what one takes.
+    /// links: of a round; as many points on emitters are about what one takes, but those of a pick for each
+    /// replicate at least.
     EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links);
 
     /// Groups in place of those before. No batch may be under way.

@@ -28,11 +28,12 @@ LayerLevel LayerSolver::lastLevel() const {
     return {rounds(kPointsOfRound), settings_.passes == 1 ? 0 : rounds(linksOfRound_)};
 }
 
-// What a light that is moved shows at once. A GPU has time for a second round of links within a frame: an
-// H100 at 1024 squared for 1.3 ms, where a second one of direct light takes 3.5 and helps less.
+// What a light that is moved shows at once: with a second round of direct light in its penumbra. A GPU has
+// time for a second round of links within a frame, too: an H100 at 1024 squared for 1.3 ms.
 LayerLevel LayerSolver::firstLevel() const {
     const uint32_t linkRounds = input_.device.info().software() ? 1 : 2;
-    return {1, std::min(linkRounds, lastLevel().linkRounds)};
+    const LayerLevel last = lastLevel();
+    return {std::min(2u, last.directRounds), std::min(linkRounds, last.linkRounds)};
 }
 
 // More of what takes away more of the variance for its cost. Costs are those of rays, whether or not links

@@ -64,8 +64,8 @@ public:
     /// links are.
     bool atRest() const { return !relink_ && (!work_ || work_->sum || layers_[work_->layer]->has()); }
 
-    /// Points on each light per patch and round, at most: few, so that a light that moves is seen soon.
-    static constexpr uint32_t kPointsOfRound = 2 * shader::kReplicates;
+    /// Points on each light per patch and round: few, so that a light that moves is seen soon.
+    static constexpr uint32_t kPointsOfRound = shader::kReplicates;
 
 private:
     enum class Stage : uint8_t { Direct, Bounces, Gather };

@@ -66,7 +66,7 @@ TEST(Penumbra, IsThatOfTheFirstRound) {
     few.finish();
     many.finish();
     EXPECT_EQ(few.solver().layers()[0]->penumbra, many.solver().layers()[0]->penumbra);
-    EXPECT_EQ(few.solver().layers()[0]->directRounds, 1u);
+    EXPECT_EQ(few.solver().layers()[0]->directRounds, 2u);
 }
 
 TEST(Penumbra, PartsAreThoseOfOneTileAndObject) {
