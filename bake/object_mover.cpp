@@ -149,6 +149,21 @@ std::optional<ObjectMover::Moved> ObjectMover::moved() const {
     return moved;
 }
 
+// Tiles around their texels; one of what has none.
+TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
+    const uint32_t size = on_.patches.scene.size;
+    glm::uvec2 first(slots.empty() ? 0 : size), last(0);
+    for (const uint32_t slot : slots) {
+        const uint32_t texel = texels_[slot] & ~kHome;
+        const glm::uvec2 at(texel % size, texel / size);
+        first = glm::min(first, at);
+        last = glm::max(last, at);
+    }
+    first = first / kTileTexels * kTileTexels;
+    last = glm::min(last / kTileTexels * kTileTexels + kTileTexels, glm::uvec2(size));
+    return {first.x, first.y, last.x - first.x, last.y - first.y};
+}
+
 // Nothing: their triangles or patches are not those that were there.
 std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) const {
     const TraceScene& all = on_.patches.scene;
@@ -162,28 +177,22 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
         if (all.mesh.instance[part.triangles[t]] != mesh.instance[t]) return {};
     part.slots = slots_.of(moved.shown);
     if (mesh.triangleCount() == 0) return part;
-    uint32_t first = all.size, last = 0; // rows
-    for (const uint32_t slot : part.slots) {
-        const uint32_t row = (texels_[slot] & ~kHome) / all.size;
-        first = std::min(first, row);
-        last = std::max(last, row + 1);
-    }
-    TextureGroup group = rasterizeTextureGroup(on_.device, on_.scene, mesh,
-                                               {.size = all.size,
-                                                .conservative = conservative_,
-                                                .firstRow = first,
-                                                .rows = std::max(first, last) - first});
+    const TexelWindow window = windowOf(part.slots);
+    TextureGroup group = rasterizeTextureGroup(
+        on_.device, on_.scene, mesh, {.size = all.size, .conservative = conservative_, .window = window});
+    const auto place = [&](uint32_t texel) { return window.index(texel % all.size, texel / all.size); };
     // Texels that charts share are whose they were.
     std::vector<uint32_t> triangle(group.triangle.size(), 0);
-    for (const uint32_t slot : part.slots)
-        if ((texels_[slot] & kHome) != 0)
-            triangle[texels_[slot] & ~kHome] = group.triangle[texels_[slot] & ~kHome];
+    for (const uint32_t slot : part.slots) {
+        const size_t at = place(texels_[slot] & ~kHome);
+        if ((texels_[slot] & kHome) != 0) triangle[at] = group.triangle[at];
+    }
     group.triangle = std::move(triangle);
     part.patches = buildPatches(on_.scene, std::move(mesh), group, {.part = true});
     if (part.patches.count != part.slots.size()) return {};
     for (uint32_t i = 0; i < part.patches.count; ++i) {
         const uint32_t texel = part.patches.scene.patches[i].flags >> 8;
-        const bool home = part.patches.scene.texelToPatch[texel] == i;
+        const bool home = part.patches.scene.texelToPatch[place(texel)] == i;
         if (texels_[part.slots[i]] != (texel | (home ? kHome : 0u))) return {};
     }
     return part;

@@ -56,6 +56,7 @@ private:
     struct Buffers; // to ask whether patches lie inside something
     std::optional<Moved> moved() const;
     std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas) const;
+    TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
     std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
     void putTriangles(const Part& part);
     std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);

@@ -102,11 +102,11 @@ std::vector<shader::CitMaterial> citMaterials(const Scene& scene, const WorldMes
 }
 
 std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector<VkFormat>& formats,
-                                     uint32_t size) {
+                                     VkExtent2D extent) {
     std::vector<vk::Image2D> images;
     for (VkFormat format : formats) {
-        images.emplace_back(device, vk::Image2D::Desc{.width = size,
-                                                      .height = size,
+        images.emplace_back(device, vk::Image2D::Desc{.width = extent.width,
+                                                      .height = extent.height,
                                                       .format = format,
                                                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
                                                                VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
@@ -118,33 +118,32 @@ std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector
 // Copies an image in TRANSFER_SRC_OPTIMAL to the host, one row of values per texel row.
 template<typename T>
 std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image,
-                         const CitDesc& desc) {
-    const uint32_t first = std::min(desc.firstRow, image.height());
-    const uint32_t rows = std::min(desc.rows, image.height() - first);
-    std::vector<T> values(size_t{image.width()} * image.height());
-    const size_t bytes = size_t{image.width()} * rows * sizeof(T);
-    if (bytes == 0) return values;
-    const vk::Buffer staging(device,
-                             {.size = bytes, .memory = vk::Memory::Host, .name = "texture group readback"});
+                         const TexelWindow& window) {
+    const vk::Buffer staging(
+        device,
+        {.size = window.size() * sizeof(T), .memory = vk::Memory::Host, .name = "texture group readback"});
     VkCommandBuffer cmd = commands.begin();
-    const VkBufferImageCopy region{.bufferOffset = 0,
-                                   .bufferRowLength = 0,
-                                   .bufferImageHeight = 0,
-                                   .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                   .imageOffset = {0, static_cast<int32_t>(first), 0},
-                                   .imageExtent = {image.width(), rows, 1}};
+    const VkBufferImageCopy region{
+        .bufferOffset = 0,
+        .bufferRowLength = 0,
+        .bufferImageHeight = 0,
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+        .imageOffset = {static_cast<int32_t>(window.column), static_cast<int32_t>(window.row), 0},
+        .imageExtent = {window.columns, window.rows, 1}};
     vkCmdCopyImageToBuffer(cmd, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle(), 1,
                            &region);
     vk::hostBarrier(cmd);
     commands.run();
-    std::memcpy(values.data() + size_t{image.width()} * first, staging.mapped(), bytes);
-    return values;
+    const T* values = staging.as<T>();
+    return std::vector<T>(values, values + window.size());
 }
 
 } // namespace
 
 TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
                                    const CitDesc& desc) {
+    const TexelWindow window = desc.window.value_or(TexelWindow{0, 0, desc.size, desc.size});
+    ASSERT(window.size() > 0);
     TextureArray textures(device, scene);
     const vk::Buffer materials = vk::makeBuffer(device, citMaterials(scene, mesh, textures), "materials");
     const std::vector<VkFormat> formats = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -158,7 +157,9 @@ TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene,
                                .textureCount = static_cast<uint32_t>(bound.size()),
                                .constants = {}},
                               bound);
-    const std::vector<vk::Image2D> images = makeTargets(device, formats, desc.size);
+    // No pixel moves, so that all get what they would in the whole lightmap, to the bit.
+    const std::vector<vk::Image2D> images =
+        makeTargets(device, formats, {window.column + window.columns, window.row + window.rows});
     std::vector<const vk::Image2D*> targets;
     for (const vk::Image2D& image : images)
         targets.push_back(&image);
@@ -184,16 +185,20 @@ TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene,
                                .grownCount = desc.conservative ? mesh.triangleCount() : 0u,
                                .rtrad = desc.rtrad ? 1u : 0u};
     vk::Commands commands(device);
-    program.draw(commands.begin(), push, targets, 3 * (mesh.triangleCount() + push.grownCount));
+    program.draw(commands.begin(), push, targets, 3 * (mesh.triangleCount() + push.grownCount),
+                 {.viewport = {desc.size, desc.size},
+                  .area = {{static_cast<int32_t>(window.column), static_cast<int32_t>(window.row)},
+                           {window.columns, window.rows}}});
     commands.run();
 
     TextureGroup group;
     group.size = desc.size;
-    group.pos = readImage<glm::vec4>(device, commands, images[0], desc);
-    group.nrm = readImage<glm::vec4>(device, commands, images[1], desc);
-    group.mat = readImage<glm::vec4>(device, commands, images[2], desc);
-    group.emission = readImage<glm::vec4>(device, commands, images[3], desc);
-    group.triangle = readImage<uint32_t>(device, commands, images[4], desc);
+    group.window = window;
+    group.pos = readImage<glm::vec4>(device, commands, images[0], window);
+    group.nrm = readImage<glm::vec4>(device, commands, images[1], window);
+    group.mat = readImage<glm::vec4>(device, commands, images[2], window);
+    group.emission = readImage<glm::vec4>(device, commands, images[3], window);
+    group.triangle = readImage<uint32_t>(device, commands, images[4], window);
     return group;
 }
 
