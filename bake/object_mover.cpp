@@ -2,7 +2,6 @@
 
 #include "assets/error.h"
 #include "bake/baker.h"
-#include "bake/texture_group.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -164,8 +163,21 @@ TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
     return {first.x, first.y, last.x - first.x, last.y - first.y};
 }
 
+// An object that is dragged is drawn again and again: what that takes stays, but for large textures.
+TextureGroup ObjectMover::rasterize(const WorldMesh& mesh, const TexelWindow& window) {
+    constexpr uint64_t kMostKept = uint64_t{64} << 20; // [bytes]
+    if (!cit_ || !cit_->serves(mesh)) {
+        cit_.reset();
+        cit_ = std::make_unique<CitPass>(on_.device, on_.scene, mesh);
+    }
+    TextureGroup group = cit_->draw(
+        on_.scene, mesh, {.size = on_.patches.scene.size, .conservative = conservative_, .window = window});
+    if (cit_->bytes() > kMostKept) cit_.reset();
+    return group;
+}
+
 // Nothing: their triangles or patches are not those that were there.
-std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) const {
+std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) {
     const TraceScene& all = on_.patches.scene;
     Part part;
     part.goneSlots = slots_.of(moved.gone);
@@ -178,8 +190,7 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
     part.slots = slots_.of(moved.shown);
     if (mesh.triangleCount() == 0) return part;
     const TexelWindow window = windowOf(part.slots);
-    TextureGroup group = rasterizeTextureGroup(
-        on_.device, on_.scene, mesh, {.size = all.size, .conservative = conservative_, .window = window});
+    TextureGroup group = rasterize(mesh, window);
     const auto place = [&](uint32_t texel) { return window.index(texel % all.size, texel / all.size); };
     // Texels that charts share are whose they were.
     std::vector<uint32_t> triangle(group.triangle.size(), 0);

@@ -6,6 +6,7 @@
 
 #include "assets/lightmap_atlas.h"
 #include "assets/scene_edits.h"
+#include "bake/cit_pass.h"
 #include "bake/light_buffers.h"
 #include "bake/object_move.h"
 #include "bake/trace/tracer.h"
@@ -55,7 +56,8 @@ private:
     struct Part;    // of the scene, as new patches and triangles have it
     struct Buffers; // to ask whether patches lie inside something
     std::optional<Moved> moved() const;
-    std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas) const;
+    std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas);
+    TextureGroup rasterize(const WorldMesh& mesh, const TexelWindow& window);
     TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
     std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
     void putTriangles(const Part& part);
@@ -75,6 +77,7 @@ private:
     std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown
     std::vector<glm::uvec2> inside_;   // per patch: a bit for each direction that meets a back, the sky
     std::unique_ptr<Buffers> buffers_; // once something moves
+    std::unique_ptr<CitPass> cit_;     // of what moved last
 };
 
 } // namespace relume

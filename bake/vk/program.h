@@ -112,6 +112,14 @@ public:
         ASSERT(!targets.empty());
         drawBytes(cmd, {&push, sizeof(Push)}, targets, window, vertexCount);
     }
+    /// The whole of the targets.
+    template<typename Push>
+    void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
+              uint32_t vertexCount) {
+        ASSERT(!targets.empty());
+        const VkExtent2D whole{targets[0]->width(), targets[0]->height()};
+        draw(cmd, push, targets, vertexCount, {.viewport = whole, .area = {{0, 0}, whole}});
+    }
     /// Without colour attachments: draws over extent.width x extent.height pixels what the fragments write
     /// into buffers. The barrier behind it is the caller's.
     template<typename Push>
