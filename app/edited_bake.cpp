@@ -1,7 +1,6 @@
 #include "app/edited_bake.h"
 
 #include "app/solve.h"
-#include "app/stopwatch.h"
 #include "assets/error.h"
 
 #include <algorithm>
@@ -116,57 +115,63 @@ void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first,
                          std::memcmp(again.data(), first.data(), first.size() * sizeof(first[0])) == 0;
 }
 
-EditedBake::Repaint EditedBake::repaint(uint32_t material, const glm::vec4& baseColor) {
-    ASSERT(solver().atRest());
-    const uint64_t before = solver().layers().front()->pattern.surfaces;
+// To the end of an edit by which this member of all patterns is no more what it was.
+EditedBake::Seen EditedBake::seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch) {
     const auto ready = [&](const std::unique_ptr<Layer>& layer) {
-        return layer->pattern.surfaces != before && layer->has();
+        return layer->pattern.*changed != before && layer->has();
     };
-    scene_.materials[material].baseColor = baseColor;
     const PatchSet& patches = baker_->patches();
     PatchLight picture;
-    Repaint times;
+    Seen seen;
+    do {
+        watch([&] { solver().step(); });
+        stopIfInterrupted();
+        const std::vector<std::unique_ptr<Layer>>& layers = solver().layers();
+        const bool first = seen.first == 0 && solver().current();
+        const bool every = seen.all == 0 && std::all_of(layers.begin(), layers.end(), ready);
+        if (!first && !every) continue;
+        const LiveLight live = watch([&] { return solver().liveLight(); });
+        if (every) seen.all = watch.seconds;
+        if (!first) continue;
+        seen.first = watch.seconds;
+        picture = vk::readBuffer<glm::vec4>(device_, *live.light, patches.scene.patches.size());
+    } while (!solver().done());
+    watch([&] { solver().liveLight(); });
+    seen.end = watch.seconds;
+    seen.firstError = compareLight(patches, picture, solver().light()).relRmse;
+    return seen;
+}
+
+EditedBake::Seen EditedBake::repaint(uint32_t material, const glm::vec4& baseColor) {
+    ASSERT(solver().atRest());
+    const uint64_t before = solver().layers().front()->pattern.surfaces;
+    scene_.materials[material].baseColor = baseColor;
     Stopwatch watch;
     watch([&] {
         baker_->updateMaterials();
         solver().edit({});
     });
-    do {
-        watch([&] { solver().step(); });
-        stopIfInterrupted();
-        const std::vector<std::unique_ptr<Layer>>& layers = solver().layers();
-        const bool first = times.first == 0 && solver().current();
-        const bool every = times.all == 0 && std::all_of(layers.begin(), layers.end(), ready);
-        if (!first && !every) continue;
-        const LiveLight live = watch([&] { return solver().liveLight(); });
-        if (every) times.all = watch.seconds;
-        if (!first) continue;
-        times.first = watch.seconds;
-        picture = vk::readBuffer<glm::vec4>(device_, *live.light, patches.scene.patches.size());
-    } while (!solver().done());
-    times.firstError = compareLight(patches, picture, solver().light()).relRmse;
-    return times;
+    return seeLayers(&LightPattern::surfaces, before, watch);
 }
 
 std::optional<EditedBake::Replacement> EditedBake::place(uint32_t instance, const glm::mat4& transform,
                                                          const LightmapAtlas& atlas) {
     ASSERT(solver().atRest());
+    const uint64_t objects = solver().layers().front()->pattern.objects;
     const glm::mat4 before = std::exchange(scene_.instances[instance].transform, transform);
-    Replacement times;
     Stopwatch watch;
     const std::optional<ObjectMove> move = watch([&] { return baker_->moveObjects(atlas); });
     if (!move) {
         scene_.instances[instance].transform = before;
         return {};
     }
+    Replacement times;
     times.follow = watch.seconds;
     watch([&] {
         solver().moveObjects(*move);
         solver().edit({});
-        bakeToEnd(solver());
-        solver().liveLight();
     });
-    times.all = watch.seconds;
+    times.seen = seeLayers(&LightPattern::objects, objects, watch);
     return times;
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/edits_report.h"
 #include "app/light_difference.h"
+#include "app/stopwatch.h"
 #include "assets/lightmap_atlas.h"
 #include "bake/baker.h"
 #include "bake/layer_solver.h"
@@ -42,15 +43,18 @@ public:
     MoveEdit move(const std::vector<Light>& lights, const MoveReferences& references);
     /// Back to the lights before. `first`: firstLamp() as it was then.
     void undo(const std::vector<Light>& lights, const PatchLight& first, MoveEdit& edit);
-    struct Repaint {
-        double first = 0, all = 0;        // until there is a picture of it, and until all layers have it [s]
+    /// What became of an edit that all layers follow [s].
+    struct Seen {
+        double first = 0;                 // until there is a picture of it, all lights in one
+        double all = 0;                   // until all layers have it
+        double end = 0;                   // until they have the error that is asked for
         std::optional<double> firstError; // relRMSE of that picture against the one of the layers
     };
-    Repaint repaint(uint32_t material, const glm::vec4& baseColor);
+    Seen repaint(uint32_t material, const glm::vec4& baseColor);
 
     struct Replacement {
-        double follow = 0,
-               all = 0; // for patches, triangles and tracer; with that, until the error is reached [s]
+        double follow = 0; // for patches, triangles and tracer [s], which counts in what follows
+        Seen seen;
     };
     /// Puts an object elsewhere. Nothing: that cannot be followed, and it stays where it is.
     std::optional<Replacement> place(uint32_t instance, const glm::mat4& transform,
@@ -60,6 +64,7 @@ public:
 private:
     LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
     const Layer* movedLayer();
+    Seen seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch);
 
     const vk::Device& device_;
     Scene scene_;

@@ -289,7 +289,7 @@ private:
             // Another colour in each run, or the layers of the run before would serve.
             const float factor = 0.8f - 0.4f * static_cast<float>(run) / static_cast<float>(desc_.runs);
             const SolverCounters before = edited_.progress();
-            const EditedBake::Repaint times =
+            const EditedBake::Seen times =
                 edited_.repaint(*index, glm::vec4(factor * glm::vec3(colour), colour.a));
             rate.add(before, edited_.progress());
             edit.rays = std::max(edit.rays, edited_.progress().rays - before.rays);
@@ -311,8 +311,10 @@ private:
         if (!object) return {};
         const auto [index, share] = *object;
         const glm::mat4 home = scene.instances[index].transform;
-        ObjectEdit edit{.object = scene.instances[index].name, .share = share};
-        std::vector<double> follow, all;
+        ObjectEdit edit;
+        edit.object = scene.instances[index].name;
+        edit.share = share;
+        std::vector<double> follow, first, all;
         for (uint32_t run = 0; run < desc_.runs; ++run) {
             const glm::vec3 way(kObjectWay + static_cast<float>(run) * kNudge, 0.0f, 0.0f);
             const glm::mat4 there = glm::translate(glm::mat4(1.0f), places_.diagonal * way) * home;
@@ -320,12 +322,15 @@ private:
             const auto times = edited_.place(index, there, atlas_);
             if (!times) return {};
             follow.push_back(times->follow);
-            all.push_back(times->all);
+            first.push_back(times->seen.first);
+            edit.firstError = times->seen.firstError;
+            all.push_back(times->seen.end);
             edit.rays = std::max(edit.rays, edited_.progress().rays - rays);
             if (run == 0) measureFreshObject(lights, edit);
             edited_.place(index, home, atlas_);
         }
         edit.followSeconds = median(std::move(follow));
+        edit.firstSeconds = median(std::move(first));
         edit.seconds = median(std::move(all));
         return edit;
     }

@@ -81,13 +81,16 @@ Json describe(const EditsRun& run) {
         json["object"] = {{"object", run.object->object},
                           {"shareOfTriangles", run.object->share},
                           {"followSeconds", run.object->followSeconds},
+                          {"firstSeconds", run.object->firstSeconds},
+                          {"firstError", number(run.object->firstError)},
                           {"seconds", run.object->seconds},
                           {"rays", run.object->rays},
                           {"freshSeconds", run.object->freshSeconds},
                           {"freshPreparationSeconds", run.object->freshPreparation},
                           {"freshRays", run.object->freshRays},
                           {"difference", number(run.object->difference)},
-                          {"overObject", number(ratio(run.object->freshSeconds, run.object->seconds))}};
+                          {"overObject", number(ratio(run.object->freshSeconds, run.object->seconds))},
+                          {"overFirst", number(ratio(run.object->freshSeconds, run.object->firstSeconds))}};
     json["links"] = {{"bytes", run.links.bytes},
                      {"bytesPerLink", number(run.links.bytesPerLink)},
                      {"perSecondMove", number(run.links.perSecondMove)},
@@ -142,9 +145,12 @@ std::vector<Row> objectRows() {
     return {
         row("object: share of triangles", [](Edit e) { return percent(e.share); }),
         row("  moved: patches and tracer after", [](Edit e) { return time(e.followSeconds); }),
+        row("  first picture after", [](Edit e) { return time(e.firstSeconds); }),
+        row("  off all layers'", [](Edit e) { return percent(e.firstError); }),
         row("  all layers after", [](Edit e) { return time(e.seconds); }),
         row("  rays", [](Edit e) { return std::to_string(e.rays); }),
         row("  fresh, layers: to the error", [](Edit e) { return time(e.freshSeconds); }),
+        row("  over the first picture", [](Edit e) { return times(ratio(e.freshSeconds, e.firstSeconds)); }),
         row("  over the object", [](Edit e) { return times(ratio(e.freshSeconds, e.seconds)); }),
         row("  off the fresh layers", [](Edit e) { return percent(e.difference); }),
     };

@@ -62,9 +62,11 @@ struct AlbedoEdit {
 /// Of an object with about a hundredth of the triangles, by a twentieth of the diagonal.
 struct ObjectEdit {
     std::string object;
-    double share = 0;         // of the triangles
-    double followSeconds = 0; // for patches, triangles and tracer
-    double seconds = 0;       // with that, until all layers have the error that they had
+    double share = 0;                 // of the triangles
+    double followSeconds = 0;         // for patches, triangles and tracer, which counts in what follows
+    double firstSeconds = 0;          // until there is a picture of it, all lights in one
+    std::optional<double> firstError; // its relRMSE against the picture of all layers
+    double seconds = 0;               // until all layers have the error that they had
     uint64_t rays = 0;
     double freshSeconds = 0; // a fresh bake in layers until it has the error, without what goes before
     double freshPreparation = 0;

@@ -73,11 +73,18 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
 
 LayerSolver::~LayerSolver() = default;
 
+// Of all chunks at first, then of those in which objects have moved.
 void LayerSolver::countSenders() {
     const std::vector<shader::Patch>& patches = input_.patches.scene.patches;
-    senders_.assign(input_.patches.chunkCount(), 0);
-    for (size_t i = 0; i < patches.size(); ++i)
-        senders_[i / kChunk] += (patches[i].flags & shader::kPatchSends) != 0;
+    senders_.resize(input_.patches.chunkCount(), 0);
+    for (uint32_t chunk = 0; chunk < senders_.size(); ++chunk) {
+        if (moved_ && !moved_->changes(chunk)) continue;
+        const auto first = patches.begin() + size_t{chunk} * kChunk;
+        senders_[chunk] =
+            static_cast<uint32_t>(std::count_if(first, first + kChunk, [](const shader::Patch& p) {
+                return (p.flags & shader::kPatchSends) != 0;
+            }));
+    }
 }
 
 void LayerSolver::step() {

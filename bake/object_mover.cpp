@@ -1,12 +1,13 @@
 #include "bake/object_mover.h"
 
 #include "assets/error.h"
-#include "bake/texture_group.h"
+#include "bake/baker.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace relume {
@@ -23,51 +24,114 @@ constexpr size_t kMostBoxes = 4;
 constexpr uint32_t kKept = 0xfffffff0u;
 static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
 
-bool contains(const std::vector<uint32_t>& sorted, uint32_t value) {
-    return std::binary_search(sorted.begin(), sorted.end(), value);
+// Of ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
+constexpr uint32_t kHome = 0x80000000u;
+static_assert(kHome > Baker::kMaxSize * Baker::kMaxSize);
+
+bool liesInside(const shader::Patch& patch) {
+    return patch.area > 0.0f && (patch.flags & shader::kPatchSends) == 0;
 }
 
-// Of triangles or patches whose instances these are, the indices of those that are among some.
-std::vector<uint32_t> indicesOf(const std::vector<uint32_t>& instances, const std::vector<uint32_t>& some) {
-    std::vector<uint32_t> indices;
-    if (some.empty()) return indices;
-    for (uint32_t i = 0; i < instances.size(); ++i)
-        if (contains(some, instances[i])) indices.push_back(i);
-    return indices;
+bool liesInside(const glm::uvec2& bits) {
+    return relume::liesInside(static_cast<uint32_t>(std::popcount(bits.x)),
+                              static_cast<uint32_t>(std::popcount(bits.y)), ObjectMover::kInsideSamples);
+}
+
+void change(ObjectMove& move, uint32_t patch) {
+    move.changed[patch / kChunk][static_cast<int>(patch % kChunk / 32)] |= 1u << patch % 32;
+}
+
+void sortUnique(std::vector<uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+std::vector<uint32_t> merged(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
+    std::vector<uint32_t> both;
+    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both;
 }
 
 } // namespace
 
 struct ObjectMover::Part {
     PatchSet patches;
-    std::vector<uint32_t> slots, triangles; // where they belong among all
+    std::vector<uint32_t> slots, triangles;         // where they belong among all
+    std::vector<uint32_t> goneSlots, goneTriangles; // of what is hidden now
 };
+
+struct ObjectMover::Buffers {
+    uint32_t chunks; // in a batch
+    vk::Buffer links, list, listed, rays;
+    vk::Commands commands;
+
+    // As Baker::findInvalid has them, but that few rays are traced of each batch.
+    Buffers(const vk::Device& device, uint32_t chunkCount)
+        : chunks(std::min(device.info().software() ? 64u : 1024u, chunkCount)),
+          links(
+              device,
+              {.size = words() * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links from inside"}),
+          list(device, {.size = (words() + 1) * sizeof(uint32_t), .name = "links to trace"}),
+          listed(device,
+                 {.size = listedBytes(), .memory = vk::Memory::Host, .name = "links that were traced"}),
+          rays(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}), commands(device) {}
+
+    uint64_t words() const { return uint64_t{chunks} * kInsideSamples * kChunk; }
+    // What comes back with the batch of its list: more is seldom listed, and read afterwards.
+    VkDeviceSize listedBytes() const {
+        constexpr uint64_t kAtOnce = 16383; // with their number 64 KiB
+        return (1 + std::min(kAtOnce, words())) * sizeof(uint32_t);
+    }
+};
+
+ObjectMover::Members::Members(const std::vector<uint32_t>& instanceOf, size_t instances)
+    : first_(instances + 2, 0), members_(instanceOf.size()) {
+    for (const uint32_t instance : instanceOf) // padding is of one more
+        ++first_[instance + 1];
+    for (size_t i = 1; i < first_.size(); ++i)
+        first_[i] += first_[i - 1];
+    std::vector<uint32_t> next = first_;
+    for (uint32_t i = 0; i < instanceOf.size(); ++i)
+        members_[next[instanceOf[i]]++] = i;
+}
+
+std::vector<uint32_t> ObjectMover::Members::of(const std::vector<uint32_t>& instances) const {
+    std::vector<uint32_t> all;
+    for (const uint32_t instance : instances)
+        all.insert(all.end(), members_.begin() + first_[instance], members_.begin() + first_[instance + 1]);
+    if (instances.size() > 1) std::sort(all.begin(), all.end());
+    return all;
+}
 
 ObjectMover::ObjectMover(const On& on, bool conservative)
     : on_(on), conservative_(conservative), placed_(editsOf(on.scene).placements),
-      homes_(on.patches.scene.texelToPatch) {
+      triangles_(on.patches.scene.mesh.instance, placed_.size()),
+      slots_(on.patches.instance, placed_.size()) {
     for (const Placement& placement : placed_)
         known_.push_back(!placement.hidden);
+    const std::vector<shader::Patch>& patches = on.patches.scene.patches;
+    texels_.resize(patches.size());
+    for (uint32_t i = 0; i < patches.size(); ++i) {
+        const uint32_t texel = patches[i].flags >> 8;
+        texels_[i] = texel | (on.patches.scene.texelToPatch[texel] == i ? kHome : 0u);
+    }
 }
 
+ObjectMover::~ObjectMover() = default;
+
 void ObjectMover::noteInside(const std::vector<uint32_t>& links) {
-    inside_.assign(on_.patches.scene.patches.size(), glm::uvec2(0));
-    for (size_t i = 0; i < inside_.size(); ++i) {
+    const std::vector<shader::Patch>& patches = on_.patches.scene.patches;
+    inside_.assign(patches.size(), glm::uvec2(0));
+    invalid_ = 0;
+    for (uint32_t i = 0; i < inside_.size(); ++i) {
         const size_t base = i / kChunk * kInsideSamples * kChunk + i % kChunk;
         for (uint32_t k = 0; k < kInsideSamples; ++k) {
             const uint32_t link = links[base + size_t{k} * kChunk];
             inside_[i].x |= uint32_t{link == shader::kLinkBack} << k;
             inside_[i].y |= uint32_t{link == shader::kLinkSky} << k;
         }
+        invalid_ += patches[i].area > 0.0f && liesInside(inside_[i]);
     }
-}
-
-uint32_t ObjectMover::invalidPatches() const {
-    const auto& patches = on_.patches.scene.patches;
-    return static_cast<uint32_t>(
-        std::count_if(patches.begin(), patches.begin() + on_.patches.count, [](const shader::Patch& p) {
-            return p.area > 0.0f && (p.flags & shader::kPatchSends) == 0;
-        }));
 }
 
 // Nothing: some of them were hidden from the beginning.
@@ -84,56 +148,78 @@ std::optional<ObjectMover::Moved> ObjectMover::moved() const {
     return moved;
 }
 
+// Tiles around their texels; one of what has none.
+TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
+    const uint32_t size = on_.patches.scene.size;
+    glm::uvec2 first(slots.empty() ? 0 : size), last(0);
+    for (const uint32_t slot : slots) {
+        const uint32_t texel = texels_[slot] & ~kHome;
+        const glm::uvec2 at(texel % size, texel / size);
+        first = glm::min(first, at);
+        last = glm::max(last, at);
+    }
+    first = first / kTileTexels * kTileTexels;
+    last = glm::min(last / kTileTexels * kTileTexels + kTileTexels, glm::uvec2(size));
+    return {first.x, first.y, last.x - first.x, last.y - first.y};
+}
+
+// An object that is dragged is drawn again and again: what that takes stays, but for large textures.
+TextureGroup ObjectMover::rasterize(const WorldMesh& mesh, const TexelWindow& window) {
+    constexpr uint64_t kMostKept = uint64_t{64} << 20; // [bytes]
+    if (!cit_ || !cit_->serves(mesh)) {
+        cit_.reset();
+        cit_ = std::make_unique<CitPass>(on_.device, on_.scene, mesh);
+    }
+    TextureGroup group = cit_->draw(
+        on_.scene, mesh, {.size = on_.patches.scene.size, .conservative = conservative_, .window = window});
+    if (cit_->bytes() > kMostKept) cit_.reset();
+    return group;
+}
+
 // Nothing: their triangles or patches are not those that were there.
-std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) const {
+std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) {
     const TraceScene& all = on_.patches.scene;
     Part part;
+    part.goneSlots = slots_.of(moved.gone);
+    part.goneTriangles = triangles_.of(moved.gone);
     WorldMesh mesh = flattenInstances(on_.scene, atlas, moved.shown);
-    part.triangles = indicesOf(all.mesh.instance, moved.shown);
+    part.triangles = triangles_.of(moved.shown);
     if (part.triangles.size() != mesh.triangleCount()) return {};
     for (uint32_t t = 0; t < mesh.triangleCount(); ++t)
         if (all.mesh.instance[part.triangles[t]] != mesh.instance[t]) return {};
-    part.slots = indicesOf(on_.patches.instance, moved.shown);
+    part.slots = slots_.of(moved.shown);
     if (mesh.triangleCount() == 0) return part;
+    const TexelWindow window = windowOf(part.slots);
+    TextureGroup group = rasterize(mesh, window);
+    const auto place = [&](uint32_t texel) { return window.index(texel % all.size, texel / all.size); };
     // Texels that charts share are whose they were.
-    std::vector<uint8_t> own(homes_.size());
-    uint32_t first = all.size, last = 0; // rows
-    for (uint32_t texel = 0; texel < homes_.size(); ++texel) {
-        const uint32_t home = homes_[texel];
-        own[texel] = home != kNoPatch && contains(moved.shown, on_.patches.instance[home]);
-        if (own[texel] == 0) continue;
-        first = std::min(first, texel / all.size);
-        last = texel / all.size + 1;
+    std::vector<uint32_t> triangle(group.triangle.size(), 0);
+    for (const uint32_t slot : part.slots) {
+        const size_t at = place(texels_[slot] & ~kHome);
+        if ((texels_[slot] & kHome) != 0) triangle[at] = group.triangle[at];
     }
-    TextureGroup group = rasterizeTextureGroup(on_.device, on_.scene, mesh,
-                                               {.size = all.size,
-                                                .conservative = conservative_,
-                                                .firstRow = first,
-                                                .rows = std::max(first, last) - first});
-    for (size_t texel = 0; texel < own.size(); ++texel)
-        if (own[texel] == 0) group.triangle[texel] = 0;
+    group.triangle = std::move(triangle);
     part.patches = buildPatches(on_.scene, std::move(mesh), group, {.part = true});
     if (part.patches.count != part.slots.size()) return {};
     for (uint32_t i = 0; i < part.patches.count; ++i) {
-        const shader::Patch& patch = part.patches.scene.patches[i];
-        const bool texel = part.patches.scene.texelToPatch[patch.flags >> 8] == i;
-        if (texel && homes_[patch.flags >> 8] != part.slots[i]) return {};
+        const uint32_t texel = part.patches.scene.patches[i].flags >> 8;
+        const bool home = part.patches.scene.texelToPatch[place(texel)] == i;
+        if (texels_[part.slots[i]] != (texel | (home ? kHome : 0u))) return {};
     }
     return part;
 }
 
 // Of each instance that is there, one box; of many one around all.
 std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
-    const WorldMesh& mesh = on_.patches.scene.mesh;
+    const std::vector<glm::vec3>& positions = on_.patches.scene.mesh.positions;
     const shader::TraceBox none{glm::vec3(1e30f), glm::vec3(-1e30f)};
-    std::vector<shader::TraceBox> all(placed_.size(), none), boxes;
-    for (size_t corner = 0; corner < mesh.positions.size(); ++corner) {
-        shader::TraceBox& box = all[mesh.instance[corner / 3]];
-        box = {glm::min(box.lo, mesh.positions[corner]), glm::max(box.hi, mesh.positions[corner])};
-    }
+    std::vector<shader::TraceBox> boxes;
     for (const std::vector<uint32_t>* list : {&moved.shown, &moved.gone}) {
         for (const uint32_t instance : *list) {
-            const shader::TraceBox& box = all[instance];
+            shader::TraceBox box = none;
+            for (const uint32_t t : triangles_.of({instance}))
+                for (size_t corner = size_t{t} * 3; corner < size_t{t} * 3 + 3; ++corner)
+                    box = {glm::min(box.lo, positions[corner]), glm::max(box.hi, positions[corner])};
             if (placed_[instance].hidden || box.lo.x > box.hi.x) continue;
             const glm::vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
             const float grown = kRounding * std::max({reach.x, reach.y, reach.z});
@@ -148,7 +234,7 @@ std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
 }
 
 // Those of what is hidden go to where other triangles are: the scene's bounds are not theirs.
-void ObjectMover::putTriangles(Part& part, const Moved& moved) {
+void ObjectMover::putTriangles(const Part& part) {
     TraceScene& all = on_.patches.scene;
     const TraceScene& own = part.patches.scene;
     for (uint32_t t = 0; t < part.triangles.size(); ++t) {
@@ -162,166 +248,160 @@ void ObjectMover::putTriangles(Part& part, const Moved& moved) {
         if (own.hitTriangles[t].representative != kNoPatch)
             hit.representative = part.slots[own.hitTriangles[t].representative];
     }
-    if (moved.gone.empty()) return;
+    if (part.goneTriangles.empty()) return;
     glm::vec3 point(0.0f);
     for (uint32_t t = 0; t < all.mesh.triangleCount(); ++t)
         if (!on_.scene.instances[all.mesh.instance[t]].hidden) {
             point = all.mesh.positions[size_t{t} * 3];
             break;
         }
-    for (const uint32_t t : indicesOf(all.mesh.instance, moved.gone))
+    for (const uint32_t t : part.goneTriangles)
         std::fill_n(all.mesh.positions.begin() + std::ptrdiff_t{t} * 3, 3, point);
 }
 
-// As they would be before any was found to lie inside something.
-void ObjectMover::putPatches(const Part& part, const Moved& moved, ObjectMove& move) {
+// As they would be before any was found to lie inside something. Returns the texels that have another patch.
+std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move) {
     PatchSet& all = on_.patches;
-    const auto change = [&](uint32_t slot) {
-        move.changed[slot / kChunk][static_cast<int>(slot % kChunk / 32)] |= 1u << slot % 32;
+    std::vector<uint32_t> texels;
+    const auto put = [&](uint32_t slot, const shader::Patch& patch, uint32_t owner) {
+        invalid_ -= liesInside(all.scene.patches[slot]);
+        all.scene.patches[slot] = patch;
+        change(move, slot);
+        const uint32_t texel = texels_[slot] & ~kHome;
+        if ((texels_[slot] & kHome) == 0 || all.scene.texelToPatch[texel] == owner) return;
+        all.scene.texelToPatch[texel] = owner;
+        texels.push_back(texel);
     };
     for (uint32_t i = 0; i < part.slots.size(); ++i) {
         const uint32_t slot = part.slots[i];
-        const shader::Patch& patch = part.patches.scene.patches[i];
-        all.scene.patches[slot] = patch;
+        put(slot, part.patches.scene.patches[i], slot);
         all.edges[slot] = part.patches.edges[i];
         repainted_ = repainted_ || all.albedoPattern[slot] != part.patches.albedoPattern[i] ||
                      all.emissionPattern[slot] != part.patches.emissionPattern[i];
         all.albedoPattern[slot] = part.patches.albedoPattern[i];
         all.emissionPattern[slot] = part.patches.emissionPattern[i];
-        if (homes_[patch.flags >> 8] == slot) all.scene.texelToPatch[patch.flags >> 8] = slot;
-        change(slot);
     }
-    for (const uint32_t slot : indicesOf(all.instance, moved.gone)) {
-        uint32_t& home = all.scene.texelToPatch[all.scene.patches[slot].flags >> 8];
-        if (home == slot) home = kNoPatch;
-        all.scene.patches[slot] = {};
-        change(slot);
-    }
+    for (const uint32_t slot : part.goneSlots)
+        put(slot, {}, kNoPatch);
+    for (uint32_t chunk = 0; chunk < all.chunkCount(); ++chunk)
+        if (move.changes(chunk)) all.bounds[chunk] = chunkBounds(all, chunk);
+    std::sort(texels.begin(), texels.end());
+    return texels;
 }
 
-// From the first chunk with a change to the last one.
-void ObjectMover::upload(const ObjectMove& changes) const {
-    uint32_t first = 0, last = on_.patches.chunkCount();
-    while (first < last && !changes.changes(first))
-        ++first;
-    while (last > first && !changes.changes(last - 1))
-        --last;
-    if (first == last) return;
-    const auto copy = [&](const vk::Buffer& buffer, const auto& values, size_t each) {
-        const size_t size = sizeof(values[0]), from = first * each;
-        vk::upload(on_.device, buffer, &values[from], (last - first) * each * size, from * size);
-    };
-    copy(on_.light.patches, on_.patches.scene.patches, kChunk);
-    copy(on_.light.edges, on_.patches.edges, kChunk);
-    copy(on_.light.bounds, on_.patches.bounds, 1);
+void ObjectMover::upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const {
+    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, slots);
+    vk::uploadElements(on_.device, on_.light.edges, on_.patches.edges, slots);
+    std::vector<uint32_t> chunks;
+    for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
+        if (move.changes(chunk)) chunks.push_back(chunk);
+    vk::uploadElements(on_.device, on_.light.bounds, on_.patches.bounds, chunks);
 }
 
-// Directions that may meet what has moved are followed again.
-void ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
-    // As Baker::findInvalid does, but that few rays are traced of each batch.
-    const uint32_t batch = on_.device.info().software() ? 64 : 1024;
+void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others) {
+    const glm::uvec2 before = inside_[patch];
+    glm::uvec2& bits = inside_[patch];
+    bits.x = (bits.x & ~(1u << sample)) | uint32_t{link == shader::kLinkBack} << sample;
+    bits.y = (bits.y & ~(1u << sample)) | uint32_t{link == shader::kLinkSky} << sample;
+    if (bits != before) others.push_back(patch);
+}
+
+// Directions that may meet what has moved are followed again, those of patches inside something, too. Returns
+// whose meet something else now.
+std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
     const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideSamples * kChunk;
-    const uint64_t words = uint64_t{std::min(batch, chunks)} * perChunk;
-    const vk::Buffer links(
-        on_.device,
-        {.size = words * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links from inside"});
-    const vk::Buffer list(on_.device, {.size = (words + 1) * sizeof(uint32_t), .name = "links to trace"});
-    const vk::Buffer rays(on_.device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"});
+    if (!buffers_) buffers_ = std::make_unique<Buffers>(on_.device, chunks);
+    Buffers& b = *buffers_;
     const vk::Buffer boxes = vk::makeBuffer(on_.device, move.boxes, "boxes");
     const vk::Buffer changed = vk::makeBuffer(on_.device, move.changed, "changed patches");
-    vk::Commands commands(on_.device);
-    for (uint32_t first = 0; first < chunks; first += batch) {
-        const uint32_t count = std::min(batch, chunks - first);
-        if (tracer.onCpu()) std::fill_n(links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
-        VkCommandBuffer cmd = commands.begin();
+    const auto* links = b.links.as<uint32_t>();
+    const auto* listed = b.listed.as<uint32_t>();
+    std::vector<uint32_t> others;
+    for (uint32_t first = 0; first < chunks; first += b.chunks) {
+        const uint32_t count = std::min(b.chunks, chunks - first);
+        const auto note = [&](uint32_t at) {
+            noteLink((first + at / perChunk) * kChunk + at % kChunk, at / kChunk % kInsideSamples, links[at],
+                     others);
+        };
+        if (tracer.onCpu()) std::fill_n(b.links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
+        VkCommandBuffer cmd = b.commands.begin();
         tracer.retrace(cmd, {.closest = {.firstChunk = first,
                                          .chunkCount = count,
                                          .firstSample = 0,
                                          .sampleCount = kInsideSamples,
                                          .rotation = Rotation::Patch,
-                                         .links = &links},
+                                         .links = &b.links},
                              .boxes = &boxes,
                              .boxCount = static_cast<uint32_t>(move.boxes.size()),
                              .changed = &changed,
-                             .list = &list,
-                             .rays = &rays});
-        vk::hostBarrier(cmd);
-        commands.run();
-        const uint32_t found =
-            tracer.onCpu() ? count * perChunk : vk::readBuffer<uint32_t>(on_.device, list, 1).front();
-        const auto listed =
-            tracer.onCpu() ? std::vector<uint32_t>() : vk::readBuffer<uint32_t>(on_.device, list, found, 1);
-        for (uint32_t i = 0; i < found; ++i) {
-            const uint32_t at = tracer.onCpu() ? i : listed[i];
-            const uint32_t link = links.as<uint32_t>()[at];
-            if (tracer.onCpu() && link == kKept) continue;
-            const uint32_t k = at / kChunk % kInsideSamples;
-            glm::uvec2& bits = inside_[size_t{first + at / perChunk} * kChunk + at % kChunk];
-            bits.x = (bits.x & ~(1u << k)) | uint32_t{link == shader::kLinkBack} << k;
-            bits.y = (bits.y & ~(1u << k)) | uint32_t{link == shader::kLinkSky} << k;
+                             .list = &b.list,
+                             .rays = &b.rays,
+                             .silent = true});
+        if (!tracer.onCpu()) {
+            const VkBufferCopy region{0, 0, b.listed.size()};
+            vkCmdCopyBuffer(cmd, b.list.handle(), b.listed.handle(), 1, &region);
         }
+        vk::hostBarrier(cmd);
+        b.commands.run();
+        if (tracer.onCpu()) {
+            for (uint32_t at = 0; at < count * perChunk; ++at)
+                if (links[at] != kKept) note(at);
+            continue;
+        }
+        const uint32_t found = listed[0],
+                       here = static_cast<uint32_t>(b.listed.size() / sizeof(uint32_t)) - 1;
+        std::for_each(listed + 1, listed + 1 + std::min(found, here), note);
+        if (found <= here) continue;
+        const auto rest = vk::readBuffer<uint32_t>(on_.device, b.list, found - here, 1 + here);
+        std::for_each(rest.begin(), rest.end(), note);
     }
+    sortUnique(others);
+    return others;
 }
 
-// Patches are told from those inside something by directions of all of them, as if none were known yet.
-void ObjectMover::findInside(Tracer& tracer, ObjectMove& move) {
-    std::vector<shader::Patch>& patches = on_.patches.scene.patches;
-    ObjectMove touched = move;
-    const auto touch = [](ObjectMove& m, uint32_t i) {
-        m.changed[i / kChunk][static_cast<int>(i % kChunk / 32)] |= 1u << i % 32;
-    };
-    std::vector<uint32_t> were; // inside something, or not there
-    for (uint32_t i = 0; i < on_.patches.count; ++i) {
-        if ((patches[i].flags & shader::kPatchSends) != 0) continue;
-        were.push_back(i);
-        if (patches[i].area <= 0.0f) continue;
-        patches[i].flags |= shader::kPatchSends;
-        touch(touched, i);
+// Of these patches. Returns those that were not and are, or the other way round.
+std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patches, ObjectMove& move) {
+    std::vector<uint32_t> others;
+    for (const uint32_t i : patches) {
+        shader::Patch& patch = on_.patches.scene.patches[i];
+        if (patch.area <= 0.0f) continue;
+        const bool before = liesInside(patch), now = liesInside(inside_[i]);
+        if (before == now) continue;
+        patch.flags ^= shader::kPatchSends;
+        now ? ++invalid_ : --invalid_;
+        move.texels = true;
+        change(move, i);
+        others.push_back(i);
     }
-    for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
-        if (move.changes(chunk)) on_.patches.bounds[chunk] = chunkBounds(on_.patches, chunk);
-    upload(touched);
-    tracer.update();
-    traceInside(tracer, move);
-    auto was = were.begin();
-    for (uint32_t i = 0; i < on_.patches.count; ++i) {
-        const bool before = was != were.end() && *was == i;
-        was += before;
-        const auto backs = static_cast<uint32_t>(std::popcount(inside_[i].x));
-        const auto sky = static_cast<uint32_t>(std::popcount(inside_[i].y));
-        if (liesInside(backs, sky, kInsideSamples)) patches[i].flags &= ~shader::kPatchSends;
-        if (before != ((patches[i].flags & shader::kPatchSends) == 0)) {
-            move.texels = true;
-            touch(move, i);
-        }
-    }
-    touched.add(move);
-    upload(touched);
+    return others;
 }
 
 std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {
     repainted_ = false;
-    ObjectMove result;
-    result.changed.assign(on_.patches.chunkCount(), glm::uvec2(0));
+    ObjectMove move;
+    move.changed.assign(on_.patches.chunkCount(), glm::uvec2(0));
     const std::optional<Moved> instances = moved();
     if (!instances || inside_.empty() || !tracer.follows()) return {};
-    if (instances->shown.empty() && instances->gone.empty()) return result;
-    std::optional<Part> part = makePart(*instances, atlas);
+    if (instances->shown.empty() && instances->gone.empty()) return move;
+    const std::optional<Part> part = makePart(*instances, atlas);
     if (!part) return {};
-    const std::vector<uint32_t> gone = instances->gone;
-    ObjectMove move = result;
     move.boxes = boxesOf(*instances);
-    move.instances = instances->shown;
-    move.instances.insert(move.instances.end(), gone.begin(), gone.end());
-    putTriangles(*part, *instances);
-    putPatches(*part, *instances, move);
-    const std::vector<Placement> then = std::exchange(placed_, editsOf(on_.scene).placements);
-    move.texels = !gone.empty() || std::any_of(instances->shown.begin(), instances->shown.end(),
-                                               [&](uint32_t i) { return then[i].hidden; });
+    for (const std::vector<uint32_t>* list : {&instances->shown, &instances->gone})
+        move.instances.insert(move.instances.end(), list->begin(), list->end());
+    putTriangles(*part);
+    const std::vector<uint32_t> texels = putPatches(*part, move);
+    move.texels = !texels.empty();
+    for (const uint32_t i : move.instances)
+        placed_[i] = {on_.scene.instances[i].transform, on_.scene.instances[i].hidden};
     for (const shader::TraceBox& box : boxesOf(*instances))
         move.boxes.push_back(box);
-    findInside(tracer, move);
-    result.add(move);
+    const std::vector<uint32_t> slots = merged(part->slots, part->goneSlots);
+    upload(slots, move);
+    tracer.update({.triangles = merged(part->triangles, part->goneTriangles), .texels = texels});
+    const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
+    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
+    ObjectMove result;
+    result.add(move); // many boxes become one
     return result;
 }
 

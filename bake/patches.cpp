@@ -14,7 +14,6 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-constexpr uint32_t kTile = 8; // texels
 constexpr float kMaxAlbedo =
     0.98f;                       // times the reflectivity: above, the iteration hardly ends (conventions.md)
 constexpr float kOffset = 1e-4f; // of a texel's size, along the normal
@@ -78,10 +77,12 @@ public:
     }
 
     PatchSet build() {
-        const uint32_t size = group_.size, tiles = (size + kTile - 1) / kTile;
-        set_.scene.texelToPatch.assign(size_t{size} * size, kNoPatch);
-        for (uint32_t tile = 0; tile < tiles * tiles; ++tile)
-            addTile(tile % tiles, tile / tiles);
+        const TexelWindow& w = group_.window;
+        ASSERT(w.column % kTileTexels == 0 && w.row % kTileTexels == 0);
+        set_.scene.texelToPatch.assign(w.size(), kNoPatch);
+        for (uint32_t y = w.row; y < w.row + w.rows; y += kTileTexels)
+            for (uint32_t x = w.column; x < w.column + w.columns; x += kTileTexels)
+                addTile(x, y);
         set_.count = static_cast<uint32_t>(set_.scene.patches.size());
         if (set_.count == 0 && !part_) {
             throw Error(
@@ -117,19 +118,26 @@ private:
             texels[m.chart[id - 1]] += glm::length(glm::cross(frames_[id - 1].du, frames_[id - 1].dv));
         }
         areaScale_.assign(m.chartCount, 1.0f);
-        const uint32_t tiles = (group_.size + kTile - 1) / kTile;
-        thin_.resize(size_t{tiles} * tiles);
+        thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
         for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
             if (texels[chart] > 0.0 && area[chart] > 0.0) {
                 const auto scale = static_cast<float>(area[chart] / texels[chart]);
                 if (!rtrad_) areaScale_[chart] = std::min(scale, kMaxAreaCorrection);
             } else if (!rtrad_ && largest[chart] != kNoPatch) {
                 const glm::uvec2 texel = texelOf(centroidUv(largest[chart]));
-                thin_[texel.y / kTile * tiles + texel.x / kTile].push_back(
-                    {largest[chart], static_cast<float>(area[chart])});
+                if (group_.window.has(texel.x, texel.y))
+                    thin_[tileOf(texel.x, texel.y)].push_back(
+                        {largest[chart], static_cast<float>(area[chart])});
             }
         }
         chartPatches_.resize(m.chartCount);
+    }
+
+    // Among the window's.
+    uint32_t tileColumns() const { return (group_.window.columns + kTileTexels - 1) / kTileTexels; }
+    size_t tileOf(uint32_t x, uint32_t y) const {
+        const TexelWindow& w = group_.window;
+        return size_t{(y - w.row) / kTileTexels} * tileColumns() + (x - w.column) / kTileTexels;
     }
 
     glm::vec2 centroidUv(uint32_t triangle) const {
@@ -152,22 +160,23 @@ private:
         set_.instance.push_back(p.instance);
     }
 
-    void addTile(uint32_t tileX, uint32_t tileY) {
-        const uint32_t size = group_.size, tiles = (size + kTile - 1) / kTile;
+    // The tile that begins there.
+    void addTile(uint32_t firstX, uint32_t firstY) {
+        const TexelWindow& w = group_.window;
         std::vector<NewPatch> backs;
-        for (uint32_t y = tileY * kTile; y < std::min(size, (tileY + 1) * kTile); ++y) {
-            for (uint32_t x = tileX * kTile; x < std::min(size, (tileX + 1) * kTile); ++x) {
-                const uint32_t texel = y * size + x, id = group_.triangle[texel];
+        for (uint32_t y = firstY; y < std::min(w.row + w.rows, firstY + kTileTexels); ++y) {
+            for (uint32_t x = firstX; x < std::min(w.column + w.columns, firstX + kTileTexels); ++x) {
+                const uint32_t id = group_.triangle[w.index(x, y)];
                 if (id == 0 || set_.scene.mesh.chart[id - 1] == kNoChart) continue;
-                const NewPatch p = texelPatch(texel, id - 1);
+                const NewPatch p = texelPatch({x, y}, id - 1);
                 const auto index = static_cast<uint32_t>(set_.scene.patches.size());
-                set_.scene.texelToPatch[texel] = index;
+                set_.scene.texelToPatch[w.index(x, y)] = index;
                 chartPatches_[p.chart].push_back(index);
                 add(p);
                 addBack(p, id - 1, backs);
             }
         }
-        for (const ThinChart& thin : thin_[tileY * tiles + tileX]) {
+        for (const ThinChart& thin : thin_[tileOf(firstX, firstY)]) {
             const NewPatch p = thinPatch(thin);
             chartPatches_[p.chart].push_back(static_cast<uint32_t>(set_.scene.patches.size()));
             add(p);
@@ -177,16 +186,17 @@ private:
             add(back);
     }
 
-    NewPatch texelPatch(uint32_t texel, uint32_t triangle) {
+    NewPatch texelPatch(glm::uvec2 texel, uint32_t triangle) {
+        const size_t at = group_.window.index(texel.x, texel.y);
         const TriangleFrame& frame = frames_[triangle];
         NewPatch p;
         p.chart = set_.scene.mesh.chart[triangle];
         const float scale = areaScale_[p.chart];
         p.edges = {frame.du * std::sqrt(scale), frame.dv * std::sqrt(scale)};
-        fill(p, glm::vec3(group_.pos[texel]), glm::vec3(group_.nrm[texel]), frame.normal,
-             glm::length(glm::cross(frame.du, frame.dv)) * scale, texel);
-        p.albedo = group_.mat[texel];
-        p.emission = group_.emission[texel];
+        fill(p, glm::vec3(group_.pos[at]), glm::vec3(group_.nrm[at]), frame.normal,
+             glm::length(glm::cross(frame.du, frame.dv)) * scale, texel.y * group_.size + texel.x);
+        p.albedo = group_.mat[at];
+        p.emission = group_.emission[at];
         p.material = set_.scene.mesh.material[triangle];
         p.instance = set_.scene.mesh.instance[triangle];
         return p;
@@ -293,14 +303,15 @@ private:
         const glm::vec2 uv = centroidUv(triangle);
         const glm::vec2 centre = uv * static_cast<float>(group_.size);
         const auto texel = glm::ivec2(texelOf(uv));
+        const glm::ivec2 first(group_.window.column, group_.window.row);
+        const glm::ivec2 last = first + glm::ivec2(group_.window.columns, group_.window.rows) - 1;
+        const glm::ivec2 from = glm::max(first, texel - kReach), to = glm::min(last, texel + kReach);
         uint32_t best = kNoPatch;
         float bestDistance = std::numeric_limits<float>::max();
-        for (int y = std::max(0, texel.y - kReach);
-             y <= std::min(static_cast<int>(group_.size) - 1, texel.y + kReach); ++y) {
-            for (int x = std::max(0, texel.x - kReach);
-                 x <= std::min(static_cast<int>(group_.size) - 1, texel.x + kReach); ++x) {
-                const uint32_t p =
-                    set_.scene.texelToPatch[static_cast<size_t>(y) * group_.size + static_cast<size_t>(x)];
+        for (int y = from.y; y <= to.y; ++y) {
+            for (int x = from.x; x <= to.x; ++x) {
+                const uint32_t p = set_.scene.texelToPatch[group_.window.index(static_cast<uint32_t>(x),
+                                                                               static_cast<uint32_t>(y))];
                 if (p == kNoPatch || set_.scene.patchChart[p] != chart) continue;
                 const glm::vec2 d = glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f - centre;
                 if (glm::dot(d, d) < bestDistance) {

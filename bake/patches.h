@@ -33,11 +33,14 @@ struct PatchSet {
 struct PatchDesc {
     float reflectivity = 1.0f; // scales the albedo later; their product is clamped to 0.98
     bool rtrad = false;
-    bool part = false; // of a scene, which may cover no texel
+    // Of a scene: it may cover no texel, and scene.texelToPatch is of the group's window.
+    bool part = false;
 };
 
-/// Takes over the mesh. rtrad: shading normals for everything, no offsets, no back sides, no area correction,
-/// albedo as it is. Throws Error when no texel is covered.
+constexpr uint32_t kTileTexels = 8; // along an edge
+
+/// Takes over the mesh. The group's window begins with a tile. rtrad: shading normals for everything, no
+/// offsets, no back sides, no area correction, albedo as it is. Throws Error when no texel is covered.
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc);
 
 /// Of a chunk's patches that are there.

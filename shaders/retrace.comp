@@ -9,6 +9,7 @@ layout(push_constant, scalar) uniform Push { RetracePush push; };
 #define geometry push.geometry
 #include "lib/trace.glsl"
 #include "lib/link.glsl"
+#include "lib/boxes.glsl"
 #include "lib/retrace.glsl"
 
 layout(local_size_x = 64) in;

@@ -25,10 +25,11 @@ void main() {
     Patch p = loadPatch(push.patches, first + lane);
     uint base = (chunk * push.sampleCount + firstLocal) * kChunk + lane;
     uint changed = Words(push.changed).items[(push.firstChunk + chunk) * 2u + lane / 32u];
+    bool asks = asksAgain(p, push.silent);
     uint marks = (changed >> (lane % 32u)) & 1u;
     if (marks != 0u) {
         marks = (1u << kSamplesPerInvocation) - 1u;
-    } else if ((p.flags & kPatchSends) != 0u) {
+    } else if (asks) {
         uint key = rotationKey(p, loadPatch(push.patches, first), push.rotation, push.size);
         vec3 origin = p.position + p.offset * p.normal;
         bool above = false;
@@ -42,6 +43,6 @@ void main() {
         }
     }
     list(marks, base);
-    if (marks != 0u && (p.flags & kPatchSends) != 0u)
+    if (marks != 0u && asks)
         atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], uint(bitCount(marks)));
 }

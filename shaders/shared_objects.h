@@ -19,6 +19,7 @@ struct RetraceMarkPush {
     uint sampleCount;
     uint size;     // lightmap edge [texels]
     uint rotation; // kRotate...
+    uint silent;   // 1: of patches that send nothing, too
 };
 struct RetracePush {
     TraceGeometry geometry;
@@ -33,4 +34,5 @@ struct RetracePush {
     uint sampleCount;
     uint size;     // lightmap edge [texels]
     uint rotation; // kRotate...
+    uint silent;   // 1: of patches that send nothing, too
 };

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <future>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "assets/error.h"
@@ -22,20 +24,8 @@ constexpr float kNodeCost = 1.5f;   // of visiting a node, in triangle tests: me
 constexpr uint32_t kTaskMin = 8192; // triangles below which a thread of its own costs more than it saves
 constexpr uint32_t kTaskLevels = 4; // levels that may fork: 16 pieces, enough to even out on a few cores
 
-struct Box {
-    glm::vec3 lo{std::numeric_limits<float>::infinity()};
-    glm::vec3 hi{-std::numeric_limits<float>::infinity()};
-
-    void add(const glm::vec3& point) { lo = glm::min(lo, point), hi = glm::max(hi, point); }
-    void add(const Box& box) { lo = glm::min(lo, box.lo), hi = glm::max(hi, box.hi); }
-    float halfArea() const {
-        const glm::vec3 d = hi - lo;
-        return d.x >= 0 ? d.x * d.y + d.y * d.z + d.z * d.x : 0.0f;
-    }
-};
-
 struct Item {
-    Box box;
+    BvhBox box;
     float area = 0; // [m^2], twice the triangle's
     uint32_t triangle = 0;
     glm::vec3 twiceCentre() const { return box.lo + box.hi; }
@@ -52,7 +42,8 @@ struct Binning {
     glm::vec3 origin, scale;
     uint32_t bins;
 
-    Binning(const Box& centres, uint32_t count) : origin(centres.lo), bins(std::min(kBins, 4 + count / 2)) {
+    Binning(const BvhBox& centres, uint32_t count)
+        : origin(centres.lo), bins(std::min(kBins, 4 + count / 2)) {
         const glm::vec3 extent = centres.hi - centres.lo;
         for (int axis = 0; axis < 3; ++axis) {
             const float s =
@@ -66,22 +57,18 @@ struct Binning {
 };
 
 struct Bin {
-    Box box;
+    BvhBox box;
     uint32_t count = 0;
 };
 
-// What a child of a node holds.
-struct Content {
-    Box box;
-    float area = 0; // of the triangles [m^2], twice
+void add(BvhContent& content, const Item& item) {
+    content.box.add(item.box), content.area += item.area;
+}
 
-    void add(const Item& item) { box.add(item.box), area += item.area; }
-    // Whether a ray that enters this box is stopped there more likely: by the triangles' share of its
-    // surface.
-    bool stopsMoreThan(const Content& other) const {
-        return area * other.box.halfArea() > other.area * box.halfArea();
-    }
-};
+// Whether a ray that enters this box is stopped there more likely: by the triangles' share of its surface.
+bool stopsMoreThan(const BvhContent& content, const BvhContent& other) {
+    return content.area * other.box.halfArea() > other.area * content.box.halfArea();
+}
 
 // Half of an extent as the upper half of a float: always above, by less than a hundredth.
 uint32_t halfFloatAbove(double extent) {
@@ -101,8 +88,7 @@ public:
     // Adds a tree over items [first, last) and returns its root's number: that of a node or, negative, of a
     // leaf.
     int build(Piece& piece, uint32_t first, uint32_t last, uint32_t level);
-    BvhNode joined(const Content& content0, int child0, const Content& content1, int child1) const;
-    Content contentOf(uint32_t first, uint32_t last) const;
+    BvhContent contentOf(uint32_t first, uint32_t last) const;
 
 private:
     static Split bestSplit(std::span<const Item> items, const Binning& binning);
@@ -115,7 +101,7 @@ private:
 
 void Builder::sweep(std::span<const Bin> bins, int axis, Split& best) {
     std::array<float, kBins> rightCost;
-    Box box;
+    BvhBox box;
     uint32_t count = 0;
     for (size_t i = bins.size(); i-- > 1;) {
         box.add(bins[i].box);
@@ -123,7 +109,7 @@ void Builder::sweep(std::span<const Bin> bins, int axis, Split& best) {
         rightCost[i] = box.halfArea() * float(count);
     }
     const uint32_t total = count + bins[0].count;
-    Box left;
+    BvhBox left;
     uint32_t leftCount = 0;
     for (size_t i = 1; i < bins.size(); ++i) {
         left.add(bins[i - 1].box);
@@ -154,7 +140,7 @@ Split Builder::bestSplit(std::span<const Item> items, const Binning& binning) {
 uint32_t Builder::part(uint32_t first, uint32_t last, uint32_t level) {
     const uint32_t count = last - first;
     const std::span<Item> items(&items_[first], count);
-    Box box, centres;
+    BvhBox box, centres;
     for (const Item& item : items) {
         box.add(item.box);
         centres.add(item.twiceCentre());
@@ -180,28 +166,11 @@ uint32_t Builder::part(uint32_t first, uint32_t last, uint32_t level) {
     return first + count / 2;
 }
 
-Content Builder::contentOf(uint32_t first, uint32_t last) const {
-    Content content;
+BvhContent Builder::contentOf(uint32_t first, uint32_t last) const {
+    BvhContent content;
     for (uint32_t i = first; i < last; ++i)
-        content.add(items_[i]);
+        add(content, items_[i]);
     return content;
-}
-
-// The child that more likely stops a ray comes first: any-hit traversal takes them in this order.
-BvhNode Builder::joined(const Content& content0, int child0, const Content& content1, int child1) const {
-    if (content1.stopsMoreThan(content0)) return joined(content1, child1, content0, child0);
-    const Box &box0 = content0.box, &box1 = content1.box;
-    BvhNode node{};
-    node.centre0 = (box0.lo + box0.hi) * 0.5f, node.child0 = child0;
-    node.centre1 = (box1.lo + box1.hi) * 0.5f, node.child1 = child1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto extent = [&](const Box& box, float centre) {
-            return halfFloatAbove(std::max(double(box.hi[axis]) - centre, double(centre) - box.lo[axis]) +
-                                  margin_);
-        };
-        node.extents[axis] = extent(box0, node.centre0[axis]) << 16 | extent(box1, node.centre1[axis]);
-    }
-    return node;
 }
 
 // Puts a subtree built elsewhere behind what `piece` has.
@@ -233,22 +202,24 @@ int Builder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t level) 
         child0 = build(piece, first, middle, level + 1);
         child1 = build(piece, middle, last, level + 1);
     }
-    piece.nodes[index] = joined(contentOf(first, middle), child0, contentOf(middle, last), child1);
+    piece.nodes[index] = bvhNode(contentOf(first, middle), child0, contentOf(middle, last), child1, margin_);
     return int(index);
 }
 
-std::vector<Item> itemsOf(const WorldMesh& mesh, Box& bounds) {
-    std::vector<Item> items(mesh.triangleCount());
-    for (uint32_t t = 0; t < items.size(); ++t) {
-        items[t].triangle = t;
-        const glm::vec3* corner = &mesh.positions[size_t(t) * 3];
-        for (uint32_t i = 0; i < 3; ++i)
-            items[t].box.add(corner[i]);
-        items[t].area = glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
-        bounds.add(items[t].box);
+std::vector<Item> itemsOf(const WorldMesh& mesh, std::span<const uint32_t> triangles) {
+    std::vector<Item> items(triangles.size());
+    for (uint32_t i = 0; i < items.size(); ++i) {
+        items[i].triangle = triangles[i];
+        const glm::vec3* corner = &mesh.positions[size_t(triangles[i]) * 3];
+        for (uint32_t k = 0; k < 3; ++k)
+            items[i].box.add(corner[k]);
+        items[i].area = glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
     }
     return items;
 }
+
+// Of what no ray may enter: its far side comes before its near one, wherever a ray begins.
+constexpr float kNothing = -1e30f; // [m]
 
 } // namespace
 
@@ -258,25 +229,61 @@ BvhBox childBox(const BvhNode& node, int child) {
     return {centre - extent, centre + extent};
 }
 
-Bvh buildBvh(const WorldMesh& mesh) {
-    ASSERT(mesh.triangleCount() > 0 && mesh.triangleCount() < 1u << 26);
-    Box bounds;
-    std::vector<Item> items = itemsOf(mesh, bounds);
-    // The traversal multiplies centre and origin by 1 / direction before it subtracts, so both lose half an
-    // ulp of the largest coordinate, and the triangle's test takes rays that pass by as closely: making the
-    // boxes larger by more makes up for it. Not by much more: rays start close to surfaces, whose flat boxes
-    // are then entered in vain.
-    const glm::vec3 reach = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
-    const float margin = 4 * std::numeric_limits<float>::epsilon() * std::max({reach.x, reach.y, reach.z});
+void setChildBox(BvhNode& node, int child, const BvhBox& box, float margin) {
+    const glm::vec3 centre = box.empty() ? glm::vec3(0.0f) : (box.lo + box.hi) * 0.5f;
+    (child == 0 ? node.centre0 : node.centre1) = centre;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double extent =
+            std::max(double(box.hi[axis]) - centre[axis], double(centre[axis]) - box.lo[axis]) + margin;
+        const uint32_t half = box.empty() ? std::bit_cast<uint32_t>(kNothing) >> 16 : halfFloatAbove(extent);
+        uint32_t& both = node.extents[axis];
+        both = child == 0 ? (both & 0xffffu) | half << 16 : (both & 0xffff0000u) | half;
+    }
+}
 
-    Builder builder(items, margin);
+// Any-hit traversal takes children in the node's order.
+BvhNode bvhNode(const BvhContent& content0, int child0, const BvhContent& content1, int child1,
+                float margin) {
+    if (stopsMoreThan(content1, content0)) return bvhNode(content1, child1, content0, child0, margin);
+    BvhNode node{};
+    node.child0 = child0, node.child1 = child1;
+    setChildBox(node, 0, content0.box, margin);
+    setChildBox(node, 1, content1.box, margin);
+    return node;
+}
+
+float bvhReach(const WorldMesh& mesh) {
+    float reach = 0;
+    for (const glm::vec3& p : mesh.positions)
+        reach = std::max({reach, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return reach;
+}
+
+// The traversal multiplies centre and origin by 1 / direction before it subtracts, so both lose half an ulp
+// of the largest coordinate, and the triangle's test takes rays that pass by as closely: making the boxes
+// larger by more makes up for it. Not by much more: rays start close to surfaces, whose flat boxes are then
+// entered in vain.
+float bvhMargin(float reach) {
+    return 4 * std::numeric_limits<float>::epsilon() * reach;
+}
+
+Bvh buildBvh(const WorldMesh& mesh) {
+    std::vector<uint32_t> all(mesh.triangleCount());
+    std::iota(all.begin(), all.end(), 0u);
+    return buildBvh(mesh, {.triangles = all, .margin = bvhMargin(bvhReach(mesh))});
+}
+
+Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc) {
+    ASSERT(!desc.triangles.empty() && desc.triangles.size() < kMostBvhTriangles);
+    std::vector<Item> items = itemsOf(mesh, desc.triangles);
+    Builder builder(items, desc.margin);
     Piece piece;
     piece.nodes.reserve(items.size());
-    const int root = builder.build(piece, 0, uint32_t(items.size()), 0);
+    const int root = builder.build(piece, 0, uint32_t(items.size()), desc.level);
     if (root < 0) { // the traversal begins at a node: one with the leaf on both sides
-        const Content content = builder.contentOf(0, uint32_t(items.size()));
-        piece.nodes.push_back(builder.joined(content, root, content, root));
-        piece.depth = 1;
+        const BvhContent content = builder.contentOf(0, uint32_t(items.size()));
+        piece.nodes.push_back(bvhNode(content, root, content, root, desc.margin));
+        piece.depth = desc.level + 1;
     }
     Bvh bvh{std::move(piece.nodes), {}, piece.depth};
     ASSERT(bvh.depth <= shader::kBvhDepth);
@@ -294,12 +301,9 @@ namespace {
 double childCost(const Bvh& bvh, int child, double chance) {
     if (child < 0) return chance * double(~child & 7);
     const BvhNode& node = bvh.nodes[size_t(child)];
-    Box box[2], both;
-    for (int side = 0; side < 2; ++side) {
-        const BvhBox bounds = childBox(node, side);
-        box[side].lo = bounds.lo, box[side].hi = bounds.hi;
-        both.add(box[side]);
-    }
+    const BvhBox box[2] = {childBox(node, 0), childBox(node, 1)};
+    BvhBox both = box[0];
+    both.add(box[1]);
     const double whole = both.halfArea();
     return chance + childCost(bvh, node.child0, chance * box[0].halfArea() / whole) +
            childCost(bvh, node.child1, chance * box[1].halfArea() / whole);

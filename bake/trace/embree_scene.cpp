@@ -104,7 +104,7 @@ struct EmbreeScene::Impl {
     void build();
     void prepareBlocks();
     void links(const Patch* patches, const ChunkRays& directions, std::span<const uint16_t> order,
-               uint32_t* out) const;
+               uint32_t* out, bool silent = false) const;
     uint32_t linksAgain(const RetraceArrays& work, uint32_t chunk, uint32_t piece) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
     uint32_t targets(const Patch* patches, const glm::vec4* ends, uint32_t count, uint32_t* bits) const;
@@ -348,7 +348,7 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
 
 // Of the rays of these numbers.
 void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
-                              std::span<const uint16_t> order, uint32_t* out) const {
+                              std::span<const uint16_t> order, uint32_t* out, bool silent) const {
     EmbreeIntersectQuery query;
     alignas(64) RTCRayHit8 rays;
     alignas(64) std::array<int, kPacket> valid;
@@ -357,7 +357,7 @@ void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
         for (uint32_t lane = 0; lane < kPacket; ++lane) {
             const uint32_t number = order[first + std::min(lane, count - 1)];
             const Patch& patch = patches[number % kChunk];
-            valid[lane] = lane < count && patch.flags & shader::kPatchSends ? -1 : 0;
+            valid[lane] = lane < count && shader::asksAgain(patch, silent) ? -1 : 0;
             const glm::vec3 origin = patch.position + patch.offset * patch.normal;
             rays.ray.org_x[lane] = origin.x, rays.ray.org_y[lane] = origin.y, rays.ray.org_z[lane] = origin.z;
             rays.ray.dir_x[lane] = directions.x[number], rays.ray.dir_y[lane] = directions.y[number];
@@ -384,7 +384,7 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
     const uint64_t changed = words.x | uint64_t(words.y) << 32;
     uint64_t above = 0, sends = 0;
     for (uint32_t i = 0; i < kChunk; ++i) {
-        sends |= uint64_t((patches[i].flags & shader::kPatchSends) != 0) << i;
+        sends |= uint64_t(shader::asksAgain(patches[i], work.silent)) << i;
         for (const shader::TraceBox& box : work.boxes)
             above |= uint64_t(shader::boxAbove(patches[i].position, patches[i].normal, box)) << i;
     }
@@ -411,7 +411,8 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
         order[count++] = number;
         traced += uint32_t(sends >> number % kChunk & 1);
     }
-    links(patches, rays, {order.data(), count}, c.links + (size_t(chunk) * c.sampleCount + first) * kChunk);
+    links(patches, rays, {order.data(), count}, c.links + (size_t(chunk) * c.sampleCount + first) * kChunk,
+          work.silent);
     return traced;
 }
 

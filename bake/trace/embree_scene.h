@@ -45,6 +45,7 @@ struct RetraceArrays {
     std::span<const shader::TraceBox> boxes = {};
     const glm::uvec2* changed = nullptr; // per chunk of all
     uint32_t* rays = nullptr;            // may be left out
+    bool silent = false;
 };
 
 /// The scene in Embree, traced in packets by all cores; needs no Vulkan. Borrows the TraceScene. Results do

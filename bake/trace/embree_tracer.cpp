@@ -36,13 +36,14 @@ public:
     void closest(VkCommandBuffer, const ClosestWork& work) override { scene_.closest(arrays(work)); }
 
     bool follows() const override { return true; }
-    void update() override { scene_.update(); }
+    void update(const SceneChange&) override { scene_.update(); }
     void retrace(VkCommandBuffer, const RetraceWork& work) override {
         ASSERT(!work.closest.receiversHost && !work.closest.disc);
         scene_.retrace({.closest = arrays(work.closest),
                         .boxes = {mappedAs<shader::TraceBox>(work.boxes, work.boxCount), work.boxCount},
                         .changed = mappedAs<glm::uvec2>(work.changed, chunkCount_),
-                        .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
+                        .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr,
+                        .silent = work.silent});
     }
 
     void segments(VkCommandBuffer, const SegmentWork& work) override {

@@ -1,6 +1,6 @@
 #include "bake/trace/gpu_tracer.h"
 
-#include "bake/trace/bvh_builder.h"
+#include "bake/trace/moving_bvh.h"
 #include "bake/trace/retrace_types.h"
 #include "bake/vk/accel.h"
 #include "bake/vk/commands.h"
@@ -40,12 +40,9 @@ public:
                      .opaqueCount = scene.mesh.opaqueCount,
                      .triangleCount = scene.mesh.triangleCount()};
     }
-    void update(const vk::Device& device, const TraceScene& scene) {
-        const auto copy = [&](const vk::Buffer& buffer, const auto& values) {
-            vk::upload(device, buffer, values.data(), values.size() * sizeof(values[0]));
-        };
-        copy(hitTriangles_, scene.hitTriangles);
-        copy(texelToPatch_, scene.texelToPatch);
+    void update(const vk::Device& device, const TraceScene& scene, const SceneChange& change) {
+        vk::uploadElements(device, hitTriangles_, scene.hitTriangles, change.triangles);
+        vk::uploadElements(device, texelToPatch_, scene.texelToPatch, change.texels);
     }
     void setAccel(VkDeviceAddress accel, VkDeviceAddress triangles) {
         geometry_.accel = accel;
@@ -109,7 +106,8 @@ public:
                 .firstSample = work.closest.firstSample,
                 .sampleCount = work.closest.sampleCount,
                 .size = size_,
-                .rotation = static_cast<uint32_t>(work.closest.rotation)};
+                .rotation = static_cast<uint32_t>(work.closest.rotation),
+                .silent = work.silent ? 1u : 0u};
     }
     shader::RetracePush push(const RetraceWork& work) const {
         const shader::ClosestPush all = push(work.closest);
@@ -124,7 +122,8 @@ public:
                 .firstSample = all.firstSample,
                 .sampleCount = all.sampleCount,
                 .size = size_,
-                .rotation = all.rotation};
+                .rotation = all.rotation,
+                .silent = work.silent ? 1u : 0u};
     }
 
 private:
@@ -213,23 +212,39 @@ private:
 class BvhTracer final : public ComputeTracer {
 public:
     BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
-        : ComputeTracer(device, scene, patches, "bvh") {
-        build();
+        : ComputeTracer(device, scene, patches, "bvh"), tree_(scene.mesh) {
+        put(nodes_, tree_.bvh().nodes, {}, "bvh nodes");
+        put(triangles_, tree_.bvh().triangles, {}, "bvh triangles");
+        buffers_.setAccel(nodes_.address(), triangles_.address());
     }
     bool follows() const override { return true; }
-    void update() override {
-        buffers_.update(device_, scene_);
-        build();
-    }
-
-private:
-    void build() {
-        const Bvh bvh = buildBvh(scene_.mesh);
-        nodes_ = vk::makeBuffer(device_, bvh.nodes, "bvh nodes");
-        triangles_ = vk::makeBuffer(device_, bvh.triangles, "bvh triangles");
+    void update(const SceneChange& change) override {
+        buffers_.update(device_, scene_, change);
+        const MovingBvh::Change moved = tree_.follow(scene_.mesh, change.triangles);
+        if (moved.all) {
+            nodes_ = {};
+            triangles_ = {};
+        }
+        put(nodes_, tree_.bvh().nodes, moved.nodes, "bvh nodes");
+        put(triangles_, tree_.bvh().triangles, moved.triangles, "bvh triangles");
         buffers_.setAccel(nodes_.address(), triangles_.address());
     }
 
+private:
+    // Those that changed, or all of them in a larger buffer: with room for the next object that moves.
+    template<typename T>
+    void put(vk::Buffer& buffer, const std::vector<T>& values, std::span<const uint32_t> changed,
+             const char* name) {
+        const VkDeviceSize bytes = values.size() * sizeof(T);
+        if (buffer && bytes <= buffer.size()) return vk::uploadElements(device_, buffer, values, changed);
+        const bool first = !buffer;
+        buffer = {};
+        buffer = vk::Buffer(device_, {.size = first ? bytes : bytes + bytes / kRoom, .name = name});
+        vk::upload(device_, buffer, values.data(), bytes);
+    }
+    static constexpr VkDeviceSize kRoom = 8; // an eighth more than there is
+
+    MovingBvh tree_;
     vk::Buffer nodes_, triangles_;
 };
 
@@ -241,8 +256,8 @@ public:
         buffers_.setAccel(accel_.address(), 0);
     }
     bool follows() const override { return true; }
-    void update() override {
-        buffers_.update(device_, scene_);
+    void update(const SceneChange& change) override {
+        buffers_.update(device_, scene_, change);
         accel_ = vk::Accel(device_, scene_.mesh.positions, scene_.mesh.opaqueCount);
         buffers_.setAccel(accel_.address(), 0);
     }
@@ -303,8 +318,8 @@ public:
     }
 
     bool follows() const override { return true; }
-    void update() override {
-        buffers_.update(device_, scene_);
+    void update(const SceneChange& change) override {
+        buffers_.update(device_, scene_, change);
         accel_ = vk::Accel(device_, scene_.mesh.positions, scene_.mesh.opaqueCount);
         buffers_.setAccel(accel_.address(), 0);
     }

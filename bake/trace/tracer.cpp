@@ -71,7 +71,7 @@ void checkTracer(TracerKind kind, const vk::Device& device) {
 
 } // namespace
 
-void Tracer::update() {
+void Tracer::update(const SceneChange&) {
     ASSERT(follows());
 }
 

@@ -95,6 +95,13 @@ struct RetraceWork {
     const vk::Buffer* changed = nullptr; // glm::uvec2 per chunk of all, a bit for each patch
     const vk::Buffer* list = nullptr;    // uint32_t[1 + chunkCount * sampleCount * 64], not on the CPU
     const vk::Buffer* rays = nullptr;    // as of SegmentWork
+    bool silent = false;                 // of patches that send nothing, too, which get kLinkDark else
+};
+
+/// What of a TraceScene is another one than before, ascending.
+struct SceneChange {
+    std::span<const uint32_t> triangles; // that stand elsewhere: corners and hit table
+    std::span<const uint32_t> texels;    // whose patch is there now, or no more
 };
 
 /// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call
@@ -115,9 +122,8 @@ public:
 
     /// Whether it follows objects that move: only then the calls below are for it.
     virtual bool follows() const { return false; }
-    /// Triangles of the scene that it was made of stand elsewhere now, as many as before, and texels may have
-    /// lost their patches. Waits for the device.
-    virtual void update();
+    /// The scene that it was made of has changed. Waits for the device.
+    virtual void update(const SceneChange& change);
     virtual void retrace(VkCommandBuffer cmd, const RetraceWork& work);
 };
 

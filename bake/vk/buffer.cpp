@@ -94,6 +94,24 @@ void upload(const Device& device, const Buffer& buffer, const void* data, VkDevi
     if (size > 0) device.staging().upload(buffer, data, size, offset);
 }
 
+std::vector<BufferPart> partsOf(std::span<const uint32_t> indices, VkDeviceSize each) {
+    // Bytes between two parts that are copied along: a region of its own costs as much.
+    constexpr VkDeviceSize kGap = 512;
+    std::vector<BufferPart> parts;
+    for (const uint32_t index : indices) {
+        const VkDeviceSize offset = index * each;
+        if (parts.empty() || offset > parts.back().offset + parts.back().size + kGap)
+            parts.push_back({offset, 0});
+        parts.back().size = offset + each - parts.back().offset;
+    }
+    return parts;
+}
+
+void uploadParts(const Device& device, const Buffer& buffer, const void* data,
+                 std::span<const BufferPart> parts) {
+    device.staging().uploadParts(buffer, data, parts);
+}
+
 void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
               VkDeviceSize offset) {
     ASSERT(offset + size <= buffer.size());

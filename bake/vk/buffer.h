@@ -57,6 +57,21 @@ void upload(const Device& device, const Buffer& buffer, const void* data, VkDevi
 void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
               VkDeviceSize offset = 0);
 
+/// Bytes of an array of which host and device have a copy each.
+struct BufferPart {
+    VkDeviceSize offset = 0, size = 0;
+};
+/// Around elements of these indices, ascending, of so many bytes each; neighbours in one.
+std::vector<BufferPart> partsOf(std::span<const uint32_t> indices, VkDeviceSize each);
+/// As upload(), of these parts of what begins at `data`.
+void uploadParts(const Device& device, const Buffer& buffer, const void* data,
+                 std::span<const BufferPart> parts);
+template<typename T>
+void uploadElements(const Device& device, const Buffer& buffer, const std::vector<T>& values,
+                    std::span<const uint32_t> indices) {
+    uploadParts(device, buffer, values.data(), partsOf(indices, sizeof(T)));
+}
+
 /// A device buffer holding a copy of `values` (at least 16 bytes long, so that an empty list has an address
 /// too).
 template<typename T>

@@ -96,28 +96,46 @@ public:
     RasterProgram(const RasterProgram&) = delete;
     RasterProgram& operator=(const RasterProgram&) = delete;
 
-    /// Clears all targets to zero, draws `vertexCount` vertices and leaves the targets in
+    /// Pixels as of an image of the viewport's size, of which those in `area` are drawn; targets need not
+    /// reach further.
+    struct Window {
+        VkExtent2D viewport{};
+        VkRect2D area{};
+    };
+    /// Clears the area of all targets to zero, draws `vertexCount` vertices and leaves the targets in
     /// TRANSFER_SRC_OPTIMAL. Targets may be in any layout, their content is lost. Framebuffers live until the
     /// next draw or the destructor.
     template<typename Push>
     void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
-              uint32_t vertexCount) {
+              uint32_t vertexCount, const Window& window) {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
         ASSERT(!targets.empty());
-        drawBytes(cmd, &push, sizeof(Push), targets, {targets[0]->width(), targets[0]->height()},
-                  vertexCount);
+        drawBytes(cmd, {&push, sizeof(Push)}, targets, window, vertexCount);
+    }
+    /// The whole of the targets.
+    template<typename Push>
+    void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
+              uint32_t vertexCount) {
+        ASSERT(!targets.empty());
+        const VkExtent2D whole{targets[0]->width(), targets[0]->height()};
+        draw(cmd, push, targets, vertexCount, {.viewport = whole, .area = {{0, 0}, whole}});
     }
     /// Without colour attachments: draws over extent.width x extent.height pixels what the fragments write
     /// into buffers. The barrier behind it is the caller's.
     template<typename Push>
     void draw(VkCommandBuffer cmd, const Push& push, VkExtent2D extent, uint32_t vertexCount) {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
-        drawBytes(cmd, &push, sizeof(Push), {}, extent, vertexCount);
+        drawBytes(cmd, {&push, sizeof(Push)}, {}, {.viewport = extent, .area = {{0, 0}, extent}},
+                  vertexCount);
     }
 
 private:
-    void drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size,
-                   std::span<const Image2D* const> targets, VkExtent2D extent, uint32_t vertexCount);
+    struct Bytes {
+        const void* data = nullptr;
+        uint32_t size = 0;
+    };
+    void drawBytes(VkCommandBuffer cmd, Bytes push, std::span<const Image2D* const> targets,
+                   const Window& window, uint32_t vertexCount);
     void createDescriptors(uint32_t count, std::span<const BoundTexture> textures);
     void createRenderPass(std::span<const VkFormat> formats);
     void createPipeline(const Desc& desc);

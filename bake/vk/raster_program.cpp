@@ -160,9 +160,8 @@ void RasterProgram::createPipeline(const Desc& desc) {
     device_.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline_), desc.vertex.c_str());
 }
 
-void RasterProgram::drawBytes(VkCommandBuffer cmd, const void* push, uint32_t size,
-                              std::span<const Image2D* const> targets, VkExtent2D extent,
-                              uint32_t vertexCount) {
+void RasterProgram::drawBytes(VkCommandBuffer cmd, Bytes push, std::span<const Image2D* const> targets,
+                              const Window& window, uint32_t vertexCount) {
     std::vector<VkImageView> views;
     for (const Image2D* target : targets)
         views.push_back(target->view());
@@ -170,8 +169,8 @@ void RasterProgram::drawBytes(VkCommandBuffer cmd, const void* push, uint32_t si
     info.renderPass = renderPass_;
     info.attachmentCount = static_cast<uint32_t>(views.size());
     info.pAttachments = views.data();
-    info.width = extent.width;
-    info.height = extent.height;
+    info.width = static_cast<uint32_t>(window.area.offset.x) + window.area.extent.width;
+    info.height = static_cast<uint32_t>(window.area.offset.y) + window.area.extent.height;
     info.layers = 1;
     vkDestroyFramebuffer(device_.handle(), framebuffer_, nullptr);
     framebuffer_ = VK_NULL_HANDLE;
@@ -181,17 +180,18 @@ void RasterProgram::drawBytes(VkCommandBuffer cmd, const void* push, uint32_t si
     VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
     begin.renderPass = renderPass_;
     begin.framebuffer = framebuffer_;
-    begin.renderArea = {{0, 0}, extent};
+    begin.renderArea = window.area;
     begin.clearValueCount = static_cast<uint32_t>(zeros.size());
     begin.pClearValues = zeros.data();
     vkCmdBeginRenderPass(cmd, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    const VkViewport viewport{0.0f, 0.0f, static_cast<float>(extent.width), static_cast<float>(extent.height),
-                              0.0f, 1.0f};
+    const VkViewport viewport{
+        0.0f, 0.0f, static_cast<float>(window.viewport.width), static_cast<float>(window.viewport.height),
+        0.0f, 1.0f};
     vkCmdSetViewport(cmd, 0, 1, &viewport);
     vkCmdSetScissor(cmd, 0, 1, &begin.renderArea);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0, nullptr);
-    vkCmdPushConstants(cmd, layout_, kStages, 0, size, push);
+    vkCmdPushConstants(cmd, layout_, kStages, 0, push.size, push.data);
     vkCmdDraw(cmd, vertexCount, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
 }

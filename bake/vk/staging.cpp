@@ -53,6 +53,45 @@ void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, 
     }
 }
 
+// Through the window that stays, however much it is: few parts fill it.
+void Staging::uploadParts(const Buffer& buffer, const void* data, std::span<const BufferPart> parts) {
+    if (parts.empty()) return;
+    const std::lock_guard lock(mutex_);
+    const auto* from = static_cast<const char*>(data);
+    if (buffer.mapped() != nullptr) {
+        barrier(commands_.begin()); // earlier work may still use the buffer
+        commands_.run();
+        for (const BufferPart& part : parts)
+            std::memcpy(static_cast<char*>(buffer.mapped()) + part.offset, from + part.offset, part.size);
+        return;
+    }
+    Buffer none;
+    const Buffer& window = windowFor(kKeptBytes, none);
+    std::vector<VkBufferCopy> regions;
+    VkDeviceSize used = 0;
+    const auto flush = [&] {
+        VkCommandBuffer cmd = commands_.begin();
+        barrier(cmd);
+        vkCmdCopyBuffer(cmd, window.handle(), buffer.handle(), static_cast<uint32_t>(regions.size()),
+                        regions.data());
+        barrier(cmd);
+        commands_.run();
+        regions.clear();
+        used = 0;
+    };
+    for (const BufferPart& part : parts) {
+        for (VkDeviceSize done = 0; done < part.size;) {
+            if (used == window.size()) flush();
+            const VkDeviceSize piece = std::min(window.size() - used, part.size - done);
+            std::memcpy(static_cast<char*>(window.mapped()) + used, from + part.offset + done, piece);
+            regions.push_back({used, part.offset + done, piece});
+            used += piece;
+            done += piece;
+        }
+    }
+    flush();
+}
+
 void Staging::download(const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset) {
     const std::lock_guard lock(mutex_);
     if (buffer.mapped() != nullptr) {

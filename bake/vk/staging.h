@@ -14,6 +14,7 @@ public:
     explicit Staging(const Device& device) : device_(device), commands_(device) {}
 
     void upload(const Buffer& buffer, const void* data, VkDeviceSize size, VkDeviceSize offset);
+    void uploadParts(const Buffer& buffer, const void* data, std::span<const BufferPart> parts);
     void download(const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset);
 
 private:

@@ -19,3 +19,6 @@ FUNCTION bool boxAbove(vec3 p, vec3 n, TraceBox box) {
     vec3 top = vec3(n.x > 0.0f ? box.hi.x : box.lo.x, n.y > 0.0f ? box.hi.y : box.lo.y, n.z > 0.0f ? box.hi.z : box.lo.z);
     return dot(top - p, n) > 0.0f;
 }
+
+// Whether a patch has links to be traced: one that sends, or any that is there.
+FUNCTION bool asksAgain(Patch p, uint silent) { return (p.flags & kPatchSends) != 0u || (silent != 0u && p.area > 0.0f); }

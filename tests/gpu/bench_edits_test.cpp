@@ -68,7 +68,9 @@ void expectCount(const nlohmann::json& run) {
     EXPECT_EQ(albedo.at("rays"), 0);
     const auto& object = run.at("object");
     EXPECT_GT(object.at("shareOfTriangles"), 0.0);
-    EXPECT_LT(object.at("followSeconds"), object.at("seconds"));
+    EXPECT_LT(object.at("followSeconds"), object.at("firstSeconds"));
+    EXPECT_LE(object.at("firstSeconds"), object.at("seconds"));
+    EXPECT_LT(object.at("firstError"), 0.2);
     EXPECT_GT(object.at("rays"), 0);
     EXPECT_GT(object.at("freshRays"), 0);    // of a box in a box there is little to save
     EXPECT_LT(object.at("difference"), 0.1); // both have the error that was asked for, at levels of their own

@@ -111,6 +111,33 @@ TEST(VkBuffer, RoundTripInBothMemories) {
     }
 }
 
+TEST(VkBuffer, TakesElementsThatChangedAndNoOthers) {
+    std::vector<uint32_t> values = numbers(3'000'001);
+    for (vk::Memory memory : {vk::Memory::Device, vk::Memory::Host}) {
+        const vk::Buffer buffer(testDevice(),
+                                {.size = values.size() * 4, .memory = memory, .name = "elements"});
+        vk::upload(testDevice(), buffer, values.data(), buffer.size());
+        std::vector<uint32_t> wanted = values, changed;
+        for (uint32_t i = 0; i < values.size(); i += i < 1000 ? 7 : i < 2'500'000 ? 1 : 1999) {
+            changed.push_back(i);
+            wanted[i] = values[i] = ~i;
+        }
+        changed.push_back(3'000'000);
+        wanted.back() = values.back() = 5;
+        vk::uploadElements(testDevice(), buffer, values, changed);
+        EXPECT_EQ(vk::readBuffer<uint32_t>(testDevice(), buffer, values.size()), wanted);
+        vk::uploadElements(testDevice(), buffer, values, {});
+    }
+    const auto parts = vk::partsOf(std::vector<uint32_t>{0, 1, 2, 1000, 2000, 2001}, 8);
+    ASSERT_EQ(parts.size(), 3u);
+    EXPECT_EQ(parts[0].offset, 0u);
+    EXPECT_EQ(parts[0].size, 24u);
+    EXPECT_EQ(parts[1].offset, 8000u);
+    EXPECT_EQ(parts[1].size, 8u);
+    EXPECT_EQ(parts[2].offset, 16000u);
+    EXPECT_EQ(parts[2].size, 16u);
+}
+
 TEST(VkBuffer, EmptyListHasAnAddress) {
     const vk::Buffer buffer = vk::makeBuffer(testDevice(), std::vector<float>{}, "empty");
     EXPECT_EQ(buffer.size(), 16u);

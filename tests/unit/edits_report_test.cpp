@@ -27,7 +27,12 @@ EditsRun made(uint32_t lamps, double first) {
     run.hybrid = {.seconds5 = {}, .seconds2 = {}, .seconds = 2, .compositeError = 0.1, .curve = {}};
     run.albedo =
         AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
-    run.object = ObjectEdit{.object = "Chair", .share = 0.01, .seconds = 0.5, .freshSeconds = 3.0};
+    run.object = ObjectEdit{.object = "Chair",
+                            .share = 0.01,
+                            .firstSeconds = 0.25,
+                            .firstError = {},
+                            .seconds = 0.5,
+                            .freshSeconds = 3.0};
     return run;
 }
 
@@ -64,6 +69,8 @@ TEST(EditsReport, JsonHasEveryFigure) {
     EXPECT_EQ(run.at("albedo").at("material"), "Wall");
     EXPECT_EQ(run.at("object").at("object"), "Chair");
     EXPECT_DOUBLE_EQ(run.at("object").at("overObject"), 6.0);
+    EXPECT_DOUBLE_EQ(run.at("object").at("overFirst"), 12.0);
+    EXPECT_TRUE(run.at("object").at("firstError").is_null());
 }
 
 TEST(EditsReport, AlbedoMayBeMissing) {
