@@ -128,6 +128,7 @@ void LayerSolver::finishLevel() {
     progress_.samples = std::max(progress_.samples, layer.level.linkRounds * linksOfRound_);
     changed(work.layer);
     work_.reset();
+    endStandIn();
     if (sumShown_ && !wantsSum()) hideSum();
     tellError();
 }

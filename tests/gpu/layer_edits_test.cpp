@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 namespace relume {
@@ -105,18 +104,6 @@ TEST(Layers, AColouredSurfaceGathersLinksAnewWithoutARay) {
     bake.finish();
     EXPECT_EQ(bake.progress().rays, rays);
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene)));
-}
-
-// Relative root mean square.
-double distance(const Light4& a, const Light4& b) {
-    double squares = 0, sum = 0;
-    for (size_t i = 0; i < b.size(); ++i) {
-        const glm::vec3 difference = glm::vec3(a[i]) - glm::vec3(b[i]);
-        squares += glm::dot(difference, difference);
-        sum += b[i].r + b[i].g + b[i].b;
-    }
-    return std::sqrt(squares / (3.0 * static_cast<double>(b.size()))) /
-           (sum / (3.0 * static_cast<double>(b.size())));
 }
 
 TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
