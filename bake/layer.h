@@ -66,11 +66,12 @@ struct Layer {
     SmoothingWidth width;        // of the last result
     double light = 0, count = 0; // sums over patches, R, G and B together
     double directVariance = 0, indirectVariance = 0, iterationError = 1;
-    double error = 1;               // relRMSE of result
-    std::optional<LayerLevel> redo; // it had been here, with other surfaces
-    bool converged = false;         // error below the aim, or all samples taken
-    std::unique_ptr<Layer> before;  // shown until there is a result
-    bool covered = false;           // LayerSolver's stand-in is shown in its place
+    double error = 1;                // relRMSE of result
+    std::optional<LayerLevel> redo;  // it had been here, with other surfaces, or before there was no memory
+    std::vector<uint32_t> redoSteps; // its directSteps then; empty: redo is made in one
+    bool converged = false;          // error below the aim, or all samples taken
+    std::unique_ptr<Layer> before;   // shown until there is a result
+    bool covered = false;            // LayerSolver's stand-in is shown in its place
 
     /// Of the patches, the share that takes a round of direct light, in the mean; 1 before the first.
     double directShare() const;

@@ -6,12 +6,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 namespace relume {
 namespace {
 
 using Kind = LightKey::Kind;
+
+// Patterns in the records of layers, members of groups counted: a few hundred bytes each.
+constexpr size_t kMostRecorded = 16384;
 
 // FNV-1a of all base colour factors.
 uint64_t surfacesOf(const Scene& scene) {
@@ -121,9 +125,43 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * LightBuffers::lightBytes(input_.patches);
     while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > layerBytes_) { // and the spare
+        remember(*former_.front());
         recycle(*former_.front());
         former_.erase(former_.begin());
     }
+}
+
+// One on its way to a level that it had is in the records already.
+void LayerSolver::remember(const Layer& layer) {
+    if (layer.redo) return;
+    std::erase_if(records_, [&](const Record& record) { return record.pattern == layer.pattern; });
+    records_.push_back({layer.pattern, layer.level, layer.directSteps});
+    const auto count = [](size_t sum, const Record& record) {
+        return sum + 1 + record.pattern.members.size();
+    };
+    size_t recorded = std::accumulate(records_.begin(), records_.end(), size_t{0}, count);
+    for (; recorded > kMostRecorded && records_.size() > 1; records_.erase(records_.begin()))
+        recorded -= count(0, records_.front());
+}
+
+// To where it was when memory did not do for it, in the same steps: an undo brings back the bytes. Direct
+// light that it got from another layer must have been made likewise.
+void LayerSolver::recall(Layer& layer) const {
+    const auto found = std::find_if(records_.begin(), records_.end(),
+                                    [&](const Record& record) { return record.pattern == layer.pattern; });
+    if (found == records_.end()) return;
+    const std::vector<uint32_t>& steps = found->directSteps;
+    const auto differs =
+        std::mismatch(layer.directSteps.begin(), layer.directSteps.end(), steps.begin(), steps.end());
+    if (differs.first != layer.directSteps.end()) {
+        layer.direct.reset();
+        layer.directRounds = 0;
+        layer.directSteps.clear();
+        layer.stale.clear();
+        layer.penumbra.clear();
+    }
+    layer.redo = found->level;
+    layer.redoSteps = steps;
 }
 
 // Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
@@ -138,7 +176,8 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.directSteps = from.directSteps;
     to.penumbra = from.penumbra;
     keepStale(from, to);
-    to.redo = from.has() ? std::optional(from.level) : from.redo;
+    to.redo = from.redo ? from.redo : from.has() ? std::optional(from.level) : std::nullopt;
+    to.redoSteps = from.redoSteps;
 }
 
 void LayerSolver::adopt() {
@@ -198,8 +237,9 @@ void LayerSolver::adoptLayers(const std::vector<Wanted>& wanted) {
             std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
                 return layer->source.key == wanted[i].source.key;
             });
+        if (same != layers_.end()) keepDirect(**same, *next[i]);
+        recall(*next[i]);
         if (same == layers_.end()) continue;
-        keepDirect(**same, *next[i]);
         next[i]->covered = std::exchange((*same)->covered, false) || next[i]->covered;
         next[i]->before = std::move(*same);
         layers_.erase(same);

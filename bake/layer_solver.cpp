@@ -105,8 +105,7 @@ void LayerSolver::plan() {
         done_ = true;
         return;
     }
-    const Layer& layer = *layers_[*next];
-    begin(*next, layer.has() ? nextLevel(layer) : layer.redo.value_or(firstLevel()));
+    begin(*next, targetOf(*layers_[*next]));
 }
 
 void LayerSolver::begin(size_t index, LayerLevel target) {
@@ -115,7 +114,10 @@ void LayerSolver::begin(size_t index, LayerLevel target) {
     if (!layer.stale.empty()) return beginMending();
     work_->round = layer.directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
-    if (raysOf(layer) == 0) layer.penumbra.assign(parts_.count, 0); // nothing in it shines
+    if (raysOf(layer) == 0) { // nothing in it shines
+        layer.penumbra.assign(parts_.count, 0);
+        layer.redoSteps.clear();
+    }
     if (!layer.penumbra.empty()) uploadPenumbra(layer);
     beginPass(Stage::Direct);
     if (raysOf(layer) == 0) return endDirectStep();
@@ -206,7 +208,12 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
 
 // Of the round, where this step ends.
 uint32_t LayerSolver::directEnd() const {
-    return work_->mended ? layers_[work_->layer]->directSteps[*work_->mended] : work_->target.directRounds;
+    const Layer& layer = *layers_[work_->layer];
+    if (work_->mended) return layer.directSteps[*work_->mended];
+    // A level that was there before is made in the steps that it was made in.
+    const auto next = std::upper_bound(layer.redoSteps.begin(), layer.redoSteps.end(), layer.directRounds);
+    const uint32_t end = work_->target.directRounds;
+    return next == layer.redoSteps.end() ? end : std::min(*next, end);
 }
 
 // Which chunks take part in the round; whether any does.
@@ -247,7 +254,7 @@ void LayerSolver::endDirectRound() {
 
 void LayerSolver::endDirectStep() {
     Layer& layer = *layers_[work_->layer];
-    const uint32_t rounds = work_->target.directRounds - layer.directRounds;
+    const uint32_t end = directEnd(), rounds = end - layer.directRounds;
     VkCommandBuffer cmd = commands_.begin();
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
@@ -258,9 +265,11 @@ void LayerSolver::endDirectStep() {
     run(cmd);
     countRays();
     learnPenumbra();
-    layer.directRounds = work_->target.directRounds;
-    layer.directSteps.push_back(layer.directRounds);
-    beginBounces();
+    layer.directRounds = end;
+    layer.directSteps.push_back(end);
+    if (end == work_->target.directRounds) return beginBounces();
+    work_->begun = false;
+    if (!seekRound()) endDirectStep();
 }
 
 void LayerSolver::recordPenumbra(VkCommandBuffer cmd) {

@@ -107,6 +107,13 @@ private:
         EmitterSet set;
     };
 
+    /// Of a layer that memory did not do for: what makes its bytes again.
+    struct Record {
+        LightPattern pattern;
+        LayerLevel level;
+        std::vector<uint32_t> directSteps;
+    };
+
     // layer_solver.cpp
     void countSenders();
     void plan();
@@ -154,6 +161,7 @@ private:
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
     LayerLevel nextLevel(const Layer& layer) const;
+    LayerLevel targetOf(const Layer& layer) const;
     LayerLevel lastLevel() const;
     void tellError();
 
@@ -166,6 +174,8 @@ private:
     void recycle(Layer& layer);
     std::unique_ptr<Layer> takeLayer(const Wanted& wanted);
     void archive(std::unique_ptr<Layer> layer);
+    void remember(const Layer& layer);
+    void recall(Layer& layer) const;
     void keepDirect(const Layer& from, Layer& to) const;
 
     // layer_groups.cpp
@@ -230,6 +240,7 @@ private:
 
     std::vector<std::unique_ptr<Layer>> layers_; // in the order of groupLights()
     std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
+    std::vector<Record> records_;                // of those that are no longer kept, the newest last
     std::vector<vk::Buffer> spare_;              // of layers that are gone, for the next ones
     uint64_t layerBytes_ = 0;                    // at most, of all of them
     std::vector<EmitterGroup> emitterGroups_;    // of emitters_
