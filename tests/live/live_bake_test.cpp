@@ -292,11 +292,11 @@ TEST_F(LiveBakeTest, SaysWhyThereAreNoLayers) {
 
 TEST_F(LiveBakeTest, TellsWhichLightsShareALayer) {
     BakeSettings settings = quickSettings();
-    settings.solver.layers.on = true;
     start(settings, false);
     ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
     EXPECT_TRUE(bake_.status().groups.empty());
     EXPECT_EQ(groupRemark({}), "");
+    settings.solver.layers.on = true;
     // Of three layers or four: direct light and result, a vec4 per patch, and padding of up to a quarter.
     settings.solver.layers.bytes = uint64_t{4} * 2 * sizeof(glm::vec4) * bake_.status().patches;
     for (int i = 0; i < 7; ++i) {

@@ -363,8 +363,10 @@ void LightsPanel::draw(const PanelContext& context) {
     context.previews.wanted = context.status.layered;
     if (!context.status.remark.empty())
         ImGui::TextWrapped("%s", (context.status.remark + ". Till then each edit bakes anew.").c_str());
-    if (const std::string remark = groupRemark(context.status.groups); !remark.empty())
+    if (const std::string remark = groupRemark(context.status.groups); !remark.empty()) {
         ImGui::TextWrapped("%s.", remark.c_str());
+        ui::mark("Shared layers", false);
+    }
     drawBoard(context);
     ImGui::Separator();
     drawAdd(context);
