@@ -1,5 +1,6 @@
 #include "app/bake_options.h"
 
+#include "app/typed_numbers.h"
 #include "bake/link_solver.h"
 
 #include <CLI/CLI.hpp>
@@ -73,6 +74,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (o.layers && (o.indirectScale > 1 || o.footprint || o.directions == "lec"))
         throw UsageError("--layers: not with --indirect-scale, --footprint or --directions lec");
     solver.layers.on = o.layers;
+    if (!o.layerMemory.empty()) solver.layers.bytes = typedMemory("--layer-memory", o.layerMemory);
     solver.links.samples = o.samples;
     solver.links.smooth = !o.noSmooth;
     solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
@@ -146,6 +148,13 @@ void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
         ->check(CLI::Range(8u, Baker::kMaxSize));
 }
 
+CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
+    return command.add_option(
+        "--layer-memory", o.layerMemory,
+        "Layers take at most so much, as 512M or 2G (default: a third of the free device "
+        "memory); lights beyond share layers");
+}
+
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
     command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
@@ -162,9 +171,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->check(CLI::IsMember({"rtrad"}));
     command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
         ->check(CLI::Range(0.0, 2.0));
-    command.add_flag("--layers", o.layers,
-                     "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
-                     "that 'relume mix' weighs anew");
+    CLI::Option* layers = command.add_flag(
+        "--layers", o.layers,
+        "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
+        "that 'relume mix' weighs anew");
+    addLayerMemory(command, o)->needs(layers);
     command.add_flag("--half", o.half, "Write 16-bit floats");
     addCheckpointOptions(command, o);
     command.add_option("--json", o.json, "Write statistics to this file, - for standard output");

@@ -8,7 +8,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace relume {
 
@@ -33,6 +34,7 @@ struct BakeOptions {
     uint32_t indirectScale = 0; // 0: not given
     bool noSmooth = false, footprint = false;
     bool layers = false;
+    std::string layerMemory;
     PairOptions pairs; // and caches
     bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
     bool deviceGather = false;
@@ -41,6 +43,8 @@ struct BakeOptions {
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 /// Those of them that say how a lightmap is made, for other verbs that need one.
 void addSolverOptions(CLI::App& command, BakeOptions& options);
+/// For a layer for each light.
+CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& options);
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);
 
 /// What the options ask for. Throws UsageError when they contradict each other.

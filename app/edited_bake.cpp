@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace relume {
 namespace {
 
@@ -29,6 +31,12 @@ EditedBake::EditedBake(const vk::Device& device, const Scene& scene, WorldMesh m
 double EditedBake::restart(const std::vector<Light>& lights, const SolverSettings& settings) {
     scene_.lights = lights;
     baker_->resetSolver(settings);
+    for (const std::unique_ptr<Layer>& layer : solver().layers())
+        if (!layer->members.empty())
+            throw Error(
+                fmt::format("there is no memory for a layer of each of {} lights: give fewer --lights or "
+                            "a smaller --size",
+                            lightSources(scene_).size()));
     Stopwatch watch;
     watch([&] {
         bakeToEnd(solver());

@@ -35,7 +35,8 @@ public:
     /// Of the first light, for a unit of its weight.
     PatchLight firstLamp();
 
-    /// From nothing to the end, with these lights. Returns how long it took [s].
+    /// From nothing to the end, with these lights. Returns how long it took [s]. Throws Error where some of
+    /// them would share a layer.
     double restart(const std::vector<Light>& lights, const SolverSettings& settings);
     /// To lights that differ in intensity and colour alone; how long until there is a picture [s].
     double weigh(const std::vector<Light>& lights);

@@ -24,10 +24,18 @@ LightText describe(const Scene& scene, const LightKey& key) {
         const Light& light = scene.lights[key.index];
         return {lightTypeName(light.type), lightUnit(light.type), light.intensity, light.color};
     }
+    if (key.kind == LightKey::Kind::Group) return {"group", "", 1.0f, glm::vec3(1.0f)};
     const bool sky = key.kind == LightKey::Kind::Sky;
     const glm::vec3 radiance = sky ? scene.sky.radiance : scene.materials[key.material].emission;
     const float most = std::max({radiance.r, radiance.g, radiance.b});
     return {sky ? "sky" : "emitter", "cd/m^2", most, most > 0.0f ? radiance / most : glm::vec3(1.0f)};
+}
+
+std::string namesOf(const std::vector<LightSource>& lights) {
+    std::string names;
+    for (const LightSource& light : lights)
+        names += (names.empty() ? "" : "\n") + light.name;
+    return names;
 }
 
 } // namespace
@@ -47,6 +55,7 @@ LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& 
         part.attributes[attribute::kIntensity] = fmt::format("{}", light.intensity);
         part.attributes[attribute::kColor] =
             fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
+        if (!layer->members.empty()) part.attributes[attribute::kMembers] = namesOf(layer->members);
         const std::string stale = staleReason(*layer);
         if (!stale.empty()) part.attributes[attribute::kStale] = stale;
         const Layer* shown = layer->shown();

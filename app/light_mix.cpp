@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 namespace relume {
 namespace {
@@ -38,6 +39,13 @@ LayeredImage::Layer& layerOf(LayeredImage& image, const std::string& name) {
     for (LayeredImage::Layer& layer : image.layers) {
         if (layer.name == name) return layer;
         names.push_back(layer.name);
+    }
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const std::vector<std::string> members = membersOf(layer);
+        if (std::find(members.begin(), members.end(), name) != members.end())
+            throw Error(fmt::format("light {0} is part of {1} and cannot be set apart: set {1}, or bake with "
+                                    "more --layer-memory",
+                                    quoted(name), quoted(layer.name)));
     }
     throw Error(fmt::format("no light is called {}: {}", quoted(name), nearNamesHint(name, names)));
 }
@@ -107,6 +115,16 @@ WeightEdit weightEditOf(std::string_view text) {
     edit.intensity = numberIn(value.substr(0, comma));
     if (comma != std::string_view::npos) edit.color = colorIn(value.substr(comma + 1));
     return edit;
+}
+
+std::vector<std::string> membersOf(const LayeredImage::Layer& layer) {
+    std::vector<std::string> names;
+    const auto found = layer.attributes.find(layer_attribute::kMembers);
+    if (found == layer.attributes.end()) return names;
+    std::istringstream lines(found->second);
+    for (std::string name; std::getline(lines, name);)
+        names.push_back(name);
+    return names;
 }
 
 float intensityOf(const LayeredImage::Layer& layer) {

@@ -28,13 +28,16 @@ struct MixDesc {
     std::vector<std::string> muted, solo;
 };
 
+/// The lights that share a layer; empty: it is one light's.
+std::vector<std::string> membersOf(const LayeredImage::Layer& layer);
+
 /// What a layer's light has, by its attributes, else by its weight.
 float intensityOf(const LayeredImage::Layer& layer);
 glm::vec3 colorOf(const LayeredImage::Layer& layer);
 
 /// Weighs the layers anew: first the edits, then switches; with solo only those shine, and muted ones never.
 /// Then R, G and B of the composite are the sum of weight x layer; of its other channels only coverage stays.
-/// Throws Error for names that no layer has.
+/// Throws Error for names that no layer has, and for those of lights that share one.
 void mixLayers(LayeredImage& image, const MixDesc& desc);
 
 } // namespace relume

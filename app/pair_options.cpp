@@ -1,5 +1,7 @@
 #include "app/pair_options.h"
 
+#include "app/typed_numbers.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -25,34 +27,6 @@ uint32_t powerOfTwo(const char* option, int64_t value, uint32_t least, uint32_t 
     if (value >= least && value <= most && std::has_single_bit(static_cast<uint64_t>(value)))
         return static_cast<uint32_t>(value);
     throw UsageError(fmt::format("{} {}: choose a power of two from {} to {}", option, value, least, most));
-}
-
-// "512M": bytes, with K, M, G or T for powers of 1024.
-uint64_t parseMemory(const std::string& text) {
-    const auto wrong = [&] {
-        return UsageError("--cache-memory " + text + ": give a size above 0 like 512M or 2G");
-    };
-    size_t used = 0;
-    double value = 0;
-    try {
-        value = std::stod(text, &used);
-    } catch (const std::exception&) {
-        throw wrong();
-    }
-    std::string unit = text.substr(used);
-    std::transform(unit.begin(), unit.end(), unit.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    if (unit.ends_with("IB"))
-        unit.resize(unit.size() - 2);
-    else if (unit.size() > 1 && unit.ends_with("B"))
-        unit.pop_back();
-    constexpr std::array<const char*, 5> kUnits = {"", "K", "M", "G", "T"};
-    const auto found = std::find(kUnits.begin(), kUnits.end(), unit == "B" ? "" : unit);
-    if (found == kUnits.end()) throw wrong();
-    const double bytes = std::ldexp(value, 10 * static_cast<int>(found - kUnits.begin()));
-    constexpr double kMost = 1e18;
-    if (!(bytes >= 1.0 && bytes <= kMost)) throw wrong();
-    return static_cast<uint64_t>(bytes);
 }
 
 CacheSettings::Kind parseCache(const std::string& name, Method method) {
@@ -127,7 +101,7 @@ void resolvePairOptions(const PairOptions& o, SolverSettings& settings) {
     if (!o.cacheMemory.empty()) {
         if (settings.cache.kind == CacheSettings::Kind::None)
             throw UsageError("--cache-memory: --cache none keeps nothing");
-        settings.cache.bytes = parseMemory(o.cacheMemory);
+        settings.cache.bytes = typedMemory("--cache-memory", o.cacheMemory);
     }
 }
 

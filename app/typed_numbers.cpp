@@ -1,7 +1,13 @@
 #include "app/typed_numbers.h"
 
+#include "assets/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <exception>
 
 namespace relume {
 
@@ -25,6 +31,33 @@ std::vector<float> typedNumbers(std::string_view text, size_t count) {
     }
     if (numbers.size() != count) numbers.clear();
     return numbers;
+}
+
+uint64_t typedMemory(const char* option, const std::string& text) {
+    const auto wrong = [&] {
+        return UsageError(std::string(option) + " " + text + ": give a size above 0 like 512M or 2G");
+    };
+    size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        throw wrong();
+    }
+    std::string unit = text.substr(used);
+    std::transform(unit.begin(), unit.end(), unit.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    if (unit.ends_with("IB"))
+        unit.resize(unit.size() - 2);
+    else if (unit.size() > 1 && unit.ends_with("B"))
+        unit.pop_back();
+    constexpr std::array<const char*, 5> kUnits = {"", "K", "M", "G", "T"};
+    const auto found = std::find(kUnits.begin(), kUnits.end(), unit == "B" ? "" : unit);
+    if (found == kUnits.end()) throw wrong();
+    const double bytes = std::ldexp(value, 10 * static_cast<int>(found - kUnits.begin()));
+    constexpr double kMost = 1e18;
+    if (!(bytes >= 1.0 && bytes <= kMost)) throw wrong();
+    return static_cast<uint64_t>(bytes);
 }
 
 } // namespace relume

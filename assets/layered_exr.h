@@ -12,14 +12,15 @@ namespace relume {
 
 /// Attributes of layers that say more about their lights; any may be missing.
 namespace layer_attribute {
-constexpr const char* kType = "relume:type"; // "point", ..., "emitter", "sky"
+constexpr const char* kType = "relume:type"; // "point", ..., "emitter", "sky", "group"
 constexpr const char* kUnit = "relume:unit"; // of the intensity
 // The light as its scene has it, in that unit and linear, as texts ("40", "1,0.5,0.2"): what `weight` was
 // made of, also where that is 0 because the light is off. Missing: the weight's brightest channel, and weight
 // / that.
 constexpr const char* kIntensity = "relume:intensity";
 constexpr const char* kColor = "relume:color";
-constexpr const char* kStale = "relume:stale"; // why the layer does not show the scene any more, one line
+constexpr const char* kStale = "relume:stale";     // why the layer does not show the scene any more, one line
+constexpr const char* kMembers = "relume:members"; // of a group: the names of its lights, one per line
 } // namespace layer_attribute
 
 /// A lightmap light by light: composite = sum of weight x layer.

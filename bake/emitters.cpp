@@ -37,8 +37,10 @@ public:
 
 private:
     bool emits(uint32_t triangle) const;
-    glm::vec3 factorOf(const Material& material) const {
-        return desc_.only ? glm::vec3(1.0f) : material.emission;
+    const EmitterChoice* choiceOf(uint32_t triangle) const;
+    glm::vec3 factorOf(uint32_t triangle) const {
+        const EmitterChoice* choice = choiceOf(triangle);
+        return choice ? choice->factor : scene_.materials[mesh_.material[triangle]].emission;
     }
     glm::dvec3 at(uint32_t corner) const { return mesh_.positions[corner]; }
     glm::dvec3 front(uint32_t triangle) const; // normal times twice the area
@@ -62,10 +64,19 @@ private:
     EmitterSet set_;
 };
 
+// nullptr: it is not among them.
+const EmitterChoice* EmitterBuilder::choiceOf(uint32_t triangle) const {
+    const LightKey key{LightKey::Kind::Emitter, mesh_.instance[triangle], mesh_.material[triangle]};
+    const auto found = std::lower_bound(
+        desc_.only.begin(), desc_.only.end(), key,
+        [](const EmitterChoice& choice, const LightKey& wanted) { return choice.key < wanted; });
+    return found != desc_.only.end() && found->key == key ? &*found : nullptr;
+}
+
 bool EmitterBuilder::emits(uint32_t triangle) const {
     const uint32_t material = mesh_.material[triangle];
     if (material >= scene_.materials.size()) return false; // glTF's default one
-    if (desc_.only) return material == desc_.only->material && mesh_.instance[triangle] == desc_.only->index;
+    if (!desc_.only.empty()) return choiceOf(triangle) != nullptr;
     const glm::vec3 emission = scene_.materials[material].emission;
     return emission.r > 0 || emission.g > 0 || emission.b > 0;
 }
@@ -208,7 +219,7 @@ void EmitterBuilder::addTriangle(uint32_t t) {
     p.c2 = p.c3 = mesh_.positions[3 * t + 2];
     p.area = static_cast<float>(0.5 * glm::length(front(t)));
     p.split = 1, p.shape = shader::kEmitterTriangle;
-    p.radiance = factorOf(material), p.triangle = t;
+    p.radiance = factorOf(t), p.triangle = t;
     add(p);
 }
 
@@ -226,12 +237,12 @@ void EmitterBuilder::addQuad(const Pair& pair) {
     const double second = glm::length(glm::cross(diagonal, at(pair.to) - at(pair.apex0)));
     p.split = static_cast<float>(first / (first + second));
     p.shape = pair.isParallelogram ? shader::kEmitterParallelogram : shader::kEmitterQuad;
-    p.radiance = factorOf(material), p.triangle = t;
+    p.radiance = factorOf(t), p.triangle = t;
     add(p);
 }
 
 void EmitterBuilder::addPieces() {
-    const PieceList list = splitEmission(scene_, surfaces_, desc_.maxPieces, desc_.only.has_value());
+    const PieceList list = splitEmission(scene_, surfaces_, desc_.maxPieces, !desc_.only.empty());
     for (const EmitterPiece& piece : list.pieces) {
         const EmitterSurface& s = surfaces_[piece.surface];
         const auto corner = [&](double a, double b) {
@@ -245,6 +256,7 @@ void EmitterBuilder::addPieces() {
         p.split = s.isTriangle ? 1.0f : 0.5f;
         p.shape = s.isTriangle ? shader::kEmitterTriangle : shader::kEmitterParallelogram;
         p.radiance = glm::vec3(piece.radiance), p.triangle = s.triangle;
+        if (!desc_.only.empty()) p.radiance *= factorOf(s.triangle);
         add(p);
     }
     if (list.capped)
@@ -277,7 +289,7 @@ EmitterSet EmitterBuilder::build() {
     }
     addPieces();
     set_.nodes = buildLightTree(set_.polygons);
-    if (!set_.polygons.empty() && !desc_.only)
+    if (!set_.polygons.empty() && desc_.only.empty())
         spdlog::info("emitters: {} polygons of {} triangles", set_.polygons.size(), emitting_.size());
     return std::move(set_);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "assets/world_mesh.h"
@@ -18,11 +17,18 @@ struct EmitterSet {
     double power = 0; // area times mean of the radiance's components, all polygons [cd]
 };
 
+/// One of the emitters that are asked for.
+struct EmitterChoice {
+    LightKey key;
+    glm::vec3 factor{1.0f}; // in place of the material's emission [cd/m^2]
+
+    bool operator==(const EmitterChoice&) const = default;
+};
+
 struct EmitterDesc {
-    uint32_t size = 512;         // lightmap edge [texels]: how far rays end above a surface
-    uint32_t maxPieces = 32'768; // that textured emission may be split into, all surfaces together
-    /// Of this emitter alone, for an emission factor of 1.
-    std::optional<LightKey> only = std::nullopt;
+    uint32_t size = 512;                  // lightmap edge [texels]: how far rays end above a surface
+    uint32_t maxPieces = 32'768;          // that textured emission may be split into, all surfaces together
+    std::vector<EmitterChoice> only = {}; // of nothing but these, in ascending order of keys; empty: of all
 };
 
 /// Polygons for every emitting triangle of the mesh, whether or not it has a place in the lightmap. Two that

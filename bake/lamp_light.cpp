@@ -1,5 +1,6 @@
 #include "bake/lamp_light.h"
 
+#include "assets/error.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -31,17 +32,34 @@ uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
 
 LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      set_(buildLamps(scene, patches.scene.mesh, {.samples = desc.samples, .unit = desc.apart})),
+      set_(buildLamps(scene, patches.scene.mesh, {.samples = desc.samples, .unit = desc.chosen})),
       skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
       skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
-    group();
+    if (!desc.chosen) group(std::vector<uint32_t>(set_.lamps.size(), 0));
 }
 
-void LampLight::update(const Scene& scene) {
+void LampLight::update(const Scene& scene, std::span<const LampChoice> choices) {
+    ASSERT(desc_.chosen);
     const bool skyShines = scene.sky.shines() && (set_.skyRows.empty() || set_.skyRows.back() > 0.0f);
     set_.skyRotation = scene.sky.rotation;
-    set_.lamps = lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = desc_.apart});
-    group();
+    const std::vector<shader::Lamp> lamps =
+        lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = true});
+    set_.lamps.clear();
+    std::vector<uint32_t> sets;
+    for (const LampChoice& choice : choices) {
+        if (choice.lamp >= lamps.size()) continue; // a sky whose picture is black
+        set_.lamps.push_back(lamps[choice.lamp]);
+        set_.lamps.back().color = choice.color;
+        sets.push_back(choice.set);
+    }
+    group(sets);
+}
+
+std::vector<uint32_t> LampLight::groupsOf(uint32_t set) const {
+    std::vector<uint32_t> found;
+    for (uint32_t i = 0; i < groups_.size(); ++i)
+        if (groups_[i].set == set) found.push_back(i);
+    return found;
 }
 
 bool LampLight::updateReach(const WorldMesh& mesh) {
@@ -49,15 +67,16 @@ bool LampLight::updateReach(const WorldMesh& mesh) {
     return set_.reach != before;
 }
 
-void LampLight::group() {
+void LampLight::group(const std::vector<uint32_t>& sets) {
     groups_.clear();
     rays_ = 0;
     if (set_.empty()) return;
     uint32_t most = 0;
     for (uint32_t i = 0; i < set_.lamps.size(); ++i) {
         shader::Lamp& lamp = set_.lamps[i];
-        if (groups_.empty() || desc_.apart || groups_.back().targets + lamp.samples > kGroupRays)
-            groups_.push_back({.first = i});
+        if (groups_.empty() || groups_.back().set != sets[i] ||
+            groups_.back().targets + lamp.samples > kGroupRays)
+            groups_.push_back({.first = i, .set = sets[i]});
         Group& group = groups_.back();
         lamp.firstTarget = group.targets;
         group.targets += lamp.samples;

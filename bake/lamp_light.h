@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "bake/chunk_order.h"
 #include "bake/lamps.h"
 #include "bake/light_buffers.h"
@@ -9,20 +11,28 @@
 
 namespace relume {
 
+/// A lamp of those that are sampled.
+struct LampChoice {
+    uint32_t lamp = 0;     // of Scene::lights; as many as these: the sky
+    glm::vec3 color{1.0f}; // in place of its own
+    uint32_t set = 0;      // lamps of one set, one behind the other, share groups
+};
+
 /// Direct light of lamps (bake/lamps.h), by rays to points on them. Lamps take turns in groups that share a
 /// batch of rays: for each group record samples, trace segments(), then gather.
 class LampLight {
 public:
     struct Desc {
         uint32_t samples = 16; // as LampDesc has it
-        // Colours of 1 and a group for each lamp: that of Scene::lights[i] is group i, the sky's the last
-        // one.
-        bool apart = false;
+        bool chosen = false;   // none until update() says which
     };
     LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc);
 
-    /// Lamps as they are now; sky picture and patches are the same as before. No batch may be under way.
-    void update(const Scene& scene);
+    /// With Desc::chosen: lamps as they are now; sky picture and patches are the same as before. No batch may
+    /// be under way.
+    void update(const Scene& scene, std::span<const LampChoice> choices);
+    /// Of a LampChoice::set.
+    std::vector<uint32_t> groupsOf(uint32_t set) const;
     /// Triangles stand elsewhere now. Whether rays to the sky and to suns end elsewhere, too.
     bool updateReach(const WorldMesh& mesh);
 
@@ -56,8 +66,9 @@ private:
     struct Group {
         uint32_t first = 0, count = 0; // lamps
         uint32_t targets = 0;          // per patch
+        uint32_t set = 0;
     };
-    void group();
+    void group(const std::vector<uint32_t>& sets); // of each lamp
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
 
     const vk::Device& device_;

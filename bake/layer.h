@@ -5,26 +5,29 @@
 #include <string>
 #include <vector>
 
-#include "bake/light_source.h"
+#include "bake/light_groups.h"
 #include "bake/smoothing_width.h"
 #include "bake/vk/buffer.h"
 
 namespace relume {
 
 /// What decides a light's pattern: where it is and which form it has, but neither intensity nor colour, nor
-/// what it is called.
+/// what it is called. In a group these decide how its members are weighed.
 struct LightPattern {
     LightKey::Kind kind = LightKey::Kind::Sky;
     uint32_t instance = 0, material = 0; // Emitter
     Light light;                         // Lamp: of no name and of white light of intensity 1
     float rotation = 0;                  // Sky [rad]
     std::string file;                    // Sky
-    uint64_t surfaces = 0;               // tells colours of surfaces apart
-    uint64_t objects = 0;                // and where objects stand
+    // Group: of those that shine, in the order of lightSources(), without what follows.
+    std::vector<LightPattern> members;
+    std::vector<glm::vec3> weights; // theirs
+    uint64_t surfaces = 0;          // tells colours of surfaces apart
+    uint64_t objects = 0;           // and where objects stand
 
     bool operator==(const LightPattern&) const = default;
 };
-LightPattern patternOf(const Scene& scene, const LightKey& key);
+LightPattern patternOf(const Scene& scene, const LightGroup& group);
 
 /// How far a layer is: a pure function of the pattern, the geometry and the surfaces' colours.
 struct LayerLevel {
@@ -33,11 +36,18 @@ struct LayerLevel {
     bool operator==(const LayerLevel&) const = default;
 };
 
-/// One light's share of the lightmap, for a unit of its weight: direct light and all bounces.
+/// Part of a layer's direct light: a group of EmitterLight's or LampLight's.
+struct DirectPart {
+    bool emitters = false;
+    uint32_t group = 0;
+};
+
+/// One light's share of the lightmap, for a unit of its weight, or a group's: direct light and all bounces.
 struct Layer {
     LightPattern pattern;
-    LightSource source; // as it is now; weight: with its switches, 0 where it is off
-    uint32_t group = 0; // of the emitters' or of the lamps' direct light
+    LightSource source;               // as it is now; weight: with its switches, 0 where it is off
+    std::vector<LightSource> members; // of a group, likewise
+    std::vector<DirectPart> parts;
     // vec4 per patch: lighting, variance of R, G and B together; it may be one with a layer of other
     // surfaces'.
     std::shared_ptr<vk::Buffer> direct; // nullptr: no rounds yet
@@ -56,10 +66,12 @@ struct Layer {
     SmoothingWidth width;        // of the last result
     double light = 0, count = 0; // sums over patches, R, G and B together
     double directVariance = 0, indirectVariance = 0, iterationError = 1;
-    double error = 1;               // relRMSE of result
-    std::optional<LayerLevel> redo; // it had been here, with other surfaces
-    bool converged = false;         // error below the aim, or all samples taken
-    std::unique_ptr<Layer> before;  // shown until there is a result
+    double error = 1;                // relRMSE of result
+    std::optional<LayerLevel> redo;  // it had been here, with other surfaces, or before there was no memory
+    std::vector<uint32_t> redoSteps; // its directSteps then; empty: redo is made in one
+    bool converged = false;          // error below the aim, or all samples taken
+    std::unique_ptr<Layer> before;   // shown until there is a result
+    bool covered = false;            // LayerSolver's stand-in is shown in its place
 
     /// Of the patches, the share that takes a round of direct light, in the mean; 1 before the first.
     double directShare() const;

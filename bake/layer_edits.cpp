@@ -6,20 +6,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
+#include <utility>
 
 namespace relume {
 namespace {
 
 using Kind = LightKey::Kind;
 
-constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-
-// Emitters' groups and lamps' are counted apart.
-uint32_t groupOf(const std::vector<LightKey>& emitters, const Scene& scene, const LightKey& key) {
-    if (key.kind == Kind::Lamp) return key.index;
-    if (key.kind == Kind::Sky) return static_cast<uint32_t>(scene.lights.size());
-    return static_cast<uint32_t>(std::find(emitters.begin(), emitters.end(), key) - emitters.begin());
-}
+// Patterns in the records of layers, members of groups counted: a few hundred bytes each.
+constexpr size_t kMostRecorded = 16384;
 
 // FNV-1a of all base colour factors.
 uint64_t surfacesOf(const Scene& scene) {
@@ -44,20 +40,6 @@ uint64_t objectsOf(const Scene& scene) {
 
 } // namespace
 
-std::string LayerSolver::problem(const Scene& scene, const PatchSet& patches, uint64_t bytes) {
-    const size_t lights = lightSources(scene).size();
-    const uint64_t needed = lights * 2 * LightBuffers::lightBytes(patches);
-    if (needed <= bytes) return "";
-    return fmt::format("layers of {} lights take {:.1f} GiB, {:.1f} may be taken: use a smaller lightmap, or "
-                       "bake without layers",
-                       lights, static_cast<double>(needed) / kGiB, static_cast<double>(bytes) / kGiB);
-}
-
-bool LayerSolver::holds(size_t lamps) const {
-    const size_t others = emitterKeys_.size() + 1; // and the sky
-    return (lamps + others) * 2 * LightBuffers::lightBytes(input_.patches) <= layerBytes_;
-}
-
 void LayerSolver::edit(const LightMix& mix) {
     ASSERT(atRest() || surfacesOf(input_.scene) == surfaces_);
     ASSERT(moved_ || objectsOf(input_.scene) == objects_);
@@ -69,29 +51,22 @@ void LayerSolver::edit(const LightMix& mix) {
 
 // Of those that stay what they are; what is not known yet comes with adopt().
 void LayerSolver::weigh() {
-    const std::vector<LightSource> sources = lightSources(input_.scene);
-    std::vector<LightPattern> patterns;
-    for (const LightSource& source : sources) {
-        patterns.push_back(patternOf(input_.scene, source.key));
-        patterns.back().surfaces = surfaces_;
-        patterns.back().objects = objects_;
-    }
+    const std::vector<Wanted> wanted = wantedLayers();
     const auto has = [&](const LightPattern& pattern) {
         return std::any_of(layers_.begin(), layers_.end(),
                            [&](const std::unique_ptr<Layer>& layer) { return layer->pattern == pattern; });
     };
     for (size_t i = 0; i < layers_.size(); ++i) {
         Layer& layer = *layers_[i];
-        auto now = sources.end();
-        for (auto source = sources.begin(); source != sources.end() && now == sources.end(); ++source)
-            if (patterns[static_cast<size_t>(source - sources.begin())] == layer.pattern) now = source;
+        auto now = std::find_if(wanted.begin(), wanted.end(),
+                                [&](const Wanted& w) { return w.pattern == layer.pattern; });
         // One that was moved shines on from where it was.
-        for (auto source = sources.begin(); source != sources.end() && now == sources.end(); ++source)
-            if (source->key == layer.source.key &&
-                !has(patterns[static_cast<size_t>(source - sources.begin())]))
-                now = source;
-        const glm::vec3 weight =
-            now != sources.end() && mix_.shines(now->key) ? now->weight : glm::vec3(0.0f);
+        if (now == wanted.end())
+            now = std::find_if(wanted.begin(), wanted.end(), [&](const Wanted& w) {
+                return w.source.key == layer.source.key && !has(w.pattern);
+            });
+        if (now == wanted.end() && isRegrouped(layer, wanted)) continue;
+        const glm::vec3 weight = now != wanted.end() ? now->source.weight : glm::vec3(0.0f);
         if (weight == layer.source.weight) continue;
         layer.source.weight = weight;
         changed(i);
@@ -122,30 +97,71 @@ void LayerSolver::recycle(Layer& layer) {
     if (layer.result) spare_.push_back(std::move(layer.result));
 }
 
-// From those that are or were there; nullptr: none is like this.
-std::unique_ptr<Layer> LayerSolver::takeLayer(const LightPattern& pattern) {
+// From those that are or were there; nullptr: none is like this. A group of which nothing shines stays as it
+// is, for it may shine again.
+std::unique_ptr<Layer> LayerSolver::takeLayer(const Wanted& wanted) {
+    const auto fits = [&](const std::unique_ptr<Layer>& layer) {
+        return layer && (wanted.isDarkGroup() ? layer->source.key == wanted.source.key
+                                              : layer->pattern == wanted.pattern);
+    };
     for (std::vector<std::unique_ptr<Layer>>* from : {&layers_, &former_}) {
-        const auto found = std::find_if(from->begin(), from->end(), [&](const std::unique_ptr<Layer>& layer) {
-            return layer && layer->pattern == pattern;
-        });
+        const auto found = std::find_if(from->begin(), from->end(), fits);
         if (found == from->end()) continue;
         std::unique_ptr<Layer> layer = std::move(*found);
         from->erase(found);
         return layer;
     }
+    // Nothing came of an edit that was taken back.
+    for (const std::unique_ptr<Layer>& layer : layers_)
+        if (layer && !layer->has() && fits(layer->before)) return std::move(layer->before);
     return nullptr;
 }
 
 // Kept for an undo, as long as there is memory for it.
 void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     if (layer->before) archive(std::move(layer->before));
+    layer->covered = false;
     if (!layer->has()) return recycle(*layer);
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * LightBuffers::lightBytes(input_.patches);
     while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > layerBytes_) { // and the spare
+        remember(*former_.front());
         recycle(*former_.front());
         former_.erase(former_.begin());
     }
+}
+
+// One on its way to a level that it had is in the records already.
+void LayerSolver::remember(const Layer& layer) {
+    if (layer.redo) return;
+    std::erase_if(records_, [&](const Record& record) { return record.pattern == layer.pattern; });
+    records_.push_back({layer.pattern, layer.level, layer.directSteps});
+    const auto count = [](size_t sum, const Record& record) {
+        return sum + 1 + record.pattern.members.size();
+    };
+    size_t recorded = std::accumulate(records_.begin(), records_.end(), size_t{0}, count);
+    for (; recorded > kMostRecorded && records_.size() > 1; records_.erase(records_.begin()))
+        recorded -= count(0, records_.front());
+}
+
+// To where it was when memory did not do for it, in the same steps: an undo brings back the bytes. Direct
+// light that it got from another layer must have been made likewise.
+void LayerSolver::recall(Layer& layer) const {
+    const auto found = std::find_if(records_.begin(), records_.end(),
+                                    [&](const Record& record) { return record.pattern == layer.pattern; });
+    if (found == records_.end()) return;
+    const std::vector<uint32_t>& steps = found->directSteps;
+    const auto differs =
+        std::mismatch(layer.directSteps.begin(), layer.directSteps.end(), steps.begin(), steps.end());
+    if (differs.first != layer.directSteps.end()) {
+        layer.direct.reset();
+        layer.directRounds = 0;
+        layer.directSteps.clear();
+        layer.stale.clear();
+        layer.penumbra.clear();
+    }
+    layer.redo = found->level;
+    layer.redoSteps = steps;
 }
 
 // Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
@@ -160,20 +176,8 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.directSteps = from.directSteps;
     to.penumbra = from.penumbra;
     keepStale(from, to);
-    to.redo = from.has() ? std::optional(from.level) : from.redo;
-}
-
-void LayerSolver::updateEmitters(const std::vector<LightSource>& sources) {
-    std::vector<LightKey> keys;
-    for (const LightSource& source : sources)
-        if (source.key.kind == Kind::Emitter) keys.push_back(source.key);
-    if (keys == emitterKeys_) return;
-    const TraceScene& scene = input_.patches.scene;
-    std::vector<EmitterSet> sets;
-    for (const LightKey& key : keys)
-        sets.push_back(buildEmitters(input_.scene, scene.mesh, {.size = scene.size, .only = key}));
-    emitters_.setGroups(sets);
-    emitterKeys_ = std::move(keys);
+    to.redo = from.redo ? from.redo : from.has() ? std::optional(from.level) : std::nullopt;
+    to.redoSteps = from.redoSteps;
 }
 
 void LayerSolver::adopt() {
@@ -181,51 +185,23 @@ void LayerSolver::adopt() {
     if (work_ && work_->sum) work_.reset();
     const std::optional<LightPattern> working =
         work_ ? std::optional(layers_[work_->layer]->pattern) : std::nullopt;
-    const std::vector<LightSource> sources = lightSources(input_.scene);
     const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
     if (!tooMany.empty()) throw Error(tooMany);
     surfaces_ = surfacesOf(input_.scene);
     objects_ = objectsOf(input_.scene);
     if (moved_) adoptMove();
-    lamps_.update(input_.scene);
-    updateEmitters(sources);
-    std::vector<LightPattern> patterns;
-    for (const LightSource& source : sources) {
-        patterns.push_back(patternOf(input_.scene, source.key));
-        patterns.back().surfaces = surfaces_;
-        patterns.back().objects = objects_;
-    }
     std::vector<const Layer*> shown;
     for (const std::unique_ptr<Layer>& layer : layers_)
         shown.push_back(layer.get());
-    std::vector<std::unique_ptr<Layer>> next(sources.size());
-    for (size_t i = 0; i < sources.size(); ++i)
-        next[i] = takeLayer(patterns[i]);
-    for (size_t i = 0; i < sources.size(); ++i) {
-        if (next[i]) continue;
-        next[i] = makeLayer(patterns[i]);
-        const auto same =
-            std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
-                return layer->source.key == sources[i].key;
-            });
-        if (same == layers_.end()) continue;
-        keepDirect(**same, *next[i]);
-        next[i]->before = std::move(*same);
-        layers_.erase(same);
-    }
-    for (std::unique_ptr<Layer>& gone : layers_)
-        archive(std::move(gone));
-    layers_ = std::move(next);
-    for (size_t i = 0; i < sources.size(); ++i) {
-        Layer& layer = *layers_[i];
-        layer.source = sources[i];
-        if (!mix_.shines(layer.source.key)) layer.source.weight = glm::vec3(0.0f);
-        layer.group = groupOf(emitterKeys_, input_.scene, layer.source.key);
-    }
+    adoptLayers(wantedLayers());
+    updateParts();
+    tellGroups();
     const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
         return working && layer->pattern == *working;
     });
-    if (work_ && found == layers_.end())
+    const bool dark = found != layers_.end() && (*found)->source.key.kind == Kind::Group &&
+                      (*found)->source.weight == glm::vec3(0.0f); // has no parts
+    if (work_ && (found == layers_.end() || dark))
         abortPass();
     else if (work_)
         work_->layer = static_cast<size_t>(found - layers_.begin());
@@ -243,6 +219,39 @@ void LayerSolver::adopt() {
     if (!sumDue_) hideSum();
     done_ = false;
     tellError();
+}
+
+void LayerSolver::adoptLayers(const std::vector<Wanted>& wanted) {
+    std::vector<std::unique_ptr<Layer>> next(wanted.size());
+    for (size_t i = 0; i < wanted.size(); ++i)
+        next[i] = takeLayer(wanted[i]);
+    const std::vector<bool> covered = beginStandIn(wanted, next);
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        if (next[i]) {
+            next[i]->covered = next[i]->covered || covered[i];
+            continue;
+        }
+        next[i] = makeLayer(wanted[i].pattern);
+        next[i]->covered = covered[i];
+        const auto same =
+            std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
+                return layer->source.key == wanted[i].source.key;
+            });
+        if (same != layers_.end()) keepDirect(**same, *next[i]);
+        recall(*next[i]);
+        if (same == layers_.end()) continue;
+        next[i]->covered = std::exchange((*same)->covered, false) || next[i]->covered;
+        next[i]->before = std::move(*same);
+        layers_.erase(same);
+    }
+    for (std::unique_ptr<Layer>& gone : layers_)
+        archive(std::move(gone));
+    layers_ = std::move(next);
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        layers_[i]->source = wanted[i].source;
+        layers_[i]->members = wanted[i].members;
+    }
+    endStandIn();
 }
 
 } // namespace relume

@@ -57,6 +57,15 @@ LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     return next;
 }
 
+// A level that was there before is made in the steps that it was made in. Where these begin with the first
+// level, that is seen at once.
+LayerLevel LayerSolver::targetOf(const Layer& layer) const {
+    if (!layer.redo) return layer.has() ? nextLevel(layer) : firstLevel();
+    const bool first =
+        !layer.has() && !layer.redoSteps.empty() && layer.redoSteps.front() == firstLevel().directRounds;
+    return first ? firstLevel() : *layer.redo;
+}
+
 // Those of which nothing is to be seen yet come first; of others the one whose error weighs most.
 std::optional<size_t> LayerSolver::nextLayer() const {
     std::optional<size_t> worst;
@@ -117,18 +126,23 @@ void LayerSolver::finishLevel() {
         const double variance = (layer.directVariance + layer.indirectVariance) / (3.0 * layer.count);
         layer.error = std::sqrt(variance / (mean * mean) + layer.iterationError * layer.iterationError);
     }
-    layer.converged = layer.level == lastLevel() || (settings_.error > 0 && layer.error <= settings_.error) ||
-                      layer.light <= 0;
+    if (layer.redo == layer.level) {
+        layer.redo.reset();
+        layer.redoSteps.clear();
+    }
+    layer.converged =
+        !layer.redo && (layer.level == lastLevel() ||
+                        (settings_.error > 0 && layer.error <= settings_.error) || layer.light <= 0);
     progress_.cacheBytes = links_.bytes();
     if (work.sum) {
         work_.reset();
         return showSum();
     }
-    layer.redo.reset();
     if (layer.before) archive(std::move(layer.before));
     progress_.samples = std::max(progress_.samples, layer.level.linkRounds * linksOfRound_);
     changed(work.layer);
     work_.reset();
+    endStandIn();
     if (sumShown_ && !wantsSum()) hideSum();
     tellError();
 }

@@ -20,10 +20,12 @@ std::vector<shader::LayerWeight> LayerSolver::shares(std::optional<size_t> witho
     std::vector<shader::LayerWeight> list;
     for (size_t i = 0; i < layers_.size(); ++i) {
         const Layer* shown = layers_[i]->shown();
-        if (i == without || (only && i != only) || !shown || layers_[i]->source.weight == glm::vec3(0.0f))
+        if (i == without || (only && i != only) || !shown || layers_[i]->covered ||
+            layers_[i]->source.weight == glm::vec3(0.0f))
             continue;
         list.push_back({.light = shown->result.address(), .weight = layers_[i]->source.weight});
     }
+    if (standIn_ && !only) list.push_back({.light = standIn_.address(), .weight = glm::vec3(1.0f)});
     return list;
 }
 
@@ -86,7 +88,7 @@ LiveLight LayerSolver::liveLight() {
     }
     const bool complete =
         std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
-            return layer->shown() != nullptr || layer->source.weight == glm::vec3(0.0f);
+            return layer->shown() != nullptr || layer->covered || layer->source.weight == glm::vec3(0.0f);
         });
     return {&composite_, version_, complete, std::move(ranges)};
 }

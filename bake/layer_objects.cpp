@@ -63,7 +63,7 @@ void LayerSolver::moveObjects(const ObjectMove& move) {
 void LayerSolver::adoptMove() {
     countSenders();
     reachMoved_ = lamps_.updateReach(input_.patches.scene.mesh);
-    emitterKeys_.clear();
+    emitterGroups_.clear();
     distancesKnown_ = false;
     if (moved_->texels) {
         const std::vector<uint32_t>& map = input_.patches.scene.texelToPatch;
@@ -122,28 +122,36 @@ void LayerSolver::relinkBatch() {
     relink_.reset();
 }
 
-LightPlace LayerSolver::placeOf(const Layer& layer) const {
-    const LightPattern& pattern = layer.pattern;
+LightPlace LayerSolver::placeOf(const LightPattern& pattern) const {
     if (pattern.kind == Kind::Lamp) return placeOfLamp(pattern.light, lamps_.reach());
     if (pattern.kind == Kind::Emitter) return placeOfEmitter(input_.patches.scene.mesh, pattern);
     return {};
+}
+
+// 1 for those whose direct light of one light may change with what moved.
+std::vector<uint8_t> LayerSolver::chunksOf(const LightPattern& pattern) const {
+    const std::vector<uint32_t>& moved = moved_->instances;
+    const bool far = pattern.kind == Kind::Sky ||
+                     (pattern.kind == Kind::Lamp && pattern.light.type == LightType::Directional);
+    const bool itself = pattern.kind == Kind::Emitter &&
+                        std::find(moved.begin(), moved.end(), pattern.instance) != moved.end();
+    if (itself || (far && reachMoved_)) return std::vector<uint8_t>(input_.patches.chunkCount(), 1);
+    return chunksReached(input_.patches, placeOf(pattern), *moved_);
 }
 
 // Of direct light that was taken over from another layer of this light.
 void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     to.stale = from.stale;
     if (!moved_) return;
-    const LightPattern& pattern = to.pattern;
-    const std::vector<uint32_t>& moved = moved_->instances;
-    const bool far = pattern.kind == Kind::Sky ||
-                     (pattern.kind == Kind::Lamp && pattern.light.type == LightType::Directional);
-    const bool itself = pattern.kind == Kind::Emitter &&
-                        std::find(moved.begin(), moved.end(), pattern.instance) != moved.end();
-    std::vector<uint8_t> reached(input_.patches.chunkCount(), 1);
-    if (!itself && !(far && reachMoved_)) reached = chunksReached(input_.patches, placeOf(to), *moved_);
-    to.stale.resize(reached.size(), 0);
-    for (size_t i = 0; i < reached.size(); ++i)
-        if (reached[i] != 0) to.stale[i] = 1;
+    to.stale.resize(input_.patches.chunkCount(), 0);
+    const auto add = [&](const LightPattern& pattern) {
+        const std::vector<uint8_t> reached = chunksOf(pattern);
+        for (size_t i = 0; i < reached.size(); ++i)
+            if (reached[i] != 0) to.stale[i] = 1;
+    };
+    if (to.pattern.kind != Kind::Group) add(to.pattern);
+    for (const LightPattern& member : to.pattern.members)
+        add(member);
     growToParts(to.stale);
     if (std::find(to.stale.begin(), to.stale.end(), 1) == to.stale.end()) to.stale.clear();
 }

@@ -34,7 +34,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
       linksOfRound_(
           relume::linksOfRound(input.patches.count, settings.links.samples, input.device.info().software())),
       emitters_(input.device, input.patches, kPointsOfRound),
-      lamps_(input.device, input.scene, input.patches, {.samples = kPointsOfRound, .apart = true}),
+      lamps_(input.device, input.scene, input.patches, {.samples = kPointsOfRound, .chosen = true}),
       buffers_(input.device, input.patches,
                {.linksOfRound = linksOfRound_, .direct = true, .smooth = settings.links.smooth}),
       links_(input.device, {.chunkCount = input.patches.chunkCount(),
@@ -112,8 +112,7 @@ void LayerSolver::plan() {
         done_ = true;
         return;
     }
-    const Layer& layer = *layers_[*next];
-    begin(*next, layer.has() ? nextLevel(layer) : layer.redo.value_or(firstLevel()));
+    begin(*next, targetOf(*layers_[*next]));
 }
 
 void LayerSolver::begin(size_t index, LayerLevel target) {
@@ -122,7 +121,10 @@ void LayerSolver::begin(size_t index, LayerLevel target) {
     if (!layer.stale.empty()) return beginMending();
     work_->round = layer.directRounds;
     if (work_->round >= target.directRounds) return beginBounces();
-    if (raysOf(layer) == 0) layer.penumbra.assign(parts_.count, 0); // nothing in it shines
+    if (raysOf(layer) == 0) { // nothing in it shines
+        layer.penumbra.assign(parts_.count, 0);
+        layer.redoSteps.clear();
+    }
     if (!layer.penumbra.empty()) uploadPenumbra(layer);
     beginPass(Stage::Direct);
     if (raysOf(layer) == 0) return endDirectStep();
@@ -150,27 +152,44 @@ void LayerSolver::run(VkCommandBuffer cmd) {
 }
 
 uint32_t LayerSolver::raysOf(const Layer& layer) const {
-    if (layer.source.key.kind == LightKey::Kind::Emitter) return emitters_.rays(layer.group);
-    return layer.group < lamps_.groups() ? lamps_.rays(layer.group) : 0;
+    uint32_t rays = 0;
+    for (const DirectPart& part : layer.parts)
+        rays += part.emitters ? emitters_.rays(part.group) : lamps_.rays(part.group);
+    return rays;
 }
 
-ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most) const {
-    const double limit = std::clamp(rate.wanted(batchMs_), 1.0, std::max(1.0, static_cast<double>(most)));
-    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(rate.perMs() * kWorthASubmit));
+// cost: of a chunk, over that of those that the rate is of.
+ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most, double cost) const {
+    const double limit =
+        std::clamp(rate.wanted(batchMs_) / cost, 1.0, std::max(1.0, static_cast<double>(most)));
+    return order_.next(static_cast<uint32_t>(limit),
+                       static_cast<uint32_t>(rate.perMs() / cost * kWorthASubmit));
 }
 
+// A round goes over the parts of the layer one by one.
 void LayerSolver::directBatch() {
-    const Layer& layer = *layers_[work_->layer];
-    const bool emitter = layer.source.key.kind == LightKey::Kind::Emitter;
-    const ChunkRange range = nextRange(directRate_, emitter ? emitters_.batchChunks() : lamps_.batchChunks());
-    const auto start = Clock::now();
-    if (emitter)
-        directBatchOf(emitters_, layer.group, range);
-    else
-        directBatchOf(lamps_, layer.group, range);
-    directRate_.note(range.count, batchMs_, secondsSince(start));
-    order_.finish(range);
-    if (order_.left() == 0) endDirectRound();
+    const std::vector<DirectPart>& parts = layers_[work_->layer]->parts;
+    const DirectPart part = parts[work_->part];
+    const uint32_t rays = part.emitters ? emitters_.rays(part.group) : lamps_.rays(part.group);
+    if (rays > 0) {
+        const double cost = static_cast<double>(rays) / kPointsOfRound;
+        const ChunkRange range =
+            nextRange(directRate_, part.emitters ? emitters_.batchChunks() : lamps_.batchChunks(), cost);
+        const auto start = Clock::now();
+        if (part.emitters)
+            directBatchOf(emitters_, part.group, range);
+        else
+            directBatchOf(lamps_, part.group, range);
+        directRate_.note(range.count * cost, batchMs_, secondsSince(start));
+        order_.finish(range);
+        if (order_.left() > 0) return;
+    }
+    if (++work_->part < parts.size()) {
+        orderRound(); // the same chunks as of this part
+        return;
+    }
+    work_->part = 0;
+    endDirectRound();
 }
 
 template<typename Lights>
@@ -196,7 +215,12 @@ void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange
 
 // Of the round, where this step ends.
 uint32_t LayerSolver::directEnd() const {
-    return work_->mended ? layers_[work_->layer]->directSteps[*work_->mended] : work_->target.directRounds;
+    const Layer& layer = *layers_[work_->layer];
+    if (work_->mended) return layer.directSteps[*work_->mended];
+    // A level that was there before is made in the steps that it was made in.
+    const auto next = std::upper_bound(layer.redoSteps.begin(), layer.redoSteps.end(), layer.directRounds);
+    const uint32_t end = work_->target.directRounds;
+    return next == layer.redoSteps.end() ? end : std::min(*next, end);
 }
 
 // Which chunks take part in the round; whether any does.
@@ -237,7 +261,7 @@ void LayerSolver::endDirectRound() {
 
 void LayerSolver::endDirectStep() {
     Layer& layer = *layers_[work_->layer];
-    const uint32_t rounds = work_->target.directRounds - layer.directRounds;
+    const uint32_t end = directEnd(), rounds = end - layer.directRounds;
     VkCommandBuffer cmd = commands_.begin();
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
@@ -248,9 +272,11 @@ void LayerSolver::endDirectStep() {
     run(cmd);
     countRays();
     learnPenumbra();
-    layer.directRounds = work_->target.directRounds;
-    layer.directSteps.push_back(layer.directRounds);
-    beginBounces();
+    layer.directRounds = end;
+    layer.directSteps.push_back(end);
+    if (end == work_->target.directRounds) return beginBounces();
+    work_->begun = false;
+    if (!seekRound()) endDirectStep();
 }
 
 void LayerSolver::recordPenumbra(VkCommandBuffer cmd) {

@@ -18,9 +18,10 @@
 namespace relume {
 
 /// The hybrid method light by light: each has a layer, its light for a unit of its weight with all bounces,
-/// and what is shown is the sum of weights times layers. A layer's level says how many rounds of samples of
-/// its direct light and of links it is made of; its bytes depend on nothing but that, its pattern, geometry
-/// and surfaces: not on weights, on other lights, or on what was edited before.
+/// and what is shown is the sum of weights times layers. Lights beyond the memory share layers
+/// (bake/light_groups.h), in which they are weighed before they bounce. A layer's level says how many rounds
+/// of samples of its direct light and of links it is made of; its bytes depend on nothing but that, its
+/// pattern, geometry and surfaces: not on weights, on other lights, or on what was edited before.
 class LayerSolver final : public Solver {
 public:
     /// Throws Error.
@@ -39,10 +40,10 @@ public:
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
-    /// Why layers of the scene's lights take more than this many bytes, with the mend, one line; "" where
-    /// they do not.
+    /// Why so many bytes do not do for layers of the scene's lights, not even for groups of them, with the
+    /// mend, one line; "" where they do.
     static std::string problem(const Scene& scene, const PatchSet& patches, uint64_t bytes);
-    /// Whether there is memory for layers of so many lamps beside those of the other lights.
+    /// Whether there is memory for layers of so many lamps beside those of the other lights, grouped or not.
     bool holds(size_t lamps) const;
 
     /// What the user sees and changes; valid until the next step() or edit().
@@ -76,6 +77,7 @@ private:
         LayerLevel target;
         Stage stage = Stage::Direct;
         uint32_t round = 0;   // of samples, or of links that are gathered
+        uint32_t part = 0;    // of Layer::parts, within a round of samples
         uint32_t bounce = 0;  // finished ones, over the links of the first round
         uint32_t gathers = 0; // the same over those of all rounds
         bool begun = false;   // a batch of this pass has been made
@@ -89,6 +91,27 @@ private:
         vk::Buffer boxes, changed, list;
         BatchRate rate;
         uint32_t round = 0, chunk = 0; // next
+    };
+
+    /// A layer as the scene is to have it now.
+    struct Wanted {
+        LightPattern pattern;
+        LightSource source; // weight: with its switches, here and of members
+        std::vector<LightSource> members;
+
+        bool isDarkGroup() const { return !members.empty() && pattern.members.empty(); }
+    };
+    /// Emitters whose direct light is sampled together.
+    struct EmitterGroup {
+        std::vector<EmitterChoice> choices;
+        EmitterSet set;
+    };
+
+    /// Of a layer that memory did not do for: what makes its bytes again.
+    struct Record {
+        LightPattern pattern;
+        LayerLevel level;
+        std::vector<uint32_t> directSteps;
     };
 
     // layer_solver.cpp
@@ -111,7 +134,7 @@ private:
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
     uint32_t raysOf(const Layer& layer) const;
-    ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
+    ChunkRange nextRange(const BatchRate& rate, uint32_t most, double cost = 1) const;
     void beginPass(Stage stage);
     void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at = 0);
     void run(VkCommandBuffer cmd);
@@ -138,6 +161,7 @@ private:
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
     LayerLevel nextLevel(const Layer& layer) const;
+    LayerLevel targetOf(const Layer& layer) const;
     LayerLevel lastLevel() const;
     void tellError();
 
@@ -145,12 +169,27 @@ private:
     void adopt();
     void weigh();
     std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
+    void adoptLayers(const std::vector<Wanted>& wanted);
     vk::Buffer takeBuffer(const char* name);
     void recycle(Layer& layer);
-    std::unique_ptr<Layer> takeLayer(const LightPattern& pattern);
+    std::unique_ptr<Layer> takeLayer(const Wanted& wanted);
     void archive(std::unique_ptr<Layer> layer);
+    void remember(const Layer& layer);
+    void recall(Layer& layer) const;
     void keepDirect(const Layer& from, Layer& to) const;
-    void updateEmitters(const std::vector<LightSource>& sources);
+
+    // layer_groups.cpp
+    uint64_t layerRoom() const;
+    std::vector<Wanted> wantedLayers() const;
+    void updateParts();
+    void updateEmitters();
+    void tellGroups();
+    static bool isRegrouped(const Layer& layer, const std::vector<Wanted>& wanted);
+    std::vector<bool> standsIn(const std::vector<Wanted>& wanted,
+                               const std::vector<std::unique_ptr<Layer>>& taken) const;
+    std::vector<bool> beginStandIn(const std::vector<Wanted>& wanted,
+                                   const std::vector<std::unique_ptr<Layer>>& taken);
+    void endStandIn();
 
     // layer_sum.cpp
     bool wantsSum() const;
@@ -161,7 +200,8 @@ private:
     // layer_objects.cpp
     void adoptMove();
     void relinkBatch();
-    LightPlace placeOf(const Layer& layer) const;
+    LightPlace placeOf(const LightPattern& pattern) const;
+    std::vector<uint8_t> chunksOf(const LightPattern& pattern) const;
     void keepStale(const Layer& from, Layer& to) const;
     void growToParts(std::vector<uint8_t>& stale) const;
     void beginMending();
@@ -179,8 +219,8 @@ private:
     const SolverInput input_;
     SolverSettings settings_;
     uint32_t linksOfRound_;
-    EmitterLight emitters_; // a group per emitter
-    LampLight lamps_;       // a group per lamp, the sky's the last one
+    EmitterLight emitters_;
+    LampLight lamps_;
     LinkBuffers buffers_;
     LinkCache links_;
     RadiancePass radiancePass_;
@@ -198,11 +238,14 @@ private:
     BatchRate directRate_, traceRate_, gatherRate_;
     bool distancesKnown_ = false; // of the first round's links
 
-    std::vector<std::unique_ptr<Layer>> layers_; // in the order of lightSources()
+    std::vector<std::unique_ptr<Layer>> layers_; // in the order of groupLights()
     std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
+    std::vector<Record> records_;                // of those that are no longer kept, the newest last
     std::vector<vk::Buffer> spare_;              // of layers that are gone, for the next ones
     uint64_t layerBytes_ = 0;                    // at most, of all of them
-    std::vector<LightKey> emitterKeys_;          // of emitters_' groups
+    std::vector<EmitterGroup> emitterGroups_;    // of emitters_
+    std::string toldGroups_;                     // to the log
+    vk::Buffer standIn_; // vec4 per patch: light of those that were grouped otherwise before
     uint64_t surfaces_ = 0, objects_ = 0;
     std::optional<ObjectMove> moved_; // an edit of objects that waits to be adopted
     std::optional<Relink> relink_;

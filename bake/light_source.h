@@ -14,9 +14,10 @@ struct LightKey {
         Emitter, // a mesh instance with a material that emits
         Lamp,    // of Scene::lights
         Sky,
+        Group, // several that share a layer (bake/light_groups.h)
     };
     Kind kind = Kind::Sky;
-    uint32_t index = 0;    // Emitter: into Scene::instances; Lamp: into Scene::lights
+    uint32_t index = 0;    // Emitter: into Scene::instances; Lamp: into Scene::lights; Group: which one
     uint32_t material = 0; // Emitter: into Scene::materials
 
     auto operator<=>(const LightKey&) const = default;

@@ -43,8 +43,12 @@ void printList(const LayeredImage& image) {
     for (const LayeredImage::Layer& layer : image.layers) {
         const glm::vec3 color = colorOf(layer);
         const std::string stale = attribute(layer, layer_attribute::kStale);
-        std::string state = layer.weight == glm::vec3(0.0f) ? "off" : "";
-        if (!stale.empty()) state += (state.empty() ? "stale: " : ", stale: ") + stale;
+        std::string state;
+        const auto add = [&](const std::string& text) { state += (state.empty() ? "" : ", ") + text; };
+        if (const size_t members = membersOf(layer).size(); members > 0)
+            add(fmt::format("{} lights", members));
+        if (layer.weight == glm::vec3(0.0f)) add("off");
+        if (!stale.empty()) add("stale: " + stale);
         std::printf("%-24s %-12s %12.6g %-7s %-24s %s\n", layer.name.c_str(),
                     attribute(layer, layer_attribute::kType).c_str(), double(intensityOf(layer)),
                     attribute(layer, layer_attribute::kUnit).c_str(),

@@ -13,7 +13,7 @@
 #include "app/prepare.h"
 #include "assets/scene_edits.h"
 #include "bake/baker.h"
-#include "bake/light_source.h"
+#include "bake/light_groups.h"
 
 namespace relume {
 
@@ -67,7 +67,8 @@ struct BakeStatus {
     uint64_t bake = 0;     // number of the one that this tells of, see LiveBake::start()
     BakeSettings settings; // of it
     uint32_t patches = 0;
-    bool layered = false;           // each light has a layer
+    bool layered = false;           // each light has a layer ...
+    std::vector<LightGroup> groups; // ... but these, which share one
     std::string remark;             // why not though it was asked for, with the mend, one line; "": nothing
     std::vector<std::string> stale; // what of the edits its light does not show yet, one line each
     SolverProgress progress;

@@ -448,6 +448,7 @@ void BakeLoop::follow() {
     const SolverProgress& now = baker_->solver().progress();
     status_.progress = now;
     status_.stale = layered() ? staleReasons(*layered()) : std::vector<std::string>();
+    status_.groups = layered() ? groupsOf(*layered()) : std::vector<LightGroup>();
     std::vector<ConvergencePoint>& history = status_.history;
     if (now.error < 1 && (history.empty() || history.back().error != now.error)) {
         history.push_back({now.seconds, now.error});

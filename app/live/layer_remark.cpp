@@ -3,6 +3,8 @@
 #include "bake/light_buffers.h"
 #include "bake/light_source.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace relume {
@@ -21,7 +23,26 @@ std::string layerRemark(bool wanted, const SolverSettings& settings, const Baker
     return fmt::format(
         "{} lights are baked as one, {:.0f} MiB for their layers are not free: use fewer lights or a "
         "smaller lightmap",
-        lights, static_cast<double>(lights) * each / kMiB);
+        lights, static_cast<double>(std::min<uint64_t>(lights, kLeastRoom)) * each / kMiB);
+}
+
+std::vector<LightGroup> groupsOf(const LayerSolver& solver) {
+    std::vector<LightGroup> groups;
+    for (const std::unique_ptr<Layer>& layer : solver.layers())
+        if (!layer->members.empty()) groups.push_back({layer->source, layer->members});
+    return groups;
+}
+
+std::string groupRemark(const std::vector<LightGroup>& groups) {
+    std::string text;
+    for (const LightGroup& group : groups)
+        text += fmt::format("{}'{}' ({} lights)", text.empty() ? "" : " and ", group.source.name,
+                            group.members.size());
+    if (text.empty()) return "";
+    return fmt::format(
+        "lights share layers, for memory is short: {}. An edit of one makes its layer anew: use "
+        "fewer lights, a smaller lightmap or more --layer-memory",
+        text);
 }
 
 } // namespace relume

@@ -70,6 +70,7 @@ float wantedIrradiance(const LightSpot& spot) {
 } // namespace
 
 LightPower powerOf(const SceneEdits& edits, const LightKey& key) {
+    if (key.kind == Kind::Group) return {glm::vec3(1.0f), 1.0f}; // weighed in its layer
     if (key.kind == Kind::Lamp) return {lamp(edits, key).color, lamp(edits, key).intensity};
     const EmissionParts parts =
         splitEmission(key.kind == Kind::Sky ? edits.sky.radiance : edits.materials[key.material].emission);

@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// How a light shines, whatever it is: emission, lamp or sky.
+/// How a light shines, whatever it is: emission, lamp, sky or a group, of which nothing can be set.
 struct LightPower {
     glm::vec3 color{1.0f};
     float intensity = 0.0f; // in lightUnitOf()

@@ -109,10 +109,12 @@ std::string statusLine(const BakeStatus& status) {
     return text;
 }
 
-std::string viewTitle(const ViewState& view, const LightList& lights) {
+std::string viewTitle(const ViewState& view, const LightList& lights, const std::vector<LightGroup>& groups) {
     const ViewEntry& entry = viewEntries()[view.view];
     const LightSource* source = view.light ? lights.find(*view.light) : nullptr;
-    return entry.content == MapContent::Layer && source != nullptr ? "Light: " + source->name : entry.title;
+    if (entry.content != MapContent::Layer || source == nullptr) return entry.title;
+    const LightGroup* group = groupWith(groups, source->key);
+    return group != nullptr ? "Lights: " + group->source.name : "Light: " + source->name;
 }
 
 float Ui::drawMenus(const PanelContext& context) {
@@ -147,9 +149,9 @@ float Ui::drawStatus(const PanelContext& context) {
     }
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(statusLine(status).c_str());
-    const std::string right =
-        fmt::format("{}, {:+.1f} EV, {:.1f} ms", viewTitle(context.view, context.lights), context.exposure,
-                    context.figures.total);
+    const std::string right = fmt::format("{}, {:+.1f} EV, {:.1f} ms",
+                                          viewTitle(context.view, context.lights, context.status.groups),
+                                          context.exposure, context.figures.total);
     const float width = ImGui::CalcTextSize(right.c_str()).x;
     ImGui::SameLine(std::max(window.x - width - ImGui::GetFontSize(), 0.0f));
     ImGui::TextUnformatted(right.c_str());

@@ -51,8 +51,8 @@ private:
     int wantedPanel_ = -1;
 };
 
-/// How the scene is looked at: "Lit", "Light: Lamp".
-std::string viewTitle(const ViewState& view, const LightList& lights);
+/// How the scene is looked at: "Lit", "Light: Lamp", "Lights: rest" where it shares a layer.
+std::string viewTitle(const ViewState& view, const LightList& lights, const std::vector<LightGroup>& groups);
 
 /// One line about the bake: phase, method, pass, error, rays. Of status bars and captions.
 std::string statusLine(const BakeStatus& status);

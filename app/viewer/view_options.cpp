@@ -48,6 +48,7 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
         ->check(CLI::IsMember({"auto", "shared", "copied"}));
     command.add_flag("--no-layers", o.noLayers,
                      "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
+    addLayerMemory(command, o.bake);
     command.add_flag("--watch", o.watch, "Load the scene again whenever its file changes");
     command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
         ->type_name("WxH");

@@ -296,6 +296,7 @@ void Viewer::inspect() {
     if (request.content == MapContent::Layer) {
         const LightSource* source = view_.light ? lights_.find(*view_.light) : nullptr;
         if (source == nullptr) return;
+        if (const LightGroup* group = groupWith(status_.groups, source->key)) source = &group->source;
         request.light = source->key;
         request.weight = source->weight;
     }

@@ -16,7 +16,7 @@ std::vector<std::string> Viewer::captionLines() const {
     if (!preferences_.caption) return {};
     const std::string path = scenePath();
     std::vector<std::string> lines = {path.substr(path.find_last_of('/') + 1), statusLine(status_)};
-    if (loneLight()) lines.push_back(viewTitle(view_, lights_));
+    if (loneLight()) lines.push_back(viewTitle(view_, lights_, status_.groups));
     lines.push_back(fmt::format("{} of solving", formatDuration(status_.progress.seconds)));
     return lines;
 }

@@ -31,7 +31,7 @@ void Viewer::toggleAlone() {
     if (!status_.layered)
         return note(status_.remark.empty() ? "this bake has no layer for each light" : status_.remark, true);
     view_.view = viewIndex("layer");
-    note(viewTitle(view_, lights_));
+    note(viewTitle(view_, lights_, status_.groups));
     changeScene();
 }
 
@@ -39,7 +39,11 @@ void Viewer::toggleAlone() {
 void Viewer::showShining() {
     const std::optional<LightKey> alone = loneLight();
     const Document& document = session_->document();
-    const auto shines = [&](const LightKey& key) { return alone ? key == *alone : document.mix.shines(key); };
+    const LightGroup* group = alone ? groupWith(status_.groups, *alone) : nullptr; // which is shown whole
+    const auto shines = [&](const LightKey& key) {
+        if (alone && group == nullptr) return key == *alone;
+        return (group == nullptr || groupWith(status_.groups, key) == group) && document.mix.shines(key);
+    };
     std::vector<Material> shown = document.edits.materials;
     std::vector<bool> bright(shown.size(), false), lights(shown.size(), false);
     for (const LightSource& source : lights_.sources()) {
@@ -73,7 +77,10 @@ void Viewer::followPreviews(double time) {
     if (std::optional<LightPreviews::Surfaces> surfaces = pane_.surfaces())
         bake_->askProbes(previews_.see(std::move(*surfaces), document.bake.size));
     if (std::optional<LayerProbe> probe = bake_->exchange().takeProbe()) previews_.take(std::move(*probe));
-    previewsDue_ = previews_.update(document.edits, lights_.sources());
+    std::vector<LightSource> sources = lights_.sources();
+    for (const LightGroup& group : status_.groups)
+        sources.push_back(group.source);
+    previewsDue_ = previews_.update(document.edits, sources);
     if (previewsDue_) pacer_.statusChanged();
 }
 

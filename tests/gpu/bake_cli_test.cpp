@@ -278,6 +278,25 @@ TEST_F(BakeCommand, WhatCannotBeWrittenIsToldBeforeTheBake) {
     EXPECT_EQ(folder_.files(), (Strings{"file", "room.glb"}));
 }
 
+TEST_F(BakeCommand, LightsBeyondTheMemoryForLayersShareOne) {
+    const std::string layers = path("layers.exr");
+    // Of six walls that shine, in three layers or four.
+    const ProcessResult baked =
+        bake({"--method", "hybrid", "--samples", "32", "--layers", "--layer-memory", "160K", "-o", layers});
+    ASSERT_EQ(baked.status, 0) << baked.err;
+    EXPECT_TRUE(contains(baked.err, "others share 'rest' (")) << baked.err;
+    EXPECT_TRUE(contains(baked.err, "layer 'rest': error")) << baked.err;
+    const ProcessResult mixed = runRelume({"mix", layers, "--set", "surface 5=3", "-o", path("map.exr")});
+    EXPECT_EQ(mixed.status, 1);
+    EXPECT_TRUE(contains(mixed.err, "light 'surface 5' is part of 'rest' and cannot be set apart"))
+        << mixed.err;
+    const ProcessResult list = runRelume({"mix", layers, "--set", "rest*=0.5", "--list"});
+    EXPECT_EQ(list.status, 0) << list.err;
+    EXPECT_TRUE(contains(list.out, " lights")) << list.out;
+    const ProcessResult alone = bake({"--layer-memory", "160K", "-o", path("map.exr")});
+    EXPECT_EQ(alone.status, 2);
+}
+
 TEST_F(BakeCommand, AMissingSceneIsNamed) {
     const ProcessResult r = runRelume({"bake", path("none.glb"), "-o", path("map.exr")});
     EXPECT_EQ(r.status, 1);

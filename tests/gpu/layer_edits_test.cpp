@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 namespace relume {
@@ -105,18 +104,6 @@ TEST(Layers, AColouredSurfaceGathersLinksAnewWithoutARay) {
     bake.finish();
     EXPECT_EQ(bake.progress().rays, rays);
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene)));
-}
-
-// Relative root mean square.
-double distance(const Light4& a, const Light4& b) {
-    double squares = 0, sum = 0;
-    for (size_t i = 0; i < b.size(); ++i) {
-        const glm::vec3 difference = glm::vec3(a[i]) - glm::vec3(b[i]);
-        squares += glm::dot(difference, difference);
-        sum += b[i].r + b[i].g + b[i].b;
-    }
-    return std::sqrt(squares / (3.0 * static_cast<double>(b.size()))) /
-           (sum / (3.0 * static_cast<double>(b.size())));
 }
 
 TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
@@ -234,8 +221,9 @@ TEST(Layers, ALightThatIsDraggedIsSeenAndEndsAsAFreshBake) {
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, desc)));
 }
 
-TEST(Layers, AHundredRandomEditsAreUndone) {
-    Layered bake(room());
+// A hundred edits, most of which come before the one before was followed to its end, and all of them undone.
+void editAndUndo(const BakeDesc& desc) {
+    Layered bake(room(), desc);
     bake.finish();
     const Light4 first = bake.light();
     const Scene start = bake.scene;
@@ -280,6 +268,55 @@ TEST(Layers, AHundredRandomEditsAreUndone) {
     }
     bake.finish();
     EXPECT_TRUE(sameBytes(bake.light(), first));
+}
+
+TEST(Layers, AHundredRandomEditsAreUndone) {
+    editAndUndo(kQuick);
+}
+
+TEST(Layers, AHundredRandomEditsAreUndoneBeyondTheMemory) {
+    BakeDesc desc = kQuick;
+    desc.samples = 0;
+    desc.error = 0.05;
+    Layered bake(room(), desc);
+    const uint64_t each = 2 * LightBuffers::lightBytes(bake.patches());
+    desc.layerBytes = (bake.solver().layers().size() + 1) * each;
+    editAndUndo(desc);
+}
+
+// The level of surfaces that were painted is that of those before, which a bake of its own may never have.
+TEST(Layers, ALayerThatWasDroppedComesBackWithItsBytes) {
+    BakeDesc desc = kQuick;
+    desc.samples = 0;
+    desc.error = 0.03;
+    Layered all(room(0.05f), desc);
+    const size_t lights = all.solver().layers().size();
+    desc.layerBytes = (lights + 1) * 2 * LightBuffers::lightBytes(all.patches());
+    Layered bake(room(0.05f), desc);
+    bake.finish();
+    bake.scene.materials[0].baseColor = {0.95f, 0.95f, 0.95f, 1.0f};
+    bake.edit();
+    bake.finish();
+    const Light4 painted = bake.light();
+    Layered fresh(bake.scene, desc);
+    fresh.finish();
+    size_t unlike = 0;
+    for (size_t i = 1; i < lights; ++i) // the lamps'
+        unlike += sameBytes(bake.layer(i), fresh.layer(i)) ? 0 : 1;
+    EXPECT_GT(unlike, 0u) << "else nothing is to be remembered";
+    const std::vector<Light> before = bake.scene.lights;
+    for (const float along : {-0.3f, -0.6f}) {
+        for (size_t i = 0; i < before.size(); ++i)
+            bake.scene.lights[i].transform = at(glm::vec3(before[i].transform[3]) + along * kY);
+        bake.edit();
+        bake.finish();
+    }
+    const uint64_t rays = bake.progress().rays;
+    bake.scene.lights = before;
+    bake.edit();
+    bake.finish();
+    EXPECT_GT(bake.progress().rays, rays) << "they were dropped";
+    EXPECT_TRUE(sameBytes(bake.light(), painted));
 }
 
 } // namespace relume

@@ -6,6 +6,7 @@
 #include "tests/gpu/light_at.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -43,6 +44,7 @@ public:
     explicit Layered(Scene start, const BakeDesc& desc = kQuick)
         : scene(std::move(start)), baker_(makeBaker(scene, desc)) {}
 
+    Baker& baker() { return *baker_; }
     LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
     const SolverProgress& progress() { return solver().progress(); }
     void finish() {
@@ -86,6 +88,18 @@ inline double meanOf(const Light4& light) {
 
 inline glm::mat4 at(glm::vec3 position) {
     return glm::translate(glm::mat4(1.0f), position);
+}
+
+/// Root of the mean squared difference, relative to the mean of b.
+inline double distance(const Light4& a, const Light4& b) {
+    double squares = 0, sum = 0;
+    for (size_t i = 0; i < b.size(); ++i) {
+        const glm::vec3 difference = glm::vec3(a[i]) - glm::vec3(b[i]);
+        squares += glm::dot(difference, difference);
+        sum += b[i].r + b[i].g + b[i].b;
+    }
+    return std::sqrt(squares / (3.0 * static_cast<double>(b.size()))) /
+           (sum / (3.0 * static_cast<double>(b.size())));
 }
 
 } // namespace relume

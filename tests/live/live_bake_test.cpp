@@ -1,5 +1,6 @@
 #include "app/live/live_bake.h"
 
+#include "app/live/layer_remark.h"
 #include "app/lightmap_attributes.h"
 #include "assets/float_image.h"
 #include "assets/generate.h"
@@ -287,6 +288,42 @@ TEST_F(LiveBakeTest, SaysWhyThereAreNoLayers) {
     start(settings, false);
     ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
     EXPECT_EQ(bake_.status().remark, "");
+}
+
+TEST_F(LiveBakeTest, TellsWhichLightsShareALayer) {
+    BakeSettings settings = quickSettings();
+    start(settings, false);
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
+    EXPECT_TRUE(bake_.status().groups.empty());
+    EXPECT_EQ(groupRemark({}), "");
+    settings.solver.layers.on = true;
+    // Of three layers or four: direct light and result, a vec4 per patch, and padding of up to a quarter.
+    settings.solver.layers.bytes = uint64_t{4} * 2 * sizeof(glm::vec4) * bake_.status().patches;
+    for (int i = 0; i < 7; ++i) {
+        edits_.lights.push_back({.name = "Bulb " + std::to_string(i)});
+        edits_.lights.back().transform[3] = glm::vec4(0.1f * static_cast<float>(i), 1.4f, 0.4f, 1.0f);
+    }
+    start(settings);
+    ASSERT_TRUE(untilShown());
+    EXPECT_TRUE(bake_.status().layered);
+    EXPECT_EQ(bake_.status().remark, "");
+    const std::vector<LightGroup> groups = bake_.status().groups;
+    ASSERT_EQ(groups.size(), 1u);
+    EXPECT_EQ(groups[0].source.name, "rest");
+    const LightKey last{LightKey::Kind::Lamp, 6, 0};
+    EXPECT_EQ(groupWith(groups, last), &groups[0]);
+    EXPECT_EQ(groupWith(groups, lightSources(scene_.scene)[0].key), nullptr) << "the first";
+    EXPECT_NE(groupRemark(groups).find(std::to_string(groups[0].members.size()) + " lights"),
+              std::string::npos)
+        << groupRemark(groups);
+    const double before = screen_.mean();
+    const uint64_t bake = newest_;
+    edits_.lights[6].intensity *= 4.0f;
+    start(settings);
+    ASSERT_GT(newest_, bake);
+    ASSERT_TRUE(untilShown());
+    EXPECT_GT(screen_.mean(), 1.001 * before);
+    EXPECT_TRUE(bake_.status().stale.empty());
 }
 
 TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {

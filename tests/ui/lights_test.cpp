@@ -66,6 +66,20 @@ TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
     quit(*viewer);
 }
 
+// Of nine lights, where there is memory for three layers at least and eight at most.
+TEST_F(ViewerLights, BeyondTheMemoryTheyShareALayerAndThePanelSaysSo) {
+    auto viewer = open({"view", kScenes + "cornell_small.glb", "--layer-memory", "400K"});
+    EXPECT_TRUE(viewer->says("badge: converged", 240)) << viewer->output();
+    viewer->keys({"alt+4"});
+    EXPECT_FALSE(item(*viewer, "Lights/Shared layers"));
+    for (int i = 0; i < 7; ++i)
+        viewer->keys({"ctrl+1"});
+    edit(*viewer, "edit: Add Point 8", [&] { viewer->keys({"ctrl+1"}); });
+    EXPECT_NE(viewer->output().find("others share 'rest' ("), std::string::npos) << viewer->output();
+    placeOf(*viewer, "Lights/Shared layers");
+    quit(*viewer);
+}
+
 TEST_F(ViewerLights, ADragIsCancelledByEscape) {
     auto viewer = openConverged();
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });

@@ -55,6 +55,22 @@ std::string errorOf(const std::function<void()>& action) {
     return "no error";
 }
 
+TEST(LightMix, LightsOfAGroupCannotBeSetApart) {
+    LayeredImage image = board();
+    image.layers[0].name = "rest";
+    image.layers[0].attributes = {{layer_attribute::kMembers, "Lamp 6\nLamp 7"}};
+    EXPECT_EQ(membersOf(image.layers[0]), (std::vector<std::string>{"Lamp 6", "Lamp 7"}));
+    EXPECT_EQ(membersOf(image.layers[2]), std::vector<std::string>());
+    EXPECT_EQ(errorOf([&] { mixLayers(image, sets({"Lamp 7=3"})); }),
+              "light 'Lamp 7' is part of 'rest' and cannot be set apart: set 'rest', or bake with more "
+              "--layer-memory");
+    EXPECT_EQ(errorOf([&] { mixLayers(image, {.edits = {}, .muted = {"Lamp 6"}, .solo = {}}); }),
+              "light 'Lamp 6' is part of 'rest' and cannot be set apart: set 'rest', or bake with more "
+              "--layer-memory");
+    mixLayers(image, sets({"rest*=0.5"}));
+    expectNear(image.layers[0].weight, {20, 10, 5});
+}
+
 TEST(LightMix, TheSumIsThatOfWeightedLayers) {
     LayeredImage image = board();
     mixLayers(image, {});

@@ -1,5 +1,6 @@
 #include "app/viewer/panels/lights_panel.h"
 
+#include "app/live/layer_remark.h"
 #include "app/viewer/light_edits.h"
 #include "app/viewer/panels/widgets.h"
 #include "assets/black_body.h"
@@ -87,6 +88,20 @@ void tellShared(const PanelContext& context, const LightKey& key) {
                       .c_str());
 }
 
+// What says so in a row: behind the type.
+std::string groupMark(const LightGroup* group) {
+    return group != nullptr ? ", in " + group->source.name : "";
+}
+
+void tellGroup(const LightGroup* group) {
+    if (group == nullptr) return ui::tip("L, Shift+L: next, previous light");
+    ui::tip(
+        fmt::format("Memory is short: it shares the layer '{}' with {} lights, which is made anew when one "
+                    "of them is edited. L, Shift+L: next, previous light",
+                    group->source.name, group->members.size() - 1)
+            .c_str());
+}
+
 bool drawSwitch(const char* label, bool on, const ImVec4& colour) {
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, colour);
     const bool pressed = ui::button(label, ImVec2(ImGui::GetFrameHeight(), 0.0f));
@@ -128,11 +143,16 @@ void LightsPanel::drawPreview(const PanelContext& context, const LightSource& so
     const float width = height * SurfaceIds::kWidth / SurfaceIds::kHeight;
     const bool pressed = ImGui::InvisibleButton("preview", {width, height});
     ui::mark("Preview", false);
-    ui::tip("What it lights, exposed by itself. Alt+L: the whole scene so");
+    const LightGroup* group = groupWith(context.status.groups, source.key);
+    ui::tip(group == nullptr
+                ? "What it lights, exposed by itself. Alt+L: the whole scene so"
+                : fmt::format("What all of '{}' light, exposed by itself. Alt+L: the whole scene so",
+                              group->source.name)
+                      .c_str());
     if (pressed) context.selectLight(source.key);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const uint32_t texture = context.previews.texture(source.key);
+    const uint32_t texture = context.previews.texture(group == nullptr ? source.key : group->source.key);
     const bool dark = !context.session.document().mix.shines(source.key);
     const ImU32 tint = dark ? IM_COL32(255, 255, 255, 70) : IM_COL32_WHITE;
     list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
@@ -163,12 +183,14 @@ void LightsPanel::drawRow(const PanelContext& context, const LightSource& source
     const float name = std::max(ImGui::GetContentRegionAvail().x - 2.0f * (frame + spacing), frame);
     const bool dark = !context.session.document().mix.shines(source.key);
     if (dark) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    const std::string title = fmt::format("{} ({})###light", source.name, lightTypeOf(edits, source.key));
+    const LightGroup* group = groupWith(context.status.groups, source.key);
+    const std::string title =
+        fmt::format("{} ({}{})###light", source.name, lightTypeOf(edits, source.key), groupMark(group));
     if (ImGui::Selectable(title.c_str(), context.view.light == source.key, 0, {name, frame}))
         context.selectLight(source.key);
     if (dark) ImGui::PopStyleColor();
     ui::mark("Select", false);
-    ui::tip("L, Shift+L: next, previous light");
+    tellGroup(group);
     ImGui::SameLine();
     drawSwitches(context, source);
     const float half = 0.4f * (ImGui::GetContentRegionAvail().x - spacing);
@@ -341,6 +363,10 @@ void LightsPanel::draw(const PanelContext& context) {
     context.previews.wanted = context.status.layered;
     if (!context.status.remark.empty())
         ImGui::TextWrapped("%s", (context.status.remark + ". Till then each edit bakes anew.").c_str());
+    if (const std::string remark = groupRemark(context.status.groups); !remark.empty()) {
+        ImGui::TextWrapped("%s.", remark.c_str());
+        ui::mark("Shared layers", false);
+    }
     drawBoard(context);
     ImGui::Separator();
     drawAdd(context);
