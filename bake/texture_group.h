@@ -36,9 +36,9 @@ struct TextureGroup {
 
 struct CitDesc {
     uint32_t size = 512;
-    bool conservative = false;         // every texel that a triangle touches becomes a patch
-    bool rtrad = false;                // albedo = base colour, whatever the metallic factor
-    std::optional<TexelWindow> window; // texels that are asked for; nothing: all
+    bool conservative = false;              // every texel that a triangle touches becomes a patch
+    bool rtrad = false;                     // albedo = base colour, whatever the metallic factor
+    std::optional<TexelWindow> window = {}; // texels that are asked for; nothing: all
 };
 
 /// Draws the mesh into its lightmap; the triangle drawn last wins. A window's texels are those of the whole
