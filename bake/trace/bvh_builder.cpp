@@ -305,6 +305,7 @@ double childCost(const Bvh& bvh, int child, double chance) {
     BvhBox both = box[0];
     both.add(box[1]);
     const double whole = both.halfArea();
+    if (whole <= 0) return chance; // holds nothing that a ray could meet, or points
     return chance + childCost(bvh, node.child0, chance * box[0].halfArea() / whole) +
            childCost(bvh, node.child1, chance * box[1].halfArea() / whole);
 }
