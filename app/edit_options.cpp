@@ -46,7 +46,7 @@ glm::vec3 pointOf(Text text) {
     const std::vector<float> numbers = typedNumbers(text, 3);
     if (numbers.empty())
         throw UsageError(
-            fmt::format("{} are no three finite numbers: give x,y,z", quoted(std::string(text))));
+            fmt::format("{} are no three finite numbers: give x,y,z", inQuotes(std::string(text))));
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -65,7 +65,7 @@ std::pair<Text, Text> splitLast(Text text, const char* form) {
 Property requireProperty(Text name) {
     if (const std::optional<Property> property = propertyOf(name)) return *property;
     throw UsageError(
-        fmt::format("{} is no property: there is {}", quoted(std::string(name)), propertyNames()));
+        fmt::format("{} is no property: there is {}", inQuotes(std::string(name)), propertyNames()));
 }
 
 // The name goes up to the last '.' before the first '=' that a property stands before.
@@ -104,7 +104,7 @@ std::vector<std::pair<std::string, std::string>> keysOf(Text text) {
         else if (!keys.empty())
             keys.back().second += "," + std::string(part);
         else
-            throw UsageError(fmt::format("{} has no value: write KEY=VALUE", quoted(std::string(part))));
+            throw UsageError(fmt::format("{} has no value: write KEY=VALUE", inQuotes(std::string(part))));
     }
     return keys;
 }
@@ -134,7 +134,7 @@ SceneEdit addOf(Text text) {
         return light;
     }
     throw UsageError(fmt::format("{} is no type: there is point, spot, directional, rectangle, disc and sky",
-                                 quoted(type)));
+                                 inQuotes(type)));
 }
 
 DuplicateEdit duplicateOf(Text text, const char* form) {
@@ -148,9 +148,9 @@ auto naming(const TypedEdit& typed, Action action) {
     try {
         return action();
     } catch (const UsageError& error) {
-        throw UsageError(fmt::format("{} {}: {}", typed.option, quoted(typed.text), error.what()));
+        throw UsageError(fmt::format("{} {}: {}", typed.option, inQuotes(typed.text), error.what()));
     } catch (const Error& error) {
-        throw Kind(fmt::format("{} {}: {}", typed.option, quoted(typed.text), error.what()));
+        throw Kind(fmt::format("{} {}: {}", typed.option, inQuotes(typed.text), error.what()));
     }
 }
 

@@ -45,9 +45,9 @@ LayeredImage::Layer& layerOf(LayeredImage& image, const std::string& name) {
         if (std::find(members.begin(), members.end(), name) != members.end())
             throw Error(fmt::format("light {0} is part of {1} and cannot be set apart: set {1}, or bake with "
                                     "more --layer-memory",
-                                    quoted(name), quoted(layer.name)));
+                                    inQuotes(name), inQuotes(layer.name)));
     }
-    throw Error(fmt::format("no light is called {}: {}", quoted(name), nearNamesHint(name, names)));
+    throw Error(fmt::format("no light is called {}: {}", inQuotes(name), nearNamesHint(name, names)));
 }
 
 void remember(LayeredImage::Layer& layer, float intensity, const glm::vec3& color) {
@@ -60,7 +60,7 @@ void weigh(LayeredImage::Layer& layer, float intensity, const glm::vec3& color) 
     for (int c = 0; c < 3; ++c)
         if (!std::isfinite(layer.weight[c]))
             throw UsageError(
-                fmt::format("light {} becomes too bright: give a smaller number", quoted(layer.name)));
+                fmt::format("light {} becomes too bright: give a smaller number", inQuotes(layer.name)));
     remember(layer, intensity, color);
 }
 

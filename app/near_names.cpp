@@ -38,7 +38,7 @@ size_t distance(const std::string& a, const std::string& b) {
 std::string listed(const std::vector<std::string>& names, const char* last) {
     std::string text;
     for (size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + quoted(names[i]);
+        text += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + inQuotes(names[i]);
     return text;
 }
 

@@ -202,7 +202,7 @@ std::string Editor::operator()(const SetEdit& edit) const {
         const size_t users = thing.kind == Kind::Emitter ? usersOf(scene, material) : 1;
         if (users > 1)
             done += fmt::format(", of the material {}, which {} objects have",
-                                quoted(edits.materials[material].name), users);
+                                inQuotes(edits.materials[material].name), users);
     }
     return done;
 }
@@ -253,7 +253,7 @@ std::string Editor::operator()(const AddLightEdit& edit) const {
         light.transform = aimed(light, *edit.aim);
     }
     edits.lights.push_back(light);
-    return fmt::format("light {}: added, {:.6g} {}", quoted(light.name), light.intensity,
+    return fmt::format("light {}: added, {:.6g} {}", inQuotes(light.name), light.intensity,
                        lightUnit(light.type));
 }
 
@@ -287,14 +287,14 @@ std::string Editor::operator()(const DuplicateEdit& edit) const {
     for (uint32_t n = 2; copy.name.empty() || (edit.copy.empty() && taken(copy.name)); ++n)
         copy.name = fmt::format("{} {}", thing.name, n);
     edits.lights.push_back(copy);
-    return fmt::format("{}: duplicated as {}", thing.label(), quoted(copy.name));
+    return fmt::format("{}: duplicated as {}", thing.label(), inQuotes(copy.name));
 }
 
 std::string Editor::operator()(const DeleteEdit& edit) const {
     const NamedThing thing = find(edit.name, kLights);
     if (thing.kind == Kind::Emitter)
         throw Error(fmt::format("{} is an object that shines, which cannot be deleted: set its strength to 0",
-                                quoted(thing.name)));
+                                inQuotes(thing.name)));
     if (thing.kind == Kind::Sky && edits.sky == SkySettings())
         throw Error("the scene has no sky: there is nothing to delete");
     if (thing.kind == Kind::Lamp)

@@ -54,7 +54,7 @@ void addWarnings(const Scene& scene, const WorldMesh& mesh, SceneInfo& info) {
     for (size_t i = 0; i < used.size(); ++i)
         if (used[i] && scene.materials[i].doubleSided)
             warnings.add(scene.materials[i].name.empty() ? fmt::format("material {}", i)
-                                                         : "material " + quoted(scene.materials[i].name),
+                                                         : "material " + inQuotes(scene.materials[i].name),
                          "double sided, the back shows the light of the front");
     if (info.droppedTriangles > 0)
         warnings.add(fmt::format("{} triangles", info.droppedTriangles), "have no area and are dropped");

@@ -74,7 +74,7 @@ std::string listedKinds(const ThingKinds& kinds) {
 } // namespace
 
 std::string NamedThing::label() const {
-    return fmt::format("{} {}", wordOf(kind), quoted(name));
+    return fmt::format("{} {}", wordOf(kind), inQuotes(name));
 }
 
 std::vector<NamedThing> namedThings(const Scene& scene, const SceneEdits& edits) {
@@ -104,13 +104,13 @@ NamedThing findThing(const std::vector<NamedThing>& things, const std::string& t
             found.push_back(&thing);
     }
     if (found.empty())
-        throw Error(fmt::format("no {} is called {}: {}", listedKinds(kinds), quoted(typed),
+        throw Error(fmt::format("no {} is called {}: {}", listedKinds(kinds), inQuotes(typed),
                                 nearNamesHint(typed, names)));
     if (found.size() > 1 && !(found.size() == 2 && sameEmission(*found[0], *found[1]))) {
         std::string ways;
         for (const NamedThing* thing : found)
             ways += fmt::format("{}'{}:{}'", ways.empty() ? "" : " or ", wordOf(thing->kind), thing->name);
-        throw Error(fmt::format("{} things are called {}: say {}", found.size(), quoted(typed), ways));
+        throw Error(fmt::format("{} things are called {}: say {}", found.size(), inQuotes(typed), ways));
     }
     return *found.front();
 }

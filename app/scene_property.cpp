@@ -97,8 +97,8 @@ Setting settingOf(Property property, std::string_view text) {
         if (const std::optional<glm::vec3> color = hexColor(text)) return {property, *color};
     const std::vector<float> numbers = typedNumbers(text, counts[size_t(row.kind)]);
     if (numbers.empty())
-        throw UsageError(
-            fmt::format("{} is no {} of finite numbers: {}", quoted(std::string(text)), row.name, row.mend));
+        throw UsageError(fmt::format("{} is no {} of finite numbers: {}", inQuotes(std::string(text)),
+                                     row.name, row.mend));
     if (row.kind == Kind::Number) return {property, numbers[0]};
     if (row.kind == Kind::Pair) return {property, glm::vec2(numbers[0], numbers[1])};
     return {property, glm::vec3(numbers[0], numbers[1], numbers[2])};
@@ -124,7 +124,7 @@ void requireGood(const Setting& setting) {
 
 std::string describe(const Setting& setting) {
     const std::string name = propertyName(setting.property);
-    if (const auto* text = std::get_if<std::string>(&setting.value)) return name + " " + quoted(*text);
+    if (const auto* text = std::get_if<std::string>(&setting.value)) return name + " " + inQuotes(*text);
     if (const auto* number = std::get_if<float>(&setting.value))
         return fmt::format("{} {:.6g}", name, *number);
     if (const auto* pair = std::get_if<glm::vec2>(&setting.value))

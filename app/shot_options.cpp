@@ -47,7 +47,7 @@ std::string cameraNames(const Scene& scene) {
     if (scene.cameras.empty()) return "it has none, use --eye and --target";
     std::string names = "it has ";
     for (size_t i = 0; i < scene.cameras.size(); ++i)
-        names += (i > 0 ? ", " : "") + quoted(scene.cameras[i].name);
+        names += (i > 0 ? ", " : "") + inQuotes(scene.cameras[i].name);
     return names;
 }
 
@@ -129,7 +129,7 @@ ViewCamera chooseCamera(const ShotOptions& o, const Scene& scene, const WorldMes
     if (!o.eye.empty())
         camera = cameraAt(parsePoint("--eye", o.eye), parsePoint("--target", o.target), bounds);
     else if (!o.camera.empty() && named == scene.cameras.end())
-        throw Error(o.bake.scene + ": has no camera " + quoted(o.camera) + ": " + cameraNames(scene));
+        throw Error(o.bake.scene + ": has no camera " + inQuotes(o.camera) + ": " + cameraNames(scene));
     else if (!o.camera.empty())
         camera = cameraOfFile(*named, bounds);
     else if (!scene.cameras.empty())

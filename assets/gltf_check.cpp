@@ -85,7 +85,7 @@ int64_t Checker::integer(const json& object, const char* key, const std::string&
     if (!value) return fallback;
     // The parser gives unsigned to whatever is not negative, so this also bounds 64-bit values.
     if (!value->is_number_unsigned() || value->get<uint64_t>() > static_cast<uint64_t>(limit))
-        fail(fmt::format("{}.{} is {}, not an integer from 0 to {}", where, key, quoted(value->dump()),
+        fail(fmt::format("{}.{} is {}, not an integer from 0 to {}", where, key, inQuotes(value->dump()),
                          limit));
     return value->get<int64_t>();
 }
@@ -144,7 +144,7 @@ void Checker::version() const {
         throw Error(fmt::format("{}: has no asset.version: give a glTF 2.0 file", file_.path));
     if (version->get<std::string>().rfind("2.", 0) != 0)
         throw Error(fmt::format("{}: is glTF {}, only 2.0 is supported: export it as glTF 2.0", file_.path,
-                                quoted(version->get<std::string>())));
+                                inQuotes(version->get<std::string>())));
 }
 
 void Checker::extensions() const {
@@ -163,7 +163,7 @@ void Checker::extensions() const {
         const bool compressed =
             std::find(kCompressions.begin(), kCompressions.end(), name) != kCompressions.end();
         throw Error(fmt::format("{}: requires the extension {}, which is not supported: export it without {}",
-                                file_.path, quoted(name), compressed ? "mesh compression" : "it"));
+                                file_.path, inQuotes(name), compressed ? "mesh compression" : "it"));
     }
 }
 
@@ -284,7 +284,7 @@ void Checker::node(const json& value, const std::string& where) const {
     if (!children->is_array()) fail(where + ".children is no array");
     for (const json& child : *children)
         if (!child.is_number_unsigned() || child.get<uint64_t>() >= count("nodes"))
-            fail(fmt::format("{}.children names node {}, but there are {}", where, quoted(child.dump()),
+            fail(fmt::format("{}.children names node {}, but there are {}", where, inQuotes(child.dump()),
                              count("nodes")));
 }
 
@@ -339,7 +339,7 @@ void Checker::scene(const json& value, const std::string& where) const {
     if (!nodes->is_array()) fail(where + ".nodes is no array");
     for (const json& root : *nodes)
         if (!root.is_number_unsigned() || root.get<uint64_t>() >= count("nodes"))
-            fail(fmt::format("{} names node {}, but there are {}", where, quoted(root.dump()),
+            fail(fmt::format("{} names node {}, but there are {}", where, inQuotes(root.dump()),
                              count("nodes")));
 }
 

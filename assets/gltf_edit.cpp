@@ -51,14 +51,14 @@ std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const 
             !tree.node(instance.node).contains("mesh"))
             throw Error(fmt::format("{}: object {} is not in {}: objects cannot be added, remove it or load "
                                     "the file again",
-                                    target, quoted(instance.name), before.path));
+                                    target, inQuotes(instance.name), before.path));
         nodes.push_back(instance.node);
         const glm::mat4 &from = found->second->transform, &to = instance.transform;
         if (from == to) continue;
         for (int i = 0; i < 16; ++i)
             if (!std::isfinite(to[i / 4][i % 4]))
                 throw Error(fmt::format("{}: object {} has a position that is not finite: place it again",
-                                        target, quoted(instance.name)));
+                                        target, inQuotes(instance.name)));
         moves[instance.node][Carried::Instance] = {instance.name, from, to};
     }
     return nodes;
@@ -105,7 +105,7 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
     try {
         nodes = gltf::apply(edit, before, after, target);
     } catch (const nlohmann::json::exception& error) { // of another type than glTF has there
-        edit.fail("its JSON cannot be edited (" + quoted(error.what()) + ")");
+        edit.fail("its JSON cannot be edited (" + inQuotes(error.what()) + ")");
     }
     std::string edited(text);
     if (edit.json != was) {

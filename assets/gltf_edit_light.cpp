@@ -54,7 +54,7 @@ std::span<const float> span(const glm::vec3& v) {
 
 /// Cones of at most a right angle, the inner one inside the outer one as glTF has it.
 void writeCones(const FileEdit& edit, EditedJson& entry, const Light& light, const Light* before) {
-    const std::string where = "light " + quoted(light.name);
+    const std::string where = "light " + inQuotes(light.name);
     const bool opened = !before || before->outerConeAngle != light.outerConeAngle;
     if (opened) {
         EditedJson& outer = make(edit, entry, {"spot", "outerConeAngle"}, where);
@@ -91,7 +91,7 @@ void LightEdit::requireGood(const Light& light) const {
     const auto require = [&](float value, const char* what) {
         if (!std::isfinite(value) || value < 0.0f)
             throw Error(fmt::format("{}: light {} has {} of {}: give a finite number that is not negative",
-                                    target_, quoted(light.name), what, value));
+                                    target_, inQuotes(light.name), what, value));
     };
     for (int c = 0; c < 3; ++c)
         require(light.color[c], "a colour");
@@ -108,15 +108,15 @@ void LightEdit::requireGood(const Light& light) const {
         throw Error(
             fmt::format("{}: light {} has cones of {} and {} rad: give an inner one that is not above "
                         "the outer one, and that at most 90 degrees",
-                        target_, quoted(light.name), light.innerConeAngle, light.outerConeAngle));
+                        target_, inQuotes(light.name), light.innerConeAngle, light.outerConeAngle));
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(light.transform[i / 4][i % 4]))
             throw Error(fmt::format("{}: light {} has a position that is not finite: place it again", target_,
-                                    quoted(light.name)));
+                                    inQuotes(light.name)));
 }
 
 void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light* before) const {
-    const std::string where = "light " + quoted(light.name);
+    const std::string where = "light " + inQuotes(light.name);
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) {
         if (light.name.empty()) {
@@ -235,7 +235,7 @@ std::vector<int> LightEdit::apply(const std::vector<Light>& before, const std::v
     for (const Light& light : before) {
         if (!holds(light.node, isAreaLight(light.type)))
             throw Error(fmt::format("{}: has no light {} any more: the file has changed, load it again",
-                                    edit_.file.path, quoted(light.name)));
+                                    edit_.file.path, inQuotes(light.name)));
         known[{light.node, isAreaLight(light.type)}] = &light;
     }
     std::vector<int> nodes(after.size(), -1);

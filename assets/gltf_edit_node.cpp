@@ -103,7 +103,7 @@ void requireInvertible(const FileEdit& edit, const glm::dmat4& transform, const 
     if (!invertible(transform))
         throw Error(fmt::format("{}: {} cannot be moved, as a node above it has a scale of 0: give that "
                                 "node a scale or take it out of there",
-                                edit.file.path, quoted(move.name)));
+                                edit.file.path, inQuotes(move.name)));
 }
 
 int moveToChild(FileEdit& edit, const NodeTree& tree, int index, Carried carried, const Move& move) {

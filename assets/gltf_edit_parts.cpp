@@ -189,7 +189,7 @@ void editMaterials(FileEdit& edit, const std::vector<Material>& before, const st
     for (size_t i = 0; i < after.size(); ++i) {
         const auto material = [&]() -> EditedJson& { return edit.json["materials"][i]; };
         const std::string where = fmt::format("materials[{}]", i);
-        const std::string thing = fmt::format("material {} has ", quoted(after[i].name));
+        const std::string thing = fmt::format("material {} has ", inQuotes(after[i].name));
         if (before[i].emission != after[i].emission) {
             requireFinite(target, thing + "an emission", after[i].emission);
             editEmission(edit, material(), before[i].emission, after[i].emission, where);

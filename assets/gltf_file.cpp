@@ -130,7 +130,7 @@ File readFile(const std::string& path) {
     try {
         file.json = nlohmann::json::parse(text + begin, text + end);
     } catch (const nlohmann::json::exception& error) {
-        throwDamaged(path, "is no valid JSON (" + quoted(error.what()) + ")");
+        throwDamaged(path, "is no valid JSON (" + inQuotes(error.what()) + ")");
     }
     if (!file.json.is_object()) throwDamaged(path, "its JSON is not an object");
     return file;

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 /// The parser's messages are several lines long and quote whole data URIs.
 std::string firstLine(const std::string& text) {
-    return quoted(text.substr(0, text.find('\n')));
+    return inQuotes(text.substr(0, text.find('\n')));
 }
 
 json takeArray(json& document, const char* section) {
@@ -73,7 +73,7 @@ void parse(File file, Build& build) {
 
 void warnUnsupported(const File& file, Build& build) {
     for (const std::string& name : unknownExtensions(file))
-        build.warnings.add("extension " + quoted(name), "is not supported and ignored");
+        build.warnings.add("extension " + inQuotes(name), "is not supported and ignored");
     if (file.json.contains("animations") && !file.json["animations"].empty())
         build.warnings.add("animations", "are not supported, the scene stands as stored");
 }

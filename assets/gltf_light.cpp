@@ -90,7 +90,7 @@ struct Source {
     const glm::mat4& world;
 
     std::string label() const {
-        return name.empty() ? fmt::format("light of node {}", node) : "light " + quoted(name);
+        return name.empty() ? fmt::format("light of node {}", node) : "light " + inQuotes(name);
     }
 };
 
@@ -208,7 +208,7 @@ void addPunctual(Build& build, const Source& source) {
         light.radius = own.notNegative("radius", 0.0f);
         if (light.type == LightType::Spot) readCone(light, source, build.warnings);
     } else {
-        numbers.warn(fmt::format("has the unknown type {} and is ignored", quoted(type)));
+        numbers.warn(fmt::format("has the unknown type {} and is ignored", inQuotes(type)));
         return;
     }
     addLight(build, light, source, numbers);
@@ -235,7 +235,7 @@ void addArea(Build& build, const Source& source) {
         }
         light.radius = radius[0];
     } else {
-        numbers.warn(fmt::format("has the unknown type {} and is ignored", quoted(type)));
+        numbers.warn(fmt::format("has the unknown type {} and is ignored", inQuotes(type)));
         return;
     }
     addLight(build, light, source, numbers);
@@ -272,7 +272,7 @@ void buildSky(Build& build) {
     sky.file = (std::filesystem::path(build.path).parent_path() / file).string();
     try {
         for (const std::string& warning : readSkyPicture(sky))
-            build.warnings.add("sky " + quoted(file), warning);
+            build.warnings.add("sky " + inQuotes(file), warning);
     } catch (const Error& error) {
         throw Error(fmt::format("{}: its sky: {}", build.path, error.what()));
     }

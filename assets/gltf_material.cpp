@@ -29,7 +29,7 @@ private:
 };
 
 std::string nameOf(const std::string& kind, const std::string& name, size_t index) {
-    return name.empty() ? fmt::format("{} {}", kind, index) : kind + " " + quoted(name);
+    return name.empty() ? fmt::format("{} {}", kind, index) : kind + " " + inQuotes(name);
 }
 
 Wrap wrapOf(int value) {
@@ -90,8 +90,8 @@ int MaterialBuilder::image(int source) {
     int& known = imageIndex_[static_cast<size_t>(source)];
     if (known >= 0) return known;
     const tinygltf::Image& from = build_.model.images[static_cast<size_t>(source)];
-    const std::string where = from.uri.empty() ? fmt::format("image {} {}", source, quoted(from.name))
-                                               : fmt::format("image file {}", quoted(from.uri));
+    const std::string where = from.uri.empty() ? fmt::format("image {} {}", source, inQuotes(from.name))
+                                               : fmt::format("image file {}", inQuotes(from.uri));
     if (from.image.empty())
         throw Error(
             fmt::format("{}: {} is missing or empty: put it beside the scene or export with embedded images",

@@ -260,7 +260,7 @@ void buildMeshes(Build& build) {
     for (size_t i = 0; i < build.model.meshes.size(); ++i) {
         const tinygltf::Mesh& source = build.model.meshes[i];
         const std::string where =
-            source.name.empty() ? fmt::format("mesh {}", i) : "mesh " + quoted(source.name);
+            source.name.empty() ? fmt::format("mesh {}", i) : "mesh " + inQuotes(source.name);
         Mesh mesh;
         mesh.name = source.name;
         for (const tinygltf::Primitive& part : source.primitives) {

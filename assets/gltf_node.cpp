@@ -42,7 +42,7 @@ std::string nameOf(const json& node) {
 
 std::string labelOf(const json& node, size_t index) {
     const std::string name = nameOf(node);
-    return name.empty() ? fmt::format("node {}", index) : "node " + quoted(name);
+    return name.empty() ? fmt::format("node {}", index) : "node " + inQuotes(name);
 }
 
 Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const glm::mat4& transform) {

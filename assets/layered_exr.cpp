@@ -74,8 +74,8 @@ std::string encode(const std::string& path, const LayeredImage& image, ExrType t
 void requireColors(const std::string& path, const FloatImage& image, const std::string& part) {
     for (const char* channel : {"R", "G", "B"})
         if (!image.find(channel))
-            throw Error(
-                fmt::format("{}: its part {} has no channel {}: bake it again", path, quoted(part), channel));
+            throw Error(fmt::format("{}: its part {} has no channel {}: bake it again", path, inQuotes(part),
+                                    channel));
 }
 
 LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& file, int index,
@@ -87,12 +87,12 @@ LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& 
     const auto* weight = header.findTypedAttribute<Imf::V3fAttribute>(kWeight);
     if (!weight)
         throw Error(fmt::format("{}: its part {} has no attribute {}: bake it again with --layers", path,
-                                quoted(layer.name), kWeight));
+                                inQuotes(layer.name), kWeight));
     layer.weight = {weight->value().x, weight->value().y, weight->value().z};
     for (int c = 0; c < 3; ++c)
         if (!std::isfinite(layer.weight[c]))
             throw Error(fmt::format("{}: the weight of its part {} is not finite: bake it again", path,
-                                    quoted(layer.name)));
+                                    inQuotes(layer.name)));
     Imf::InputPart part(file, index);
     layer.image = exr::readPart(part, path, bytes, kMostImagePixels);
     requireColors(path, layer.image, layer.name);
@@ -113,11 +113,11 @@ void checkParts(const std::string& path, const Imf::MultiPartInputFile& file, ui
     for (int p = 0; p < file.parts(); ++p) {
         if (!file.partComplete(p))
             throw Error(fmt::format("{}: its part {} is not complete: copy or bake it again", path,
-                                    quoted(file.header(p).name())));
+                                    inQuotes(file.header(p).name())));
         const Imath::Box2i window = file.header(p).dataWindow(), first = file.header(0).dataWindow();
         if (window != first)
             throw Error(fmt::format("{}: its part {} has another size than the composite: bake it again",
-                                    path, quoted(file.header(p).name())));
+                                    path, inQuotes(file.header(p).name())));
         const FloatImage part = exr::imageOf(file.header(p), path, bytes, kMostImagePixels);
         pixels += uint64_t(part.width) * part.height;
     }
@@ -137,7 +137,7 @@ LayeredImage read(const std::string& path, const std::string& bytes) {
         image.layers.push_back(readLayer(path, file, p, bytes.size()));
         if (!names.insert(image.layers.back().name).second)
             throw Error(fmt::format("{}: has two layers named {}: bake it again", path,
-                                    quoted(image.layers.back().name)));
+                                    inQuotes(image.layers.back().name)));
     }
     return image;
 }

@@ -102,7 +102,7 @@ SetQuality assess(const Mesh& mesh, int set) {
 
 std::string nameOf(const std::vector<Mesh>& meshes, size_t index) {
     const std::string& name = meshes[index].name;
-    return name.empty() ? fmt::format("mesh {}", index) : "mesh " + quoted(name);
+    return name.empty() ? fmt::format("mesh {}", index) : "mesh " + inQuotes(name);
 }
 
 MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings) {

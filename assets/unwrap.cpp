@@ -182,7 +182,7 @@ private:
             throw Error(fmt::format(
                 "{}: mesh {} needs both its UV sets for textures, so none is free for the lightmap: "
                 "let its textures share one set",
-                scene_.path, quoted(mesh.name)));
+                scene_.path, inQuotes(mesh.name)));
         if (copies_[static_cast<size_t>(primitive.material)] < 0) {
             copies_[static_cast<size_t>(primitive.material)] = static_cast<int>(scene_.materials.size());
             scene_.materials.push_back(material);
@@ -198,7 +198,7 @@ private:
 };
 
 std::string nameOf(const Scene& scene, const Job& job) {
-    return scene.path + ": mesh " + quoted(scene.meshes[job.mesh].name);
+    return scene.path + ": mesh " + inQuotes(scene.meshes[job.mesh].name);
 }
 
 std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) {

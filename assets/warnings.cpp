@@ -24,7 +24,7 @@ std::vector<std::string> Warnings::lines(const std::string& path) const {
     return lines;
 }
 
-std::string quoted(const std::string& name) {
+std::string inQuotes(const std::string& name) {
     constexpr size_t kLongest = 80; // characters; a data URI in a message helps nobody
     size_t length = name.size();
     if (length > kLongest) {

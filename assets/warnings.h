@@ -22,6 +22,6 @@ private:
 };
 
 /// A name from a file made fit for a one-line message: quoted, control characters gone, shortened.
-std::string quoted(const std::string& name);
+std::string inQuotes(const std::string& name);
 
 } // namespace relume

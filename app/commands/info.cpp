@@ -125,7 +125,7 @@ void line(const char* name, const std::string& value) {
 }
 
 std::string describe(const Light& light) {
-    std::string text = light.name.empty() ? "" : quoted(light.name) + ", ";
+    std::string text = light.name.empty() ? "" : inQuotes(light.name) + ", ";
     text += fmt::format("{:.6g} {}, colour ({:.4g}, {:.4g}, {:.4g})", light.intensity, lightUnit(light.type),
                         light.color.r, light.color.g, light.color.b);
     if (light.type == LightType::Spot)
