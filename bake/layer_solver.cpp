@@ -43,7 +43,8 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                             .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       radiancePass_(input.device), gatherPass_(input.device, settings.transport), resolvePass_(input.device),
       layerPass_(input.device), parts_(makeTileParts(input.patches)), commands_(input.device),
-      timestamps_(input.device, 3), order_(input.patches.chunkCount()), layerBytes_(settings.layers.bytes) {
+      timestamps_(input.device, 3 * kMostPortions), order_(input.patches.chunkCount()),
+      layerBytes_(settings.layers.bytes) {
     batchMs_ = settings.batchMs;
     settings_.transport.reflectedOnly = true;
     const VkDeviceSize lightBytes = LightBuffers::lightBytes(input.patches);
@@ -56,8 +57,9 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
     penumbra_ = {vk::makeBuffer(input.device, parts_.ofPatch, "parts of tiles"),
                  vk::Buffer(input.device, {.size = parts_.count * sizeof(glm::uvec2), .name = "penumbra"})};
-    back_ = vk::Buffer(input.device, {.size = std::max(buffers_.chunkSums.size(),
-                                                       buffers_.rays.size() + penumbra_.lights.size()),
+    const VkDeviceSize changes = 2 * input.patches.chunkCount() * sizeof(glm::vec4); // recordChange()
+    back_ = vk::Buffer(input.device, {.size = std::max({buffers_.chunkSums.size(), changes,
+                                                        buffers_.rays.size() + penumbra_.lights.size()}),
                                       .memory = vk::Memory::Host,
                                       .name = "sums for the CPU"});
     countSenders();
@@ -127,8 +129,7 @@ void LayerSolver::begin(size_t index, LayerLevel target) {
     }
     if (!layer.penumbra.empty()) uploadPenumbra(layer);
     beginPass(Stage::Direct);
-    if (raysOf(layer) == 0) return endDirectStep();
-    if (!seekRound()) endDirectStep();
+    if (raysOf(layer) == 0 || !seekRound()) endDirectStep(commands_.begin());
 }
 
 void LayerSolver::beginPass(Stage stage) {
@@ -158,59 +159,89 @@ uint32_t LayerSolver::raysOf(const Layer& layer) const {
     return rays;
 }
 
-// cost: of a chunk, over that of those that the rate is of.
-ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most, double cost) const {
+// cost: of a chunk, over that of those that the rate is of; done: of these in the batch so far.
+ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most, double cost, double done) const {
     const double limit =
-        std::clamp(rate.wanted(batchMs_) / cost, 1.0, std::max(1.0, static_cast<double>(most)));
+        std::clamp((rate.wanted(batchMs_) - done) / cost, 1.0, std::max(1.0, static_cast<double>(most)));
     return order_.next(static_cast<uint32_t>(limit),
                        static_cast<uint32_t>(rate.perMs() / cost * kWorthASubmit));
 }
 
-// A round goes over the parts of the layer one by one.
+// A round goes over the parts of the layer one by one. Tracers that record take as much of a step in one
+// submit as fits, for what comes next is known but for the first round.
 void LayerSolver::directBatch() {
     const std::vector<DirectPart>& parts = layers_[work_->layer]->parts;
-    const DirectPart part = parts[work_->part];
-    const uint32_t rays = part.emitters ? emitters_.rays(part.group) : lamps_.rays(part.group);
-    if (rays > 0) {
-        const double cost = static_cast<double>(rays) / kPointsOfRound;
-        const ChunkRange range =
-            nextRange(directRate_, part.emitters ? emitters_.batchChunks() : lamps_.batchChunks(), cost);
-        const auto start = Clock::now();
-        if (part.emitters)
-            directBatchOf(emitters_, part.group, range);
-        else
-            directBatchOf(lamps_, part.group, range);
-        directRate_.note(range.count * cost, batchMs_, secondsSince(start));
-        order_.finish(range);
-        if (order_.left() > 0) return;
+    const bool records = !input_.tracer.onCpu();
+    const auto start = Clock::now();
+    const double most = directRate_.wanted(batchMs_);
+    VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
+    if (records) timestamps_.reset(cmd);
+    double done = 0;
+    uint32_t portions = 0;
+    bool more = true;
+    while (more) {
+        const DirectPart part = parts[work_->part];
+        const uint32_t rays = part.emitters ? emitters_.rays(part.group) : lamps_.rays(part.group);
+        if (rays > 0) {
+            const double cost = static_cast<double>(rays) / kPointsOfRound;
+            const ChunkRange range = nextRange(
+                directRate_, part.emitters ? emitters_.batchChunks() : lamps_.batchChunks(), cost, done);
+            if (part.emitters)
+                traceDirect(cmd, emitters_, part.group, range, 3 * portions);
+            else
+                traceDirect(cmd, lamps_, part.group, range, 3 * portions);
+            ++portions;
+            done += range.count * cost;
+            order_.finish(range);
+        } else {
+            order_.finish({0, order_.count()});
+        }
+        more = (order_.left() > 0 || nextDirect()) && records && done < most && portions < kMostPortions;
     }
-    if (++work_->part < parts.size()) {
-        orderRound(); // the same chunks as of this part
-        return;
+    const bool ends = order_.left() == 0;
+    if (!ends) {
+        if (records) run(cmd);
+    } else if (work_->round == 0) {
+        endFirstRound(records ? cmd : commands_.begin());
+    } else if (work_->mended) {
+        if (records) run(cmd);
+        endMendingStep();
+    } else {
+        endDirectStep(records ? cmd : commands_.begin());
     }
-    work_->part = 0;
-    endDirectRound();
+    directRate_.note(done, batchMs_, secondsSince(start));
+    for (uint32_t i = 0; records && i < portions; ++i) {
+        progress_.traceSeconds += 1e-3 * timestamps_.milliseconds(3 * i, 3 * i + 1);
+        progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(3 * i + 1, 3 * i + 2);
+    }
 }
 
+// cmd: of a tracer that records.
 template<typename Lights>
-void LayerSolver::directBatchOf(const Lights& lights, uint32_t group, ChunkRange range) {
+void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_t group, ChunkRange range,
+                              uint32_t mark) {
     const typename Lights::Work work{
         .group = group, .round = work_->round, .range = range, .penumbra = &penumbra_};
-    const PointTimes times = tracePoints(
-        {commands_, timestamps_, input_.tracer}, lights.segments(work, buffers_.rays),
-        [&](VkCommandBuffer cmd) {
-            if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
-            if (!work_->begun && work_->round == 0)
-                vkCmdFillBuffer(cmd, penumbra_.lights.handle(), 0, VK_WHOLE_SIZE, 0);
-            vk::barrier(cmd);
-            lights.recordSamples(cmd, input_.light, work);
-        },
-        [&](VkCommandBuffer cmd) {
-            lights.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
-        });
+    const PointTracer on{commands_, timestamps_, input_.tracer};
+    const SegmentWork segments = lights.segments(work, buffers_.rays);
+    const auto samples = [&](VkCommandBuffer to) {
+        if (!work_->begun) vkCmdFillBuffer(to, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
+        if (!work_->begun && work_->round == 0)
+            vkCmdFillBuffer(to, penumbra_.lights.handle(), 0, VK_WHOLE_SIZE, 0);
+        vk::barrier(to);
+        lights.recordSamples(to, input_.light, work);
+    };
+    const auto gather = [&](VkCommandBuffer to) {
+        lights.recordGather(to, input_.light, work, buffers_.directSums, buffers_.direct);
+    };
+    if (cmd != VK_NULL_HANDLE) {
+        recordPoints(cmd, on, segments, samples, gather, mark);
+    } else {
+        const PointTimes times = tracePoints(on, segments, samples, gather);
+        progress_.traceSeconds += times.trace;
+        progress_.gatherSeconds += times.gather;
+    }
     work_->begun = true;
-    progress_.traceSeconds += times.trace;
-    progress_.gatherSeconds += times.gather;
 }
 
 // Of the round, where this step ends.
@@ -247,22 +278,31 @@ bool LayerSolver::seekRound() {
     return false;
 }
 
-void LayerSolver::endDirectRound() {
-    if (work_->round == 0 && (work_->mended || directEnd() > 1)) {
-        VkCommandBuffer cmd = commands_.begin();
-        recordPenumbra(cmd);
-        run(cmd);
-        learnPenumbra();
+// Goes on to the part of a step that comes next. False: the step is over, or what comes depends on what the
+// first round meets.
+bool LayerSolver::nextDirect() {
+    if (++work_->part < layers_[work_->layer]->parts.size()) {
+        orderRound(); // the same chunks as of the part before
+        return true;
     }
+    work_->part = 0;
+    if (work_->round == 0 && (work_->mended || directEnd() > 1)) return false;
     ++work_->round;
-    if (seekRound()) return;
-    work_->mended ? endMendingStep() : endDirectStep();
+    return seekRound();
 }
 
-void LayerSolver::endDirectStep() {
+void LayerSolver::endFirstRound(VkCommandBuffer cmd) {
+    recordPenumbra(cmd);
+    run(cmd);
+    learnPenumbra();
+    ++work_->round;
+    if (seekRound()) return;
+    work_->mended ? endMendingStep() : endDirectStep(commands_.begin());
+}
+
+void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     Layer& layer = *layers_[work_->layer];
     const uint32_t end = directEnd(), rounds = end - layer.directRounds;
-    VkCommandBuffer cmd = commands_.begin();
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
@@ -276,7 +316,7 @@ void LayerSolver::endDirectStep() {
     layer.directSteps.push_back(end);
     if (end == work_->target.directRounds) return beginBounces();
     work_->begun = false;
-    if (!seekRound()) endDirectStep();
+    if (!seekRound()) endDirectStep(commands_.begin());
 }
 
 void LayerSolver::recordPenumbra(VkCommandBuffer cmd) {

@@ -69,6 +69,9 @@ public:
     static constexpr uint32_t kPointsOfRound = shader::kReplicates;
 
 private:
+    // Of a pass in one submit, at most: marks of time are between them.
+    static constexpr uint32_t kMostPortions = 32;
+
     enum class Stage : uint8_t { Direct, Bounces, Gather };
     /// A layer on its way to the next level.
     struct Work {
@@ -79,11 +82,20 @@ private:
         uint32_t round = 0;   // of samples, or of links that are gathered
         uint32_t part = 0;    // of Layer::parts, within a round of samples
         uint32_t bounce = 0;  // finished ones, over the links of the first round
-        uint32_t gathers = 0; // the same over those of all rounds
+        uint32_t look = 0;    // after so many of these the CPU looks whether they have settled
+        uint32_t looked = 0;  // after so many it did
+        uint32_t gathers = 0; // as bounces, over the links of all rounds
         bool begun = false;   // a batch of this pass has been made
         bool lit = false;     // what patches send is that of ligIn
         double change = 0, ratio = 0, iterationError = 1;
         std::optional<uint32_t> mended; // of Layer::directSteps; direct light of stale chunks is made anew
+    };
+    /// Part of a pass over links.
+    struct LinkPortion {
+        bool trace = false; // they are not there yet
+        ChunkRange range;
+        ClosestWork closest;
+        LinkGatherPass::Work gather;
     };
     /// Kept links on their way to where objects are now.
     struct Relink {
@@ -121,12 +133,14 @@ private:
     void begin(size_t layer, LayerLevel target);
     void directBatch();
     template<typename Lights>
-    void directBatchOf(const Lights& lights, uint32_t group, ChunkRange range);
+    void traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_t group, ChunkRange range,
+                     uint32_t mark);
     uint32_t directEnd() const;
+    bool nextDirect();
     bool orderRound();
     bool seekRound();
-    void endDirectRound();
-    void endDirectStep();
+    void endFirstRound(VkCommandBuffer cmd);
+    void endDirectStep(VkCommandBuffer cmd);
     void recordPenumbra(VkCommandBuffer cmd);
     void learnPenumbra();
     void uploadPenumbra(const Layer& layer);
@@ -134,23 +148,28 @@ private:
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
     uint32_t raysOf(const Layer& layer) const;
-    ChunkRange nextRange(const BatchRate& rate, uint32_t most, double cost = 1) const;
+    ChunkRange nextRange(const BatchRate& rate, uint32_t most, double cost = 1, double done = 0) const;
     void beginPass(Stage stage);
     void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at = 0);
     void run(VkCommandBuffer cmd);
 
     // layer_links.cpp
     void beginBounces();
+    LinkPortion nextLinks(double most);
     void linkBatch();
-    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work, bool endsBounce);
-    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work, bool endsBounce);
+    bool linksAtOnce(const LinkPortion& portion);
+    bool linksBySubmit(const LinkPortion& portion);
+    bool knownLinksBySubmit(LinkPortion portion);
+    void noteLinks(const LinkPortion& portion);
     void recordPassBegin(VkCommandBuffer cmd);
     void recordRadiance(VkCommandBuffer cmd);
-    void recordBounceEnd(VkCommandBuffer cmd);
-    void recordChange(VkCommandBuffer cmd);
-    void endBounce();
-    void learnChange();
-    void endGather();
+    bool recordsPassEnd() const;
+    bool recordPassEnd(VkCommandBuffer cmd);
+    bool recordGatherEnd(VkCommandBuffer cmd);
+    void recordChange(VkCommandBuffer cmd, uint32_t slot);
+    void look();
+    void learnChange(uint32_t slot);
+    uint32_t bouncesToAim() const;
     bool gathered() const;
     bool wantsDistances() const;
     double iterationAim() const;
