@@ -180,11 +180,23 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.redoSteps = from.redoSteps;
 }
 
+// Where their places among the layers stand.
+std::vector<size_t*> LayerSolver::layersUnderWay() {
+    std::vector<size_t*> places;
+    if (!work_) return places;
+    if (work_->lanes.empty()) places.push_back(&work_->layer);
+    for (Lane& lane : work_->lanes)
+        if (lane.live || work_->stage == Stage::Bounces) places.push_back(&lane.layer);
+    return places;
+}
+
 void LayerSolver::adopt() {
     edited_ = false;
     if (work_ && work_->sum) work_.reset();
-    const std::optional<LightPattern> working =
-        work_ ? std::optional(layers_[work_->layer]->pattern) : std::nullopt;
+    const std::vector<size_t*> places = layersUnderWay();
+    std::vector<LightPattern> working;
+    for (const size_t* place : places)
+        working.push_back(layers_[*place]->pattern);
     const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
     if (!tooMany.empty()) throw Error(tooMany);
     surfaces_ = surfacesOf(input_.scene);
@@ -196,15 +208,18 @@ void LayerSolver::adopt() {
     adoptLayers(wantedLayers());
     updateParts();
     tellGroups();
-    const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
-        return working && layer->pattern == *working;
-    });
-    const bool dark = found != layers_.end() && (*found)->source.key.kind == Kind::Group &&
-                      (*found)->source.weight == glm::vec3(0.0f); // has no parts
-    if (work_ && (found == layers_.end() || dark))
-        abortPass();
-    else if (work_)
-        work_->layer = static_cast<size_t>(found - layers_.begin());
+    for (size_t i = 0; i < places.size() && work_; ++i) {
+        const auto found =
+            std::find_if(layers_.begin(), layers_.end(),
+                         [&](const std::unique_ptr<Layer>& layer) { return layer->pattern == working[i]; });
+        const bool dark = found != layers_.end() && (*found)->source.key.kind == Kind::Group &&
+                          (*found)->source.weight == glm::vec3(0.0f); // has no parts
+        if (found == layers_.end() || dark)
+            abortPass();
+        else
+            *places[i] = static_cast<size_t>(found - layers_.begin());
+    }
+    if (work_) work_->layer = *places.front();
     const bool same =
         std::equal(shown.begin(), shown.end(), layers_.begin(), layers_.end(),
                    [](const Layer* a, const std::unique_ptr<Layer>& b) { return a == b.get(); });

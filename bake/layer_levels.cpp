@@ -94,32 +94,35 @@ shader::ResolveSums LayerSolver::resolve(uint32_t linkRounds, double sigma) {
     return sumsOf(std::span(back_.as<shader::ResolveSums>(), input_.patches.chunkCount()));
 }
 
-void LayerSolver::finishLevel() {
-    const Work work = *work_;
-    Layer& layer = working();
+void LayerSolver::finishLevel(const Lane& lane) {
+    const Work& work = *work_;
+    Layer& layer = layerOf(lane);
+    const auto index = static_cast<uint32_t>(&lane - work.lanes.data());
+    if (index > 0) std::swap(buffers_.linkSums, bounces_->sums(index));
     if (!layer.result) layer.result = takeBuffer("layer");
     shader::ResolveSums sums{};
     layer.width = {};
-    if (work.target.linkRounds > 0) {
+    if (lane.target.linkRounds > 0) {
         distancesKnown_ = true;
-        const auto at = [&](double sigma) { return resolve(work.target.linkRounds, sigma); };
-        const bool first = work.target == firstLevel(); // which is in haste
+        const auto at = [&](double sigma) { return resolve(lane.target.linkRounds, sigma); };
+        const bool first = lane.target == firstLevel(); // which is in haste
         sums = !buffers_.rows ? at(0.0) : first ? at(layer.width.sigma) : layer.width.settle(at);
     }
+    if (index > 0) std::swap(buffers_.linkSums, bounces_->sums(index));
     VkCommandBuffer cmd = commands_.begin();
-    layerPass_.recordResult(cmd, input_.light, layer, work.target.linkRounds > 0 ? &buffers_.result : nullptr,
+    layerPass_.recordResult(cmd, input_.light, layer, lane.target.linkRounds > 0 ? &buffers_.result : nullptr,
                             buffers_.chunkSums);
     recordBack(cmd, buffers_.chunkSums, input_.patches.chunkCount() * sizeof(glm::vec4));
     run(cmd);
     const glm::dvec4 total = sumsOf(std::span(back_.as<glm::vec4>(), input_.patches.chunkCount()));
-    layer.level = work.target;
+    layer.level = lane.target;
     layer.light = total.x;
     layer.count = total.z;
     layer.directVariance = total.y;
     layer.indirectVariance = smoothedVariance(sums);
     // What bounces have settled is gathered once more; over all rounds the last gather is what was measured.
-    const double more = work.gathers > 1 ? 1.0 : work.ratio;
-    layer.iterationError = settings_.passes > 0 ? 0.0 : work.iterationError * more;
+    const double more = work.gathers > 1 ? 1.0 : lane.ratio;
+    layer.iterationError = settings_.passes > 0 ? 0.0 : lane.iterationError * more;
     layer.error = 0;
     if (layer.light > 0) {
         const double mean = layer.light / (3.0 * layer.count);
@@ -134,14 +137,10 @@ void LayerSolver::finishLevel() {
         !layer.redo && (layer.level == lastLevel() ||
                         (settings_.error > 0 && layer.error <= settings_.error) || layer.light <= 0);
     progress_.cacheBytes = links_.bytes();
-    if (work.sum) {
-        work_.reset();
-        return showSum();
-    }
+    if (work.sum) return showSum();
     if (layer.before) archive(std::move(layer.before));
     progress_.samples = std::max(progress_.samples, layer.level.linkRounds * linksOfRound_);
-    changed(work.layer);
-    work_.reset();
+    changed(lane.layer);
     endStandIn();
     if (sumShown_ && !wantsSum()) hideSum();
     tellError();

@@ -23,17 +23,42 @@ constexpr uint32_t kFirstLook = 2, kMostUnseen = 8;
 // Hybrid's first pass is the direct light: with a number of passes the others are gathered over all links.
 // Else bounces settle over the links of the first round.
 void LayerSolver::beginBounces() {
-    work_->bounce = work_->round = work_->looked = 0;
-    work_->look = kFirstLook;
-    if (work_->target.linkRounds == 0) return finishLevel();
+    Work& work = *work_;
+    work.bounce = work.round = 0;
+    work.lanes = lanes();
+    if (work.target.linkRounds == 0) {
+        finishLevel(work.lanes.front());
+        return work_.reset();
+    }
+    if (bounces_) {
+        std::vector<const vk::Buffer*> direct;
+        for (const Lane& lane : work.lanes)
+            direct.push_back(layerOf(lane).direct.get());
+        bounces_->begin(direct);
+    }
     beginPass(settings_.passes > 0 ? Stage::Gather : Stage::Bounces);
+}
+
+// The layer itself and others that want as many links and have all their direct light.
+std::vector<LayerSolver::Lane> LayerSolver::lanes() const {
+    std::vector<Lane> lanes = {{.layer = work_->layer, .target = work_->target, .look = kFirstLook}};
+    if (work_->sum || !bounces_) return lanes;
+    for (size_t i = 0; i < layers_.size() && lanes.size() < LayerBounces::kMostLanes; ++i) {
+        const Layer& layer = *layers_[i];
+        const bool waits = !layer.converged && layer.stale.empty() && layer.source.weight != glm::vec3(0.0f);
+        if (i == work_->layer || !waits) continue;
+        const LayerLevel target = targetOf(layer);
+        if (target.linkRounds == work_->target.linkRounds && layer.directRounds >= target.directRounds)
+            lanes.push_back({.layer = i, .target = target, .look = kFirstLook});
+    }
+    if (lanes.size() > 1) lanes.resize(std::min<size_t>(lanes.size(), bounces_->room()));
+    return lanes;
 }
 
 void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
     vk::barrier(cmd);
+    if (bounces_) return bounces_->recordSend(cmd, settings_.transport.reflectivity);
     radiancePass_.record(cmd, input_.light, settings_.transport);
-    vk::barrier(cmd);
-    gatherPass_.recordPack(cmd, input_.light, buffers_);
 }
 
 // The first bounce is that of the direct light, or, for the sum, of what is shown: an edit changes part of
@@ -41,13 +66,19 @@ void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
 void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
     if (!work_->lit) {
         if (work_->bounce == 0 && work_->gathers == 0) {
+            std::vector<const vk::Buffer*> first;
+            for (const Lane& lane : work_->lanes)
+                first.push_back(work_->sum && settings_.passes == 0 ? &composite_
+                                                                    : layerOf(lane).direct.get());
             const VkBufferCopy all{0, 0, input_.light.ligIn.size()};
-            const vk::Buffer& first = work_->sum && settings_.passes == 0 ? composite_ : *working().direct;
-            vkCmdCopyBuffer(cmd, first.handle(), input_.light.ligIn.handle(), 1, &all);
+            if (bounces_)
+                bounces_->recordStart(cmd, first);
+            else
+                vkCmdCopyBuffer(cmd, first.front()->handle(), input_.light.ligIn.handle(), 1, &all);
         }
         recordRadiance(cmd);
     }
-    if (work_->stage == Stage::Gather && work_->round == 0)
+    if (!bounces_ && work_->stage == Stage::Gather && work_->round == 0)
         vkCmdFillBuffer(cmd, buffers_.linkSums.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
     work_->lit = work_->begun = true;
@@ -74,7 +105,7 @@ LayerSolver::LinkPortion LayerSolver::nextLinks(double most) {
             .gather = {.links = place.links,
                        .linksOffset = place.offset,
                        .samples = linksOfRound_,
-                       .direct = working().direct.get(),
+                       .direct = bounces_ ? nullptr : layerOf(work_->lanes.front()).direct.get(),
                        .output = bounces,
                        .accumulate = !bounces,
                        .range = range}};
@@ -88,12 +119,34 @@ void LayerSolver::linkBatch() {
     if (seen) look();
 }
 
+void LayerSolver::recordGather(VkCommandBuffer cmd, const LinkPortion& portion) {
+    if (!bounces_) return gatherPass_.record(cmd, input_.light, buffers_, portion.gather);
+    const Work& work = *work_;
+    const bool bounce = work.stage == Stage::Bounces;
+    const uint32_t rounds = bounce ? 1 : work.target.linkRounds;
+    const uint32_t sums = work.round == 0 ? shader::kNewSums : shader::kMoreSums;
+    LayerBounces::Work record{.links = portion.gather.address(),
+                              .samples = linksOfRound_,
+                              .range = portion.range,
+                              .sums = bounce ? shader::kNoSums : sums,
+                              .ends = bounce || (work.round + 1 == rounds && !isLastGather()),
+                              .scale = 1.0f / static_cast<float>(rounds * linksOfRound_),
+                              .reflectivity = settings_.transport.reflectivity,
+                              .changes = {}};
+    if (tellsChange()) record.changes = (bounce ? work.bounce : work.gathers) % 2;
+    bounces_->record(cmd, record);
+}
+
+// Each layer that bounces along has gathered them.
 void LayerSolver::noteLinks(const LinkPortion& portion) {
     const ChunkRange range = portion.range;
     const auto first = senders_.begin() + range.first;
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
-    (portion.trace ? progress_.rays : progress_.raysSaved) += count;
-    progress_.pairs += count;
+    const auto layers = static_cast<uint64_t>(
+        std::count_if(work_->lanes.begin(), work_->lanes.end(), [](const Lane& lane) { return lane.live; }));
+    progress_.rays += portion.trace ? count : 0;
+    progress_.raysSaved += count * (layers - (portion.trace ? 1 : 0));
+    progress_.pairs += count * layers;
     links_.note(work_->round, range);
     order_.finish(range);
 }
@@ -140,7 +193,7 @@ bool LayerSolver::linksBySubmit(const LinkPortion& portion) {
         run(cmd);
         cmd = commands_.begin();
     }
-    gatherPass_.record(cmd, input_.light, buffers_, portion.gather);
+    recordGather(cmd, portion);
     if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, portion.gather);
     timestamps_.mark(cmd, 2);
     noteLinks(portion);
@@ -165,7 +218,7 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     while (true) {
         if (!work_->begun) recordPassBegin(cmd);
         timestamps_.mark(cmd, 2 * portions);
-        gatherPass_.record(cmd, input_.light, buffers_, portion.gather);
+        recordGather(cmd, portion);
         if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, portion.gather);
         timestamps_.mark(cmd, 2 * portions + 1);
         noteLinks(portion);
@@ -184,11 +237,6 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     return seen;
 }
 
-// Of the first round's links: the same for every layer.
-bool LayerSolver::wantsDistances() const {
-    return buffers_.distances && !distancesKnown_ && work_->stage == Stage::Gather && work_->round == 0;
-}
-
 // Whether the end of the pass under way is more than to count it.
 bool LayerSolver::recordsPassEnd() const {
     return work_->stage == Stage::Bounces || work_->round + 1 == work_->target.linkRounds;
@@ -203,96 +251,179 @@ bool LayerSolver::recordPassEnd(VkCommandBuffer cmd) {
         order_.begin(input_.patches.chunkCount(), seen_);
         return false;
     }
+    recordPassLight(cmd);
     ++progress_.passes;
     ++work.bounce;
-    if (work.bounce + 1 >= work.look) recordChange(cmd, work.bounce == work.look);
-    std::swap(input_.light.ligIn, input_.light.ligOut);
-    recordRadiance(cmd);
-    if (work.bounce == work.look) return true;
-    beginPass(Stage::Bounces);
-    return false;
+    if (work.bounce < nextLook()) {
+        beginPass(Stage::Bounces);
+        return false;
+    }
+    recordChanges(cmd);
+    return true;
 }
 
 // What has settled over few links has their noise, which all links see then: it is gathered again until the
 // light has settled over all of them.
 bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
     Work& work = *work_;
+    const bool last = isLastGather();
+    if (!last) recordPassLight(cmd);
+    work.round = 0;
     ++work.gathers;
     ++progress_.passes;
-    work.round = 0;
-    const bool counted = settings_.passes > 0;
-    if (counted ? work.gathers + 1 >= settings_.passes : work.target.linkRounds == 1) return true;
-    std::swap(input_.light.ligIn, input_.light.ligOut);
-    vk::barrier(cmd);
-    gatherPass_.recordCompose(cmd, input_.light, buffers_, working().direct.get(),
-                              work.target.linkRounds * linksOfRound_);
-    if (!counted) recordChange(cmd, work.gathers > 1);
-    recordRadiance(cmd);
+    if (last) return true;
     work.lit = true;
-    if (!counted && work.gathers > 1) return true;
-    beginPass(Stage::Gather);
-    return false;
+    if (settings_.passes > 0 || work.gathers == 1) {
+        beginPass(Stage::Gather);
+        return false;
+    }
+    recordChanges(cmd);
+    return true;
 }
 
-// From ligIn to ligOut or back. Slot 1: of the pass that the CPU looks at; 0: of the one before.
-void LayerSolver::recordChange(VkCommandBuffer cmd, uint32_t slot) {
-    const VkDeviceSize bytes = input_.patches.chunkCount() * sizeof(glm::vec4);
-    vk::barrier(cmd);
-    resolvePass_.recordChange(cmd, input_.light, buffers_);
-    recordBack(cmd, buffers_.chunkSums, bytes, slot * bytes);
+// A gather, known to be the last one before it is made.
+bool LayerSolver::isLastGather() const {
+    return settings_.passes > 0 ? work_->gathers + 2 >= settings_.passes : work_->target.linkRounds == 1;
 }
 
-// What came of a pass decides what is next: which depends on the light alone, not on how batches were cut.
+// Of the pass under way, while its end is recorded.
+bool LayerSolver::tellsChange() const {
+    if (work_->stage == Stage::Gather) return settings_.passes == 0;
+    return work_->bounce + 2 >= nextLook();
+}
+
+// The light that was made is what is sent next.
+void LayerSolver::recordPassLight(VkCommandBuffer cmd) {
+    if (bounces_) {
+        vk::barrier(cmd);
+        return bounces_->endPass();
+    }
+    const Work& work = *work_;
+    const bool gather = work.stage == Stage::Gather;
+    if (gather) {
+        std::swap(input_.light.ligIn, input_.light.ligOut);
+        vk::barrier(cmd);
+        gatherPass_.recordCompose(cmd, input_.light, buffers_, layerOf(work.lanes.front()).direct.get(),
+                                  work.target.linkRounds * linksOfRound_);
+    }
+    if (tellsChange()) {
+        const VkDeviceSize bytes = input_.patches.chunkCount() * sizeof(glm::vec4);
+        vk::barrier(cmd);
+        resolvePass_.recordChange(cmd, input_.light, buffers_);
+        recordBack(cmd, buffers_.chunkSums, bytes, (gather ? work.gathers : work.bounce) % 2 * bytes);
+    }
+    if (!gather) std::swap(input_.light.ligIn, input_.light.ligOut);
+    recordRadiance(cmd);
+}
+
+// For the CPU, where it does not gather itself.
+void LayerSolver::recordChanges(VkCommandBuffer cmd) {
+    if (!bounces_) return;
+    bounces_->recordChanges(cmd);
+    recordBack(cmd, bounces_->changes(), bounces_->changes().size());
+}
+
+uint32_t LayerSolver::nextLook() const {
+    uint32_t next = kMaxPasses;
+    for (const Lane& lane : work_->lanes)
+        if (lane.live) next = std::min(next, lane.look);
+    return next;
+}
+
+// What came of a pass decides what is next: which depends on each layer's light alone, not on how batches
+// were cut nor on who bounces along.
 void LayerSolver::look() {
     Work& work = *work_;
-    const bool gather = work.stage == Stage::Gather;
-    if (gather && (settings_.passes > 0 || work.target.linkRounds == 1)) return finishLevel();
-    const bool first = gather ? work.gathers == 2 : work.looked == 0;
-    if (first || (!gather && work.look - work.looked > 1)) {
-        work.change = 0; // of another kind of pass, or of one long before
-        learnChange(0);
+    if (work.stage == Stage::Gather) return lookAtGather();
+    uint32_t live = 0;
+    for (uint32_t i = 0; i < work.lanes.size(); ++i) {
+        Lane& lane = work.lanes[i];
+        if (lane.live && lane.look == work.bounce) {
+            learnChanges(lane, lane.look - lane.looked > 1);
+            lane.looked = lane.look;
+            lane.look += bouncesToAim(lane);
+            lane.live = lane.iterationError > iterationAim(lane) && work.bounce < kMaxPasses;
+        }
+        if (lane.live) live |= 1u << i;
     }
-    learnChange(1);
-    if (gather) return gathered() ? finishLevel() : beginPass(Stage::Gather);
-    const bool last = work.iterationError <= iterationAim() || work.bounce >= kMaxPasses;
-    work.looked = work.look;
-    work.look += bouncesToAim();
-    beginPass(last ? Stage::Gather : Stage::Bounces);
+    if (bounces_) bounces_->setLive(live);
+    if (live != 0) return beginPass(Stage::Bounces);
+    for (Lane& lane : work.lanes)
+        lane.live = true;
+    if (bounces_) bounces_->setLive((1u << work.lanes.size()) - 1u);
+    work.lit = work.lanes.size() == 1; // of others some have stood by while light bounced on
+    beginPass(Stage::Gather);
 }
 
-// As the ratio of the last two has it.
-uint32_t LayerSolver::bouncesToAim() const {
-    const double more = std::log(iterationAim() / work_->iterationError) / std::log(work_->ratio);
-    const double most = std::min(kMostUnseen, kMaxPasses - std::min(work_->bounce, kMaxPasses - 1));
-    return work_->ratio < 1.0 && more > 1.0 ? static_cast<uint32_t>(std::ceil(std::min(more, most))) : 1;
+void LayerSolver::lookAtGather() {
+    Work& work = *work_;
+    const bool told = settings_.passes == 0 && work.target.linkRounds > 1;
+    std::vector<uint32_t> ended;
+    uint32_t live = 0;
+    for (uint32_t i = 0; i < work.lanes.size(); ++i) {
+        Lane& lane = work.lanes[i];
+        if (!lane.live) continue;
+        if (told) learnChanges(lane, work.gathers == 2);
+        lane.live = told && lane.iterationError > iterationAim(lane) && work.gathers + 1 < kMaxPasses;
+        if (lane.live)
+            live |= 1u << i;
+        else
+            ended.push_back(i);
+    }
+    if (bounces_) bounces_->setLive(live);
+    for (const uint32_t i : ended) // what was read back is learnt by now
+        finishLevel(work.lanes[i]);
+    live != 0 ? beginPass(Stage::Gather) : work_.reset();
 }
 
-double LayerSolver::iterationAim() const {
+double LayerSolver::iterationAim(const Lane& lane) const {
     const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-    const bool first = work_->target == firstLevel() && !(work_->target == lastLevel());
+    const bool first = lane.target == firstLevel() && !(lane.target == lastLevel());
     return first ? std::max(aim, kFirstIterationError) : aim;
+}
+
+// both: what the pass before changed has not been seen yet.
+void LayerSolver::learnChanges(Lane& lane, bool both) {
+    const Work& work = *work_;
+    const uint32_t passes = work.stage == Stage::Gather ? work.gathers : work.bounce; // this one, too
+    const auto index = static_cast<uint32_t>(&lane - work.lanes.data());
+    const uint32_t chunks = input_.patches.chunkCount();
+    const auto total = [&](uint32_t pass) {
+        const uint32_t slot = (pass - 1) % 2;
+        if (bounces_) return glm::dvec4(back_.as<glm::vec4>()[slot * bounces_->lanes() + index]);
+        return sumsOf(std::span(back_.as<glm::vec4>() + size_t{slot} * chunks, chunks));
+    };
+    if (both) {
+        lane.change = 0; // of another stage, or of a pass long before
+        learnChange(lane, total(passes - 1));
+    }
+    learnChange(lane, total(passes));
 }
 
 // The remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two changes
 // (conventions.md, Errors). A light that reaches nothing has settled at once.
-void LayerSolver::learnChange(uint32_t slot) {
-    const uint32_t chunks = input_.patches.chunkCount();
-    const glm::dvec4 total = sumsOf(std::span(back_.as<glm::vec4>() + size_t{slot} * chunks, chunks));
+void LayerSolver::learnChange(Lane& lane, const glm::dvec4& total) {
     const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
-    Work& work = *work_;
     if (change == 0.0 || mean <= 0.0) {
-        work.iterationError = work.ratio = 0.0;
-    } else if (work.change > 0.0) {
-        work.ratio = change / work.change;
-        work.iterationError = work.ratio < 1.0 ? change * work.ratio / (1.0 - work.ratio) / mean : 1.0;
+        lane.iterationError = lane.ratio = 0.0;
+    } else if (lane.change > 0.0) {
+        lane.ratio = change / lane.change;
+        lane.iterationError = lane.ratio < 1.0 ? change * lane.ratio / (1.0 - lane.ratio) / mean : 1.0;
     }
-    work.change = change;
+    lane.change = change;
 }
 
-bool LayerSolver::gathered() const {
-    return work_->gathers + 1 >= kMaxPasses ||
-           (work_->gathers > 1 && work_->iterationError <= iterationAim());
+// As the ratio of the last two has it.
+uint32_t LayerSolver::bouncesToAim(const Lane& lane) const {
+    const double more = std::log(iterationAim(lane) / lane.iterationError) / std::log(lane.ratio);
+    const double most = std::min(kMostUnseen, kMaxPasses - std::min(work_->bounce, kMaxPasses - 1));
+    return lane.ratio < 1.0 && more > 1.0 ? static_cast<uint32_t>(std::ceil(std::min(more, most))) : 1;
+}
+
+// Of the first round's links: the same for every layer.
+bool LayerSolver::wantsDistances() const {
+    return buffers_.distances && !distancesKnown_ && work_->stage == Stage::Gather && work_->round == 0;
 }
 
 } // namespace relume

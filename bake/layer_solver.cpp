@@ -51,13 +51,11 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     if (input.light.radiance.size() != lightBytes) // another solver's nodes
         input.light.radiance = vk::Buffer(input.device, {.size = lightBytes, .name = "radiance"});
     if (!gatherPass_.onCpu())
-        buffers_.packed =
-            vk::Buffer(input.device, {.size = lightBytes / sizeof(glm::vec4) * sizeof(glm::uvec2),
-                                      .name = "packed radiance"});
+        bounces_ = std::make_unique<LayerBounces>(input.device, input.light, buffers_.linkSums);
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
     penumbra_ = {vk::makeBuffer(input.device, parts_.ofPatch, "parts of tiles"),
                  vk::Buffer(input.device, {.size = parts_.count * sizeof(glm::uvec2), .name = "penumbra"})};
-    const VkDeviceSize changes = 2 * input.patches.chunkCount() * sizeof(glm::vec4); // recordChange()
+    const VkDeviceSize changes = 2 * input.patches.chunkCount() * sizeof(glm::vec4); // of two passes
     back_ = vk::Buffer(input.device, {.size = std::max({buffers_.chunkSums.size(), changes,
                                                         buffers_.rays.size() + penumbra_.lights.size()}),
                                       .memory = vk::Memory::Host,

@@ -7,6 +7,7 @@
 #include "bake/batch_rate.h"
 #include "bake/emitter_light.h"
 #include "bake/lamp_light.h"
+#include "bake/layer_bounces.h"
 #include "bake/layer_passes.h"
 #include "bake/link_cache.h"
 #include "bake/link_passes.h"
@@ -61,9 +62,11 @@ public:
     bool current() const;
     /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
     void moveObjects(const ObjectMove& move);
-    /// Whether base colours and objects may be changed now: no layer is on its way to its first level, and no
-    /// links are.
-    bool atRest() const { return !relink_ && (!work_ || work_->sum || layers_[work_->layer]->has()); }
+    /// Whether base colours and objects may be changed now: no links are under way, and no layer to its first
+    /// level, unless all of them are seen in one.
+    bool atRest() const {
+        return !relink_ && (!work_ || work_->sum || sumShown_ || layers_[work_->layer]->has());
+    }
 
     /// Points on each light per patch and round: few, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = shader::kReplicates;
@@ -73,21 +76,28 @@ private:
     static constexpr uint32_t kMostPortions = 32;
 
     enum class Stage : uint8_t { Direct, Bounces, Gather };
+    /// Of layers that bounce together one.
+    struct Lane {
+        size_t layer = 0;
+        LayerLevel target;
+        bool live = true;    // goes on in this stage
+        uint32_t look = 0;   // after so many bounces the CPU looks whether they have settled
+        uint32_t looked = 0; // after so many it did
+        double change = 0, ratio = 0, iterationError = 1;
+    };
     /// A layer on its way to the next level.
     struct Work {
         size_t layer = 0;
         bool sum = false; // not a layer, but all of them together
         LayerLevel target;
+        std::vector<Lane> lanes; // once it bounces: itself, and others that bounce along
         Stage stage = Stage::Direct;
-        uint32_t round = 0;   // of samples, or of links that are gathered
-        uint32_t part = 0;    // of Layer::parts, within a round of samples
-        uint32_t bounce = 0;  // finished ones, over the links of the first round
-        uint32_t look = 0;    // after so many of these the CPU looks whether they have settled
-        uint32_t looked = 0;  // after so many it did
-        uint32_t gathers = 0; // as bounces, over the links of all rounds
-        bool begun = false;   // a batch of this pass has been made
-        bool lit = false;     // what patches send is that of ligIn
-        double change = 0, ratio = 0, iterationError = 1;
+        uint32_t round = 0;             // of samples, or of links that are gathered
+        uint32_t part = 0;              // of Layer::parts, within a round of samples
+        uint32_t bounce = 0;            // finished ones, over the links of the first round
+        uint32_t gathers = 0;           // as bounces, over the links of all rounds
+        bool begun = false;             // a batch of this pass has been made
+        bool lit = false;               // what patches send is that of ligIn
         std::optional<uint32_t> mended; // of Layer::directSteps; direct light of stale chunks is made anew
     };
     /// Part of a pass over links.
@@ -129,7 +139,7 @@ private:
     // layer_solver.cpp
     void countSenders();
     void plan();
-    Layer& working() { return work_->sum ? *sum_ : *layers_[work_->layer]; }
+    Layer& layerOf(const Lane& lane) { return work_->sum ? *sum_ : *layers_[lane.layer]; }
     void begin(size_t layer, LayerLevel target);
     void directBatch();
     template<typename Lights>
@@ -155,6 +165,7 @@ private:
 
     // layer_links.cpp
     void beginBounces();
+    std::vector<Lane> lanes() const;
     LinkPortion nextLinks(double most);
     void linkBatch();
     bool linksAtOnce(const LinkPortion& portion);
@@ -163,19 +174,25 @@ private:
     void noteLinks(const LinkPortion& portion);
     void recordPassBegin(VkCommandBuffer cmd);
     void recordRadiance(VkCommandBuffer cmd);
+    void recordGather(VkCommandBuffer cmd, const LinkPortion& portion);
     bool recordsPassEnd() const;
     bool recordPassEnd(VkCommandBuffer cmd);
     bool recordGatherEnd(VkCommandBuffer cmd);
-    void recordChange(VkCommandBuffer cmd, uint32_t slot);
+    void recordPassLight(VkCommandBuffer cmd);
+    void recordChanges(VkCommandBuffer cmd);
+    bool isLastGather() const;
+    uint32_t nextLook() const;
+    bool tellsChange() const;
     void look();
-    void learnChange(uint32_t slot);
-    uint32_t bouncesToAim() const;
-    bool gathered() const;
+    void lookAtGather();
+    void learnChanges(Lane& lane, bool both);
+    void learnChange(Lane& lane, const glm::dvec4& total);
+    uint32_t bouncesToAim(const Lane& lane) const;
     bool wantsDistances() const;
-    double iterationAim() const;
+    double iterationAim(const Lane& lane) const;
 
     // layer_levels.cpp
-    void finishLevel();
+    void finishLevel(const Lane& lane);
     shader::ResolveSums resolve(uint32_t linkRounds, double sigma);
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
@@ -186,6 +203,7 @@ private:
 
     // layer_edits.cpp
     void adopt();
+    std::vector<size_t*> layersUnderWay();
     void weigh();
     std::unique_ptr<Layer> makeLayer(const LightPattern& pattern) const;
     void adoptLayers(const std::vector<Wanted>& wanted);
@@ -244,6 +262,7 @@ private:
     LinkCache links_;
     RadiancePass radiancePass_;
     LinkGatherPass gatherPass_;
+    std::unique_ptr<LayerBounces> bounces_; // where the device gathers
     ResolvePass resolvePass_;
     LayerPass layerPass_;
     TileParts parts_;

@@ -83,7 +83,7 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
             ? count * sizeof(shader::CoarseTaps) +
                   receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
             : 0;
-    const uint64_t packed = software ? 0 : sizeof(glm::uvec2);
+    const uint64_t packed = software ? 0 : (settings.layers.on ? 2 : 1) * sizeof(glm::uvec2);
     const uint64_t footprint = settings.links.footprint ? Footprints::bytes(count) : 0;
     const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
     return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +

@@ -1,6 +1,10 @@
 #include "bake/surface_colours.h"
 
+#include "bake/chunk_dispatch.h"
+#include "bake/trace/retrace_types.h"
+
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace relume {
@@ -31,15 +35,27 @@ bool clamps(const PatchSet& patches, const glm::vec4& albedo) {
     return !patches.scene.rtrad && std::max({albedo.r, albedo.g, albedo.b}) > patches.maxAlbedo;
 }
 
-} // namespace
-
-bool applyMaterial(PatchSet& patches, size_t patch, const Material& material) {
+bool applyBaseColor(PatchSet& patches, size_t patch, const Material& material) {
     const glm::vec4 albedo = albedoOf(patches, patch, material);
     const bool clamped = clamps(patches, albedo);
     patches.albedo[patch] = clamped ? glm::min(albedo, glm::vec4(patches.maxAlbedo)) : albedo;
-    patches.emission[patch] = glm::vec4(material.emission, 0.0f) * patches.emissionPattern[patch];
     return clamped;
 }
+
+} // namespace
+
+bool applyMaterial(PatchSet& patches, size_t patch, const Material& material) {
+    patches.emission[patch] = glm::vec4(material.emission, 0.0f) * patches.emissionPattern[patch];
+    return applyBaseColor(patches, patch, material);
+}
+
+SurfaceColours::OnDevice::OnDevice(const vk::Device& device, const PatchSet& patches, size_t materialCount)
+    : materials(vk::makeBuffer(device, patches.material, "materials of patches")),
+      pattern(vk::makeBuffer(device, patches.albedoPattern, "albedo pattern")),
+      baseColors(
+          device,
+          {.size = materialCount * sizeof(glm::vec4), .memory = vk::Memory::Host, .name = "base colours"}),
+      recolour(device, "recolour"), commands(device) {}
 
 SurfaceColours::SurfaceColours(std::vector<Material> materials) : applied_(std::move(materials)) {
     applied_.emplace_back();
@@ -54,7 +70,8 @@ std::vector<SurfaceColours::Changed> SurfaceColours::changesTo(const std::vector
     return changed;
 }
 
-// Returns whether any of its patches is another now; clamped: how many more have their albedo made less.
+// Returns whether any of its patches shines otherwise now; clamped: how many more have their albedo made
+// less.
 bool SurfaceColours::updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
                                  PatchSet& patches, size_t block, int64_t& clamped) const {
     bool dirty = false;
@@ -62,10 +79,13 @@ bool SurfaceColours::updateBlock(const std::vector<Material>& materials, const s
     const size_t end = std::min((block + 1) * kBlock, patches.material.size());
     for (size_t i = block * kBlock; i < end; ++i) {
         const uint32_t material = patches.material[i];
-        if (!changed[material].albedo && !changed[material].emission) continue;
-        dirty = true;
+        if (changed[material].emission) {
+            dirty = true;
+            patches.emission[i] = glm::vec4(materials[material].emission, 0.0f) * patches.emissionPattern[i];
+        }
+        if (!changed[material].albedo) continue;
         clamped -= clamps(patches, albedoOf(patches, i, applied_[material])) ? 1 : 0;
-        clamped += applyMaterial(patches, i, materials[material]) ? 1 : 0;
+        clamped += applyBaseColor(patches, i, materials[material]) ? 1 : 0;
     }
     return dirty;
 }
@@ -86,9 +106,35 @@ void SurfaceColours::update(const vk::Device& device, const std::vector<Material
     });
     const int64_t more = std::accumulate(clamped.begin(), clamped.end(), int64_t{0});
     patches.clampedAlbedo = static_cast<uint32_t>(patches.clampedAlbedo + more);
-    if (albedo) upload(device, light.albedo, patches.albedo, dirty);
+    if (albedo) recolour(device, now, changed, patches, light);
     if (emission) upload(device, light.emission, patches.emission, dirty);
     applied_ = std::move(now);
+}
+
+// As applyBaseColor does on the host.
+void SurfaceColours::recolour(const vk::Device& device, const std::vector<Material>& materials,
+                              const std::vector<Changed>& changed, const PatchSet& patches,
+                              const LightBuffers& light) {
+    if (!onDevice_) onDevice_ = std::make_unique<OnDevice>(device, patches, materials.size());
+    auto* baseColors = onDevice_->baseColors.as<glm::vec4>();
+    for (size_t i = 0; i < materials.size(); ++i) {
+        baseColors[i] = materials[i].baseColor;
+        if (!changed[i].albedo) baseColors[i].a = -1.0f;
+    }
+    const bool clamps = !patches.scene.rtrad;
+    const shader::RecolourPush push{.materials = onDevice_->materials.address(),
+                                    .baseColors = onDevice_->baseColors.address(),
+                                    .pattern = onDevice_->pattern.address(),
+                                    .albedo = light.albedo.address(),
+                                    .patchCount = light.chunkCount * shader::kChunk,
+                                    .maxAlbedo =
+                                        clamps ? patches.maxAlbedo : std::numeric_limits<float>::max()};
+    VkCommandBuffer cmd = onDevice_->commands.begin();
+    vk::barrier(cmd); // earlier work may still read the albedo
+    dispatchChunks(onDevice_->recolour, cmd, push, light.chunkCount);
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    onDevice_->commands.run();
 }
 
 void SurfaceColours::updateAll(const vk::Device& device, const std::vector<Material>& materials,

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "bake/light_buffers.h"
+#include "bake/vk/commands.h"
+#include "bake/vk/program.h"
 #include "bake/worker_pool.h"
 
 namespace relume {
@@ -12,7 +14,8 @@ namespace relume {
 bool applyMaterial(PatchSet& patches, size_t patch, const Material& material);
 
 /// Follows colours and strengths of materials: patches of those that changed are others, and so is the
-/// device's copy.
+/// device's copy. That of the albedo is made there, of 20 bytes per patch: a large material's would take
+/// longer to send.
 class SurfaceColours {
 public:
     /// materials: those that the patches were made with.
@@ -31,8 +34,20 @@ private:
     bool updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
                      PatchSet& patches, size_t block, int64_t& clamped) const;
 
+    /// What the device needs to follow base colours, from the first update on.
+    struct OnDevice {
+        vk::Buffer materials, pattern, baseColors; // as RecolourPush has them
+        vk::ComputeProgram recolour;
+        vk::Commands commands;
+
+        OnDevice(const vk::Device& device, const PatchSet& patches, size_t materialCount);
+    };
+    void recolour(const vk::Device& device, const std::vector<Material>& materials,
+                  const std::vector<Changed>& changed, const PatchSet& patches, const LightBuffers& light);
+
     std::vector<Material> applied_;    // and glTF's default material
     std::unique_ptr<WorkerPool> pool_; // from the first update on
+    std::unique_ptr<OnDevice> onDevice_;
 };
 
 } // namespace relume

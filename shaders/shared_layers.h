@@ -36,3 +36,38 @@ struct LayerMixPush {
     uint layerCount;
     uint patchCount;
 };
+
+// A layer that bounces beside others.
+struct BounceLane {
+    ADDRESS direct; // vec4[patchCount]
+    ADDRESS lightA; // vec4[patchCount]: what bounces and what comes of it, in turns
+    ADDRESS lightB;
+    ADDRESS sums; // vec4[kReplicates][patchCount]
+};
+// What becomes of sums over links.
+const uint kNoSums = 0u, kNewSums = 1u, kMoreSums = 2u;
+struct BouncePush {
+    ADDRESS lanes;   // BounceLane[LANES]
+    ADDRESS links;   // uint[chunkCount][sampleCount][64]; 0: none, light as it is
+    ADDRESS packed;  // uvec2[patchCount][LANES], radiance by packLight
+    ADDRESS sent;    // as packed, of the light that is made; 0: the pass goes on
+    ADDRESS patches;
+    ADDRESS albedo;
+    ADDRESS changes; // vec4[LANES][allChunks], as ChangePush; 0: not told
+    uint firstChunk;
+    uint chunkCount;
+    uint allChunks;
+    uint sampleCount; // a multiple of kReplicates
+    uint patchCount;
+    uint live; // a bit per lane: its light and sums are written
+    uint from;   // a bit per lane: it is its light B that bounces
+    uint sums;
+    float scale; // from the sum of all sums to the mean
+    float reflectivity;
+};
+// Over all chunks.
+struct BounceChangePush {
+    ADDRESS changes; // vec4[2][lanes][chunkCount]
+    ADDRESS totals;  // vec4[2][lanes]
+    uint chunkCount;
+};

@@ -1,4 +1,4 @@
-// Of objects that move: what their kernels are told. Goes with shared.h, which is to be included before.
+// Of objects that move and surfaces of other colours: what their kernels are told. Goes with shared.h, which is to be included before.
 
 // Where an object was or is, axis-parallel [m].
 struct TraceBox {
@@ -35,4 +35,14 @@ struct RetracePush {
     uint size;     // lightmap edge [texels]
     uint rotation; // kRotate...
     uint silent;   // 1: of patches that send nothing, too
+};
+
+// Base colours of materials are others.
+struct RecolourPush {
+    ADDRESS materials;  // uint[patchCount]
+    ADDRESS baseColors; // vec4[] per material; a < 0: as it was
+    ADDRESS pattern;    // vec4[patchCount]: albedo for a base colour of 1
+    ADDRESS albedo;     // vec4[patchCount]
+    uint patchCount;
+    float maxAlbedo;
 };

@@ -25,6 +25,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"pure", {.passes = 2}, 1e-6},
         Case{"montecarlo", {.passes = 2, .method = Method::MonteCarlo, .pairs = {.window = 4}}, 1e-6},
         Case{"mipmapped", {.passes = 2, .method = Method::Mipmapped, .pairs = {.window = 2}}, 1e-6},
+        Case{"layers", {.passes = 3, .method = Method::Hybrid, .samples = 32, .layers = true}, 2e-5},
         Case{"hybrid", {.passes = 3, .method = Method::Hybrid, .samples = 32}, 2e-5},
         Case{"directional",
              {.passes = 3, .method = Method::Directional, .samples = 32, .indirectScale = 2},

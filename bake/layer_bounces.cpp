@@ -1,0 +1,123 @@
+#include "bake/layer_bounces.h"
+
+#include "bake/chunk_dispatch.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// Of the memory that is free, what layers beside the first one may take.
+constexpr double kShare = 0.25;
+constexpr uint32_t kPasses = 2; // of which changes are told
+
+} // namespace
+
+LayerBounces::LayerBounces(const vk::Device& device, const LightBuffers& light, const vk::Buffer& sums)
+    : device_(device), light_(light), sums_(sums),
+      lanes_(device, {.size = kMostLanes * sizeof(shader::BounceLane),
+                      .memory = vk::Memory::Host,
+                      .name = "layers that bounce"}),
+      totals_(device, {.size = kPasses * kMostLanes * sizeof(glm::vec4), .name = "changes by bounces"}),
+      one_(device, "bounce"), four_(device, "bounce_four"), change_(device, "bounce_change") {
+    makeSent(1);
+}
+
+void LayerBounces::makeSent(uint32_t lanes) {
+    const uint64_t places = uint64_t{lanes} * light_.chunkCount * kChunk;
+    for (vk::Buffer& sent : sent_)
+        sent = vk::Buffer(device_, {.size = places * sizeof(glm::uvec2), .name = "packed radiance"});
+    changes_ = vk::Buffer(device_, {.size = kPasses * lanes * light_.chunkCount * sizeof(glm::vec4),
+                                    .name = "changes of chunks"});
+}
+
+uint32_t LayerBounces::room() {
+    if (!beside_.empty()) return kMostLanes;
+    const VkDeviceSize light = light_.ligIn.size(), sums = sums_.size();
+    const VkDeviceSize sent = sent_.size() * kMostLanes * light_.chunkCount * kChunk * sizeof(glm::uvec2);
+    const VkDeviceSize bytes = (kMostLanes - 1) * (2 * light + sums) + sent;
+    if (static_cast<double>(bytes) > kShare * static_cast<double>(device_.freeMemory())) return 1;
+    makeSent(kMostLanes);
+    for (uint32_t lane = 1; lane < kMostLanes; ++lane)
+        beside_.push_back({vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
+                           vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
+                           vk::Buffer(device_, {.size = sums, .name = "link sums"})});
+    return kMostLanes;
+}
+
+void LayerBounces::begin(std::span<const vk::Buffer* const> direct) {
+    count_ = static_cast<uint32_t>(direct.size());
+    lanesOf_ = count_ > 1 ? kMostLanes : 1;
+    live_ = (1u << count_) - 1u;
+    from_ = now_ = 0;
+    auto* lanes = lanes_.as<shader::BounceLane>();
+    for (uint32_t i = 0; i < kMostLanes; ++i) {
+        const uint32_t lane = i < count_ ? i : 0; // those that nobody needs only read
+        const bool first = lane == 0;
+        lanes[i] = {.direct = direct[lane]->address(),
+                    .lightA = first ? light_.ligIn.address() : beside_[lane - 1].lightA.address(),
+                    .lightB = first ? light_.ligOut.address() : beside_[lane - 1].lightB.address(),
+                    .sums = first ? sums_.address() : beside_[lane - 1].sums.address()};
+    }
+}
+
+void LayerBounces::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) const {
+    for (uint32_t lane = 0; lane < count_; ++lane) {
+        const VkBufferCopy all{0, 0, light_.ligIn.size()};
+        const vk::Buffer& to = lane == 0 ? light_.ligIn : beside_[lane - 1].lightA;
+        vkCmdCopyBuffer(cmd, light[lane]->handle(), to.handle(), 1, &all);
+    }
+}
+
+shader::BouncePush LayerBounces::push(float reflectivity) const {
+    return {.lanes = lanes_.address(),
+            .packed = sent_[now_].address(),
+            .patches = light_.patches.address(),
+            .albedo = light_.albedo.address(),
+            .chunkCount = light_.chunkCount,
+            .allChunks = light_.chunkCount,
+            .patchCount = light_.chunkCount * kChunk,
+            .live = live_,
+            .from = from_,
+            .reflectivity = reflectivity};
+}
+
+void LayerBounces::dispatch(VkCommandBuffer cmd, const shader::BouncePush& push, uint32_t chunks) const {
+    dispatchChunks(lanesOf_ > 1 ? four_ : one_, cmd, push, chunks);
+}
+
+void LayerBounces::recordSend(VkCommandBuffer cmd, float reflectivity) const {
+    shader::BouncePush send = push(reflectivity);
+    send.sent = sent_[now_].address();
+    dispatch(cmd, send, light_.chunkCount);
+}
+
+void LayerBounces::record(VkCommandBuffer cmd, const Work& work) const {
+    shader::BouncePush p = push(work.reflectivity);
+    p.links = work.links;
+    p.firstChunk = work.range.first;
+    p.chunkCount = work.range.count;
+    p.sampleCount = work.samples;
+    p.sums = work.sums;
+    p.scale = work.scale;
+    if (work.ends) p.sent = sent_[1 - now_].address();
+    if (work.ends && work.changes)
+        p.changes =
+            changes_.address() + uint64_t{*work.changes} * lanesOf_ * light_.chunkCount * sizeof(glm::vec4);
+    dispatch(cmd, p, work.range.count);
+}
+
+void LayerBounces::endPass() {
+    from_ ^= live_;
+    now_ = 1 - now_;
+}
+
+void LayerBounces::recordChanges(VkCommandBuffer cmd) const {
+    const shader::BounceChangePush p{
+        .changes = changes_.address(), .totals = totals_.address(), .chunkCount = light_.chunkCount};
+    change_.dispatch(cmd, p, kPasses * lanesOf_);
+}
+
+} // namespace relume
