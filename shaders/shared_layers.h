@@ -47,10 +47,10 @@ struct BounceLane {
 // What becomes of sums over links.
 const uint kNoSums = 0u, kNewSums = 1u, kMoreSums = 2u;
 struct BouncePush {
-    ADDRESS lanes;   // BounceLane[LANES]
-    ADDRESS links;   // uint[chunkCount][sampleCount][64]; 0: none, light as it is
-    ADDRESS packed;  // uvec2[patchCount][LANES], radiance by packLight
-    ADDRESS sent;    // as packed, of the light that is made; 0: the pass goes on
+    ADDRESS lanes;  // BounceLane[LANES]
+    ADDRESS links;  // uint[chunkCount][sampleCount][64]; 0: none, light as it is
+    ADDRESS packed; // uvec2[patchCount][LANES], radiance by packLight
+    ADDRESS sent;   // as packed, of the light that is made; 0: the pass goes on
     ADDRESS patches;
     ADDRESS albedo;
     ADDRESS changes; // vec4[LANES][allChunks], as ChangePush; 0: not told
@@ -60,7 +60,7 @@ struct BouncePush {
     uint sampleCount; // a multiple of kReplicates
     uint patchCount;
     uint live; // a bit per lane: its light and sums are written
-    uint from;   // a bit per lane: it is its light B that bounces
+    uint from; // a bit per lane: it is its light B that bounces
     uint sums;
     float scale; // from the sum of all sums to the mean
     float reflectivity;

@@ -1,4 +1,5 @@
-// Of objects that move and surfaces of other colours: what their kernels are told. Goes with shared.h, which is to be included before.
+// Of objects that move and surfaces of other colours: what their kernels are told. Goes with shared.h, which
+// is to be included before.
 
 // Where an object was or is, axis-parallel [m].
 struct TraceBox {
