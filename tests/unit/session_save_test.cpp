@@ -5,6 +5,7 @@
 #include "assets/error.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
+#include "tests/text.h"
 #include "tests/unit/session_fixture.h"
 
 #include <gtest/gtest.h>
@@ -47,10 +48,6 @@ protected:
              at = bytes.find("\"light\":", at + 1))
             ++count;
         return count;
-    }
-    static std::string bytesOf(const std::string& path) {
-        std::ifstream stream(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
 };
 
