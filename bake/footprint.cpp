@@ -3,7 +3,6 @@
 #include "bake/chunk_dispatch.h"
 #include "bake/vk/commands.h"
 
-#include <algorithm>
 #include <bit>
 #include <limits>
 

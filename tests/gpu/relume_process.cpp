@@ -1,6 +1,6 @@
-#include "assets/clock.h"
 #include "tests/gpu/relume_process.h"
 
+#include "assets/clock.h"
 #include "assets/error.h"
 
 #include <algorithm>

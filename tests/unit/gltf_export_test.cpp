@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
