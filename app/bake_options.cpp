@@ -9,7 +9,6 @@ namespace relume {
 namespace {
 
 constexpr double kDefaultError = 0.01;
-constexpr double kRtradReflectivity = 0.9;
 
 // Of the methods that follow directions.
 void addLinkOptions(CLI::App& command, BakeOptions& o) {
@@ -224,7 +223,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     solver.transport.rtrad = rtrad;
     solver.transport.deviceGather = o.deviceGather;
     solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity
-                                                       : rtrad             ? kRtradReflectivity
+                                                       : rtrad             ? double(kRtradReflectivity)
                                                                            : 1.0);
     solver.transport.distanceFactor = o.distanceFactor >= 0 ? static_cast<float>(o.distanceFactor) : 1.0f;
     solver.passes = o.passes;

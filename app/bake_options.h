@@ -13,6 +13,8 @@ class Option;
 
 namespace relume {
 
+constexpr float kRtradReflectivity = 0.9f; // of its preset, unless told otherwise
+
 /// What the user typed after `relume bake`.
 struct BakeOptions {
     std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;

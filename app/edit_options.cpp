@@ -40,9 +40,9 @@ constexpr OptionRow kOptions[] = {
     {"--show", "NAME", "Take a hidden object in again"},
 };
 
-using Text = std::string_view;
+using OptionText = std::string_view;
 
-glm::vec3 pointOf(Text text) {
+glm::vec3 pointOf(OptionText text) {
     const std::vector<float> numbers = typedNumbers(text, 3);
     if (numbers.empty())
         throw UsageError(
@@ -50,41 +50,41 @@ glm::vec3 pointOf(Text text) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-std::string requireName(Text name, const char* form) {
+std::string requireName(OptionText name, const char* form) {
     if (name.empty()) throw UsageError(fmt::format("names nothing: write {}", form));
     return std::string(name);
 }
 
 // "NAME=VALUE"; a name may hold a '=', a value none.
-std::pair<Text, Text> splitLast(Text text, const char* form) {
+std::pair<OptionText, OptionText> splitLast(OptionText text, const char* form) {
     const size_t equals = text.rfind('=');
-    if (equals == Text::npos || equals == 0) throw UsageError(fmt::format("write {}", form));
+    if (equals == OptionText::npos || equals == 0) throw UsageError(fmt::format("write {}", form));
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-Property requireProperty(Text name) {
+Property requireProperty(OptionText name) {
     if (const std::optional<Property> property = propertyOf(name)) return *property;
     throw UsageError(
         fmt::format("{} is no property: there is {}", inQuotes(std::string(name)), propertyNames()));
 }
 
 // The name goes up to the last '.' before the first '=' that a property stands before.
-SetEdit setOf(Text text, const char* form) {
-    size_t first = Text::npos;
-    for (size_t equals = text.find('='); equals != Text::npos; equals = text.find('=', equals + 1)) {
+SetEdit setOf(OptionText text, const char* form) {
+    size_t first = OptionText::npos;
+    for (size_t equals = text.find('='); equals != OptionText::npos; equals = text.find('=', equals + 1)) {
         const size_t dot = text.rfind('.', equals);
-        if (dot == Text::npos || dot == 0) continue;
+        if (dot == OptionText::npos || dot == 0) continue;
         if (const auto property = propertyOf(text.substr(dot + 1, equals - dot - 1)))
             return {std::string(text.substr(0, dot)), settingOf(*property, text.substr(equals + 1))};
         first = std::min(first, equals);
     }
-    if (first == Text::npos) throw UsageError(fmt::format("write {}", form));
+    if (first == OptionText::npos) throw UsageError(fmt::format("write {}", form));
     const size_t dot = text.rfind('.', first);
     requireProperty(text.substr(dot + 1, first - dot - 1));
     throw UsageError(fmt::format("write {}", form));
 }
 
-MoveEdit moveOf(Text text, const char* form) {
+MoveEdit moveOf(OptionText text, const char* form) {
     auto [name, point] = splitLast(text, form);
     const bool relative = name.ends_with('+');
     if (relative) name.remove_suffix(1);
@@ -92,14 +92,14 @@ MoveEdit moveOf(Text text, const char* form) {
 }
 
 // "KEY=VALUE,..." where values may hold commas: what has no '=' belongs to the value before.
-std::vector<std::pair<std::string, std::string>> keysOf(Text text) {
+std::vector<std::pair<std::string, std::string>> keysOf(OptionText text) {
     std::vector<std::pair<std::string, std::string>> keys;
     while (!text.empty()) {
         const size_t comma = text.find(',');
-        const Text part = text.substr(0, comma);
-        text.remove_prefix(comma == Text::npos ? text.size() : comma + 1);
+        const OptionText part = text.substr(0, comma);
+        text.remove_prefix(comma == OptionText::npos ? text.size() : comma + 1);
         const size_t equals = part.find('=');
-        if (equals != Text::npos)
+        if (equals != OptionText::npos)
             keys.emplace_back(part.substr(0, equals), part.substr(equals + 1));
         else if (!keys.empty())
             keys.back().second += "," + std::string(part);
@@ -109,13 +109,13 @@ std::vector<std::pair<std::string, std::string>> keysOf(Text text) {
     return keys;
 }
 
-SceneEdit addOf(Text text) {
+SceneEdit addOf(OptionText text) {
     const size_t comma = text.find(',');
     const std::string type(text.substr(0, comma));
     std::vector<Setting> settings;
     AddLightEdit light;
     const bool isSky = type == "sky";
-    for (auto& [key, value] : keysOf(comma == Text::npos ? Text() : text.substr(comma + 1))) {
+    for (auto& [key, value] : keysOf(comma == OptionText::npos ? OptionText() : text.substr(comma + 1))) {
         if (!isSky && key == "position")
             light.position = pointOf(value);
         else if (!isSky && key == "rotation")
@@ -137,9 +137,9 @@ SceneEdit addOf(Text text) {
                                  inQuotes(type)));
 }
 
-DuplicateEdit duplicateOf(Text text, const char* form) {
+DuplicateEdit duplicateOf(OptionText text, const char* form) {
     const size_t equals = text.rfind('=');
-    if (equals == Text::npos) return {requireName(text, form), ""};
+    if (equals == OptionText::npos) return {requireName(text, form), ""};
     return {requireName(text.substr(0, equals), form), requireName(text.substr(equals + 1), form)};
 }
 

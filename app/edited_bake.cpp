@@ -70,12 +70,12 @@ double EditedBake::weigh(const std::vector<Light>& lights) {
     return watch.seconds;
 }
 
-MoveEdit EditedBake::move(const std::vector<Light>& lights, const MoveReferences& references) {
+MeasuredMove EditedBake::move(const std::vector<Light>& lights, const MoveReferences& references) {
     const PatchSet& patches = baker_->patches();
     const uint64_t rays = solver().progress().rays;
     scene_.lights = lights;
     const glm::vec3 weight = lights.front().color * lights.front().intensity;
-    MoveEdit edit;
+    MeasuredMove edit;
     Stopwatch watch;
     LayerLevel seen;
     watch([&] { solver().edit({}); });
@@ -107,7 +107,7 @@ MoveEdit EditedBake::move(const std::vector<Light>& lights, const MoveReferences
     return edit;
 }
 
-void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first, MoveEdit& edit) {
+void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first, MeasuredMove& edit) {
     scene_.lights = lights;
     Stopwatch watch;
     watch([&] { solver().edit({}); });

@@ -41,9 +41,9 @@ public:
     /// To lights that differ in intensity and colour alone; how long until there is a picture [s].
     double weigh(const std::vector<Light>& lights);
     /// To lights of which the first one has moved; fills in what a move is told of, but for its undo.
-    MoveEdit move(const std::vector<Light>& lights, const MoveReferences& references);
+    MeasuredMove move(const std::vector<Light>& lights, const MoveReferences& references);
     /// Back to the lights before. `first`: firstLamp() as it was then.
-    void undo(const std::vector<Light>& lights, const PatchLight& first, MoveEdit& edit);
+    void undo(const std::vector<Light>& lights, const PatchLight& first, MeasuredMove& edit);
     /// What became of an edit that all layers follow [s].
     struct Seen {
         double first = 0;                 // until there is a picture of it, all lights in one

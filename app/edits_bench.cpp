@@ -19,7 +19,7 @@ namespace {
 
 // Of the diagonal: what the moved lamp's place differs by from run to run, or its layer of the run before
 // would serve. Far below what an error could show.
-constexpr float kNudge = 1e-5f;
+constexpr float kRunNudge = 1e-5f;
 // Of the diagonal: how far an object is moved.
 constexpr float kObjectWay = 0.05f;
 
@@ -206,7 +206,7 @@ private:
         return lights;
     }
     std::vector<Light> moved(std::vector<Light> lights, uint32_t run = 0) const {
-        const glm::vec3 nudge(static_cast<float>(run) * kNudge * places_.diagonal, 0.0f, 0.0f);
+        const glm::vec3 nudge(static_cast<float>(run) * kRunNudge * places_.diagonal, 0.0f, 0.0f);
         lights.front().transform = glm::translate(glm::mat4(1.0f), places_.moved + nudge);
         return lights;
     }
@@ -236,13 +236,13 @@ private:
         return run;
     }
 
-    WeightEdit measureWeights(const std::vector<Light>& lights) {
+    MeasuredWeights measureWeights(const std::vector<Light>& lights) {
         const SolverCounters before = edited_.progress();
         std::vector<double> seconds;
         for (uint32_t run = 1; run <= desc_.runs; ++run)
             seconds.push_back(edited_.weigh(weighedAtRandom(lights, run)));
         edited_.weigh(lights);
-        WeightEdit edit;
+        MeasuredWeights edit;
         edit.seconds = median(std::move(seconds));
         edit.rays = edited_.progress().rays - before.rays;
         edit.links = edited_.progress().pairs - before.pairs;
@@ -257,9 +257,9 @@ private:
         return edit;
     }
 
-    MoveEdit measureMoves(const std::vector<Light>& lights, LinkFigures& links) {
+    MeasuredMove measureMoves(const std::vector<Light>& lights, LinkFigures& links) {
         const PatchLight first = edited_.firstLamp();
-        std::vector<MoveEdit> runs;
+        std::vector<MeasuredMove> runs;
         GatherRate rate;
         for (uint32_t run = 0; run < desc_.runs; ++run) {
             const SolverCounters before = edited_.progress();
@@ -268,20 +268,20 @@ private:
             edited_.undo(lights, first, runs.back());
         }
         links.perSecondMove = rate.perSecond();
-        MoveEdit edit = middleOf(runs);
-        edit.firstSeconds = medianOf(runs, &MoveEdit::firstSeconds);
-        edit.undoSeconds = medianOf(runs, &MoveEdit::undoSeconds);
+        MeasuredMove edit = middleOf(runs);
+        edit.firstSeconds = medianOf(runs, &MeasuredMove::firstSeconds);
+        edit.undoSeconds = medianOf(runs, &MeasuredMove::undoSeconds);
         edit.undoSameBytes =
-            std::all_of(runs.begin(), runs.end(), [](const MoveEdit& run) { return run.undoSameBytes; });
+            std::all_of(runs.begin(), runs.end(), [](const MeasuredMove& run) { return run.undoSameBytes; });
         return edit;
     }
 
-    std::optional<AlbedoEdit> measureAlbedo(LinkFigures& links) {
+    std::optional<MeasuredAlbedo> measureAlbedo(LinkFigures& links) {
         const Scene& scene = edited_.scene();
         const std::optional<uint32_t> index = largestMaterial(edited_.baker().patches().scene.mesh, scene);
         if (!index) return {};
         const glm::vec4 colour = scene.materials[*index].baseColor;
-        AlbedoEdit edit;
+        MeasuredAlbedo edit;
         edit.material = scene.materials[*index].name;
         std::vector<double> first, all;
         GatherRate rate;
@@ -305,18 +305,18 @@ private:
     }
 
     // There and back again; places differ from run to run as those of a moved lamp do.
-    std::optional<ObjectEdit> measureObject(const std::vector<Light>& lights) {
+    std::optional<MeasuredObject> measureObject(const std::vector<Light>& lights) {
         const Scene& scene = edited_.scene();
         const auto object = smallObject(edited_.baker().patches().scene.mesh, scene);
         if (!object) return {};
         const auto [index, share] = *object;
         const glm::mat4 home = scene.instances[index].transform;
-        ObjectEdit edit;
+        MeasuredObject edit;
         edit.object = scene.instances[index].name;
         edit.share = share;
         std::vector<double> follow, first, all;
         for (uint32_t run = 0; run < desc_.runs; ++run) {
-            const glm::vec3 way(kObjectWay + static_cast<float>(run) * kNudge, 0.0f, 0.0f);
+            const glm::vec3 way(kObjectWay + static_cast<float>(run) * kRunNudge, 0.0f, 0.0f);
             const glm::mat4 there = glm::translate(glm::mat4(1.0f), places_.diagonal * way) * home;
             const uint64_t rays = edited_.progress().rays;
             const auto times = edited_.place(index, there, atlas_);
@@ -336,7 +336,7 @@ private:
     }
 
     // The scene as it is edited now, from nothing.
-    void measureFreshObject(const std::vector<Light>& lights, ObjectEdit& edit) {
+    void measureFreshObject(const std::vector<Light>& lights, MeasuredObject& edit) {
         Stopwatch watch;
         EditedBake fresh = watch([&] {
             return EditedBake(device_, edited_.scene(), flatten(edited_.scene(), atlas_), settings());

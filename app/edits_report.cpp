@@ -35,7 +35,7 @@ Json describe(const std::vector<EditErrorPoint>& curve) {
     return points;
 }
 
-Json describe(const FreshBake& bake, const MoveEdit& move) {
+Json describe(const FreshBake& bake, const MeasuredMove& move) {
     return {{"secondsTo5Percent", number(bake.seconds5)},
             {"secondsTo2Percent", number(bake.seconds2)},
             {"seconds", bake.seconds},
@@ -48,8 +48,8 @@ Json describe(const FreshBake& bake, const MoveEdit& move) {
 }
 
 Json describe(const EditsRun& run) {
-    const WeightEdit& w = run.weights;
-    const MoveEdit& m = run.move;
+    const MeasuredWeights& w = run.weights;
+    const MeasuredMove& m = run.move;
     Json json = {{"lamps", run.lamps}, {"firstBakeSeconds", run.firstBakeSeconds}};
     json["weights"] = {{"seconds", w.seconds},
                        {"rays", w.rays},
@@ -111,12 +111,12 @@ std::string times(const Optional& value) {
     return value ? fmt::format("{:.3g} x", *value) : "–";
 }
 
-struct Row {
+struct ReportRow {
     const char* name;
     std::function<std::string(const EditsRun&)> text;
 };
 
-std::vector<Row> freshRows() {
+std::vector<ReportRow> freshRows() {
     using Run = const EditsRun&;
     return {
         {"fresh, layers: to the error", [](Run r) { return time(r.layers.seconds); }},
@@ -136,12 +136,12 @@ std::vector<Row> freshRows() {
     };
 }
 
-std::vector<Row> objectRows() {
+std::vector<ReportRow> objectRows() {
     using Run = const EditsRun&;
-    const auto row = [](const char* name, const std::function<std::string(const ObjectEdit&)>& text) {
-        return Row{name, [text](Run r) { return r.object ? text(*r.object) : std::string("–"); }};
+    const auto row = [](const char* name, const std::function<std::string(const MeasuredObject&)>& text) {
+        return ReportRow{name, [text](Run r) { return r.object ? text(*r.object) : std::string("–"); }};
     };
-    using Edit = const ObjectEdit&;
+    using Edit = const MeasuredObject&;
     return {
         row("object: share of triangles", [](Edit e) { return percent(e.share); }),
         row("  moved: patches and tracer after", [](Edit e) { return time(e.followSeconds); }),
@@ -156,9 +156,9 @@ std::vector<Row> objectRows() {
     };
 }
 
-std::vector<Row> rows() {
+std::vector<ReportRow> rows() {
     using Run = const EditsRun&;
-    std::vector<Row> all = {
+    std::vector<ReportRow> all = {
         {"lamps", [](Run r) { return std::to_string(r.lamps); }},
         {"first bake", [](Run r) { return time(r.firstBakeSeconds); }},
         {"weights: picture after", [](Run r) { return time(r.weights.seconds); }},
@@ -176,18 +176,18 @@ std::vector<Row> rows() {
         {"undo: picture after", [](Run r) { return time(r.move.undoSeconds); }},
         {"  same bytes", [](Run r) { return std::string(r.move.undoSameBytes ? "yes" : "no"); }},
     };
-    for (Row& row : freshRows())
+    for (ReportRow& row : freshRows())
         all.push_back(std::move(row));
-    const std::vector<Row> rest = {
+    const std::vector<ReportRow> rest = {
         {"albedo: first picture after", [](Run r) { return r.albedo ? time(r.albedo->firstSeconds) : "–"; }},
         {"  off all layers'", [](Run r) { return r.albedo ? percent(r.albedo->firstError) : "–"; }},
         {"  all layers after", [](Run r) { return r.albedo ? time(r.albedo->seconds) : "–"; }},
         {"  rays", [](Run r) { return r.albedo ? std::to_string(r.albedo->rays) : "–"; }},
     };
     all.insert(all.end(), rest.begin(), rest.end());
-    for (Row& row : objectRows())
+    for (ReportRow& row : objectRows())
         all.push_back(std::move(row));
-    const std::vector<Row> links = {
+    const std::vector<ReportRow> links = {
         {"links: memory",
          [](Run r) { return fmt::format("{:.1f} MiB", static_cast<double>(r.links.bytes) / 1048576.0); }},
         {"  bytes each", [](Run r) { return fmt::format("{:.3g}", r.links.bytesPerLink); }},
@@ -272,7 +272,7 @@ Json editsJson(const EditsReport& report) {
 
 std::string editsTable(const EditsReport& report) {
     std::string text;
-    for (const Row& row : rows()) {
+    for (const ReportRow& row : rows()) {
         text += fmt::format("{:<30}", row.name);
         for (const EditsRun& run : report.counts)
             text += fmt::format(" {:>12}", row.text(run));

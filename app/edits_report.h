@@ -20,7 +20,7 @@ struct EditErrorPoint {
 };
 
 /// Of all lamps: intensity and colour.
-struct WeightEdit {
+struct MeasuredWeights {
     double seconds = 0;           // until there is a picture
     uint64_t rays = 0, links = 0; // traced, gathered
     // The sum of layers against fresh bakes with these weights and as many samples: the largest difference,
@@ -29,7 +29,7 @@ struct WeightEdit {
 };
 
 /// Of the first lamp.
-struct MoveEdit {
+struct MeasuredMove {
     double firstSeconds = 0; // until there is a picture with its new layer
     double firstLayerError = 0, firstCompositeError = 0;
     std::optional<double> seconds5, seconds2;  // until the layer's error is below 5, 2 %
@@ -51,7 +51,7 @@ struct FreshBake {
 };
 
 /// Of the base colour of the material with the largest area.
-struct AlbedoEdit {
+struct MeasuredAlbedo {
     std::string material;
     double firstSeconds = 0;          // until there is a picture of it, all lights in one
     std::optional<double> firstError; // its relRMSE against the picture of all layers
@@ -60,7 +60,7 @@ struct AlbedoEdit {
 };
 
 /// Of an object with about a hundredth of the triangles, by a twentieth of the diagonal.
-struct ObjectEdit {
+struct MeasuredObject {
     std::string object;
     double share = 0;                 // of the triangles
     double followSeconds = 0;         // for patches, triangles and tracer, which counts in what follows
@@ -85,11 +85,11 @@ struct LinkFigures {
 struct EditsRun {
     uint32_t lamps = 0;
     double firstBakeSeconds = 0;
-    WeightEdit weights;
-    MoveEdit move;
+    MeasuredWeights weights;
+    MeasuredMove move;
     FreshBake layers, hybrid;
-    std::optional<AlbedoEdit> albedo; // none: the scene has no material
-    std::optional<ObjectEdit> object; // none: no object can be followed
+    std::optional<MeasuredAlbedo> albedo; // none: the scene has no material
+    std::optional<MeasuredObject> object; // none: no object can be followed
     LinkFigures links;
 };
 

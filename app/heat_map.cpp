@@ -8,8 +8,8 @@
 namespace relume {
 namespace {
 
-constexpr double kShown = 0.99; // share of the values a scale must hold
-constexpr float kGrey = 0.2f;   // linear; no colour of the ramp
+constexpr double kShownShare = 0.99; // share of the values a scale must hold
+constexpr float kGrey = 0.2f;        // linear; no colour of the ramp
 
 } // namespace
 
@@ -31,7 +31,7 @@ double heatScale(const std::vector<float>& values, const std::vector<bool>& cove
         if (covered[i]) sorted.push_back(values[i]);
     if (sorted.empty()) return 1.0;
     const auto place =
-        sorted.begin() + static_cast<ptrdiff_t>(kShown * static_cast<double>(sorted.size() - 1));
+        sorted.begin() + static_cast<ptrdiff_t>(kShownShare * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), place, sorted.end());
     double wanted = *place;
     // Differences in fewer texels than that still make a scale.

@@ -24,9 +24,9 @@ constexpr uint32_t kPlacesAtOnce = kChunk / 2;        // a receiver for each hem
 constexpr float kLeastFronts = 0.25f, kMostBacks = 0.1f;
 // Of the diagonal: nearer lamps would light one spot and nothing else.
 constexpr float kClearance = 0.02f;
-constexpr float kMove = 0.1f;     // of the diagonal
-constexpr float kRadius = 0.005f; // of the diagonal: soft shadows, but of small lamps
-constexpr float kReach = 0.25f;   // of the diagonal: where a lamp's light is 1
+constexpr float kMove = 0.1f;        // of the diagonal
+constexpr float kRadius = 0.005f;    // of the diagonal: soft shadows, but of small lamps
+constexpr float kLightReach = 0.25f; // of the diagonal: where a lamp's light is 1
 
 // [0, 1): the digits of index mirrored at the point [Halton 1964].
 float radicalInverse(uint32_t base, uint32_t index) {
@@ -119,7 +119,7 @@ LampPlaces placeLamps(const TraceScene& scene, uint32_t count) {
 }
 
 Light lampAt(const LampPlaces& places, uint32_t index) {
-    const float reach = kReach * places.diagonal;
+    const float reach = kLightReach * places.diagonal;
     Light lamp;
     lamp.name = "bench lamp " + std::to_string(index + 1);
     lamp.transform = glm::translate(glm::mat4(1.0f), places.positions[index]);

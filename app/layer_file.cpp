@@ -11,8 +11,6 @@
 namespace relume {
 namespace {
 
-namespace attribute = layer_attribute;
-
 struct LightText {
     std::string type, unit;
     float intensity = 0.0f;
@@ -50,14 +48,14 @@ LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& 
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         const LightText light = describe(scene, layer->source.key);
         LayeredImage::Layer part{layer->source.name, layer->source.weight, {}, {}};
-        part.attributes[attribute::kType] = light.type;
-        part.attributes[attribute::kUnit] = light.unit;
-        part.attributes[attribute::kIntensity] = fmt::format("{}", light.intensity);
-        part.attributes[attribute::kColor] =
+        part.attributes[layer_attribute::kType] = light.type;
+        part.attributes[layer_attribute::kUnit] = light.unit;
+        part.attributes[layer_attribute::kIntensity] = fmt::format("{}", light.intensity);
+        part.attributes[layer_attribute::kColor] =
             fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
-        if (!layer->members.empty()) part.attributes[attribute::kMembers] = namesOf(layer->members);
+        if (!layer->members.empty()) part.attributes[layer_attribute::kMembers] = namesOf(layer->members);
         const std::string stale = staleReason(*layer);
-        if (!stale.empty()) part.attributes[attribute::kStale] = stale;
+        if (!stale.empty()) part.attributes[layer_attribute::kStale] = stale;
         const Layer* shown = layer->shown();
         if (shown) {
             part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",

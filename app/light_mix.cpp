@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kForm = "write NAME=INTENSITY[,COLOR] or NAME*=FACTOR";
 
-float largest(const glm::vec3& v) {
+float brightest(const glm::vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
@@ -131,7 +131,7 @@ float intensityOf(const LayeredImage::Layer& layer) {
     const auto found = layer.attributes.find(layer_attribute::kIntensity);
     if (found != layer.attributes.end())
         if (const std::optional<float> number = typedNumber(found->second)) return *number;
-    return largest(layer.weight);
+    return brightest(layer.weight);
 }
 
 glm::vec3 colorOf(const LayeredImage::Layer& layer) {
@@ -141,7 +141,7 @@ glm::vec3 colorOf(const LayeredImage::Layer& layer) {
         if (!rgb.empty()) return {rgb[0], rgb[1], rgb[2]};
     }
     const float intensity = intensityOf(layer);
-    return intensity > 0.0f && largest(layer.weight) > 0.0f ? layer.weight / intensity : glm::vec3(1.0f);
+    return intensity > 0.0f && brightest(layer.weight) > 0.0f ? layer.weight / intensity : glm::vec3(1.0f);
 }
 
 void mixLayers(LayeredImage& image, const MixDesc& desc) {

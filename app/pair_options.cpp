@@ -19,10 +19,6 @@ constexpr uint32_t kMaxWindow = 32, kMinNode = 2, kMaxNode = 64; // [texels]
 constexpr uint32_t kDefaultWindow = 2;
 constexpr double kMaxThreshold = 1e6;
 
-bool hasWindow(Method method) {
-    return method == Method::Static || method == Method::MonteCarlo || method == Method::Mipmapped;
-}
-
 uint32_t powerOfTwo(const char* option, int64_t value, uint32_t least, uint32_t most) {
     if (value >= least && value <= most && std::has_single_bit(static_cast<uint64_t>(value)))
         return static_cast<uint32_t>(value);
@@ -42,6 +38,10 @@ CacheSettings::Kind parseCache(const std::string& name, Method method) {
 }
 
 } // namespace
+
+bool hasWindow(Method method) {
+    return method == Method::Static || method == Method::MonteCarlo || method == Method::Mipmapped;
+}
 
 void addPairOptions(CLI::App& command, PairOptions& o) {
     command.add_option(

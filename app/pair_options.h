@@ -11,6 +11,9 @@ class App;
 
 namespace relume {
 
+/// Whether it takes windows of texels together.
+bool hasWindow(Method method);
+
 /// What the user typed for the pair methods and the caches.
 struct PairOptions {
     int64_t window = -1, node = -1; // -1: not given

@@ -17,7 +17,7 @@
 namespace relume {
 namespace {
 
-using Kind = NamedThing::Kind;
+using ThingKind = NamedThing::Kind;
 
 constexpr ThingKinds kLights{.lamps = true, .emitters = true, .sky = true};
 constexpr ThingKinds kPlaced{.lamps = true, .objects = true};
@@ -172,8 +172,8 @@ struct Editor {
         return findThing(namedThings(scene, edits), name, kinds);
     }
     glm::mat4& transformOf(const NamedThing& thing) const {
-        return thing.kind == Kind::Lamp ? edits.lights[thing.index].transform
-                                        : edits.placements[thing.index].transform;
+        return thing.kind == ThingKind::Lamp ? edits.lights[thing.index].transform
+                                             : edits.placements[thing.index].transform;
     }
 
     std::string operator()(const SetEdit& edit) const;
@@ -191,15 +191,15 @@ std::string Editor::operator()(const SetEdit& edit) const {
     relume::requireGood(edit.setting);
     const NamedThing thing = find(edit.name, kindsWith(edit.setting.property));
     std::string done = fmt::format("{}: {}", thing.label(), describe(edit.setting));
-    if (thing.kind == Kind::Lamp) {
+    if (thing.kind == ThingKind::Lamp) {
         setLamp(edits.lights[thing.index], edit.setting);
         requireGood(edits.lights[thing.index]);
-    } else if (thing.kind == Kind::Sky) {
+    } else if (thing.kind == ThingKind::Sky) {
         setSky(edits.sky, edit.setting);
     } else {
-        const uint32_t material = thing.kind == Kind::Emitter ? thing.material : thing.index;
+        const uint32_t material = thing.kind == ThingKind::Emitter ? thing.material : thing.index;
         setMaterial(edits.materials[material], edit.setting, thing.label());
-        const size_t users = thing.kind == Kind::Emitter ? usersOf(scene, material) : 1;
+        const size_t users = thing.kind == ThingKind::Emitter ? usersOf(scene, material) : 1;
         if (users > 1)
             done += fmt::format(", of the material {}, which {} objects have",
                                 inQuotes(edits.materials[material].name), users);
@@ -281,7 +281,8 @@ std::string Editor::operator()(const DuplicateEdit& edit) const {
     copy.name = edit.copy;
     const auto taken = [&](const std::string& name) {
         return std::any_of(things.begin(), things.end(), [&](const NamedThing& t) {
-            return (t.kind == Kind::Lamp || t.kind == Kind::Emitter || t.kind == Kind::Sky) && t.name == name;
+            return (t.kind == ThingKind::Lamp || t.kind == ThingKind::Emitter || t.kind == ThingKind::Sky) &&
+                   t.name == name;
         });
     };
     for (uint32_t n = 2; copy.name.empty() || (edit.copy.empty() && taken(copy.name)); ++n)
@@ -292,12 +293,12 @@ std::string Editor::operator()(const DuplicateEdit& edit) const {
 
 std::string Editor::operator()(const DeleteEdit& edit) const {
     const NamedThing thing = find(edit.name, kLights);
-    if (thing.kind == Kind::Emitter)
+    if (thing.kind == ThingKind::Emitter)
         throw Error(fmt::format("{} is an object that shines, which cannot be deleted: set its strength to 0",
                                 inQuotes(thing.name)));
-    if (thing.kind == Kind::Sky && edits.sky == SkySettings())
+    if (thing.kind == ThingKind::Sky && edits.sky == SkySettings())
         throw Error("the scene has no sky: there is nothing to delete");
-    if (thing.kind == Kind::Lamp)
+    if (thing.kind == ThingKind::Lamp)
         edits.lights.erase(edits.lights.begin() + thing.index);
     else
         edits.sky = {};

@@ -12,7 +12,7 @@
 namespace relume {
 namespace {
 
-using Kind = NamedThing::Kind;
+using ThingKind = NamedThing::Kind;
 
 // What lightSources looks at, edited; without geometry, so that it is quickly made. Its sky shines, to have a
 // name.
@@ -31,12 +31,12 @@ Scene skeletonOf(const Scene& scene, const SceneEdits& edits) {
 }
 
 // "light", "object" or "material", with which a name can begin.
-const char* wordOf(Kind kind) {
-    if (kind == Kind::Object) return "object";
-    return kind == Kind::Material ? "material" : "light";
+const char* wordOf(ThingKind kind) {
+    if (kind == ThingKind::Object) return "object";
+    return kind == ThingKind::Material ? "material" : "light";
 }
 
-bool among(const ThingKinds& kinds, Kind kind) {
+bool among(const ThingKinds& kinds, ThingKind kind) {
     const bool chosen[] = {kinds.lamps, kinds.emitters, kinds.sky, kinds.objects, kinds.materials};
     return chosen[static_cast<size_t>(kind)];
 }
@@ -57,7 +57,7 @@ private:
 
 // An emitter's emission is that of its material: whichever is meant, it is the same edit.
 bool sameEmission(const NamedThing& a, const NamedThing& b) {
-    return a.kind == Kind::Emitter && b.kind == Kind::Material && a.material == b.index;
+    return a.kind == ThingKind::Emitter && b.kind == ThingKind::Material && a.material == b.index;
 }
 
 std::string listedKinds(const ThingKinds& kinds) {
@@ -80,16 +80,16 @@ std::string NamedThing::label() const {
 std::vector<NamedThing> namedThings(const Scene& scene, const SceneEdits& edits) {
     std::vector<NamedThing> things;
     for (const LightSource& source : lightSources(skeletonOf(scene, edits))) {
-        const Kind kind = source.key.kind == LightKey::Kind::Lamp      ? Kind::Lamp
-                          : source.key.kind == LightKey::Kind::Emitter ? Kind::Emitter
-                                                                       : Kind::Sky;
+        const ThingKind kind = source.key.kind == LightKey::Kind::Lamp      ? ThingKind::Lamp
+                               : source.key.kind == LightKey::Kind::Emitter ? ThingKind::Emitter
+                                                                            : ThingKind::Sky;
         things.push_back({kind, source.key.index, source.key.material, source.name});
     }
     UniqueNames objects, materials;
     for (uint32_t i = 0; i < scene.instances.size(); ++i)
-        things.push_back({Kind::Object, i, 0, objects.take(scene.instances[i].name, "instance", i)});
+        things.push_back({ThingKind::Object, i, 0, objects.take(scene.instances[i].name, "instance", i)});
     for (uint32_t i = 0; i < edits.materials.size(); ++i)
-        things.push_back({Kind::Material, i, 0, materials.take(edits.materials[i].name, "material", i)});
+        things.push_back({ThingKind::Material, i, 0, materials.take(edits.materials[i].name, "material", i)});
     return things;
 }
 

@@ -17,44 +17,50 @@
 namespace relume {
 namespace {
 
-constexpr float kMost = std::numeric_limits<float>::max();
+constexpr float kMostNumber = std::numeric_limits<float>::max();
 // A cone of 0 lights nothing; this one [degrees], that of the importer, a metre at 1 km.
 constexpr float kNarrowestCone = 0.0573f;
 
-enum class Kind { Number, Pair, Color, Radiance, Text };
+enum class ValueKind { Number, Pair, Color, Radiance, Text };
 
-struct Row {
+struct PropertyRow {
     const char* name;
     Property property;
-    Kind kind;
+    ValueKind kind;
     float least, most;
     const char* mend; // which values there are
 };
 
 constexpr std::array kRows = {
-    Row{"name", Property::Name, Kind::Text, 0, 0, "give a text"},
-    Row{"intensity", Property::Intensity, Kind::Number, 0, kMost, "give a number of 0 or more"},
-    Row{"color", Property::Color, Kind::Color, 0, 1,
-        "give #rrggbb or r,g,b from 0 to 1, and what is brighter by the intensity"},
-    Row{"temperature", Property::Temperature, Kind::Number, kLowestTemperature, kHighestTemperature,
-        "give kelvins from 1000 to 15000"},
-    Row{"radius", Property::Radius, Kind::Number, 0, kMost, "give metres, 0 or more"},
-    Row{"angle", Property::Angle, Kind::Number, 0, 180, "give degrees from 0 to 180"},
-    Row{"size", Property::Size, Kind::Pair, 0, kMost, "give width,height in metres above 0"},
-    Row{"range", Property::Range, Kind::Number, 0, kMost, "give metres, or 0 for no limit"},
-    Row{"inner", Property::Inner, Kind::Number, 0, 90, "give degrees from 0 to the outer cone's"},
-    Row{"outer", Property::Outer, Kind::Number, kNarrowestCone, 90,
-        "give degrees from the axis, from 0.0573 to 90"},
-    Row{"strength", Property::Strength, Kind::Number, 0, kMost, "give cd/m^2, 0 or more"},
-    Row{"baseColor", Property::BaseColor, Kind::Color, 0, 1, "give #rrggbb or r,g,b from 0 to 1"},
-    Row{"emission", Property::Emission, Kind::Radiance, 0, kMost, "give r,g,b in cd/m^2, 0 or more"},
-    Row{"rotation", Property::Rotation, Kind::Number, -kMost, kMost, "give degrees"},
-    Row{"file", Property::File, Kind::Text, 0, 0, "name an .exr or .hdr file"},
+    PropertyRow{"name", Property::Name, ValueKind::Text, 0, 0, "give a text"},
+    PropertyRow{"intensity", Property::Intensity, ValueKind::Number, 0, kMostNumber,
+                "give a number of 0 or more"},
+    PropertyRow{"color", Property::Color, ValueKind::Color, 0, 1,
+                "give #rrggbb or r,g,b from 0 to 1, and what is brighter by the intensity"},
+    PropertyRow{"temperature", Property::Temperature, ValueKind::Number, kLowestTemperature,
+                kHighestTemperature, "give kelvins from 1000 to 15000"},
+    PropertyRow{"radius", Property::Radius, ValueKind::Number, 0, kMostNumber, "give metres, 0 or more"},
+    PropertyRow{"angle", Property::Angle, ValueKind::Number, 0, 180, "give degrees from 0 to 180"},
+    PropertyRow{"size", Property::Size, ValueKind::Pair, 0, kMostNumber,
+                "give width,height in metres above 0"},
+    PropertyRow{"range", Property::Range, ValueKind::Number, 0, kMostNumber,
+                "give metres, or 0 for no limit"},
+    PropertyRow{"inner", Property::Inner, ValueKind::Number, 0, 90,
+                "give degrees from 0 to the outer cone's"},
+    PropertyRow{"outer", Property::Outer, ValueKind::Number, kNarrowestCone, 90,
+                "give degrees from the axis, from 0.0573 to 90"},
+    PropertyRow{"strength", Property::Strength, ValueKind::Number, 0, kMostNumber, "give cd/m^2, 0 or more"},
+    PropertyRow{"baseColor", Property::BaseColor, ValueKind::Color, 0, 1,
+                "give #rrggbb or r,g,b from 0 to 1"},
+    PropertyRow{"emission", Property::Emission, ValueKind::Radiance, 0, kMostNumber,
+                "give r,g,b in cd/m^2, 0 or more"},
+    PropertyRow{"rotation", Property::Rotation, ValueKind::Number, -kMostNumber, kMostNumber, "give degrees"},
+    PropertyRow{"file", Property::File, ValueKind::Text, 0, 0, "name an .exr or .hdr file"},
 };
 
-const Row& rowOf(Property property) {
+const PropertyRow& rowOf(Property property) {
     return *std::find_if(kRows.begin(), kRows.end(),
-                         [property](const Row& row) { return row.property == property; });
+                         [property](const PropertyRow& row) { return row.property == property; });
 }
 
 std::optional<glm::vec3> hexColor(std::string_view text) {
@@ -66,7 +72,7 @@ std::optional<glm::vec3> hexColor(std::string_view text) {
     return glm::vec3(channel(16), channel(8), channel(0));
 }
 
-bool within(const Row& row, float value) {
+bool within(const PropertyRow& row, float value) {
     return std::isfinite(value) && value >= row.least && value <= row.most;
 }
 
@@ -77,43 +83,43 @@ const char* propertyName(Property property) {
 }
 
 std::optional<Property> propertyOf(std::string_view name) {
-    for (const Row& row : kRows)
+    for (const PropertyRow& row : kRows)
         if (row.name == name) return row.property;
     return std::nullopt;
 }
 
 std::string propertyNames() {
     std::string names;
-    for (const Row& row : kRows)
+    for (const PropertyRow& row : kRows)
         names += std::string(names.empty() ? "" : ", ") + row.name;
     return names;
 }
 
 Setting settingOf(Property property, std::string_view text) {
-    const Row& row = rowOf(property);
+    const PropertyRow& row = rowOf(property);
     const size_t counts[] = {1, 2, 3, 3};
-    if (row.kind == Kind::Text) return {property, std::string(text)};
-    if (row.kind == Kind::Color)
+    if (row.kind == ValueKind::Text) return {property, std::string(text)};
+    if (row.kind == ValueKind::Color)
         if (const std::optional<glm::vec3> color = hexColor(text)) return {property, *color};
     const std::vector<float> numbers = typedNumbers(text, counts[size_t(row.kind)]);
     if (numbers.empty())
         throw UsageError(fmt::format("{} is no {} of finite numbers: {}", inQuotes(std::string(text)),
                                      row.name, row.mend));
-    if (row.kind == Kind::Number) return {property, numbers[0]};
-    if (row.kind == Kind::Pair) return {property, glm::vec2(numbers[0], numbers[1])};
+    if (row.kind == ValueKind::Number) return {property, numbers[0]};
+    if (row.kind == ValueKind::Pair) return {property, glm::vec2(numbers[0], numbers[1])};
     return {property, glm::vec3(numbers[0], numbers[1], numbers[2])};
 }
 
 void requireGood(const Setting& setting) {
-    const Row& row = rowOf(setting.property);
+    const PropertyRow& row = rowOf(setting.property);
     const auto require = [&](bool good) {
         if (!good) throw UsageError(fmt::format("{} is out of range: {}", describe(setting), row.mend));
     };
-    if (row.kind == Kind::Text) {
+    if (row.kind == ValueKind::Text) {
         require(!std::get<std::string>(setting.value).empty() || setting.property == Property::File);
-    } else if (row.kind == Kind::Number) {
+    } else if (row.kind == ValueKind::Number) {
         require(within(row, std::get<float>(setting.value)));
-    } else if (row.kind == Kind::Pair) {
+    } else if (row.kind == ValueKind::Pair) {
         const glm::vec2 pair = std::get<glm::vec2>(setting.value);
         require(within(row, pair.x) && within(row, pair.y) && pair.x > 0.0f && pair.y > 0.0f);
     } else {

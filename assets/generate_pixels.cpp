@@ -9,7 +9,7 @@
 namespace relume::generate {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kPeriod = 6.283185307179586; // of a sine
 
 // color by place in the picture, [0,1] from the top left corner, sRGB encoded as a painter mixes it.
 using Painter = std::function<glm::dvec3(glm::dvec2 place)>;
@@ -100,7 +100,7 @@ glm::dvec3 discs(glm::dvec2 p) {
 glm::dvec3 waves(glm::dvec2 p) {
     glm::dvec3 color(0.90, 0.88, 0.80);
     for (int i = 0; i < 7; ++i) {
-        const double height = 0.22 + 0.11 * i + 0.035 * std::sin(kTwoPi * p.x * (1.0 + 0.3 * i) + 1.7 * i);
+        const double height = 0.22 + 0.11 * i + 0.035 * std::sin(kPeriod * p.x * (1.0 + 0.3 * i) + 1.7 * i);
         const glm::dvec3 band = glm::mix(glm::dvec3(0.55, 0.78, 0.80), glm::dvec3(0.05, 0.18, 0.36), i / 6.0);
         color = glm::mix(color, band, inside(height - p.y));
     }
@@ -135,7 +135,7 @@ glm::dvec3 night(glm::dvec2 p) {
 }
 
 glm::dvec3 stripes(glm::dvec2 p) {
-    const double shift = 0.05 * std::sin(kTwoPi * p.y);
+    const double shift = 0.05 * std::sin(kPeriod * p.y);
     const auto stripe = static_cast<uint32_t>((p.x + shift + 1.0) * 11.0);
     const double tone = random(stripe, 0, 21);
     return {0.25 + 0.7 * tone, 0.30 + 0.5 * random(stripe, 1, 21), 0.75 - 0.5 * tone};

@@ -2,14 +2,13 @@
 
 #include "assets/error.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/gtc/constants.hpp>
 
 namespace relume::generate {
 namespace {
-
-constexpr double kTwoPi = 6.283185307179586;
 
 // Places in a chart are multiples of 2^-20: they follow lengths, which come from the library's sines and
 // cosines.
@@ -46,6 +45,11 @@ std::vector<glm::dvec2> rectangle(double halfX, double halfZ) {
 }
 
 } // namespace
+
+double smooth(double low, double high, double x) {
+    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
 
 Solid grid(const GridDesc& desc, const Surface& surface) {
     const int columns = desc.columns, rows = desc.rows;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -11,6 +12,11 @@
 // Shapes of the generated scenes. Y is up. Lengths in metres, angles in degrees. Fronts face outwards unless
 // said otherwise. A shape's charts are chosen so that every triangle covers real texels.
 namespace relume::generate {
+
+constexpr double kPi = std::numbers::pi, kTwoPi = 2.0 * kPi;
+
+/// From 0 at `low` and below to 1 at `high` and above, without a bend.
+double smooth(double low, double high, double x);
 
 /// A point of a surface by its place in the chart, s to the right and t downwards as seen from the front.
 using Surface = std::function<glm::dvec3(double s, double t)>;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 
 #include "assets/gltf_file.h"
@@ -50,6 +51,10 @@ void setNumber(EditedJson& place, float value);
 
 /// The same for an array.
 void setNumbers(EditedJson& place, std::span<const float> values);
+
+inline std::span<const float> numbersOf(const glm::vec3& v) {
+    return {&v[0], 3};
+}
 
 /// Adds to extensionsUsed; takes away from it and from extensionsRequired.
 void useExtension(FileEdit& edit, const std::string& name);

@@ -48,10 +48,6 @@ bool alike(const Light& a, const Light& b) {
            a.size == b.size;
 }
 
-std::span<const float> span(const glm::vec3& v) {
-    return {&v[0], 3};
-}
-
 /// Cones of at most a right angle, the inner one inside the outer one as glTF has it.
 void writeCones(const FileEdit& edit, EditedJson& entry, const Light& light, const Light* before) {
     const std::string where = "light " + inQuotes(light.name);
@@ -83,8 +79,8 @@ LightEdit::LightEdit(FileEdit& edit, const NodeTree& tree, const std::string& ta
 
 bool LightEdit::holds(int node, bool area) const {
     if (node < 0 || static_cast<size_t>(node) >= tree_.size()) return false;
-    EditedJson& json = edit_.json["nodes"][static_cast<size_t>(node)];
-    return area ? find(json, {"extras", "relume", "areaLight"}) : find(json, {"extensions", kPunctual});
+    EditedJson& entry = edit_.json["nodes"][static_cast<size_t>(node)];
+    return area ? find(entry, {"extras", "relume", "areaLight"}) : find(entry, {"extensions", kPunctual});
 }
 
 void LightEdit::requireGood(const Light& light) const {
@@ -126,7 +122,7 @@ void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light
         }
     }
     if (anew) entry["type"] = typeName(light.type);
-    if (!before || before->color != light.color) setNumbers(entry["color"], span(light.color));
+    if (!before || before->color != light.color) setNumbers(entry["color"], numbersOf(light.color));
     if (!before || before->intensity != light.intensity) setNumber(entry["intensity"], light.intensity);
     const auto member = [&](const JsonPath& path, float value, bool changed, bool belongs) {
         if (belongs ? value == 0.0f && changed : anew) {
@@ -154,7 +150,7 @@ void LightEdit::writeArea(int index, const Light& light, const Light* before) co
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) area["name"] = light.name;
     if (anew) area["type"] = typeName(light.type);
-    if (!before || before->color != light.color) setNumbers(area["color"], span(light.color));
+    if (!before || before->color != light.color) setNumbers(area["color"], numbersOf(light.color));
     if (!before || before->intensity != light.intensity) setNumber(area["intensity"], light.intensity);
     if (light.type == LightType::Rectangle) {
         const float size[2] = {light.size.x, light.size.y};

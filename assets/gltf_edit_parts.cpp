@@ -23,10 +23,6 @@ float largest(const glm::vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-std::span<const float> span(const glm::vec3& v) {
-    return {&v[0], 3};
-}
-
 /// Whether a colour became brighter or darker and is the same one otherwise.
 bool sameHue(const glm::vec3& before, const glm::vec3& after) {
     const float from = largest(before), to = largest(after);
@@ -68,9 +64,9 @@ std::optional<double> strengthFor(const glm::vec3& color, const EditedJson& fact
     return good(strength) ? std::optional(strength) : std::nullopt;
 }
 
-bool isColor(const EditedJson* json) {
-    return json && json->is_array() && json->size() == 3 &&
-           std::all_of(json->begin(), json->end(), [](const EditedJson& v) { return v.is_number(); });
+bool isColor(const EditedJson* value) {
+    return value && value->is_array() && value->size() == 3 &&
+           std::all_of(value->begin(), value->end(), [](const EditedJson& v) { return v.is_number(); });
 }
 
 void requireFinite(const std::string& target, const std::string& thing, const glm::vec3& value) {
@@ -103,7 +99,7 @@ void editEmission(FileEdit& edit, EditedJson& material, const glm::vec3& before,
         return;
     }
     if (brightest > 0.0f) {
-        setNumbers(material["emissiveFactor"], span(after));
+        setNumbers(material["emissiveFactor"], numbersOf(after));
     } else {
         material.erase("emissiveFactor");
     }

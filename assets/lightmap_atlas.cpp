@@ -19,7 +19,7 @@ namespace {
 constexpr double kMaxOverlap = 0.01;   // of the UV area
 constexpr double kUvTolerance = 1e-4;  // exporters' rounding; below half a texel of a 4096 atlas
 constexpr double kMinUvExtent = 1e-6;  // below it a set is a point, as of a mesh never unwrapped
-constexpr uint32_t kGutter = 2;        // [texels]
+constexpr uint32_t kMeshGutter = 2;    // [texels]
 constexpr uint32_t kAtlasCells = 2048; // to a side of the grid that measures whole atlases
 
 /// What one UV set of one mesh is worth as a lightmap atlas.
@@ -37,18 +37,14 @@ struct MeshChoice {
     SetQuality quality;
 };
 
-const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
-    return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
-}
-
-bool hasSet(const Primitive& primitive, int set) {
+bool hasUvTriangles(const Primitive& primitive, int set) {
     return !primitive.indices.empty() && uvSet(primitive, set).size() == primitive.positions.size();
 }
 
 template<typename Visit>
 void forEachUvTriangle(const Mesh& mesh, int set, const Visit& visit) {
     for (const Primitive& primitive : mesh.primitives) {
-        if (!hasSet(primitive, set)) continue;
+        if (!hasUvTriangles(primitive, set)) continue;
         const std::vector<glm::vec2>& uvs = uvSet(primitive, set);
         for (size_t i = 0; i < primitive.indices.size(); i += 3) {
             const uint32_t* t = &primitive.indices[i];
@@ -63,7 +59,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
 
 SetQuality assess(const Mesh& mesh, int set) {
     SetQuality quality;
-    const auto has = [set](const Primitive& p) { return hasSet(p, set); };
+    const auto has = [set](const Primitive& p) { return hasUvTriangles(p, set); };
     if (std::none_of(mesh.primitives.begin(), mesh.primitives.end(), has)) {
         quality.fault = fmt::format("has no TEXCOORD_{}", set);
         return quality;
@@ -133,7 +129,7 @@ double worldArea(const Instance& instance, const Mesh& mesh, int set) {
     const glm::dmat3 linear(instance.transform);
     double area = 0.0;
     for (const Primitive& primitive : mesh.primitives) {
-        if (!hasSet(primitive, set)) continue;
+        if (!hasUvTriangles(primitive, set)) continue;
         for (size_t i = 0; i < primitive.indices.size(); i += 3) {
             const uint32_t* t = &primitive.indices[i];
             const glm::dvec3 a(primitive.positions[t[0]]);
@@ -181,7 +177,7 @@ bool packAt(const std::vector<Footprint>& footprints, double density, uint32_t s
         rects[i].width = texels(metres.x, density, size);
         rects[i].height = texels(metres.y, density, size);
     }
-    return packRects(rects, size, size, kGutter);
+    return packRects(rects, size, size, kMeshGutter);
 }
 
 /// The highest common density [texels/m] at which all rectangles fit, found by bisection.
@@ -289,7 +285,7 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
         const glm::dmat3 linear(scene.instances[i].transform);
         for (const Primitive& primitive :
              scene.meshes[static_cast<size_t>(scene.instances[i].mesh)].primitives) {
-            if (!hasSet(primitive, rect.texCoord)) continue;
+            if (!hasUvTriangles(primitive, rect.texCoord)) continue;
             const std::vector<glm::vec2>& uvs = uvSet(primitive, rect.texCoord);
             for (size_t t = 0; t < primitive.indices.size(); t += 3) {
                 std::array<glm::dvec2, 3> uv;

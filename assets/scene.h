@@ -57,6 +57,11 @@ struct Primitive {
     int material = -1;             // index into Scene::materials, -1 for glTF's default material
 };
 
+/// TEXCOORD_0 or TEXCOORD_1.
+inline const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
+    return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
+}
+
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;

@@ -6,14 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 // A court of five by three bays with an arcade around it on two storeys, behind each a gallery, above all a
 // skylight.
 namespace relume::generate {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
 constexpr double kBay = 2.6, kHalfX = 6.5, kHalfZ = 3.9; // [m] the columns' axes
 constexpr double kDepth = 2.6;                           // [m] of the galleries
 constexpr double kWallHalf = 0.25;                       // [m] half the thickness of the arcades
@@ -25,14 +22,9 @@ constexpr double kSkylight = 9.3;
 
 const glm::dvec2 kCourt(kHalfX - kWallHalf, kHalfZ - kWallHalf); // half size of the court between the arcades
 
-struct Paints {
+struct AtriumPaints {
     int stone, shaft, plaster, lowerWall, upperWall, floor, galleryFloor, upperFloor, metal;
 };
-
-double smooth(double low, double high, double x) {
-    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
 
 // One ring of a column. square: 0 round, 1 a square of half side `radius`.
 struct Ring {
@@ -180,7 +172,7 @@ std::vector<glm::dvec2> columnPlaces() {
     return places;
 }
 
-void addArcades(SceneBuilder& builder, const Paints& paints) {
+void addArcades(SceneBuilder& builder, const AtriumPaints& paints) {
     for (const Side& side : kSides) {
         const std::string name = side.name;
         // The lower arcade's top is hidden by the floor above it and its string course.
@@ -214,7 +206,7 @@ Solid fourWalls(const glm::dvec2& half, double low, double high) {
     return solid.add(shell.front).add(shell.left).add(shell.right);
 }
 
-void addShell(SceneBuilder& builder, const Paints& paints) {
+void addShell(SceneBuilder& builder, const AtriumPaints& paints) {
     const glm::dvec2 half(kHalfX + kDepth, kHalfZ + kDepth);
     const glm::dvec2 axis(kHalfX, kHalfZ);
     builder.add("Gallery floor", ringFloor(half, axis, 0.0, true).paint(paints.galleryFloor));
@@ -252,7 +244,7 @@ void addShell(SceneBuilder& builder, const Paints& paints) {
     }
 }
 
-void addSkylight(SceneBuilder& builder, const Paints& paints) {
+void addSkylight(SceneBuilder& builder, const AtriumPaints& paints) {
     const double inset = 0.3125;
     builder.add("Cornice", moulding(kCourt, {{0.03, 8.107},
                                              {-0.033, 8.121},
@@ -295,7 +287,7 @@ Solid baluster(double height) {
                  12);
 }
 
-void addBalustrade(SceneBuilder& builder, const Paints& paints) {
+void addBalustrade(SceneBuilder& builder, const AtriumPaints& paints) {
     const glm::dvec2 axis(kHalfX, kHalfZ);
     const double low = kKerb + 0.071, high = kKerb + 0.781;
     // Both rails run through the columns' feet and shafts; the handrail's underside is part of its ring.
@@ -330,7 +322,7 @@ void addBalustrade(SceneBuilder& builder, const Paints& paints) {
     }
 }
 
-void addLamps(SceneBuilder& builder, const Paints& paints) {
+void addLamps(SceneBuilder& builder, const AtriumPaints& paints) {
     const double x = kHalfX + kDepth / 2.0, z = kHalfZ + kDepth / 2.0;
     const glm::dvec3 places[] = {{-x, 0, -z}, {-2.61, 0, -z}, {2.59, 0, -z}, {x, 0, -z}, {x, 0, 0.03},
                                  {x, 0, z},   {2.61, 0, z},   {-2.59, 0, z}, {-x, 0, z}, {-x, 0, -0.03},
@@ -358,7 +350,7 @@ Solid fountain() {
                  56);
 }
 
-void addCourt(SceneBuilder& builder, const Paints& paints) {
+void addCourt(SceneBuilder& builder, const AtriumPaints& paints) {
     const int basin = builder.paint("Green marble", {0.24f, 0.36f, 0.30f});
     builder.add("Fountain", fountain().turnY(2.0).paint(basin), {0.0, 0.0, 0.0});
     const int leaves = builder.paint("Leaves", {0.16f, 0.32f, 0.09f});
@@ -394,7 +386,7 @@ void addCourt(SceneBuilder& builder, const Paints& paints) {
 
 Scene atrium() {
     SceneBuilder builder;
-    Paints paints{};
+    AtriumPaints paints{};
     paints.stone = builder.paint("Limestone", {0.72f, 0.66f, 0.56f});
     paints.shaft = builder.paint("Rose marble", {0.68f, 0.54f, 0.47f});
     paints.plaster = builder.paint("Plaster", {0.78f, 0.76f, 0.72f});

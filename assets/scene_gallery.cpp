@@ -8,15 +8,12 @@
 #include <array>
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 // A hall with an aisle and three bays on either side. Each bay has a light, an object and pictures of its
 // own.
 namespace relume::generate {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-constexpr double kHalfLength = 7.2, kHalfWidth = 3.7, kHeight = 3.3; // [m]
+constexpr double kHallHalfLength = 7.2, kHallHalfWidth = 3.7, kHallHeight = 3.3; // [m]
 constexpr double kPartitionX = 2.41, kPartitionDepth = 2.31;
 
 struct Bay {
@@ -38,12 +35,13 @@ const std::array<Bay, 6>& bays() {
     return all;
 }
 
-struct Paints {
+struct GalleryPaints {
     int wall, floor, ceiling, partition, stone, frame, metal;
 };
 
-void addHall(SceneBuilder& builder, const Paints& paints) {
-    Room hall = room({-kHalfLength, 0.0, -kHalfWidth}, {kHalfLength, kHeight, kHalfWidth});
+void addHall(SceneBuilder& builder, const GalleryPaints& paints) {
+    Room hall =
+        room({-kHallHalfLength, 0.0, -kHallHalfWidth}, {kHallHalfLength, kHallHeight, kHallHalfWidth});
     builder.add("Floor", hall.floor.paint(paints.floor));
     builder.add("Ceiling", hall.ceiling.paint(paints.ceiling));
     builder.add("North wall", hall.back.paint(paints.wall));
@@ -55,17 +53,18 @@ void addHall(SceneBuilder& builder, const Paints& paints) {
     for (int i = 0; i < 4; ++i) {
         const double x = i < 2 ? -kPartitionX : kPartitionX;
         const double side = i % 2 == 0 ? -1.0 : 1.0;
-        const double height = i < 2 ? 2.571 : kHeight + 0.05;
+        const double height = i < 2 ? 2.571 : kHallHeight + 0.05;
         Solid partition = box({0.163, height + kSunk, kPartitionDepth}).paint(paints.partition);
-        const glm::dvec3 place(x, -kSunk, side * (kHalfWidth + 0.05 - kPartitionDepth / 2));
+        const glm::dvec3 place(x, -kSunk, side * (kHallHalfWidth + 0.05 - kPartitionDepth / 2));
         builder.add("Partition " + std::to_string(i + 1), partition, place);
     }
-    const double aisle = 2.0 * (kHalfWidth + 0.05 - kPartitionDepth);
-    Solid lintel = box({0.131, kHeight + 0.05 - 2.487, aisle + 0.1}, Bottom::Closed).paint(paints.partition);
+    const double aisle = 2.0 * (kHallHalfWidth + 0.05 - kPartitionDepth);
+    Solid lintel =
+        box({0.131, kHallHeight + 0.05 - 2.487, aisle + 0.1}, Bottom::Closed).paint(paints.partition);
     builder.add("Lintel", lintel, {kPartitionX, 2.487, 0.0});
 }
 
-void addPictures(SceneBuilder& builder, const Paints& paints) {
+void addPictures(SceneBuilder& builder, const GalleryPaints& paints) {
     struct Hanging {
         int kind;
         glm::dvec2 place; // (x, z) on the wall
@@ -73,11 +72,13 @@ void addPictures(SceneBuilder& builder, const Paints& paints) {
     };
     const double skin = kPartitionX - 0.0815; // the partitions' faces
     const std::vector<Hanging> hangings = {
-        {0, {-5.63, -kHalfWidth}, 0.0}, {4, {-4.07, -kHalfWidth}, 0.0}, {1, {-0.71, -kHalfWidth}, 0.0},
-        {5, {0.91, -kHalfWidth}, 0.0},  {3, {4.87, -kHalfWidth}, 0.0},  {6, {-4.93, kHalfWidth}, 180.0},
-        {2, {0.13, kHalfWidth}, 180.0}, {0, {5.61, kHalfWidth}, 180.0}, {5, {4.05, kHalfWidth}, 180.0},
-        {2, {-skin, -2.53}, 90.0},      {6, {skin, -2.57}, -90.0},      {3, {-kHalfLength, 0.0}, 90.0},
-        {4, {kHalfLength, 0.0}, -90.0},
+        {0, {-5.63, -kHallHalfWidth}, 0.0}, {4, {-4.07, -kHallHalfWidth}, 0.0},
+        {1, {-0.71, -kHallHalfWidth}, 0.0}, {5, {0.91, -kHallHalfWidth}, 0.0},
+        {3, {4.87, -kHallHalfWidth}, 0.0},  {6, {-4.93, kHallHalfWidth}, 180.0},
+        {2, {0.13, kHallHalfWidth}, 180.0}, {0, {5.61, kHallHalfWidth}, 180.0},
+        {5, {4.05, kHallHalfWidth}, 180.0}, {2, {-skin, -2.53}, 90.0},
+        {6, {skin, -2.57}, -90.0},          {3, {-kHallHalfLength, 0.0}, 90.0},
+        {4, {kHallHalfLength, 0.0}, -90.0},
     };
     std::array<int, kPaintings> materials{};
     materials.fill(-1);
@@ -156,7 +157,7 @@ Solid stack() {
     return solid.add(box({0.2, 0.18, 0.2}).turnY(64.0).move({-0.01, 0.372, 0.01}));
 }
 
-void addObjects(SceneBuilder& builder, const Paints& paints) {
+void addObjects(SceneBuilder& builder, const GalleryPaints& paints) {
     const int clay = builder.paint("Clay", {0.62f, 0.36f, 0.24f});
     const int porcelain = builder.paint("Porcelain", {0.80f, 0.79f, 0.76f});
     const int bronze = builder.paint("Bronze", {0.42f, 0.31f, 0.17f});
@@ -195,7 +196,7 @@ void addObjects(SceneBuilder& builder, const Paints& paints) {
     }
 }
 
-void addLights(SceneBuilder& builder, const Paints& paints) {
+void addLights(SceneBuilder& builder, const GalleryPaints& paints) {
     int number = 0;
     const auto lamp = [&](const char* color, const glm::vec3& emission, const glm::dvec3& place,
                           double size) {
@@ -204,19 +205,19 @@ void addLights(SceneBuilder& builder, const Paints& paints) {
         builder.add(name, ceilingLight({size, size}, 0.043, lit, paints.metal).turnY(4.0 * number), place);
     };
     for (const Bay& bay : bays())
-        lamp(bay.colorName, bay.light, {bay.middle.x, kHeight, bay.middle.y}, 0.271);
+        lamp(bay.colorName, bay.light, {bay.middle.x, kHallHeight, bay.middle.y}, 0.271);
     for (double x : {-5.93, -3.51, -1.13, 1.17, 3.61, 5.89})
-        lamp("warm white", {109.2f, 94.5f, 73.5f}, {x, kHeight, 0.0}, 0.157);
+        lamp("warm white", {109.2f, 94.5f, 73.5f}, {x, kHallHeight, 0.0}, 0.157);
     // Two small ones above the pictures at the ends.
-    lamp("pink", {147.0f, 71.4f, 92.4f}, {-6.71, kHeight, 0.03}, 0.133);
-    lamp("mint", {63.0f, 151.2f, 105.0f}, {6.73, kHeight, -0.03}, 0.133);
+    lamp("pink", {147.0f, 71.4f, 92.4f}, {-6.71, kHallHeight, 0.03}, 0.133);
+    lamp("mint", {63.0f, 151.2f, 105.0f}, {6.73, kHallHeight, -0.03}, 0.133);
 }
 
 } // namespace
 
 Scene gallery() {
     SceneBuilder builder;
-    Paints paints{};
+    GalleryPaints paints{};
     paints.wall = builder.paint("Wall", {0.76f, 0.75f, 0.72f});
     paints.floor = builder.paint("Oak floor", {0.44f, 0.30f, 0.18f});
     paints.ceiling = builder.paint("Ceiling", {0.80f, 0.80f, 0.79f});

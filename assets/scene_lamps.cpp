@@ -7,17 +7,18 @@ namespace relume::generate {
 namespace {
 
 // Half the room; its floor is at 0 [m].
-constexpr double kHalfX = 3.0, kHalfZ = 2.0, kHeight = 3.0;
+constexpr double kRoomHalfX = 3.0, kRoomHalfZ = 2.0, kRoomHeight = 3.0;
 // The window in the left wall, as parts of the wall from its front upper corner.
 constexpr double kWindowFromZ = 0.3, kWindowToZ = 0.7, kWindowFromY = 0.2, kWindowToY = 0.65;
 
-void addRoom(SceneBuilder& builder) {
+void addWindowedRoom(SceneBuilder& builder) {
     const int white = builder.paint("White", {0.74f, 0.73f, 0.70f});
     const int wood = builder.paint("Floor", {0.42f, 0.31f, 0.22f});
     const int blue = builder.paint("Blue wall", {0.30f, 0.40f, 0.56f});
-    Room walls = room({-kHalfX, 0.0, -kHalfZ}, {kHalfX, kHeight, kHalfZ});
-    walls.left = panelWithOpening({-kHalfX, kHeight, kHalfZ}, {0, 0, -2.0 * kHalfZ}, {0, -kHeight, 0},
-                                  {kWindowFromZ, kWindowFromY}, {kWindowToZ, kWindowToY});
+    Room walls = room({-kRoomHalfX, 0.0, -kRoomHalfZ}, {kRoomHalfX, kRoomHeight, kRoomHalfZ});
+    walls.left =
+        panelWithOpening({-kRoomHalfX, kRoomHeight, kRoomHalfZ}, {0, 0, -2.0 * kRoomHalfZ},
+                         {0, -kRoomHeight, 0}, {kWindowFromZ, kWindowFromY}, {kWindowToZ, kWindowToY});
     builder.add("Floor", walls.floor.paint(wood));
     builder.add("Ceiling", walls.ceiling.paint(white));
     builder.add("Back wall", walls.back.paint(white));
@@ -32,9 +33,10 @@ void addThings(SceneBuilder& builder) {
     const int stone = builder.paint("Stone", {0.66f, 0.62f, 0.55f});
     builder.add("Tall box", box({0.71, 1.43, 0.67}).turnY(17.3).paint(grey), {1.71, -kSunk, -1.13});
     builder.add("Low box", box({0.83, 0.61, 0.77}).turnY(-23.1).paint(ochre), {-0.43, -kSunk, 0.37});
-    builder.add("Column",
-                lathe({{0.17, kHeight + kSunk}, {0.17, kHeight / 2}, {0.17, -kSunk}}, 32).paint(stone),
-                {0.61, 0.0, -0.57});
+    builder.add(
+        "Column",
+        lathe({{0.17, kRoomHeight + kSunk}, {0.17, kRoomHeight / 2}, {0.17, -kSunk}}, 32).paint(stone),
+        {0.61, 0.0, -0.57});
 }
 
 // An emissive tube along the back wall, as a fluorescent lamp: 1.4 klm from 0.11 m^2.
@@ -45,12 +47,12 @@ void addTube(SceneBuilder& builder) {
         lathe({{0.0, kHalfLength}, {kRadius, kHalfLength}, {kRadius, -kHalfLength}, {0.0, -kHalfLength}}, 16);
     // Its axis, Y, becomes X.
     tube.turn(glm::dmat3({0, -1, 0}, {1, 0, 0}, {0, 0, 1}));
-    builder.add("Tube", tube.paint(lit).denser(2.5), {-1.87, 2.23, -kHalfZ + 0.07});
+    builder.add("Tube", tube.paint(lit).denser(2.5), {-1.87, 2.23, -kRoomHalfZ + 0.07});
 }
 
 // Along its axis each gives 20 to 150 lux; the sun, low behind thin clouds, leaves a patch of 600 on the
 // floor. Comments: what such a lamp gives in all [lm].
-void addLights(SceneBuilder& builder) {
+void addEveryKindOfLight(SceneBuilder& builder) {
     Light bulb{.name = "Bulb", .type = LightType::Point};
     bulb.color = {1.0f, 0.76f, 0.50f};
     bulb.intensity = 64.0f; // 800 lm
@@ -88,10 +90,10 @@ void addLights(SceneBuilder& builder) {
 
 Scene lamps() {
     SceneBuilder builder;
-    addRoom(builder);
+    addWindowedRoom(builder);
     addThings(builder);
     addTube(builder);
-    addLights(builder);
+    addEveryKindOfLight(builder);
     builder.sky({170.0f, 205.0f, 260.0f}); // 650 lux on open ground
     builder.camera("Front", {2.71f, 1.63f, 1.83f}, {-0.9f, 1.1f, -0.55f}, 62.0f);
     builder.camera("Window side", {-2.77f, 1.7f, -1.71f}, {0.9f, 1.05f, 0.35f}, 62.0f);

@@ -6,13 +6,10 @@
 
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 namespace relume::generate {
 namespace {
 
-constexpr double kApothem = 3.8, kHeight = 3.4, kPanelled = 0.93; // [m]
-constexpr double kPi = glm::pi<double>();
+constexpr double kApothem = 3.8, kWallHeight = 3.4, kPanelled = 0.93; // [m]
 
 // Eight corners between the compass points; the radius of a profile is the distance to the walls.
 glm::dvec3 eightSided(double angle, const glm::dvec2& radiusAndHeight) {
@@ -27,13 +24,13 @@ void addShell(SceneBuilder& builder) {
     const int plaster = builder.paint("Plaster", {0.78f, 0.76f, 0.72f});
     const int darkWood = builder.paint("Dark wood", {0.22f, 0.12f, 0.07f});
     builder.add("Floor", cap({kApothem, 0.0}, 8, true, eightSided).paint(tiles));
-    builder.add("Ceiling", cap({kApothem, kHeight}, 8, false, eightSided).paint(plaster));
+    builder.add("Ceiling", cap({kApothem, kWallHeight}, 8, false, eightSided).paint(plaster));
     for (int i = 0; i < 8; ++i) {
         // From inside the corners run from right to left.
-        const glm::dvec3 left = eightSided(kPi / 4.0 * (i + 1), {kApothem, kHeight});
-        const glm::dvec3 right = eightSided(kPi / 4.0 * ((i + 1) % 8 - 1), {kApothem, kHeight});
+        const glm::dvec3 left = eightSided(kPi / 4.0 * (i + 1), {kApothem, kWallHeight});
+        const glm::dvec3 right = eightSided(kPi / 4.0 * ((i + 1) % 8 - 1), {kApothem, kWallHeight});
         const glm::dvec3 across = snap(right) - snap(left);
-        const glm::dvec3 down(0, kPanelled - kHeight, 0);
+        const glm::dvec3 down(0, kPanelled - kWallHeight, 0);
         Solid wall = quad(snap(left), across, down).paint(paper);
         wall.add(quad(snap(left) + down, across, {0, -kPanelled, 0}).paint(panels));
         builder.add("Wall " + std::to_string(i + 1), wall);
@@ -56,7 +53,7 @@ void addShell(SceneBuilder& builder) {
                                   {kApothem - 0.131, 3.241},
                                   {kApothem - 0.233, 3.297},
                                   {kApothem - 0.251, 3.343},
-                                  {kApothem - 0.263, kHeight + kSunk}},
+                                  {kApothem - 0.263, kWallHeight + kSunk}},
                                  8, eightSided)
                                .paint(plaster));
 }
@@ -120,7 +117,7 @@ Solid sconce(int lit, int metal) {
     return solid.add(plate.turn(layOnWall()).move({0, 0.021, 0}).paint(metal).denser(1.3));
 }
 
-void addLights(SceneBuilder& builder) {
+void addLamps(SceneBuilder& builder) {
     const int brass = builder.paint("Brass", {0.62f, 0.45f, 0.17f});
     const char* names[] = {"Amber", "Azure", "Rose", "Jade"};
     const glm::vec3 colors[] = {
@@ -148,7 +145,7 @@ void addLights(SceneBuilder& builder) {
 Scene octagon() {
     SceneBuilder builder;
     addShell(builder);
-    addLights(builder);
+    addLamps(builder);
     const int marble = builder.paint("Marble", {0.74f, 0.72f, 0.68f});
     const int bronze = builder.paint("Bronze", {0.30f, 0.34f, 0.26f});
     const int oak = builder.paint("Oak", {0.45f, 0.27f, 0.13f});

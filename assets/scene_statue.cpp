@@ -6,18 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/gtc/constants.hpp>
-
 // A winged figure after the idea of the thesis' Lucy: folds and feathers that shade each other.
 namespace relume::generate {
 namespace {
-
-constexpr double kPi = glm::pi<double>();
-
-double smooth(double low, double high, double x) {
-    const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
 
 // Catmull-Rom curve through points, x from 0 to 1.
 template<class Vector>
@@ -146,7 +137,7 @@ Solid wing(double side) {
     });
 }
 
-void addRoom(SceneBuilder& builder) {
+void addStatueRoom(SceneBuilder& builder) {
     const int plaster = builder.paint("Plaster", {0.72f, 0.70f, 0.66f});
     const int slate = builder.paint("Slate blue", {0.12f, 0.24f, 0.42f});
     const int terracotta = builder.paint("Terracotta", {0.60f, 0.24f, 0.12f});
@@ -179,7 +170,7 @@ void addRoom(SceneBuilder& builder) {
 
 Scene cornellStatue() {
     SceneBuilder builder;
-    addRoom(builder);
+    addStatueRoom(builder);
     const int stone = builder.paint("Stone", {0.50f, 0.47f, 0.43f});
     const int marble = builder.paint("Marble", {0.79f, 0.77f, 0.73f});
     const int brass = builder.paint("Brass", {0.72f, 0.52f, 0.20f});

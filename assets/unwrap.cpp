@@ -16,7 +16,7 @@ namespace relume {
 
 namespace {
 
-constexpr uint32_t kGutter = 2; // [texels], between charts
+constexpr uint32_t kChartGutter = 2; // [texels], between charts
 constexpr double kFill = 0.5; // share of an atlas that charts of usual shapes cover: where the search starts
 constexpr double kRectFill = 0.85;     // share of an atlas that the meshes' rectangles fill when packed
 constexpr int kSearchSteps = 8;        // of the density; one packing each
@@ -85,7 +85,7 @@ Packing packCharts(const std::vector<PlanarChart>& charts, double density, const
     uint32_t width = 1;
     for (size_t i = 0; i < charts.size(); ++i) {
         const glm::dvec2 texels = glm::max(glm::round(charts[i].extent * density), glm::dvec2(1.0));
-        area += (texels.x + kGutter) * (texels.y + kGutter);
+        area += (texels.x + kChartGutter) * (texels.y + kChartGutter);
         if (!(std::max(texels.x, texels.y) <= kMaxTexels) || !(std::sqrt(area) <= kMaxTexels))
             throw Error(
                 fmt::format("{} needs more than {} texels a side at {} texels/m: use a lower --density", name,
@@ -96,7 +96,7 @@ Packing packCharts(const std::vector<PlanarChart>& charts, double density, const
     }
     width = std::max(width, static_cast<uint32_t>(std::ceil(std::sqrt(area))));
     constexpr uint32_t kAnyHeight = 1u << 30;
-    ASSERT(packRects(packing.rects, width, kAnyHeight, kGutter));
+    ASSERT(packRects(packing.rects, width, kAnyHeight, kChartGutter));
     for (const PackedRect& rect : packing.rects)
         packing.side = std::max({packing.side, rect.x + rect.width, rect.y + rect.height});
     return packing;

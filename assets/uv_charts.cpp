@@ -36,10 +36,6 @@ uint32_t rootOf(std::vector<uint32_t>& parent, uint32_t i) {
     return i;
 }
 
-const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
-    return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
-}
-
 bool hasSet(const Primitive& primitive, int set) {
     return uvSet(primitive, set).size() == primitive.positions.size();
 }

@@ -38,10 +38,6 @@ glm::mat3 normalMatrix(const glm::mat4& transform) {
     return glm::mat3(largest > 0.0 ? cofactors * (sign / largest) : cofactors);
 }
 
-const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
-    return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
-}
-
 /// Appends triangles to the corner arrays.
 class Flattener {
 public:

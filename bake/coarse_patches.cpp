@@ -12,7 +12,7 @@ using shader::kChunk;
 using shader::kNoPatch;
 using shader::Patch;
 
-constexpr uint32_t kTile = 8; // windows
+constexpr uint32_t kTileWindows = 8; // windows
 constexpr uint32_t kTaps = 4;
 // Members of a part that count for less than this with its receiver get another one: normals 40 degrees
 // apart, or half a window off the plane.
@@ -33,17 +33,17 @@ struct Part {
     uint32_t count = 0, chart = kNoChart;
 };
 
-class Builder {
+class CoarseBuilder {
 public:
-    Builder(const PatchSet& set, uint32_t scale)
+    CoarseBuilder(const PatchSet& set, uint32_t scale)
         : set_(set), scale_(static_cast<int>(scale)), size_(static_cast<int>(set.scene.size)),
           windows_((size_ + scale_ - 1) / scale_), own_(set.scene.patches.size(), kNoPatch),
           begin_(static_cast<size_t>(windows_) * static_cast<size_t>(windows_)), count_(begin_.size()) {}
 
     CoarsePatches build() {
-        const int tiles = (windows_ + static_cast<int>(kTile) - 1) / static_cast<int>(kTile);
+        const int tiles = (windows_ + static_cast<int>(kTileWindows) - 1) / static_cast<int>(kTileWindows);
         for (int tile = 0; tile < tiles * tiles; ++tile)
-            addTile(glm::ivec2(tile % tiles, tile / tiles) * static_cast<int>(kTile));
+            addTile(glm::ivec2(tile % tiles, tile / tiles) * static_cast<int>(kTileWindows));
         for (uint32_t i = 0; i < set_.count; ++i) {
             if (own_[i] == kNoPatch && receives(i)) addReceiver(i, texelOf(i) / scale_);
         }
@@ -83,7 +83,7 @@ private:
     }
 
     void addTile(glm::ivec2 first) {
-        const glm::ivec2 end = glm::min(first + static_cast<int>(kTile), glm::ivec2(windows_));
+        const glm::ivec2 end = glm::min(first + static_cast<int>(kTileWindows), glm::ivec2(windows_));
         for (int y = first.y; y < end.y; ++y) {
             for (int x = first.x; x < end.x; ++x)
                 addWindow({x, y});
@@ -315,7 +315,7 @@ private:
 } // namespace
 
 CoarsePatches buildCoarsePatches(const PatchSet& patches, uint32_t scale) {
-    return Builder(patches, scale).build();
+    return CoarseBuilder(patches, scale).build();
 }
 
 } // namespace relume

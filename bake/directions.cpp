@@ -16,7 +16,7 @@ using Point = glm::dvec2;
 constexpr double kMirror = 2.0; // radii to the mirror image behind the border, of the distance to the border
 // Corners of a triangle around all: so far away that the disc sees them as directions.
 constexpr double kFar = 1e3;
-constexpr uint32_t kNone = 0xffffffffu;
+constexpr uint32_t kNoNeighbour = 0xffffffffu;
 
 double square(Point p) {
     return glm::dot(p, p);
@@ -26,7 +26,7 @@ double square(Point p) {
 /// k to the next.
 struct Triangle {
     std::array<uint32_t, 3> corner{};
-    std::array<uint32_t, 3> next{kNone, kNone, kNone};
+    std::array<uint32_t, 3> next{kNoNeighbour, kNoNeighbour, kNoNeighbour};
     Point centre{0.0}; // of its circumscribed circle
     double radius2 = 0;
     bool isAlive = true;
@@ -36,7 +36,7 @@ struct Triangle {
 struct Candidate {
     double radius = 0; // of the empty circle around it
     Point at{0.0};
-    uint32_t triangle = kNone, other = kNone;
+    uint32_t triangle = kNoNeighbour, other = kNoNeighbour;
     bool operator<(const Candidate& c) const {
         // The set is symmetric, so many are equal but for rounding, which must not decide. Then one from
         // anywhere: in order of place a half-filled generation would be all on one side.
@@ -92,7 +92,7 @@ void DiscFiller::insert(Point p, uint32_t within) {
     triangles_[within].isAlive = false;
     for (size_t i = 0; i < cavity_.size(); ++i) {
         for (const uint32_t n : triangles_[cavity_[i]].next) {
-            if (n == kNone || !triangles_[n].isAlive || !contains(triangles_[n], p)) continue;
+            if (n == kNoNeighbour || !triangles_[n].isAlive || !contains(triangles_[n], p)) continue;
             triangles_[n].isAlive = false;
             cavity_.push_back(n);
         }
@@ -101,11 +101,11 @@ void DiscFiller::insert(Point p, uint32_t within) {
     for (const uint32_t dead : cavity_) {
         for (uint32_t k = 0; k < 3; ++k) {
             const uint32_t outside = triangles_[dead].next[k];
-            if (outside != kNone && !triangles_[outside].isAlive) continue;
+            if (outside != kNoNeighbour && !triangles_[outside].isAlive) continue;
             const uint32_t a = triangles_[dead].corner[k], b = triangles_[dead].corner[(k + 1) % 3];
             const uint32_t t = addTriangle(a, b, corner);
             triangles_[t].next[0] = outside;
-            if (outside != kNone)
+            if (outside != kNoNeighbour)
                 for (uint32_t m = 0; m < 3; ++m)
                     if (triangles_[outside].corner[m] == b) triangles_[outside].next[m] = t;
             fresh_.push_back(t);
@@ -133,7 +133,7 @@ void DiscFiller::addCandidates(uint32_t triangle) {
         candidates_.push({std::sqrt(t.radius2), t.centre, triangle, triangle});
     for (uint32_t k = 0; k < 3; ++k) {
         const uint32_t b = t.corner[k], c = t.corner[(k + 1) % 3];
-        if (b >= 3 && c >= 3 && t.next[k] != kNone) addEdgeCandidate(triangle, t.next[k], points[b]);
+        if (b >= 3 && c >= 3 && t.next[k] != kNoNeighbour) addEdgeCandidate(triangle, t.next[k], points[b]);
     }
 }
 

@@ -13,11 +13,10 @@ constexpr uint32_t kAllEmitters = 4;
 constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
 constexpr uint32_t kLeastLinks = 16;   // of a round
 // Chunks of one batch: their targets are 16 KiB each for 16 points.
-constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
-constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
+constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
 
 uint32_t mostChunks(uint32_t chunkCount, bool software) {
-    return std::min(chunkCount, software ? kSoftwareBatch : kGpuBatch);
+    return std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks);
 }
 
 } // namespace

@@ -15,8 +15,8 @@ namespace {
 
 using shader::EmitterPolygon;
 
-constexpr double kOffset = 1e-4; // of a texel's size, as patches have it
-constexpr double kFloatError = 4.0 * std::numeric_limits<float>::epsilon(); // of a coordinate, likewise
+constexpr double kEmitterOffset = 1e-4; // of a texel's size, as patches have it
+constexpr double kCornerError = 4.0 * std::numeric_limits<float>::epsilon(); // of a coordinate, likewise
 constexpr double kFlat = 1e-5; // of a polygon's size: corners this near to their place count as in it
 constexpr double kUvError = 1e-5;
 
@@ -103,7 +103,7 @@ float EmitterBuilder::offsetOf(const EmitterPolygon& p) const {
     double reach = 0;
     for (const glm::vec3& c : {p.c0, p.c1, p.c2, p.c3})
         reach = std::max({reach, std::abs(double{c.x}), std::abs(double{c.y}), std::abs(double{c.z})});
-    return static_cast<float>(kOffset * texelSize(p.triangle) + kFloatError * reach);
+    return static_cast<float>(kEmitterOffset * texelSize(p.triangle) + kCornerError * reach);
 }
 
 // Whether what varies over the two triangles does so as over one parallelogram.
@@ -139,7 +139,7 @@ bool EmitterBuilder::makePair(uint32_t t0, uint32_t k0, uint32_t t1, uint32_t k1
     const double size =
         std::max({glm::length(b - a), glm::length(c - b), glm::length(d - c), glm::length(a - d)});
     const double reach = std::max({glm::length(a), glm::length(b), glm::length(c), glm::length(d)});
-    const double error = kFlat * size + kFloatError * reach;
+    const double error = kFlat * size + kCornerError * reach;
     if (glm::dot(n0, n1) < 0.999 || std::abs(glm::dot(n0, c - b)) > error) return false;
     // Convex where the two meet, by enough that rounding does not matter.
     const double least = kFlat * size * size;
@@ -152,16 +152,17 @@ bool EmitterBuilder::makePair(uint32_t t0, uint32_t k0, uint32_t t1, uint32_t k1
 
 // Parallelograms first, then those that lose the longer edge: of a grid's triangles that gives its squares.
 std::vector<Pair> EmitterBuilder::findPairs() const {
-    using Point = std::array<float, 3>;
-    std::map<std::pair<Point, Point>, std::pair<uint32_t, uint32_t>> edges; // to triangle and corner
+    using Coordinates = std::array<float, 3>;
+    std::map<std::pair<Coordinates, Coordinates>, std::pair<uint32_t, uint32_t>>
+        edges; // to triangle and corner
     const auto point = [&](uint32_t corner) {
         const glm::vec3 p = mesh_.positions[corner] + 0.0f; // -0 becomes 0
-        return Point{p.x, p.y, p.z};
+        return Coordinates{p.x, p.y, p.z};
     };
     std::vector<Pair> pairs;
     for (uint32_t t : emitting_) {
         for (uint32_t k = 0; k < 3; ++k) {
-            const Point from = point(3 * t + k), to = point(3 * t + (k + 1) % 3);
+            const Coordinates from = point(3 * t + k), to = point(3 * t + (k + 1) % 3);
             const auto other = edges.find({to, from});
             Pair pair;
             if (other != edges.end() && makePair(other->second.first, other->second.second, t, k, pair))

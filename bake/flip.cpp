@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <glm/gtc/constants.hpp>
+#include <numbers>
 
 namespace relume {
 namespace {
 
 using Plane = std::vector<float>;
-constexpr double kPi = glm::pi<double>();
 
 // Colour ----------------------------------------------------------------------------------------------------
 
@@ -123,7 +121,8 @@ constexpr Sensitivity kBlueYellow{{34.1, 13.5}, {0.04, 0.025}};
 Plane sensed(const Frame& frame, const Plane& plane, const Sensitivity& sensitivity, double pixelsPerDegree) {
     // Three standard deviations of the widest, for all: sigma^2 = b / (2 pi^2).
     const double widest = kBlueYellow.b[0];
-    const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widest / 2.0) / kPi * pixelsPerDegree));
+    const int radius =
+        static_cast<int>(std::ceil(3.0 * std::sqrt(widest / 2.0) / std::numbers::pi * pixelsPerDegree));
     std::array<Kernel, 2> kernels;
     std::array<double, 2> amounts{};
     double whole = 0;
@@ -132,13 +131,13 @@ Plane sensed(const Frame& frame, const Plane& plane, const Sensitivity& sensitiv
         double sum = 0;
         for (int k = -radius; k <= radius; ++k) {
             const double r = k / pixelsPerDegree;
-            const double weight = std::exp(-kPi * kPi * r * r / sensitivity.b[g]);
+            const double weight = std::exp(-std::numbers::pi * std::numbers::pi * r * r / sensitivity.b[g]);
             kernels[g].push_back(static_cast<float>(weight));
             sum += weight;
         }
         for (float& weight : kernels[g])
             weight = static_cast<float>(weight / sum);
-        amounts[g] = sensitivity.a[g] * std::sqrt(kPi / sensitivity.b[g]) * sum * sum;
+        amounts[g] = sensitivity.a[g] * std::sqrt(std::numbers::pi / sensitivity.b[g]) * sum * sum;
         whole += amounts[g];
     }
     Plane result(plane.size(), 0.0f);

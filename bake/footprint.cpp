@@ -1,8 +1,8 @@
 #include "bake/footprint.h"
 
+#include "bake/chunk_dispatch.h"
 #include "bake/vk/commands.h"
 
-#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -10,15 +10,6 @@ namespace relume {
 namespace {
 
 using shader::kChunk;
-
-constexpr uint32_t kMaxX = 32768; // workgroups in x, below every device's limit
-
-template<typename Push>
-void dispatchGroups(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
-                    uint32_t groups) {
-    const uint32_t x = std::min(groups, kMaxX);
-    program.dispatch(cmd, push, x, (groups + x - 1) / x);
-}
 
 // Way up from each patch and node, with all that the next step needs in one load. No area is as large as what
 // is not there.
@@ -68,7 +59,7 @@ void Footprints::recordLevels(VkCommandBuffer cmd, const vk::Buffer& radiance) c
                                        .firstNode = first,
                                        .nodeCount = end - first,
                                        .patchCount = patchCount_};
-        dispatchGroups(pyramid_, cmd, push, (end - first + kChunk - 1) / kChunk);
+        dispatchChunks(pyramid_, cmd, push, (end - first + kChunk - 1) / kChunk);
         first = end;
     }
 }
@@ -82,7 +73,7 @@ void Footprints::recordLinks(VkCommandBuffer cmd, VkDeviceAddress patches, const
                                      .chunkCount = work.chunkCount,
                                      .sampleCount = work.sampleCount,
                                      .samples = work.samples};
-    dispatchGroups(footprint_, cmd, push, work.chunkCount);
+    dispatchChunks(footprint_, cmd, push, work.chunkCount);
 }
 
 } // namespace relume

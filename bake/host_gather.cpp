@@ -90,7 +90,6 @@ struct Received {
 [[gnu::always_inline]] inline void addFar(const shader::Patch* receivers, const Rows& rows,
                                           const SenderLanes& s, float close, Received* sums) {
     constexpr Ints kBits = {1, 2, 4, 8, 16, 32, 64, 128};
-    constexpr auto kPi = std::numbers::pi_v<float>;
     const float nearest = close * close;
     for (uint32_t i = 0; i < kChunk; ++i) {
         const glm::vec3 p = receivers[i].position, n = receivers[i].shading;
@@ -108,7 +107,7 @@ struct Received {
             const Floats up = dx * n.x + dy * n.y + dz * n.z;
             const Floats down = dx * nx + dy * ny + dz * nz;
             const Floats cosines = (up > 0.0f ? up : Floats{}) * -down;
-            const Floats f = cosines * area / (r2 * (kPi * r2 + area));
+            const Floats f = cosines * area / (r2 * (std::numbers::pi_v<float> * r2 + area));
             const Ints counts = ((kBits & byte) != 0) & (r2 > nearest * area);
             const Floats factor = counts ? f : Floats{};
             sum.r += factor * r, sum.g += factor * g, sum.b += factor * b;

@@ -15,9 +15,8 @@ using shader::kReplicates;
 // Rays of one group, per patch: two words of bits. A lamp with more is a group by itself.
 constexpr uint32_t kGroupRays = 64;
 // Chunks of one batch of such groups, whose targets are 64 KiB each; of smaller groups more.
-constexpr uint32_t kGpuBatch = 2048, kSoftwareBatch = 512;
-constexpr uint32_t kMostChunks = 32768;  // that every device's dispatches take in x
-constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
+constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
+constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
 
 uint32_t wordsOf(uint32_t targets) {
     return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
@@ -25,7 +24,7 @@ uint32_t wordsOf(uint32_t targets) {
 
 uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
     const uint32_t smaller = kGroupRays / std::clamp(rays, 1u, kGroupRays);
-    return std::min({chunkCount, kMostChunks, (software ? kSoftwareBatch : kGpuBatch) * smaller});
+    return std::min({chunkCount, kMostChunks, (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller});
 }
 
 } // namespace

@@ -9,8 +9,6 @@
 namespace relume {
 namespace {
 
-// A segment towards a light costs about so much of a closest hit.
-constexpr double kSegmentCost = 0.3;
 // Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
 constexpr uint32_t kMostGrowth = 8;
 // Directions or points per patch beyond which no error is worth the time.

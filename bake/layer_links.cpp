@@ -9,9 +9,6 @@
 namespace relume {
 namespace {
 
-// Of the error that is asked for, what bounces may leave.
-constexpr double kIterationShare = 0.2;
-constexpr double kLeastIterationError = 1e-4;
 // Of the first level, which is in haste.
 constexpr double kFirstIterationError = 0.01;
 // Bounces after which the CPU looks for the first time, and between two looks at most. A look waits for the

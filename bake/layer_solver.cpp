@@ -12,8 +12,6 @@ namespace {
 
 using shader::kChunk;
 
-// A GPU is not filled by less than this: unseen chunks that take no longer come along with seen ones.
-constexpr double kWorthASubmit = 0.5; // [ms]
 // A GPU's submit takes as long as rays from about so many chunks: they come along with those around them.
 constexpr uint32_t kGap = 256;
 

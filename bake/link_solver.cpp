@@ -14,15 +14,6 @@ using shader::kChunk;
 
 // Chunks of one submit of interpolation: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
-// Of the error that is asked for, what the bounces of the first round may leave; later rounds go on with
-// them.
-constexpr double kIterationShare = 0.2;
-constexpr double kLeastIterationError = 1e-4;
-// A segment towards a light costs about so much of a closest hit.
-constexpr double kSegmentCost = 0.3;
-// A GPU is not filled by less than this, and each submit costs 0.05 to 0.1 ms: unseen chunks that take no
-// longer come along with seen ones on both sides.
-constexpr double kWorthASubmit = 0.5; // [ms]
 
 EmitterLight makeEmitters(const SolverInput& input, bool hybrid, uint32_t links) {
     const PatchSet& patches = input.patches;

@@ -10,7 +10,7 @@ namespace {
 using shader::kChunk;
 
 // So many boxes at most: beyond, one around all of them. Each is a test per ray.
-constexpr size_t kMostBoxes = 8;
+constexpr size_t kMostPlaceBoxes = 8;
 
 // Whether a segment from within a to within b may meet the box: points between are within boxes that go from
 // a to b evenly, and along each axis such a box meets the other one for an interval of the way.
@@ -42,7 +42,7 @@ shader::TraceBox endOf(const shader::TraceBox& start, const LightPlace& light) {
 void ObjectMove::add(const ObjectMove& later) {
     ASSERT(changed.empty() || changed.size() == later.changed.size());
     boxes.insert(boxes.end(), later.boxes.begin(), later.boxes.end());
-    if (boxes.size() > kMostBoxes) {
+    if (boxes.size() > kMostPlaceBoxes) {
         shader::TraceBox all = boxes.front();
         for (const shader::TraceBox& box : boxes)
             all = {glm::min(all.lo, box.lo), glm::max(all.hi, box.hi)};

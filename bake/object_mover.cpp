@@ -17,9 +17,9 @@ using shader::kChunk;
 using shader::kNoPatch;
 
 // Of a coordinate, what rays and boxes may round off together, with room.
-constexpr float kRounding = 1e-5f;
+constexpr float kBoxRounding = 1e-5f;
 // Where objects were, or are: each is a test per ray. An object of many parts is one.
-constexpr size_t kMostBoxes = 4;
+constexpr size_t kMostMoveBoxes = 4;
 // A link that was not traced again, where none are listed.
 constexpr uint32_t kKept = 0xfffffff0u;
 static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
@@ -222,11 +222,11 @@ std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
                     box = {glm::min(box.lo, positions[corner]), glm::max(box.hi, positions[corner])};
             if (placed_[instance].hidden || box.lo.x > box.hi.x) continue;
             const glm::vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-            const float grown = kRounding * std::max({reach.x, reach.y, reach.z});
+            const float grown = kBoxRounding * std::max({reach.x, reach.y, reach.z});
             boxes.push_back({box.lo - grown, box.hi + grown});
         }
     }
-    if (boxes.size() <= kMostBoxes) return boxes;
+    if (boxes.size() <= kMostMoveBoxes) return boxes;
     shader::TraceBox around = none;
     for (const shader::TraceBox& box : boxes)
         around = {glm::min(around.lo, box.lo), glm::max(around.hi, box.hi)};

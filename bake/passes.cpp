@@ -1,5 +1,6 @@
 #include "bake/passes.h"
 
+#include "bake/chunk_dispatch.h"
 #include "bake/host_gather.h"
 #include "bake/vk/commands.h"
 
@@ -14,15 +15,6 @@ constexpr VkDeviceSize kPartialBytes = VkDeviceSize{2} * shader::kSuperPatches *
 // few on a software device, where a batch is small and the cache counts.
 uint64_t superCapacity(bool software) {
     return software ? 16 : 512;
-}
-
-// One workgroup per chunk, counted on in y: 65535 in x are all that a device must take.
-template<typename Push>
-void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
-                    uint32_t chunks) {
-    constexpr uint32_t kMaxX = 32768;
-    const uint32_t x = std::min(chunks, kMaxX);
-    program.dispatch(cmd, push, x, (chunks + x - 1) / x);
 }
 
 } // namespace

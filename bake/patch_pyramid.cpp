@@ -16,7 +16,7 @@ using shader::kNoPatch;
 constexpr double kLeastEvenness = 0.9;
 
 // What stands for some texels of a chart.
-struct Item {
+struct TexelGroup {
     uint64_t place = 0; // chart, then texel in Morton order
     uint32_t index = 0; // patch or node; kNoPatch: they do not count as one
 };
@@ -45,14 +45,14 @@ uint32_t inEvenBits(uint32_t x) {
     return (x | x << 1) & 0x55555555u;
 }
 
-class Builder {
+class PyramidBuilder {
 public:
-    explicit Builder(const PatchSet& set)
+    explicit PyramidBuilder(const PatchSet& set)
         : set_(set), patchCount_(static_cast<uint32_t>(set.scene.patches.size())) {}
 
     PatchPyramid build() {
         result_.parents.assign(patchCount_, kNoPatch);
-        std::vector<Item> items = patchItems();
+        std::vector<TexelGroup> items = patchItems();
         const auto levels = static_cast<uint32_t>(std::bit_width(set_.scene.size - 1));
         for (uint32_t level = 1; level <= levels; ++level) {
             const size_t before = result_.nodes.size();
@@ -65,8 +65,8 @@ public:
 
 private:
     // In order of their places, so that what belongs together at any level is side by side.
-    std::vector<Item> patchItems() const {
-        std::vector<Item> items;
+    std::vector<TexelGroup> patchItems() const {
+        std::vector<TexelGroup> items;
         items.reserve(set_.count);
         const uint32_t size = set_.scene.size;
         for (uint32_t texel = 0; texel < size * size; ++texel) {
@@ -75,12 +75,13 @@ private:
             const uint32_t morton = inEvenBits(texel % size) | inEvenBits(texel / size) << 1;
             items.push_back({uint64_t{set_.scene.patchChart[i]} << 32 | morton, i});
         }
-        std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.place < b.place; });
+        std::sort(items.begin(), items.end(),
+                  [](const TexelGroup& a, const TexelGroup& b) { return a.place < b.place; });
         return items;
     }
 
     // One item for each group of 2^level texels squared.
-    void mergeItems(std::vector<Item>& items, uint32_t level) {
+    void mergeItems(std::vector<TexelGroup>& items, uint32_t level) {
         size_t kept = 0;
         for (size_t first = 0; first < items.size();) {
             size_t end = first + 1;
@@ -93,10 +94,10 @@ private:
         items.resize(kept);
     }
 
-    uint32_t merged(std::span<const Item> children) {
+    uint32_t merged(std::span<const TexelGroup> children) {
         if (children.size() == 1) return children[0].index;
         Moments sum;
-        for (const Item& child : children) {
+        for (const TexelGroup& child : children) {
             if (child.index == kNoPatch) return kNoPatch;
             sum.add(momentsOf(child.index));
         }
@@ -140,7 +141,7 @@ private:
 } // namespace
 
 PatchPyramid buildPatchPyramid(const PatchSet& patches) {
-    return Builder(patches).build();
+    return PyramidBuilder(patches).build();
 }
 
 } // namespace relume

@@ -60,9 +60,9 @@ struct ThinChart {
     float area = 0.0f;     // [m^2], of the whole chart
 };
 
-class Builder {
+class PatchBuilder {
 public:
-    Builder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
+    PatchBuilder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
         : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part) {
         if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
         materials_.emplace_back(); // glTF's default material
@@ -368,7 +368,7 @@ private:
 } // namespace
 
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc) {
-    Builder builder(scene, std::move(mesh), group, desc);
+    PatchBuilder builder(scene, std::move(mesh), group, desc);
     return builder.build();
 }
 

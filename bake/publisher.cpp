@@ -1,5 +1,6 @@
 #include "bake/publisher.h"
 
+#include "bake/chunk_dispatch.h"
 #include "bake/seam_plan.h"
 
 #include <algorithm>
@@ -16,12 +17,10 @@ using shader::kRegion;
 constexpr uint32_t kChunksPerSubmit = 16384, kChunksPerSubmitSoftware = 4096;
 // Texels copied per submit: 32 MiB of them, below 20 ms through host memory on every device measured.
 constexpr uint64_t kTexelsPerSubmit = uint64_t{1} << 22;
-constexpr uint32_t kMaxX = 32768; // workgroups in x, below every device's limit
 
 // One workgroup for each of push.count.
 void dispatchGroups(const vk::ComputeProgram& program, VkCommandBuffer cmd, const shader::PublishPush& push) {
-    const uint32_t x = std::min(push.count, kMaxX);
-    if (x > 0) program.dispatch(cmd, push, x, (push.count + x - 1) / x);
+    if (push.count > 0) dispatchChunks(program, cmd, push, push.count);
 }
 
 // Light that bounces for ever between patches of albedo a is at most what the brightest one emits over 1 - a.

@@ -17,10 +17,10 @@ float gradient(glm::vec3 light, glm::vec3 light0, glm::vec3 normal, glm::vec3 no
     return 0.5f * glm::distance(light, light0) + 0.5f * glm::distance(normal, normal0);
 }
 
-class Builder {
+class QuadTreeBuilder {
 public:
-    Builder(const PatchSet& patches, const std::vector<uint32_t>& parts,
-            const std::vector<glm::vec4>& radiance, const QuadTreeDesc& desc)
+    QuadTreeBuilder(const PatchSet& patches, const std::vector<uint32_t>& parts,
+                    const std::vector<glm::vec4>& radiance, const QuadTreeDesc& desc)
         : set_(patches), parts_(parts), radiance_(radiance), desc_(desc), list_(patches) {
         double sum = 0.0;
         for (uint32_t i = 0; i < set_.count; ++i)
@@ -168,7 +168,7 @@ std::vector<float> rtradWeights(const PatchSet& set, const std::vector<glm::vec4
 
 SenderList quadTreeSenders(const PatchSet& patches, const std::vector<uint32_t>& parts,
                            const std::vector<glm::vec4>& radiance, const QuadTreeDesc& desc) {
-    if (!desc.rtrad) return Builder(patches, parts, radiance, desc).build();
+    if (!desc.rtrad) return QuadTreeBuilder(patches, parts, radiance, desc).build();
     const std::vector<float> weights = rtradWeights(patches, radiance, desc);
     SenderListBuilder builder(patches);
     for (uint32_t i = 0; i < patches.count; ++i) {

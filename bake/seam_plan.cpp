@@ -13,9 +13,9 @@ using shader::kNoTexel;
 constexpr uint8_t kEmpty = 0xff; // ring of what is not filled
 constexpr uint32_t kNeighbours = 8;
 
-class Builder {
+class SeamPlanBuilder {
 public:
-    Builder(const PatchSet& set, uint32_t rings)
+    SeamPlanBuilder(const PatchSet& set, uint32_t rings)
         : size_(set.scene.size), ring_(size_t{size_} * size_, kEmpty), place_(ring_.size(), 0) {
         ASSERT(rings < kEmpty);
         plan_.rings = rings;
@@ -115,7 +115,7 @@ private:
 } // namespace
 
 SeamPlan buildSeamPlan(const PatchSet& patches, uint32_t rings) {
-    return Builder(patches, rings).build();
+    return SeamPlanBuilder(patches, rings).build();
 }
 
 std::vector<uint32_t> shownTexels(const PatchSet& set) {

@@ -12,7 +12,7 @@ using shader::kNoPatch;
 
 constexpr uint32_t kTile = 8; // windows, as tiles of texels: a full tile is one chunk
 
-glm::uvec2 texelOf(const PatchSet& set, uint32_t patch) {
+glm::uvec2 texelPlace(const PatchSet& set, uint32_t patch) {
     const uint32_t texel = set.scene.patches[patch].flags >> 8;
     return {texel % set.scene.size, texel / set.scene.size};
 }
@@ -80,8 +80,8 @@ void SenderListBuilder::add(const std::vector<uint32_t>& members, size_t first, 
         position += double{p.area} * glm::dvec3(p.position);
         normal += double{p.area} * glm::dvec3(p.normal);
         area += p.area;
-        lo = glm::min(lo, texelOf(patches_, m));
-        hi = glm::max(hi, texelOf(patches_, m));
+        lo = glm::min(lo, texelPlace(patches_, m));
+        hi = glm::max(hi, texelPlace(patches_, m));
     }
     const glm::uvec2 extent = hi - lo + 1u;
     if (area > 0.0 && patch.area > 0.0f) {
@@ -120,12 +120,12 @@ SenderList SenderListBuilder::finish() {
 size_t nearestToMiddle(const PatchSet& set, const std::vector<uint32_t>& members) {
     glm::dvec2 middle(0.0);
     for (uint32_t m : members)
-        middle += glm::dvec2(texelOf(set, m));
+        middle += glm::dvec2(texelPlace(set, m));
     middle /= static_cast<double>(members.size());
     size_t best = 0;
     double bestDistance = std::numeric_limits<double>::max();
     for (size_t i = 0; i < members.size(); ++i) {
-        const glm::dvec2 d = glm::dvec2(texelOf(set, members[i])) - middle;
+        const glm::dvec2 d = glm::dvec2(texelPlace(set, members[i])) - middle;
         if (glm::dot(d, d) >= bestDistance) continue;
         bestDistance = glm::dot(d, d);
         best = i;
@@ -156,12 +156,12 @@ SenderList windowSenders(const PatchSet& set, uint32_t edge) {
     std::vector<uint32_t> start(size_t{order.count()} + 1, 0);
     const auto sends = [&](uint32_t i) { return (set.scene.patches[i].flags & shader::kPatchSends) != 0; };
     for (uint32_t i = 0; i < set.count; ++i)
-        start[order(texelOf(set, i) / edge) + 1] += sends(i);
+        start[order(texelPlace(set, i) / edge) + 1] += sends(i);
     for (size_t w = 1; w < start.size(); ++w)
         start[w] += start[w - 1];
     std::vector<uint32_t> sorted(start.back()), next(start);
     for (uint32_t i = 0; i < set.count; ++i)
-        if (sends(i)) sorted[next[order(texelOf(set, i) / edge)]++] = i;
+        if (sends(i)) sorted[next[order(texelPlace(set, i) / edge)]++] = i;
 
     const std::vector<uint32_t> parts = mergeableParts(set);
     SenderListBuilder builder(set);

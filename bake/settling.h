@@ -4,6 +4,10 @@
 
 namespace relume {
 
+/// Of the error that is asked for, what bounces may leave.
+constexpr double kIterationShare = 0.2;
+constexpr double kLeastIterationError = 1e-4;
+
 /// How much of the mean light is still to come, if what each bounce adds goes on as a geometric series. Of
 /// the mean, for the root mean square says little while a few bright texels make most of it.
 struct Settling {

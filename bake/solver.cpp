@@ -11,27 +11,27 @@
 namespace relume {
 namespace {
 
-struct Name {
+struct MethodName {
     Method method;
     const char* name;
 };
-constexpr std::array<Name, 7> kNames = {{{Method::Pure, "pure"},
-                                         {Method::Static, "static"},
-                                         {Method::MonteCarlo, "montecarlo"},
-                                         {Method::Mipmapped, "mipmapped"},
-                                         {Method::Adaptive, "adaptive"},
-                                         {Method::Directional, "directional"},
-                                         {Method::Hybrid, "hybrid"}}};
+constexpr std::array<MethodName, 7> kMethodNames = {{{Method::Pure, "pure"},
+                                                     {Method::Static, "static"},
+                                                     {Method::MonteCarlo, "montecarlo"},
+                                                     {Method::Mipmapped, "mipmapped"},
+                                                     {Method::Adaptive, "adaptive"},
+                                                     {Method::Directional, "directional"},
+                                                     {Method::Hybrid, "hybrid"}}};
 
 // Of the free device memory that bits and links may take if nothing else is said.
-constexpr double kCacheShare = 1.0 / 3.0;
+constexpr double kLinkMemoryShare = 1.0 / 3.0;
 // And layers.
 constexpr double kLayerShare = 1.0 / 3.0;
 
 } // namespace
 
 Method parseMethod(const std::string& name) {
-    for (const Name& n : kNames) {
+    for (const MethodName& n : kMethodNames) {
         if (name == n.name) return n.method;
     }
     throw UsageError(
@@ -40,7 +40,7 @@ Method parseMethod(const std::string& name) {
 }
 
 const char* methodName(Method method) {
-    for (const Name& n : kNames) {
+    for (const MethodName& n : kMethodNames) {
         if (method == n.method) return n.name;
     }
     return "";
@@ -90,7 +90,7 @@ std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSetting
     SolverSettings complete = settings;
     if (complete.cache.bytes == 0)
         complete.cache.bytes =
-            static_cast<uint64_t>(kCacheShare * static_cast<double>(input.device.freeMemory()));
+            static_cast<uint64_t>(kLinkMemoryShare * static_cast<double>(input.device.freeMemory()));
     if (complete.layers.bytes == 0)
         complete.layers.bytes =
             static_cast<uint64_t>(kLayerShare * static_cast<double>(input.device.freeMemory()));

@@ -8,8 +8,6 @@ namespace {
 
 using shader::kChunk;
 
-constexpr uint32_t kTile = 8; // [texels]
-
 } // namespace
 
 bool TileParts::any(uint32_t chunk, const std::vector<uint8_t>& marks) const {
@@ -31,7 +29,7 @@ TileParts makeTileParts(const PatchSet& patches) {
     uint32_t tile = UINT32_MAX;
     for (size_t i = 0; i < all.size(); ++i) {
         const uint32_t texel = all[i].flags >> 8, size = patches.scene.size;
-        const uint32_t own = texel / size / kTile * size + texel % size / kTile;
+        const uint32_t own = texel / size / kTileTexels * size + texel % size / kTileTexels;
         if (own != tile) here.clear();
         tile = own;
         const uint32_t object = patches.instance[i];

@@ -17,7 +17,7 @@ namespace {
 // All in points of the picture.
 constexpr float kLength = 90, kRing = 80, kScreenRing = 96, kHead = 12, kCentre = 8;
 constexpr float kPlaneFrom = 24, kPlaneTo = 44; // of the squares between two axes
-constexpr float kReach = 7;                     // that a hand is off
+constexpr float kHandReach = 7;                 // that a hand is off
 constexpr int kRingParts = 64;
 // Sine of the angle to the direction of view below which an axis, or a plane seen from its edge, says nothing
 // about depth: 6 degrees.
@@ -176,7 +176,7 @@ glm::vec3 gizmoColor(GizmoHandle handle) {
 
 GizmoHandle gizmoAt(const GizmoPlace& place, const glm::vec2& point) {
     GizmoHandle nearest = GizmoHandle::None;
-    float least = kReach;
+    float least = kHandReach;
     for (const GizmoShape& shape : gizmoShapes(place)) {
         float distance = std::numeric_limits<float>::max();
         for (size_t i = 0; i + 1 < shape.points.size(); ++i)

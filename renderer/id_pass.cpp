@@ -11,7 +11,7 @@ namespace relume {
 namespace {
 
 // Uniforms, as the shaders number them.
-constexpr GLint kViewProjection = 0, kMaterial = 1, kLightmapSize = 2;
+constexpr GLint kIdsViewProjection = 0, kIdsMaterial = 1, kIdsLightmapSize = 2;
 
 } // namespace
 
@@ -41,10 +41,10 @@ void IdPass::draw(const Desc& desc, Output output, const gl::Framebuffer& to) {
         const gl::Program& variant = program(textures, output);
         if (std::find(ready.begin(), ready.end(), &variant) == ready.end()) {
             ready.push_back(&variant);
-            variant.set(kViewProjection, desc.viewProjection);
-            variant.set(kLightmapSize, static_cast<GLuint>(desc.lightmapSize));
+            variant.set(kIdsViewProjection, desc.viewProjection);
+            variant.set(kIdsLightmapSize, static_cast<GLuint>(desc.lightmapSize));
         }
-        variant.set(kMaterial, static_cast<GLuint>(draw->material));
+        variant.set(kIdsMaterial, static_cast<GLuint>(draw->material));
         glBindTextureUnit(0, textures.base);
         issue(desc.scene, variant, *draw);
     }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kParts = 24; // of a circle
 // Of a sign: the radius of its dot; where rays begin and end; what shines in one direction points so far.
-constexpr float kDot = 0.3f, kRayFrom = 0.45f, kRayTo = 0.8f, kArrow = 2.2f, kHead = 0.3f;
+constexpr float kDot = 0.3f, kRayFrom = 0.45f, kRayTo = 0.8f, kArrow = 2.2f, kArrowHead = 0.3f;
 constexpr int kRays = 8;
 
 class Outline {
@@ -31,8 +31,8 @@ public:
     }
 
     void arrow(const glm::vec3& from, const glm::vec3& way, const glm::vec3& side) {
-        const glm::vec3 to = from + way, back = to - kHead / kArrow * way;
-        const glm::vec3 wing = 0.5f * kHead / kArrow * glm::length(way) * side;
+        const glm::vec3 to = from + way, back = to - kArrowHead / kArrow * way;
+        const glm::vec3 wing = 0.5f * kArrowHead / kArrow * glm::length(way) * side;
         line(from, to);
         line(to, back + wing);
         line(to, back - wing);

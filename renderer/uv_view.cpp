@@ -9,10 +9,11 @@ namespace relume {
 namespace {
 
 // Uniforms, as uv.frag and what it includes number them.
-constexpr GLint kWindow = 0, kTargetSize = 1, kMasked = 2, kBackground = 3, kMeterScale = 7, kExposure = 9,
-                kUnit = 10, kRangeLow = 11, kRangeHigh = 12;
-constexpr GLuint kLightmapUnit = 3;
-constexpr float kFarthest = 0.1f, kClosest = 4096.0f; // zoom: a texel of the largest lightmap fills a window
+constexpr GLint kUvWindow = 0, kUvTargetSize = 1, kUvMasked = 2, kUvBackground = 3, kUvMeterScale = 7,
+                kUvExposure = 9, kUvUnit = 10, kUvRangeLow = 11, kUvRangeHigh = 12;
+constexpr GLuint kUvLightmapUnit = 3;
+constexpr float kFarthestZoom = 0.1f,
+                kClosestZoom = 4096.0f; // zoom: a texel of the largest lightmap fills a window
 
 float uvPerPixel(const UvWindow& window, const glm::vec2& size) {
     return 1.0f / (window.zoom * std::max(1.0f, std::min(size.x, size.y)));
@@ -36,7 +37,7 @@ UvWindow pan(const UvWindow& window, const glm::vec2& pixels, const glm::vec2& s
 
 UvWindow zoom(const UvWindow& window, float factor, const glm::vec2& pixel, const glm::vec2& size) {
     UvWindow moved = window;
-    moved.zoom = std::clamp(window.zoom * factor, kFarthest, kClosest);
+    moved.zoom = std::clamp(window.zoom * factor, kFarthestZoom, kClosestZoom);
     moved.centre += uvAt(window, pixel, size) - uvAt(moved, pixel, size);
     return moved;
 }
@@ -73,16 +74,16 @@ void UvView::draw(const LightmapTexture& lightmap, const Settings& settings,
     const glm::vec2 size(target.width, target.height);
     const glm::vec2 corner = uvAt(settings.window, glm::vec2(0.0f), size);
     const gl::Program& shown = program(lightmap, draw);
-    shown.set(kWindow, glm::vec4(corner, glm::vec2(uvPerPixel(settings.window, size))));
-    shown.set(kTargetSize, size);
-    shown.set(kMasked, static_cast<GLuint>(settings.masked ? 1 : 0));
-    shown.set(kBackground, draw.background);
-    shown.set(kMeterScale, 1.0f);
-    shown.set(kExposure, std::exp2(draw.exposure.value_or(0.0f)));
-    shown.set(kUnit, lightmap.unit);
-    shown.set(kRangeLow, draw.rangeLow);
-    shown.set(kRangeHigh, draw.rangeHigh);
-    glBindTextureUnit(kLightmapUnit, lightmap.texture);
+    shown.set(kUvWindow, glm::vec4(corner, glm::vec2(uvPerPixel(settings.window, size))));
+    shown.set(kUvTargetSize, size);
+    shown.set(kUvMasked, static_cast<GLuint>(settings.masked ? 1 : 0));
+    shown.set(kUvBackground, draw.background);
+    shown.set(kUvMeterScale, 1.0f);
+    shown.set(kUvExposure, std::exp2(draw.exposure.value_or(0.0f)));
+    shown.set(kUvUnit, lightmap.unit);
+    shown.set(kUvRangeLow, draw.rangeLow);
+    shown.set(kUvRangeHigh, draw.rangeHigh);
+    glBindTextureUnit(kUvLightmapUnit, lightmap.texture);
     screen_.draw(shown, target.framebuffer, target.width, target.height);
 }
 

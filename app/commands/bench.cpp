@@ -12,14 +12,14 @@
 namespace relume {
 namespace {
 
-struct Options {
+struct BenchOptions {
     std::string scene, device, json;
     std::vector<std::string> tracers;
     std::vector<uint32_t> sizes = {128, 256};
     TraceBenchDesc bench;
 };
 
-std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) {
+std::vector<TracerKind> tracersOf(const BenchOptions& o, const vk::DeviceInfo& info) {
     std::vector<TracerKind> kinds;
     for (const std::string& name : o.tracers) {
         std::string why;
@@ -34,7 +34,7 @@ std::vector<TracerKind> tracersOf(const Options& o, const vk::DeviceInfo& info) 
     return kinds;
 }
 
-void benchTrace(const Options& o) {
+void benchTrace(const BenchOptions& o) {
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
@@ -95,7 +95,7 @@ void addBenchCommand(CLI::App& app) {
     addBenchFramesCommand(*bench);
     addBenchEditsCommand(*bench);
     CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<BenchOptions>();
     trace->add_option("scene", options->scene, "glTF scene")->required();
     trace->add_option("--sizes", options->sizes, "Lightmap edges")
         ->delimiter(',')

@@ -13,13 +13,13 @@
 namespace relume {
 namespace {
 
-struct Options {
+struct BenchEditsOptions {
     EditsBenchDesc bench;
     std::string device, tracer = "auto", json, plot;
 };
 
 // What somebody types to get this report again.
-std::string commandOf(const Options& o) {
+std::string commandOf(const BenchEditsOptions& o) {
     const EditsBenchDesc& b = o.bench;
     std::string text = fmt::format("relume bench edits {} --lights {} --size {} --error {:g} --samples {} "
                                    "--reference-samples {} --runs {} --batch-ms {:g} --tracer {}",
@@ -30,7 +30,7 @@ std::string commandOf(const Options& o) {
     return text;
 }
 
-void runBench(Options o) {
+void runBench(BenchEditsOptions o) {
     const InterruptGuard guard;
     o.bench.tracer = parseTracerKind(o.tracer);
     std::sort(o.bench.lamps.begin(), o.bench.lamps.end());
@@ -64,7 +64,7 @@ void runBench(Options o) {
 void addBenchEditsCommand(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "edits", "What edits of lights and colours cost in a baked scene, against baking it anew");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchEditsOptions>();
     EditsBenchDesc& b = options->bench;
     command->add_option("scene", b.scene, "glTF scene")->required();
     command->add_option("--lights", b.lamps, "Numbers of lamps; as many are added as the scene has too few")

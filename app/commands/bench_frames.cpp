@@ -13,7 +13,7 @@
 namespace relume {
 namespace {
 
-struct Options {
+struct BenchFramesOptions {
     FramesBenchDesc bench;
     std::string json;
 };
@@ -46,7 +46,7 @@ void print(const FramesReport& report) {
     }
 }
 
-void benchFrames(Options o) {
+void benchFrames(BenchFramesOptions o) {
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.bench.bake.shaders.empty()) setShaderFolder(o.bench.bake.shaders);
     const FramesReport report = measureFrames(o.bench);
@@ -75,7 +75,7 @@ void benchFrames(Options o) {
 void addBenchFramesCommand(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "frames", "Frame times while a scene is baked, and what drawing leaves of the bake's speed");
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BenchFramesOptions>();
     FramesBenchDesc& b = options->bench;
     command->add_option("scene", b.bake.scene, "glTF scene")->required();
     addSizeOption(*command, "--lightmap-size", b.bake);

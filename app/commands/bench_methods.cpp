@@ -15,7 +15,7 @@
 namespace relume {
 namespace {
 
-struct Options {
+struct BenchMethodsOptions {
     MethodsBenchDesc bench;
     std::vector<std::string> methods = {"pure",     "static",      "montecarlo", "mipmapped",
                                         "adaptive", "directional", "hybrid"};
@@ -35,7 +35,7 @@ void sortUnique(std::vector<T>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-MethodsBenchDesc resolve(const Options& o) {
+MethodsBenchDesc resolve(const BenchMethodsOptions& o) {
     MethodsBenchDesc desc = o.bench;
     sortUnique(desc.sizes);
     sortUnique(desc.windows);
@@ -61,7 +61,7 @@ std::string joined(const std::vector<T>& values) {
 }
 
 // What somebody types to get this report again.
-std::string commandOf(const Options& o, const MethodsBenchDesc& desc) {
+std::string commandOf(const BenchMethodsOptions& o, const MethodsBenchDesc& desc) {
     std::string text =
         fmt::format("relume bench methods {} --sizes {} --methods {} --windows {} --nodes {} --thresholds {} "
                     "--samples {} "
@@ -74,7 +74,7 @@ std::string commandOf(const Options& o, const MethodsBenchDesc& desc) {
     return text + " --html " + o.html;
 }
 
-void runBench(const Options& o) {
+void runBench(const BenchMethodsOptions& o) {
     const InterruptGuard guard;
     const MethodsBenchDesc desc = resolve(o);
     checkFileWritable(o.html, 0);
@@ -106,7 +106,7 @@ void runBench(const Options& o) {
         std::cout << json << std::flush;
 }
 
-void addSweep(CLI::App& command, Options& o) {
+void addSweep(CLI::App& command, BenchMethodsOptions& o) {
     MethodsBenchDesc& bench = o.bench;
     bench.sizes = {64, 128, 256};
     bench.windows = {1, 2, 4, 8, 16};
@@ -152,8 +152,8 @@ void addSweep(CLI::App& command, Options& o) {
 void addBenchMethodsCommand(CLI::App& bench) {
     CLI::App* command = bench.add_subcommand(
         "methods", "Time and error of every method over sizes and settings, as a report");
-    auto options = std::make_shared<Options>();
-    Options& o = *options;
+    auto options = std::make_shared<BenchMethodsOptions>();
+    BenchMethodsOptions& o = *options;
     command->add_option("scene", o.bench.scene, "glTF scene")->required();
     command->add_option("--html", o.html, "Report to write: one page with plots and pictures")->required();
     command->add_option("--json", o.json, "Write the figures to this file, - for standard output");

@@ -11,8 +11,8 @@ namespace relume {
 namespace {
 
 // In points.
-constexpr float kIcon = 13.0f;  // radius
-constexpr float kReach = 12.0f; // that a click may be off
+constexpr float kIcon = 13.0f;       // radius
+constexpr float kClickReach = 12.0f; // that a click may be off
 constexpr float kThin = 1.3f, kThick = 2.2f, kShade = 2.0f;
 constexpr glm::vec3 kSelected(1.0f, 0.55f, 0.1f), kHeld(1.0f, 0.9f, 0.3f), kDark(0.45f); // as displayed
 constexpr float kWhitened = 0.5f; // of an icon's colour: a deep blue would not be seen
@@ -105,7 +105,7 @@ std::optional<GizmoPlace> gizmoOf(const LightStage& stage) {
 
 std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point) {
     std::optional<LightKey> found;
-    float least = kReach;
+    float least = kClickReach;
     for (uint32_t i = 0; i < stage.edits.lights.size() && stage.view.lightIcons; ++i) {
         const auto place = project(stage.screen, glm::vec3(stage.edits.lights[i].transform[3]));
         const float distance = place ? glm::distance(*place, point) : std::numeric_limits<float>::max();

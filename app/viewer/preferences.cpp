@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kLeastEdge = 320, kMostEdge = 16384; // of a window [screen coordinates]
-
 /// Reads fields of an object; those of another type, and those out of range, are left out and counted.
 class Reader {
 public:
@@ -182,8 +180,8 @@ Preferences readPreferences(const std::string& path) {
     if (!json.is_object()) ++wrong;
     if (const Json* window = reader.find("window")) {
         const Reader edges(*window, wrong);
-        edges.number("width", preferences.width, kLeastEdge, kMostEdge);
-        edges.number("height", preferences.height, kLeastEdge, kMostEdge);
+        edges.number("width", preferences.width, kLeastWindowEdge, kMostWindowEdge);
+        edges.number("height", preferences.height, kLeastWindowEdge, kMostWindowEdge);
     }
     reader.number("panelWidth", preferences.panelWidth, 100.0f, 4000.0f);
     reader.number("uiScale", preferences.uiScale, 0.5f, 4.0f);

@@ -11,6 +11,8 @@
 
 namespace relume {
 
+constexpr uint32_t kLeastWindowEdge = 320, kMostWindowEdge = 16384; // [screen coordinates]
+
 /// A camera that the user wants to come back to.
 struct Bookmark {
     std::string name;

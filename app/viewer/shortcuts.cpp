@@ -41,11 +41,11 @@ void addEditShortcuts(std::vector<Shortcut>& all) {
         {Action::ShowObjects, 0, GLFW_KEY_H, kAlt, "Move", "Show all objects"},
     };
     all.insert(all.end(), edits.begin(), edits.end());
-    constexpr std::array kLights = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
-    static_assert(kLights.size() == kAddSky + 1);
+    constexpr std::array kLightTypes = {"point light", "spot", "sun", "rectangle", "disc", "sky"};
+    static_assert(kLightTypes.size() == kAddSky + 1);
     for (int i = 0; i <= kAddSky; ++i)
         all.push_back({Action::AddLight, i, GLFW_KEY_1 + i, kCtrl, "Light",
-                       std::string("Add ") + kLights[static_cast<size_t>(i)]});
+                       std::string("Add ") + kLightTypes[static_cast<size_t>(i)]});
 }
 
 std::vector<Shortcut> makeShortcuts() {

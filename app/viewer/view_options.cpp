@@ -11,15 +11,14 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kLeastEdge = 320, kMostEdge = 16384; // of a window [screen coordinates]
-
 uint32_t parseEdge(const std::string& all, std::string_view part) {
     uint32_t value = 0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error == std::errc() && end == part.data() + part.size() && value >= kLeastEdge && value <= kMostEdge)
+    if (error == std::errc() && end == part.data() + part.size() && value >= kLeastWindowEdge &&
+        value <= kMostWindowEdge)
         return value;
     throw UsageError("--window-size: '" + all + "' is no size: write WIDTHxHEIGHT, each from " +
-                     std::to_string(kLeastEdge) + " to " + std::to_string(kMostEdge));
+                     std::to_string(kLeastWindowEdge) + " to " + std::to_string(kMostWindowEdge));
 }
 
 bool isScene(std::string name) {

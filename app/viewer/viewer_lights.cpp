@@ -19,7 +19,7 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-constexpr float kStrengthStep = 1.18920712f; // of a key press, 2^(1/4)
+constexpr float kStrengthKeyStep = 1.18920712f; // of a key press, 2^(1/4)
 
 } // namespace
 
@@ -122,7 +122,7 @@ void Viewer::performLight(Action action, int argument) {
         return editOnce("Mute of " + source.name, next);
     case Action::LightStrength: {
         LightPower changed = powerOf(next.edits, key);
-        changed.intensity *= argument > 0 ? kStrengthStep : 1.0f / kStrengthStep;
+        changed.intensity *= argument > 0 ? kStrengthKeyStep : 1.0f / kStrengthKeyStep;
         setPower(next.edits, key, changed);
         return editOnce("Intensity of " + source.name, next);
     }

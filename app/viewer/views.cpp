@@ -8,7 +8,7 @@
 namespace relume {
 namespace {
 
-constexpr int kShift = GLFW_MOD_SHIFT;
+constexpr int kWithShift = GLFW_MOD_SHIFT;
 
 ViewEntry ofScene(const char* name, const char* title, const char* tells, View view, int key, int mods = 0) {
     const bool reads = readsLightmap(view);
@@ -52,24 +52,24 @@ std::vector<ViewEntry> makeEntries() {
         ofMap("layer", "Light alone", "the selected light and nothing else", MapContent::Layer, View::Lit,
               GLFW_KEY_L, GLFW_MOD_ALT),
         ofMap("leaves", "Quad-tree", "leaves of the adaptive method", MapContent::Leaves, View::InspectLeaves,
-              GLFW_KEY_1, kShift),
+              GLFW_KEY_1, kWithShift),
         ofMap("seen", "Visible from here", "patches that the clicked one sees, and its links",
-              MapContent::Seen, View::InspectMask, GLFW_KEY_2, kShift),
+              MapContent::Seen, View::InspectMask, GLFW_KEY_2, kWithShift),
         {.name = "voxels",
          .title = "Voxels",
          .tells = "what marching through voxels meets",
          .view = View::Lit,
          .voxels = true,
          .key = GLFW_KEY_3,
-         .mods = kShift},
-        ofScene("checker", "Patch checker", "the lightmap's texels", View::Checker, GLFW_KEY_4, kShift),
-        ofScene("density", "Texel density", "texels per metre", View::Density, GLFW_KEY_5, kShift),
+         .mods = kWithShift},
+        ofScene("checker", "Patch checker", "the lightmap's texels", View::Checker, GLFW_KEY_4, kWithShift),
+        ofScene("density", "Texel density", "texels per metre", View::Density, GLFW_KEY_5, kWithShift),
         ofScene("coverage", "Coverage", "patches, filled and empty texels", View::Coverage, GLFW_KEY_6,
-                kShift),
-        ofScene("emission", "Emission", "what surfaces emit", View::Emission, GLFW_KEY_7, kShift),
-        ofScene("normal", "Normals", "shading normals of the model", View::Normal, GLFW_KEY_8, kShift),
-        ofScene("material", "Materials", "a colour for each", View::Material, GLFW_KEY_9, kShift),
-        ofScene("instance", "Instances", "a colour for each", View::Instance, GLFW_KEY_0, kShift),
+                kWithShift),
+        ofScene("emission", "Emission", "what surfaces emit", View::Emission, GLFW_KEY_7, kWithShift),
+        ofScene("normal", "Normals", "shading normals of the model", View::Normal, GLFW_KEY_8, kWithShift),
+        ofScene("material", "Materials", "a colour for each", View::Material, GLFW_KEY_9, kWithShift),
+        ofScene("instance", "Instances", "a colour for each", View::Instance, GLFW_KEY_0, kWithShift),
     };
 }
 

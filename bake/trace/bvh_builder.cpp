@@ -24,7 +24,7 @@ constexpr float kNodeCost = 1.5f;   // of visiting a node, in triangle tests: me
 constexpr uint32_t kTaskMin = 8192; // triangles below which a thread of its own costs more than it saves
 constexpr uint32_t kTaskLevels = 4; // levels that may fork: 16 pieces, enough to even out on a few cores
 
-struct Item {
+struct BvhItem {
     BvhBox box;
     float area = 0; // [m^2], twice the triangle's
     uint32_t triangle = 0;
@@ -61,7 +61,7 @@ struct Bin {
     uint32_t count = 0;
 };
 
-void add(BvhContent& content, const Item& item) {
+void add(BvhContent& content, const BvhItem& item) {
     content.box.add(item.box), content.area += item.area;
 }
 
@@ -81,9 +81,9 @@ struct Piece {
     uint32_t depth = 0;
 };
 
-class Builder {
+class BvhBuilder {
 public:
-    Builder(std::vector<Item>& items, float margin) : items_(items), margin_(margin) {}
+    BvhBuilder(std::vector<BvhItem>& items, float margin) : items_(items), margin_(margin) {}
 
     // Adds a tree over items [first, last) and returns its root's number: that of a node or, negative, of a
     // leaf.
@@ -91,15 +91,15 @@ public:
     BvhContent contentOf(uint32_t first, uint32_t last) const;
 
 private:
-    static Split bestSplit(std::span<const Item> items, const Binning& binning);
+    static Split bestSplit(std::span<const BvhItem> items, const Binning& binning);
     static void sweep(std::span<const Bin> bins, int axis, Split& best);
     uint32_t part(uint32_t first, uint32_t last, uint32_t level);
 
-    std::vector<Item>& items_;
+    std::vector<BvhItem>& items_;
     float margin_; // [m], added around boxes
 };
 
-void Builder::sweep(std::span<const Bin> bins, int axis, Split& best) {
+void BvhBuilder::sweep(std::span<const Bin> bins, int axis, Split& best) {
     std::array<float, kBins> rightCost;
     BvhBox box;
     uint32_t count = 0;
@@ -119,9 +119,9 @@ void Builder::sweep(std::span<const Bin> bins, int axis, Split& best) {
     }
 }
 
-Split Builder::bestSplit(std::span<const Item> items, const Binning& binning) {
+Split BvhBuilder::bestSplit(std::span<const BvhItem> items, const Binning& binning) {
     std::array<std::array<Bin, kBins>, 3> bins;
-    for (const Item& item : items) {
+    for (const BvhItem& item : items) {
         const glm::vec3 centre = item.twiceCentre();
         for (int axis = 0; axis < 3; ++axis) {
             Bin& bin = bins[size_t(axis)][binning.bin(centre[axis], axis)];
@@ -137,11 +137,11 @@ Split Builder::bestSplit(std::span<const Item> items, const Binning& binning) {
 
 // Parts the items of a node in two and returns where the second part begins; `first` if they had better stay
 // together.
-uint32_t Builder::part(uint32_t first, uint32_t last, uint32_t level) {
+uint32_t BvhBuilder::part(uint32_t first, uint32_t last, uint32_t level) {
     const uint32_t count = last - first;
-    const std::span<Item> items(&items_[first], count);
+    const std::span<BvhItem> items(&items_[first], count);
     BvhBox box, centres;
-    for (const Item& item : items) {
+    for (const BvhItem& item : items) {
         box.add(item.box);
         centres.add(item.twiceCentre());
     }
@@ -151,7 +151,7 @@ uint32_t Builder::part(uint32_t first, uint32_t last, uint32_t level) {
     const Split split = deep ? Split{} : bestSplit(items, binning);
     if (count <= kLeafMax && box.halfArea() * (float(count) - kNodeCost) <= split.cost) return first;
     if (split.axis >= 0) {
-        const auto middle = std::partition(items.begin(), items.end(), [&](const Item& item) {
+        const auto middle = std::partition(items.begin(), items.end(), [&](const BvhItem& item) {
             return binning.bin(item.twiceCentre()[split.axis], split.axis) < split.bin;
         });
         return first + uint32_t(middle - items.begin());
@@ -159,14 +159,14 @@ uint32_t Builder::part(uint32_t first, uint32_t last, uint32_t level) {
     const glm::vec3 extent = centres.hi - centres.lo;
     const int widest = extent.x >= extent.y ? (extent.x >= extent.z ? 0 : 2) : (extent.y >= extent.z ? 1 : 2);
     std::nth_element(items.begin(), items.begin() + count / 2, items.end(),
-                     [&](const Item& a, const Item& b) {
+                     [&](const BvhItem& a, const BvhItem& b) {
                          const float x = a.twiceCentre()[widest], y = b.twiceCentre()[widest];
                          return x != y ? x < y : a.triangle < b.triangle;
                      });
     return first + count / 2;
 }
 
-BvhContent Builder::contentOf(uint32_t first, uint32_t last) const {
+BvhContent BvhBuilder::contentOf(uint32_t first, uint32_t last) const {
     BvhContent content;
     for (uint32_t i = first; i < last; ++i)
         add(content, items_[i]);
@@ -186,7 +186,7 @@ int append(Piece& piece, const Piece& subtree, int root) {
     return base + root;
 }
 
-int Builder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t level) {
+int BvhBuilder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t level) {
     const uint32_t middle = last - first > 1 ? part(first, last, level) : first;
     if (middle == first) return ~int(first << 3 | (last - first));
     const size_t index = piece.nodes.size();
@@ -206,8 +206,8 @@ int Builder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t level) 
     return int(index);
 }
 
-std::vector<Item> itemsOf(const WorldMesh& mesh, std::span<const uint32_t> triangles) {
-    std::vector<Item> items(triangles.size());
+std::vector<BvhItem> itemsOf(const WorldMesh& mesh, std::span<const uint32_t> triangles) {
+    std::vector<BvhItem> items(triangles.size());
     for (uint32_t i = 0; i < items.size(); ++i) {
         items[i].triangle = triangles[i];
         const glm::vec3* corner = &mesh.positions[size_t(triangles[i]) * 3];
@@ -275,8 +275,8 @@ Bvh buildBvh(const WorldMesh& mesh) {
 
 Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc) {
     ASSERT(!desc.triangles.empty() && desc.triangles.size() < kMostBvhTriangles);
-    std::vector<Item> items = itemsOf(mesh, desc.triangles);
-    Builder builder(items, desc.margin);
+    std::vector<BvhItem> items = itemsOf(mesh, desc.triangles);
+    BvhBuilder builder(items, desc.margin);
     Piece piece;
     piece.nodes.reserve(items.size());
     const int root = builder.build(piece, 0, uint32_t(items.size()), desc.level);
@@ -288,7 +288,7 @@ Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc) {
     Bvh bvh{std::move(piece.nodes), {}, piece.depth};
     ASSERT(bvh.depth <= shader::kBvhDepth);
     bvh.triangles.reserve(items.size());
-    for (const Item& item : items) {
+    for (const BvhItem& item : items) {
         const glm::vec3* corner = &mesh.positions[size_t(item.triangle) * 3];
         const uint32_t masked = item.triangle >= mesh.opaqueCount ? 0x80000000u : 0u;
         bvh.triangles.push_back({corner[0], item.triangle | masked, corner[1], 0, corner[2], 0});

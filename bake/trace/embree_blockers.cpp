@@ -26,7 +26,7 @@ struct Pyramid {
 
 // False if the origin lies in the triangle's plane, as near as rounding lets tell.
 bool makePyramid(const glm::vec3* corner, const glm::vec3& origin, Pyramid& pyramid) {
-    constexpr float kRounding = 16 * std::numeric_limits<float>::epsilon();
+    constexpr float kPyramidRounding = 16 * std::numeric_limits<float>::epsilon();
     const glm::vec3 a = corner[0] - origin, b = corner[1] - origin, c = corner[2] - origin;
     const glm::vec3 plane = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
     const float distance = glm::dot(plane, a);
@@ -37,7 +37,7 @@ bool makePyramid(const glm::vec3* corner, const glm::vec3& origin, Pyramid& pyra
                       side * plane};
     for (size_t k = 0; k < 4; ++k) {
         const glm::vec3 n = glm::abs(pyramid.normal[k]);
-        pyramid.limit[k] = kRounding * reach * (n.x + n.y + n.z);
+        pyramid.limit[k] = kPyramidRounding * reach * (n.x + n.y + n.z);
     }
     const bool clear = std::abs(distance) > pyramid.limit[3];
     pyramid.limit[3] += std::abs(distance);

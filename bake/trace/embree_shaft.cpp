@@ -10,7 +10,7 @@ using shader::kChunk;
 
 namespace {
 
-constexpr float kRounding =
+constexpr float kShaftRounding =
     16 * std::numeric_limits<float>::epsilon(); // of sums of a few products, times their reach
 
 // Nodes looked at before giving up: by then the search costs as much as the rays it could save.
@@ -48,7 +48,7 @@ void Shaft::addPlanes(const EndBox& a, const EndBox& b) {
             float* const n[3] = {nx_.data(), ny_.data(), nz_.data()};
             n[u][count] = normal.x;
             n[v][count] = normal.y;
-            d_[count++] = d + kRounding * reach_;
+            d_[count++] = d + kShaftRounding * reach_;
         }
     }
 }
@@ -81,7 +81,7 @@ bool Shaft::missesTriangle(const shader::BvhTriangle& t) const {
     const glm::vec3 normal = glm::cross(t.p1 - t.p0, t.p2 - t.p0);
     const float height = glm::dot(normal, t.p0);
     const float size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-    const float margin = kRounding * size * std::max(reach_, largest(glm::abs(t.p0)));
+    const float margin = kShaftRounding * size * std::max(reach_, largest(glm::abs(t.p0)));
     float low = std::numeric_limits<float>::infinity(), high = -low;
     for (const PatchChunk* chunk : {&a_, &b_}) {
         for (uint32_t j = 0; j < kChunk; ++j) {

@@ -14,7 +14,6 @@ namespace {
 
 using shader::kChunk;
 constexpr uint32_t kSamplesPerInvocation = 8; // lib/closest.glsl
-constexpr uint32_t kTargetsPerWord = 32;      // lib/segments.glsl
 
 uint32_t segmentWords(const SegmentWork& work) {
     return (work.targetCount + kTargetsPerWord - 1) / kTargetsPerWord;

@@ -9,28 +9,28 @@
 namespace relume {
 namespace {
 
-struct Name {
+struct TracerName {
     TracerKind kind;
     const char* name;
 };
-constexpr std::array<Name, 6> kNames = {{{TracerKind::Auto, "auto"},
-                                         {TracerKind::Rtp, "rtp"},
-                                         {TracerKind::Query, "query"},
-                                         {TracerKind::Bvh, "bvh"},
-                                         {TracerKind::Embree, "embree"},
-                                         {TracerKind::Voxel, "voxel"}}};
+constexpr std::array<TracerName, 6> kTracerNames = {{{TracerKind::Auto, "auto"},
+                                                     {TracerKind::Rtp, "rtp"},
+                                                     {TracerKind::Query, "query"},
+                                                     {TracerKind::Bvh, "bvh"},
+                                                     {TracerKind::Embree, "embree"},
+                                                     {TracerKind::Voxel, "voxel"}}};
 
 } // namespace
 
 TracerKind parseTracerKind(const std::string& name) {
-    for (const Name& n : kNames) {
+    for (const TracerName& n : kTracerNames) {
         if (name == n.name) return n.kind;
     }
     throw UsageError("--tracer " + name + ": unknown; choose auto, rtp, query, bvh, embree or voxel");
 }
 
 const char* tracerName(TracerKind kind) {
-    for (const Name& n : kNames) {
+    for (const TracerName& n : kTracerNames) {
         if (kind == n.kind) return n.name;
     }
     return "";

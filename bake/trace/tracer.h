@@ -85,6 +85,8 @@ struct SegmentWork {
         nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
 };
 
+constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/segments.glsl
+
 /// Links of `closest` that were traced before objects moved: those of patches that are others now, and those
 /// whose ray meets a box in which an object was or is, are traced again; all others stay as they are.
 struct RetraceWork {

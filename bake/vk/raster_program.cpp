@@ -7,7 +7,7 @@ namespace relume::vk {
 
 namespace {
 
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+constexpr VkShaderStageFlags kRasterStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 } // namespace
 
@@ -28,7 +28,7 @@ RasterProgram::RasterProgram(const Device& device, const Desc& desc, std::span<c
     try {
         createDescriptors(std::max(1u, desc.textureCount), textures);
         createRenderPass(desc.formats);
-        layout_ = createLayout(device, kStages, setLayout_);
+        layout_ = createLayout(device, kRasterStages, setLayout_);
         createPipeline(desc);
     } catch (...) {
         release();
@@ -43,8 +43,8 @@ void RasterProgram::createDescriptors(uint32_t count, std::span<const BoundTextu
         VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO};
     flags.bindingCount = 1;
     flags.pBindingFlags = &flag;
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count, kStages,
-                                               nullptr};
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count,
+                                               kRasterStages, nullptr};
     VkDescriptorSetLayoutCreateInfo layout{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, &flags};
     layout.bindingCount = 1;
     layout.pBindings = &binding;
@@ -191,7 +191,7 @@ void RasterProgram::drawBytes(VkCommandBuffer cmd, Bytes push, std::span<const I
     vkCmdSetScissor(cmd, 0, 1, &begin.renderArea);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set_, 0, nullptr);
-    vkCmdPushConstants(cmd, layout_, kStages, 0, push.size, push.data);
+    vkCmdPushConstants(cmd, layout_, kRasterStages, 0, push.size, push.data);
     vkCmdDraw(cmd, vertexCount, 1, 0, 0);
     vkCmdEndRenderPass(cmd);
 }

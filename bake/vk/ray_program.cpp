@@ -9,8 +9,9 @@ namespace relume::vk {
 
 namespace {
 
-constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
-                                       VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
+constexpr VkShaderStageFlags kRayStages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
+                                          VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR |
+                                          VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
 constexpr uint32_t kGroups = 3; // raygen, miss, hit
 
 VkRayTracingShaderGroupCreateInfoKHR makeGroup(VkRayTracingShaderGroupTypeKHR type) {
@@ -41,7 +42,7 @@ RayProgram::RayProgram(const Device& device, const Desc& desc) : device_(&device
 }
 
 void RayProgram::create(const Desc& desc) {
-    layout_ = createLayout(*device_, kStages);
+    layout_ = createLayout(*device_, kRayStages);
     std::vector<std::unique_ptr<ShaderStage>> stages;
     std::vector<VkPipelineShaderStageCreateInfo> infos;
     const auto add = [&](const std::string& shader, VkShaderStageFlagBits stage, const Constants& constants) {
@@ -123,7 +124,7 @@ void RayProgram::traceBytes(VkCommandBuffer cmd, const void* push, uint32_t size
     ASSERT(uint64_t{width} * height <= device_->rayTracing().maxRayDispatchInvocationCount);
     const VkStridedDeviceAddressRegionKHR callable{};
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pipeline_);
-    vkCmdPushConstants(cmd, layout_, kStages, 0, size, push);
+    vkCmdPushConstants(cmd, layout_, kRayStages, 0, size, push);
     vkCmdTraceRaysKHR(cmd, &raygenRegion_, &missRegion_, &hitRegion_, &callable, width, height, 1);
 }
 

@@ -164,16 +164,16 @@ private:
     std::vector<uint32_t> units_; // that are compared
 };
 
-struct Case {
+struct AgreementCase {
     const char* scene;
     float scale;
     uint32_t size; // lightmap edge [texels]
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const AgreementCase& c, std::ostream* out) {
     *out << c.scene << " x " << c.scale << " at " << c.size;
 }
 
-class Agreement : public testing::TestWithParam<Case> {};
+class Agreement : public testing::TestWithParam<AgreementCase> {};
 
 vk::Buffer testDisc() {
     const std::vector<glm::dvec2> points = evenRings(largestEmptyCircleDisc(kDiscPoints));
@@ -199,7 +199,7 @@ void expectAlike(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b,
 } // namespace
 
 TEST_P(Agreement, OfAllTracers) {
-    const Case& c = GetParam();
+    const AgreementCase& c = GetParam();
     Comparison comparison(scaled(generateScene(c.scene), c.scale), c.size);
     const std::vector<TracerKind> kinds = tracersOfTestDevice();
     std::vector<Visibility> pairs;
@@ -235,10 +235,11 @@ TEST_P(Agreement, OfAllTracers) {
 
 // The scenes' charts lie on multiples of 1/128: at other sizes texel centres lie on edges, where a patch of
 // the floor is in the plane of the wall and what it sees is a matter of the last bit.
-INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
-                         testing::Values(Case{"cornell_geom", 1.0f, 128}, Case{"cornell_layers", 1.0f, 128},
-                                         Case{"cornell_statue", 1.0f, 128}, Case{"gallery", 1.0f, 128},
-                                         Case{"octagon", 1.0f, 128}, Case{"cornell_geom", 0.01f, 128},
-                                         Case{"cornell_geom", 1000.0f, 128}));
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Agreement,
+    testing::Values(AgreementCase{"cornell_geom", 1.0f, 128}, AgreementCase{"cornell_layers", 1.0f, 128},
+                    AgreementCase{"cornell_statue", 1.0f, 128}, AgreementCase{"gallery", 1.0f, 128},
+                    AgreementCase{"octagon", 1.0f, 128}, AgreementCase{"cornell_geom", 0.01f, 128},
+                    AgreementCase{"cornell_geom", 1000.0f, 128}));
 
 } // namespace relume

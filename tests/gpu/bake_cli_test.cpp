@@ -4,6 +4,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -14,7 +15,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 namespace relume {
 namespace {
@@ -42,10 +42,6 @@ protected:
         return runRelume(arguments);
     }
     std::string path(const std::string& name) const { return folder_.path(name); }
-    static std::string bytesOf(const std::string& name) {
-        std::ifstream in(name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
     /// The scene and nothing else, or these too.
     void expectFiles(Strings names) const {
         names.push_back("room.glb");
@@ -56,10 +52,6 @@ protected:
     TemporaryFolder folder_;
     const std::string scene_ = folder_.path("room.glb");
 };
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 } // namespace
 

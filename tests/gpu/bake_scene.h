@@ -11,6 +11,8 @@
 
 namespace relume {
 
+inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
+
 /// Texels of a lightmap that one surface of a test scene covers.
 struct TexelRect {
     uint32_t x = 0, y = 0, width = 0, height = 0;

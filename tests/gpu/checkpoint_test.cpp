@@ -7,6 +7,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <random>
 
 namespace relume {
@@ -25,25 +25,16 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-struct Case {
+struct ResumedCase {
     const char* name;
     BakeDesc desc;
 };
 
-class ResumedSolver : public testing::TestWithParam<Case> {};
+class ResumedSolver : public testing::TestWithParam<ResumedCase> {};
 
 void expectSameBytes(const std::vector<float>& a, const std::vector<float>& b, const std::string& what) {
     ASSERT_EQ(a.size(), b.size());
     EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0) << what;
-}
-
-std::string bytesOf(const std::string& name) {
-    std::ifstream in(name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 bool resumed(const ProcessResult& r) {
@@ -91,22 +82,26 @@ TEST_P(ResumedSolver, GivesTheSameBytes) {
 INSTANTIATE_TEST_SUITE_P(
     Methods, ResumedSolver,
     testing::Values(
-        Case{"hybrid", {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
-        Case{"hybridSamples", {.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 64}},
-        Case{"hybridPasses", {.size = 48, .passes = 4, .method = Method::Hybrid, .samples = 48}},
-        Case{"footprint",
-             {.size = 48,
-              .passes = 0,
-              .error = 0.03,
-              .method = Method::Hybrid,
-              .smooth = true,
-              .footprint = true}},
-        Case{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
-        Case{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
-        Case{"montecarlo", {.size = 64, .passes = 3, .method = Method::MonteCarlo, .pairs = {.window = 2}}},
-        Case{"mipmapped", {.size = 64, .passes = 3, .method = Method::Mipmapped, .pairs = {.window = 2}}},
-        Case{"adaptive", {.size = 64, .passes = 3, .method = Method::Adaptive, .pairs = {.threshold = 0.02}}},
-        Case{"pureError", {.size = 32, .passes = 0, .error = 0.05, .method = Method::Pure}}),
+        ResumedCase{"hybrid",
+                    {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
+        ResumedCase{"hybridSamples", {.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 64}},
+        ResumedCase{"hybridPasses", {.size = 48, .passes = 4, .method = Method::Hybrid, .samples = 48}},
+        ResumedCase{"footprint",
+                    {.size = 48,
+                     .passes = 0,
+                     .error = 0.03,
+                     .method = Method::Hybrid,
+                     .smooth = true,
+                     .footprint = true}},
+        ResumedCase{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
+        ResumedCase{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
+        ResumedCase{"montecarlo",
+                    {.size = 64, .passes = 3, .method = Method::MonteCarlo, .pairs = {.window = 2}}},
+        ResumedCase{"mipmapped",
+                    {.size = 64, .passes = 3, .method = Method::Mipmapped, .pairs = {.window = 2}}},
+        ResumedCase{"adaptive",
+                    {.size = 64, .passes = 3, .method = Method::Adaptive, .pairs = {.threshold = 0.02}}},
+        ResumedCase{"pureError", {.size = 32, .passes = 0, .error = 0.05, .method = Method::Pure}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 namespace {

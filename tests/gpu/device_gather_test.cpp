@@ -8,28 +8,31 @@
 namespace relume {
 namespace {
 
-struct Case {
+struct DeviceGatherCase {
     const char* name;
     BakeDesc desc;
     double error; // relRMSE: rounding, of links also that of light in 8 bytes
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const DeviceGatherCase& c, std::ostream* out) {
     *out << c.name;
 }
 
-class DeviceGather : public testing::TestWithParam<Case> {};
+class DeviceGather : public testing::TestWithParam<DeviceGatherCase> {};
 
 INSTANTIATE_TEST_SUITE_P(
     All, DeviceGather,
     testing::Values(
-        Case{"pure", {.passes = 2}, 1e-6},
-        Case{"montecarlo", {.passes = 2, .method = Method::MonteCarlo, .pairs = {.window = 4}}, 1e-6},
-        Case{"mipmapped", {.passes = 2, .method = Method::Mipmapped, .pairs = {.window = 2}}, 1e-6},
-        Case{"layers", {.passes = 3, .method = Method::Hybrid, .samples = 32, .layers = true}, 2e-5},
-        Case{"hybrid", {.passes = 3, .method = Method::Hybrid, .samples = 32}, 2e-5},
-        Case{"directional",
-             {.passes = 3, .method = Method::Directional, .samples = 32, .indirectScale = 2},
-             2e-5}),
+        DeviceGatherCase{"pure", {.passes = 2}, 1e-6},
+        DeviceGatherCase{
+            "montecarlo", {.passes = 2, .method = Method::MonteCarlo, .pairs = {.window = 4}}, 1e-6},
+        DeviceGatherCase{
+            "mipmapped", {.passes = 2, .method = Method::Mipmapped, .pairs = {.window = 2}}, 1e-6},
+        DeviceGatherCase{
+            "layers", {.passes = 3, .method = Method::Hybrid, .samples = 32, .layers = true}, 2e-5},
+        DeviceGatherCase{"hybrid", {.passes = 3, .method = Method::Hybrid, .samples = 32}, 2e-5},
+        DeviceGatherCase{"directional",
+                         {.passes = 3, .method = Method::Directional, .samples = 32, .indirectScale = 2},
+                         2e-5}),
     [](const auto& test) { return std::string(test.param.name); });
 
 } // namespace

@@ -10,8 +10,6 @@
 namespace relume {
 namespace {
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
 // A room whose floor shines in stripes two texels wide: fine detail, of which few directions catch more or
 // less by chance.
 Scene stripedRoom(uint32_t size) {
@@ -36,20 +34,21 @@ Scene stripedRoom(uint32_t size) {
     return scene;
 }
 
-struct Case {
+struct FootprintCase {
     const char* name;
     BakeDesc desc;
 };
 
 } // namespace
 
-class Footprint : public testing::TestWithParam<Case> {};
+class Footprint : public testing::TestWithParam<FootprintCase> {};
 INSTANTIATE_TEST_SUITE_P(
     All, Footprint,
-    testing::Values(Case{"directional", {.method = Method::Directional, .footprint = true}},
-                    Case{"hybrid", {.method = Method::Hybrid, .footprint = true}},
-                    Case{"smoothCoarse",
-                         {.method = Method::Hybrid, .smooth = true, .indirectScale = 2, .footprint = true}}),
+    testing::Values(FootprintCase{"directional", {.method = Method::Directional, .footprint = true}},
+                    FootprintCase{"hybrid", {.method = Method::Hybrid, .footprint = true}},
+                    FootprintCase{
+                        "smoothCoarse",
+                        {.method = Method::Hybrid, .smooth = true, .indirectScale = 2, .footprint = true}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(Footprint, FurnaceEndsAtTheSeriesLimit) {

@@ -29,7 +29,7 @@ class MessageListener final : public testing::EmptyTestEventListener {
     uint32_t seen_ = 0;
 };
 
-[[maybe_unused]] const bool registered = [] {
+[[maybe_unused]] const bool glRegistered = [] {
     testing::AddGlobalTestEnvironment(new ContextLifetime);
     testing::UnitTest::GetInstance()->listeners().Append(new MessageListener);
     return true;

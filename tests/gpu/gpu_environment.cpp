@@ -46,7 +46,7 @@ class ValidationListener final : public testing::EmptyTestEventListener {
 };
 
 // gtest_main has no place to register things; it takes what is there before it starts.
-[[maybe_unused]] const bool registered = [] {
+[[maybe_unused]] const bool gpuRegistered = [] {
     testing::AddGlobalTestEnvironment(new DeviceLifetime);
     testing::UnitTest::GetInstance()->listeners().Append(new ValidationListener);
     return true;

@@ -11,14 +11,12 @@
 namespace relume {
 namespace {
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
-struct Case {
+struct IndirectScaleCase {
     Method method;
     uint32_t scale;
 };
 
-std::string caseName(const testing::TestParamInfo<Case>& info) {
+std::string caseName(const testing::TestParamInfo<IndirectScaleCase>& info) {
     return std::string(methodName(info.param.method)) + std::to_string(info.param.scale);
 }
 
@@ -29,10 +27,12 @@ glm::vec2 texelOf(const shader::Patch& patch, uint32_t size) {
 
 } // namespace
 
-class IndirectScale : public testing::TestWithParam<Case> {};
+class IndirectScale : public testing::TestWithParam<IndirectScaleCase> {};
 INSTANTIATE_TEST_SUITE_P(All, IndirectScale,
-                         testing::Values(Case{Method::Directional, 2}, Case{Method::Directional, 4},
-                                         Case{Method::Hybrid, 2}, Case{Method::Hybrid, 4}),
+                         testing::Values(IndirectScaleCase{Method::Directional, 2},
+                                         IndirectScaleCase{Method::Directional, 4},
+                                         IndirectScaleCase{Method::Hybrid, 2},
+                                         IndirectScaleCase{Method::Hybrid, 4}),
                          caseName);
 
 TEST_P(IndirectScale, FurnaceEndsAtTheSeriesLimit) {

@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 128; // the scenes' charts lie on multiples of 1/128
+constexpr uint32_t kScaledSize = 128; // the scenes' charts lie on multiples of 1/128
 
 /// The instance that each patch belongs to.
 std::vector<uint32_t> instanceOfPatch(const PatchSet& patches) {
@@ -42,12 +42,12 @@ class Scale : public testing::TestWithParam<float> {};
 
 TEST_P(Scale, GivesTheSameMap) {
     const Scene scene = generateScene("cornell_geom");
-    const Baked metres = bakeScene(scene, {.size = kSize, .passes = 2});
-    const Baked other = bakeScene(scaled(scene, GetParam()), {.size = kSize, .passes = 2});
+    const Baked metres = bakeScene(scene, {.size = kScaledSize, .passes = 2});
+    const Baked other = bakeScene(scaled(scene, GetParam()), {.size = kScaledSize, .passes = 2});
     EXPECT_EQ(metres.patches.count, other.patches.count);
     EXPECT_EQ(metres.invalid, other.invalid);
     EXPECT_LT(relativeError(other.lighting, metres.lighting), 1e-4);
-    EXPECT_GT(statistics(metres.lighting, {0, 0, kSize, kSize}).mean, 0.1);
+    EXPECT_GT(statistics(metres.lighting, {0, 0, kScaledSize, kScaledSize}).mean, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Factors, Scale, testing::Values(0.01f, 1000.0f));
@@ -55,11 +55,11 @@ INSTANTIATE_TEST_SUITE_P(Factors, Scale, testing::Values(0.01f, 1000.0f));
 // No light gets into the closed cell of cornell_layers, through no edge and no corner.
 TEST(Invariance, ADarkCellStaysDark) {
     const Scene scene = generateScene("cornell_layers");
-    const Baked baked = bakeScene(scene, {.size = kSize, .passes = 3});
+    const Baked baked = bakeScene(scene, {.size = kScaledSize, .passes = 3});
     const std::vector<uint32_t> instance = instanceOfPatch(baked.patches);
     uint32_t inside = 0, lit = 0;
     double outside = 0;
-    for (uint32_t texel = 0; texel < kSize * kSize; ++texel) {
+    for (uint32_t texel = 0; texel < kScaledSize * kScaledSize; ++texel) {
         const uint32_t patch = baked.patches.scene.texelToPatch[texel];
         if (patch == shader::kNoPatch || baked.lighting.planes[3][texel] != 1.0f) continue;
         const double value = std::max({baked.lighting.planes[0][texel], baked.lighting.planes[1][texel],

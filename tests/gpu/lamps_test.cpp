@@ -16,9 +16,8 @@
 namespace relume {
 namespace {
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0);
 constexpr double kPi = std::numbers::pi;
-constexpr uint32_t kTexels = 16;
+constexpr uint32_t kFloorTexels = 16;
 constexpr float kSide = 4.0f; // of the floor [m]
 
 struct Floor {
@@ -27,7 +26,7 @@ struct Floor {
     Scene scene;
     explicit Floor(const Light* light = nullptr) {
         rect = maker.quad({-kSide / 2, -kSide / 2, 0}, kSide * kX, kSide * kY, maker.material(0.0f),
-                          glm::uvec2(kTexels));
+                          glm::uvec2(kFloorTexels));
         scene = maker.scene();
         if (light != nullptr) scene.lights.push_back(*light);
     }
@@ -38,15 +37,15 @@ struct Floor {
 };
 
 glm::dvec3 placeOf(uint32_t column, uint32_t row) {
-    const double texel = double{kSide} / kTexels;
+    const double texel = double{kSide} / kFloorTexels;
     return {(column + 0.5) * texel - kSide / 2, (row + 0.5) * texel - kSide / 2, 0};
 }
 
 /// What every texel of the floor should be, within this share of it.
 void expectFloor(const Floor& floor, const FloatImage& lighting,
                  const std::function<double(glm::dvec3)>& exact, double tolerance) {
-    for (uint32_t row = 0; row < kTexels; ++row) {
-        for (uint32_t column = 0; column < kTexels; ++column) {
+    for (uint32_t row = 0; row < kFloorTexels; ++row) {
+        for (uint32_t column = 0; column < kFloorTexels; ++column) {
             const double wanted = exact(placeOf(column, row));
             EXPECT_NEAR(texel(lighting, floor.rect, column, row), wanted, tolerance * wanted + 1e-6)
                 << column << ", " << row;
@@ -187,12 +186,12 @@ TEST(Lamps, ARectangleHasItsFormFactor) {
 }
 
 TEST(Lamps, ADiscHasItsFormFactor) {
-    Light disc = lightAt(LightType::Disc, {kSide / 2 / kTexels, kSide / 2 / kTexels, 1}, 7.0f);
+    Light disc = lightAt(LightType::Disc, {kSide / 2 / kFloorTexels, kSide / 2 / kFloorTexels, 1}, 7.0f);
     disc.radius = 0.5f;
     const Floor floor(&disc);
     const FloatImage lighting = floor.bake(Method::Hybrid, 1024);
-    EXPECT_NEAR(texel(lighting, floor.rect, kTexels / 2, kTexels / 2), 7 * closed::pointToDisc(0.5, 1.0),
-                0.005 * 7);
+    EXPECT_NEAR(texel(lighting, floor.rect, kFloorTexels / 2, kFloorTexels / 2),
+                7 * closed::pointToDisc(0.5, 1.0), 0.005 * 7);
 }
 
 // A wall that hides half of the disc in the sky from a texel in the middle of its shadow's edge.

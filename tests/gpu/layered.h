@@ -17,8 +17,6 @@ namespace relume {
 
 using Light4 = std::vector<glm::vec4>;
 
-inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
 /// A closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
 inline Scene room(float albedo = 0.6f) {
     SceneMaker maker(64);

@@ -11,11 +11,7 @@
 #include <cmath>
 
 namespace relume {
-namespace {
-
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
-} // namespace
+namespace {} // namespace
 
 // A closed room with a difference in albedo and light, baked by each set and each rotation: all have the same
 // mean, and the thesis' sets are as good as the sequence.

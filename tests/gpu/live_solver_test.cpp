@@ -15,12 +15,12 @@
 namespace relume {
 namespace {
 
-struct Case {
+struct LiveSolverCase {
     const char* name;
     BakeDesc desc;
 };
 
-class LiveSolver : public testing::TestWithParam<Case> {};
+class LiveSolver : public testing::TestWithParam<LiveSolverCase> {};
 
 FloatImage mapOf(const Baker& baker) {
     return baker.lightmap({.quantity = Quantity::Radiance, .sew = false});
@@ -38,7 +38,7 @@ Undisturbed bakeUndisturbed(const Scene& scene, const BakeDesc& desc) {
     return {mapOf(*baker), baker->solver().progress()};
 }
 
-bool isPair(const Case& which) {
+bool isPair(const LiveSolverCase& which) {
     return isPairMethod(which.desc.method);
 }
 
@@ -222,24 +222,27 @@ TEST_P(LiveSolver, ACheckpointKeepsWhatIsDone) {
 INSTANTIATE_TEST_SUITE_P(
     Methods, LiveSolver,
     testing::Values(
-        Case{"hybrid", {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
-        Case{"hybridSamples", {.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 48}},
-        Case{"hybridPasses",
-             {.size = 48, .passes = 4, .method = Method::Hybrid, .samples = 48, .smooth = true}},
-        Case{"hybridDirect", {.size = 48, .passes = 1, .method = Method::Hybrid, .samples = 64}},
-        Case{"coarse",
-             {.size = 48,
-              .passes = 0,
-              .method = Method::Hybrid,
-              .samples = 48,
-              .smooth = true,
-              .indirectScale = 2}},
-        Case{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
-        Case{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
-        Case{"preset", {.size = 48, .passes = 3, .method = Method::Pure, .rtrad = true}},
-        Case{"montecarlo", {.size = 64, .passes = 3, .method = Method::MonteCarlo, .pairs = {.window = 2}}},
-        Case{"adaptive", {.size = 64, .passes = 3, .method = Method::Adaptive, .pairs = {.threshold = 0.02}}},
-        Case{"pureError", {.size = 32, .passes = 0, .error = 0.02, .method = Method::Pure}}),
+        LiveSolverCase{"hybrid",
+                       {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
+        LiveSolverCase{"hybridSamples", {.size = 48, .passes = 0, .method = Method::Hybrid, .samples = 48}},
+        LiveSolverCase{"hybridPasses",
+                       {.size = 48, .passes = 4, .method = Method::Hybrid, .samples = 48, .smooth = true}},
+        LiveSolverCase{"hybridDirect", {.size = 48, .passes = 1, .method = Method::Hybrid, .samples = 64}},
+        LiveSolverCase{"coarse",
+                       {.size = 48,
+                        .passes = 0,
+                        .method = Method::Hybrid,
+                        .samples = 48,
+                        .smooth = true,
+                        .indirectScale = 2}},
+        LiveSolverCase{"directional", {.size = 48, .passes = 0, .error = 0.2, .method = Method::Directional}},
+        LiveSolverCase{"pure", {.size = 48, .passes = 3, .method = Method::Pure}},
+        LiveSolverCase{"preset", {.size = 48, .passes = 3, .method = Method::Pure, .rtrad = true}},
+        LiveSolverCase{"montecarlo",
+                       {.size = 64, .passes = 3, .method = Method::MonteCarlo, .pairs = {.window = 2}}},
+        LiveSolverCase{"adaptive",
+                       {.size = 64, .passes = 3, .method = Method::Adaptive, .pairs = {.threshold = 0.02}}},
+        LiveSolverCase{"pureError", {.size = 32, .passes = 0, .error = 0.02, .method = Method::Pure}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 namespace {

@@ -18,14 +18,13 @@ namespace {
 
 using Light4 = std::vector<glm::vec4>;
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-constexpr uint32_t kSize = 64;
+constexpr uint32_t kMovingSize = 64;
 // Instances of the room below: walls, plate, shelf, block, wall light.
 constexpr size_t kPlate = 6, kShelf = 7, kBlock = 8, kBlockEnd = 14;
 
 /// A closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a panel.
-Scene room(float plate = 8.0f) {
-    SceneMaker maker(kSize);
+Scene movingRoom(float plate = 8.0f) {
+    SceneMaker maker(kMovingSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, plate), glm::uvec2(4));
     maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
@@ -40,13 +39,17 @@ Scene room(float plate = 8.0f) {
     return scene;
 }
 
-constexpr BakeDesc kQuick{
-    .size = kSize, .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
+constexpr BakeDesc kQuickMoving{.size = kMovingSize,
+                                .passes = 0,
+                                .method = Method::Hybrid,
+                                .samples = 32,
+                                .smooth = true,
+                                .layers = true};
 
 /// A bake of layers whose scene is edited.
 class Moving {
 public:
-    explicit Moving(Scene start, const BakeDesc& desc = kQuick)
+    explicit Moving(Scene start, const BakeDesc& desc = kQuickMoving)
         : scene(std::move(start)), atlas_(buildAtlas(scene, desc.size)), baker_(makeBaker(scene, desc)) {
         finish();
     }
@@ -94,7 +97,7 @@ private:
 
 /// Follows the scene to its end and compares every texel of every layer with a fresh bake of it. Returns the
 /// share of a fresh bake's rays that it took.
-double followed(Moving& bake, const BakeDesc& desc = kQuick) {
+double followed(Moving& bake, const BakeDesc& desc = kQuickMoving) {
     const uint64_t before = bake.rays();
     EXPECT_TRUE(bake.follow());
     bake.finish();
@@ -128,7 +131,7 @@ glm::mat4 turned(float angle, glm::vec3 about, glm::vec3 axis) {
 class ObjectEdits : public testing::TestWithParam<int> {
 protected:
     static BakeDesc desc() {
-        BakeDesc desc = kQuick;
+        BakeDesc desc = kQuickMoving;
         const std::vector<TracerKind> tracers = tracersOfTestDevice();
         if (GetParam() == 0) return desc;
         desc.tracer = tracers[static_cast<size_t>(GetParam() - 1) % tracers.size()];
@@ -145,13 +148,13 @@ protected:
 } // namespace
 
 TEST_P(ObjectEdits, AMovedObjectIsAFreshBake) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kShelf, kBlock, by({-0.3f, 0.4f, 0.2f}));
     EXPECT_LT(followed(bake, desc()), few(0.7));
 }
 
 TEST_P(ObjectEdits, ASmallObjectThatMovesTakesFewRays) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kBlock, kBlockEnd, by({0.02f, 0.05f, 0.01f}));
     EXPECT_LT(followed(bake, desc()), few(0.4));
 }
@@ -160,7 +163,7 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
     BakeDesc live = desc();
     live.live = true;
     live.smooth = false; // each layer has a width of its own
-    Moving bake(room(), live);
+    Moving bake(movingRoom(), live);
     bake.put(kBlock, kBlockEnd, by({0.4f, -0.3f, 0.2f}));
     ASSERT_TRUE(bake.follow());
     EXPECT_FALSE(bake.solver().current());
@@ -182,7 +185,7 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
 }
 
 TEST_P(ObjectEdits, ATurnedAndScaledObjectIsAFreshBake) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kBlock, kBlockEnd,
              turned(0.5f, {0.35f, 1.35f, 0.2f}, kZ) * by({0.0f, 0.0f, 0.1f}) *
                  glm::scale(glm::mat4(1.0f), {1.1f, 0.9f, 1.3f}));
@@ -190,7 +193,7 @@ TEST_P(ObjectEdits, ATurnedAndScaledObjectIsAFreshBake) {
 }
 
 TEST_P(ObjectEdits, AHiddenObjectIsAFreshBakeAndSoIsOneShownAgain) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     const std::vector<FloatImage> first = bake.images();
     bake.hide(kBlock, kBlockEnd, true);
     EXPECT_LT(followed(bake, desc()), few(0.5));
@@ -200,7 +203,7 @@ TEST_P(ObjectEdits, AHiddenObjectIsAFreshBakeAndSoIsOneShownAgain) {
 }
 
 TEST_P(ObjectEdits, ThereAndBackAreTheFirstBytes) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     const Light4 first = bake.light();
     const Scene before = bake.scene;
     for (const glm::vec3& offset : {glm::vec3(0.2f, 0.0f, 0.3f), glm::vec3(0.5f, -0.6f, 0.1f)}) {
@@ -219,7 +222,7 @@ TEST_P(ObjectEdits, ThereAndBackAreTheFirstBytes) {
 }
 
 TEST_P(ObjectEdits, AnObjectThatShinesIsAFreshBake) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kPlate, kPlate + 1, by({0.3f, 0.2f, -0.4f}));
     followed(bake, desc());
     bake.hide(kPlate, kPlate + 1, true);
@@ -229,7 +232,7 @@ TEST_P(ObjectEdits, AnObjectThatShinesIsAFreshBake) {
 }
 
 TEST_P(ObjectEdits, AnObjectMovedIntoALampIsAFreshBake) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kBlock, kBlockEnd, by({1.15f, 0.15f, 1.3f})); // around the bulb
     followed(bake, desc());
     EXPECT_EQ(bake.solver().layers()[1]->light, 0.0) << "its sides are backs, which let nothing out";
@@ -239,7 +242,7 @@ TEST_P(ObjectEdits, AnObjectMovedIntoALampIsAFreshBake) {
 }
 
 TEST_P(ObjectEdits, AnObjectBehindAWallIsAFreshBake) {
-    Moving bake(room(), desc());
+    Moving bake(movingRoom(), desc());
     bake.put(kBlock, kBlockEnd, by({0.0f, 0.0f, -2.0f})); // below the floor
     followed(bake, desc());
     bake.put(kBlock, kBlockEnd, by({0.3f, 0.1f, -0.2f}));
@@ -251,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
 
 // Half in the floor and half out of it: texels of both change whether they lie inside something.
 TEST(ObjectEdits, TexelsInsideSomethingAreFoundAnew) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kMovingSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     maker.box({0.5f, 0.5f, 0.3f}, {0.8f * kY, 0.8f * kX, 0.6f * kZ}, maker.material(0.5f), 8);
     Scene scene = maker.scene();
@@ -278,7 +281,7 @@ TEST(ObjectEdits, UnderSkyAndSunAreAFreshBake) {
     sun.transform = glm::rotate(glm::mat4(1.0f), 0.4f, kY);
     sun.angle = 0.02f;
     scene.lights.push_back(sun);
-    BakeDesc desc = kQuick;
+    BakeDesc desc = kQuickMoving;
     desc.size = 32;
     Moving bake(scene, desc);
     bake.put(2, 3, by({-0.1f, 0.3f, 0.1f}));
@@ -288,7 +291,7 @@ TEST(ObjectEdits, UnderSkyAndSunAreAFreshBake) {
 }
 
 TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kMovingSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     Material leaf;
     leaf.metallic = 0.0f;
@@ -309,10 +312,10 @@ TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
 
 // Each edit comes before the one before was followed to its end, lamps move as well.
 TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
-    BakeDesc desc = kQuick;
+    BakeDesc desc = kQuickMoving;
     desc.batchMs = 1.0;
     desc.live = true;
-    Moving bake(room(), desc);
+    Moving bake(movingRoom(), desc);
     for (int i = 0; i < 12; ++i) {
         bake.put(kBlock, kBlockEnd, by({0.03f, -0.02f, 0.01f}));
         if (i % 3 == 0) bake.scene.lights[0].transform = by({0.3f + 0.04f * i, 0.5f, 1.2f});
@@ -326,16 +329,16 @@ TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
 
 // Where links of later rounds are not kept they are traced again as ever.
 TEST(ObjectEdits, LinksBeyondTheMemoryAreTracedWhereObjectsAre) {
-    BakeDesc desc = kQuick;
+    BakeDesc desc = kQuickMoving;
     desc.samples = 64;
     desc.cache.bytes = 2 * 16 * sizeof(uint32_t) * 4000;
-    Moving bake(room(), desc);
+    Moving bake(movingRoom(), desc);
     bake.put(kShelf, kBlock, by({-0.3f, 0.4f, 0.2f}));
     followed(bake, desc);
 }
 
 TEST(ObjectEdits, WhatCannotBeFollowedIsToldAndChangesNothing) {
-    Scene scene = room();
+    Scene scene = movingRoom();
     scene.instances[kShelf].hidden = true;
     Moving bake(scene);
     const Light4 first = bake.light();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint64_t kSlot = superBytes(false); // what the cache needs for one super-block
 
-struct Case {
+struct PairCase {
     const char* name;
     Method method;
     PairSettings pairs;
@@ -21,11 +21,11 @@ struct Case {
     double flux;           // error of the reflected flux there
     double furnace = 0.02; // relative, of the mean of each wall
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const PairCase& c, std::ostream* out) {
     *out << c.name;
 }
 
-class PairMethods : public testing::TestWithParam<Case> {
+class PairMethods : public testing::TestWithParam<PairCase> {
 protected:
     static BakeDesc desc(uint32_t size, uint32_t passes) {
         return {.size = size, .passes = passes, .method = GetParam().method, .pairs = GetParam().pairs};
@@ -35,14 +35,14 @@ protected:
 // Adaptive subdivision merges as much as its threshold lets it: that is its error.
 INSTANTIATE_TEST_SUITE_P(
     All, PairMethods,
-    testing::Values(Case{"static2", Method::Static, {.window = 2}, 0.05, 0.015},
-                    Case{"static4", Method::Static, {.window = 4}, 0.10, 0.03},
-                    Case{"montecarlo2", Method::MonteCarlo, {.window = 2}, 0.05, 0.01},
-                    Case{"montecarlo4", Method::MonteCarlo, {.window = 4}, 0.12, 0.01, 0.15},
-                    Case{"mipmapped2", Method::Mipmapped, {.window = 2}, 0.04, 0.01},
-                    Case{"mipmapped4", Method::Mipmapped, {.window = 4}, 0.08, 0.01},
-                    Case{"adaptive", Method::Adaptive, {.threshold = 0.02}, 0.05, 0.015},
-                    Case{"adaptive64", Method::Adaptive, {.threshold = 0.05, .node = 64}, 0.20, 0.03}),
+    testing::Values(PairCase{"static2", Method::Static, {.window = 2}, 0.05, 0.015},
+                    PairCase{"static4", Method::Static, {.window = 4}, 0.10, 0.03},
+                    PairCase{"montecarlo2", Method::MonteCarlo, {.window = 2}, 0.05, 0.01},
+                    PairCase{"montecarlo4", Method::MonteCarlo, {.window = 4}, 0.12, 0.01, 0.15},
+                    PairCase{"mipmapped2", Method::Mipmapped, {.window = 2}, 0.04, 0.01},
+                    PairCase{"mipmapped4", Method::Mipmapped, {.window = 4}, 0.08, 0.01},
+                    PairCase{"adaptive", Method::Adaptive, {.threshold = 0.02}, 0.05, 0.015},
+                    PairCase{"adaptive64", Method::Adaptive, {.threshold = 0.05, .node = 64}, 0.20, 0.03}),
     [](const auto& test) { return std::string(test.param.name); });
 
 } // namespace

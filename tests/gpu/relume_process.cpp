@@ -1,5 +1,6 @@
 #include "tests/gpu/relume_process.h"
 
+#include "assets/clock.h"
 #include "assets/error.h"
 
 #include <algorithm>
@@ -44,7 +45,6 @@ bool readMore(int fd, std::string& text) {
 
 ProcessResult runProgram(const std::string& program, const std::vector<std::string>& arguments,
                          const std::function<int(const std::string& err)>& onErr, double killAfter) {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     std::array<int, 2> out{}, err{};
     if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(err.data(), O_CLOEXEC) != 0) throw Error("pipe failed");

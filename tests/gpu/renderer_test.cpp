@@ -19,8 +19,6 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = kWallSize;
-
 void expectAll(const Picture& picture, int value) {
     for (uint32_t y = 0; y < picture.image.height; ++y)
         for (uint32_t x = 0; x < picture.image.width; ++x)
@@ -64,11 +62,11 @@ TEST(Renderer, TakesTheBakersAlbedoOfMetals) {
 }
 
 TEST(Renderer, CutsOutTheHolesOfAMask) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kWallSize);
     Material masked = grey(1.0f);
     masked.alphaMode = AlphaMode::Mask;
     masked.baseColorTexture.texture = maker.alphaTexture(2, 1, {0, 255});
-    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(masked), {kSize, kSize});
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(masked), {kWallSize, kWallSize});
     const FloatImage lightmap = lightmapOf(0.5f);
     const DrawSettings settings = plain();
     const Picture picture = drawPicture({maker.scene(), &lightmap, before(), settings});
@@ -130,8 +128,9 @@ TEST(Renderer, LeavesEmptyTexelsOut) {
 }
 
 TEST(Renderer, LightsGeometryWithoutLightmapUvsWithTheMean) {
-    SceneMaker maker(kSize);
-    maker.quad({-1, 5, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f), {kSize, kSize}); // out of sight
+    SceneMaker maker(kWallSize);
+    maker.quad({-1, 5, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f),
+               {kWallSize, kWallSize}); // out of sight
     maker.blocker({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f));
     const FloatImage lightmap = lightmapOf(0.4f);
     const Picture picture = drawPicture({maker.scene(), &lightmap, before(), plain()});
@@ -141,7 +140,7 @@ TEST(Renderer, LightsGeometryWithoutLightmapUvsWithTheMean) {
 }
 
 TEST(Renderer, CullsWhatIsOutOfSight) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kWallSize);
     maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f), {16, 16});
     maker.quad({9, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(0.5f), {16, 16});
     const FloatImage lightmap = lightmapOf(0.5f);
@@ -151,7 +150,7 @@ TEST(Renderer, CullsWhatIsOutOfSight) {
 }
 
 TEST(Renderer, SmoothsEdgesByMultisampling) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kWallSize);
     maker.quad({-1, -1, 0}, {1.3f, 0.4f, 0}, {-0.4f, 1.3f, 0}, maker.material(1.0f), {16, 16});
     const FloatImage lightmap = lightmapOf(1.0f);
     const auto between = [&](uint32_t samples) {
@@ -202,7 +201,7 @@ TEST(Renderer, ShowsNormalsAndCoverage) {
 }
 
 TEST(Renderer, ShowsTexelsAndTheirDensity) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kWallSize);
     maker.quad({-1, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {4, 8});
     maker.quad({0, -1, 0}, {1, 0, 0}, {0, 2, 0}, maker.material(0.5f), {16, 32}); // four times as dense
     maker.quad({20, -1, 0}, {9, 0, 0}, {0, 2, 0}, maker.material(0.5f),
@@ -216,7 +215,7 @@ TEST(Renderer, ShowsTexelsAndTheirDensity) {
 }
 
 TEST(Renderer, EveryViewIsAnotherPicture) {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kWallSize);
     const int glowing = maker.material(0.7f, 0.1f);
     maker.quad({-1, -1, 0}, {1, 0, 0.2f}, {0, 1, 0}, glowing, {8, 8});
     maker.quad({-1, 0, 0}, {1, 0, 0.2f}, {0, 1, 0}, glowing, {8, 8});

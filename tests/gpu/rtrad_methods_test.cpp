@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 32;
+constexpr uint32_t kRtradSize = 32;
 constexpr uint32_t kPasses = 2;
 constexpr double kReflectivity = 0.9, kClamp = 0.05, kLight = 0.1;
 
@@ -20,7 +20,7 @@ using Texture = std::vector<glm::dvec4>;
 class Rtrad {
 public:
     explicit Rtrad(const PatchSet& set)
-        : set_(set), map_(set.scene.texelToPatch), ligIn_(size_t{kSize} * kSize, glm::dvec4(0)) {
+        : set_(set), map_(set.scene.texelToPatch), ligIn_(size_t{kRtradSize} * kRtradSize, glm::dvec4(0)) {
         for (size_t t = 0; t < map_.size(); ++t)
             if (isPatch(t)) ligIn_[t] = glm::dvec4(glm::dvec3(set.emission[map_[t]]), 1.0);
         ligOut_ = ligIn_;
@@ -54,19 +54,20 @@ private:
     }
 
     void gather(Method method, uint32_t s) {
-        for (uint32_t y = 0; y < kSize; y += s) {
-            for (uint32_t x = 0; x < kSize; x += s) {
-                if (!isPatch(y * kSize + x)) continue;
+        for (uint32_t y = 0; y < kRtradSize; y += s) {
+            for (uint32_t x = 0; x < kRtradSize; x += s) {
+                if (!isPatch(y * kRtradSize + x)) continue;
                 uint32_t jx = x, jy = y;
                 if (method == Method::MonteCarlo) {
                     const uint32_t k = (x + 1) * (y + 1);
                     jx += hash(hash(k) % 7864128) % s;
                     jy += hash(hash(k) % 5490141) % s;
                 }
-                if (jx >= kSize || jy >= kSize || !isPatch(jy * kSize + jx)) continue;
-                const int dx = int(jx) - int(receiver_ % kSize), dy = int(jy) - int(receiver_ / kSize);
+                if (jx >= kRtradSize || jy >= kRtradSize || !isPatch(jy * kRtradSize + jx)) continue;
+                const int dx = int(jx) - int(receiver_ % kRtradSize),
+                          dy = int(jy) - int(receiver_ / kRtradSize);
                 if (dx >= 0 && dy >= 0 && dx < int(s) && dy < int(s)) continue;
-                const uint32_t j = jy * kSize + jx;
+                const uint32_t j = jy * kRtradSize + jx;
                 const glm::dvec4 light = method == Method::Mipmapped ? mip(x, y, s) : ligIn_[j];
                 addSample(j, s * s * ligIn_[j].a, light);
             }
@@ -116,10 +117,11 @@ private:
             ligIn_[t].a = isPatch(t) ? 1 : 0;
         for (uint32_t step = 2; step < node; step *= 2) {
             const uint32_t half = step / 2;
-            for (uint32_t y = 0; y < kSize; y += step) {
-                for (uint32_t x = 0; x < kSize; x += step) {
-                    const std::array<uint32_t, 4> c = {y * kSize + x, y * kSize + x + half,
-                                                       (y + half) * kSize + x, (y + half) * kSize + x + half};
+            for (uint32_t y = 0; y < kRtradSize; y += step) {
+                for (uint32_t x = 0; x < kRtradSize; x += step) {
+                    const std::array<uint32_t, 4> c = {y * kRtradSize + x, y * kRtradSize + x + half,
+                                                       (y + half) * kRtradSize + x,
+                                                       (y + half) * kRtradSize + x + half};
                     glm::dvec3 light(0), normal(0);
                     double weight = 0;
                     bool whole = true;
@@ -143,10 +145,10 @@ private:
         }
     }
 
-    // kSize is a power of two: a level is the mean of four texels of the one before.
+    // kRtradSize is a power of two: a level is the mean of four texels of the one before.
     void makeMips() {
         mips_.assign(1, ligIn_);
-        for (uint32_t level = 1, n = kSize / 2; level < 4; ++level, n /= 2) {
+        for (uint32_t level = 1, n = kRtradSize / 2; level < 4; ++level, n /= 2) {
             Texture next;
             for (uint32_t y = 0; y < n; ++y)
                 for (uint32_t x = 0; x < n; ++x) {
@@ -159,8 +161,9 @@ private:
         }
     }
     glm::dvec4 mip(uint32_t x, uint32_t y, uint32_t s) const {
-        const uint32_t level = std::min(3u, static_cast<uint32_t>(std::log2(s))), n = kSize >> level;
-        const double u = double(x + s / 2.0) / kSize * n - 0.5, v = double(y + s / 2.0) / kSize * n - 0.5;
+        const uint32_t level = std::min(3u, static_cast<uint32_t>(std::log2(s))), n = kRtradSize >> level;
+        const double u = double(x + s / 2.0) / kRtradSize * n - 0.5,
+                     v = double(y + s / 2.0) / kRtradSize * n - 0.5;
         const auto at = [&](double i, double k) {
             const auto wrap = [&](double w) { return static_cast<uint32_t>(int(w) + int(n)) % n; };
             return mips_[level][wrap(k) * n + wrap(i)];
@@ -179,38 +182,38 @@ private:
     glm::dvec4 sum_{0};
 };
 
-struct Case {
+struct RtradCase {
     const char* name;
     Method method;
     PairSettings pairs;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const RtradCase& c, std::ostream* out) {
     *out << c.name;
 }
 
-class RtradMethods : public testing::TestWithParam<Case> {};
+class RtradMethods : public testing::TestWithParam<RtradCase> {};
 INSTANTIATE_TEST_SUITE_P(
     All, RtradMethods,
-    testing::Values(Case{"pure", Method::Pure, {}}, Case{"static2", Method::Static, {.window = 2}},
-                    Case{"static8", Method::Static, {.window = 8}},
-                    Case{"montecarlo2", Method::MonteCarlo, {.window = 2}},
-                    Case{"montecarlo4", Method::MonteCarlo, {.window = 4}},
-                    Case{"mipmapped1", Method::Mipmapped, {.window = 1}},
-                    Case{"mipmapped4", Method::Mipmapped, {.window = 4}},
-                    Case{"mipmapped16", Method::Mipmapped, {.window = 16}},
-                    Case{"adaptive2", Method::Adaptive, {.node = 2}},
-                    Case{"adaptive8", Method::Adaptive, {.threshold = 0.05, .node = 8}},
-                    Case{"adaptive16", Method::Adaptive, {.threshold = 0.5, .node = 16}}),
+    testing::Values(RtradCase{"pure", Method::Pure, {}}, RtradCase{"static2", Method::Static, {.window = 2}},
+                    RtradCase{"static8", Method::Static, {.window = 8}},
+                    RtradCase{"montecarlo2", Method::MonteCarlo, {.window = 2}},
+                    RtradCase{"montecarlo4", Method::MonteCarlo, {.window = 4}},
+                    RtradCase{"mipmapped1", Method::Mipmapped, {.window = 1}},
+                    RtradCase{"mipmapped4", Method::Mipmapped, {.window = 4}},
+                    RtradCase{"mipmapped16", Method::Mipmapped, {.window = 16}},
+                    RtradCase{"adaptive2", Method::Adaptive, {.node = 2}},
+                    RtradCase{"adaptive8", Method::Adaptive, {.threshold = 0.05, .node = 8}},
+                    RtradCase{"adaptive16", Method::Adaptive, {.threshold = 0.5, .node = 16}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 } // namespace
 
 TEST_P(RtradMethods, FollowRtradsFormulas) {
-    const Case& c = GetParam();
+    const RtradCase& c = GetParam();
     // The stride misses the small lamp of the one, as RTRad's does, and finds the long ones of the other.
     const Scene scene = generateScene(c.method == Method::Static ? "cornell_layers" : "cornell_geom");
     const auto baker = makeBaker(
-        scene, {.size = kSize, .passes = kPasses, .method = c.method, .pairs = c.pairs, .rtrad = true});
+        scene, {.size = kRtradSize, .passes = kPasses, .method = c.method, .pairs = c.pairs, .rtrad = true});
     while (!baker->solver().done())
         baker->solver().step();
     const FloatImage image = baker->lightmap({.quantity = Quantity::Radiance, .sew = false});

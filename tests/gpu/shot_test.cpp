@@ -7,6 +7,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
@@ -18,10 +19,6 @@ namespace relume {
 namespace {
 
 using Strings = std::vector<std::string>;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 ProcessResult shot(Strings arguments) {
     arguments.insert(arguments.begin(), {"-q", "shot"});

@@ -11,8 +11,6 @@
 namespace relume {
 namespace {
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
 /// Squares below and above the origin's plane, both looking at it.
 struct Witnesses {
     TexelRect below, above;

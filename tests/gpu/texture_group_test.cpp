@@ -13,12 +13,11 @@
 namespace relume {
 namespace {
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-constexpr uint32_t kSize = 64;
+constexpr uint32_t kGroupSize = 64;
 
 // Of odd places and sizes: rounding shows.
-Scene room() {
-    SceneMaker maker(kSize);
+Scene groupRoom() {
+    SceneMaker maker(kGroupSize);
     maker.box({0.13f, -0.77f, 0.31f}, {1.93f * kX, 2.17f * kY, 1.71f * kZ}, maker.material(0.6f), 13);
     maker.quad({0.61f, 0.63f, 1.87f}, 0.41f * kY, 0.37f * kX, maker.material(0.3f, 7.0f), glm::uvec2(5));
     maker.disc({1.1f, 0.7f, 0.9f}, 0.31f * kX, 0.23f * kY, maker.material(0.4f), 11);
@@ -33,23 +32,23 @@ bool same(const T& a, const T& b) {
 } // namespace
 
 TEST(TextureGroup, AWindowHasTheTexelsOfTheWhole) {
-    const Scene scene = room();
-    const WorldMesh mesh = flatten(scene, buildAtlas(scene, kSize));
+    const Scene scene = groupRoom();
+    const WorldMesh mesh = flatten(scene, buildAtlas(scene, kGroupSize));
     CitPass pass(testDevice(), scene, mesh);
     EXPECT_TRUE(pass.serves(mesh));
     for (const bool conservative : {false, true}) {
-        const TextureGroup whole =
-            rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kSize, .conservative = conservative});
-        ASSERT_EQ(whole.pos.size(), size_t{kSize} * kSize);
+        const TextureGroup whole = rasterizeTextureGroup(testDevice(), scene, mesh,
+                                                         {.size = kGroupSize, .conservative = conservative});
+        ASSERT_EQ(whole.pos.size(), size_t{kGroupSize} * kGroupSize);
         for (const TexelWindow& window :
              {TexelWindow{8, 16, 24, 8}, TexelWindow{0, 0, 64, 16}, TexelWindow{40, 0, 24, 64}}) {
             const TextureGroup part =
-                pass.draw(scene, mesh, {.size = kSize, .conservative = conservative, .window = window});
+                pass.draw(scene, mesh, {.size = kGroupSize, .conservative = conservative, .window = window});
             ASSERT_EQ(part.triangle.size(), window.size());
             uint32_t covered = 0;
             for (uint32_t y = window.row; y < window.row + window.rows; ++y)
                 for (uint32_t x = window.column; x < window.column + window.columns; ++x) {
-                    const size_t in = window.index(x, y), of = size_t{y} * kSize + x;
+                    const size_t in = window.index(x, y), of = size_t{y} * kGroupSize + x;
                     ASSERT_EQ(part.triangle[in], whole.triangle[of]) << x << ", " << y;
                     ASSERT_TRUE(same(part.pos[in], whole.pos[of]) && same(part.nrm[in], whole.nrm[of]) &&
                                 same(part.mat[in], whole.mat[of]) &&
@@ -64,17 +63,17 @@ TEST(TextureGroup, AWindowHasTheTexelsOfTheWhole) {
 
 // A pass that stays hears of factors, and whose materials it has not.
 TEST(TextureGroup, APassThatStaysFollowsFactorsOfMaterials) {
-    Scene scene = room();
-    const LightmapAtlas atlas = buildAtlas(scene, kSize);
+    Scene scene = groupRoom();
+    const LightmapAtlas atlas = buildAtlas(scene, kGroupSize);
     const WorldMesh mesh = flatten(scene, atlas);
     CitPass pass(testDevice(), scene, mesh);
-    pass.draw(scene, mesh, {.size = kSize});
+    pass.draw(scene, mesh, {.size = kGroupSize});
     for (Material& material : scene.materials) {
         material.metallic = 0.5f;
         material.roughness = 0.25f;
     }
-    const TextureGroup kept = pass.draw(scene, mesh, {.size = kSize});
-    const TextureGroup anew = rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kSize});
+    const TextureGroup kept = pass.draw(scene, mesh, {.size = kGroupSize});
+    const TextureGroup anew = rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kGroupSize});
     for (size_t i = 0; i < anew.mat.size(); ++i)
         ASSERT_EQ(kept.mat[i], anew.mat[i]);
     const std::vector<uint32_t> plate = {6};
@@ -83,21 +82,21 @@ TEST(TextureGroup, APassThatStaysFollowsFactorsOfMaterials) {
 
 // Patches of a window are those of the whole that lie in it.
 TEST(TextureGroup, PatchesOfAWindowAreThoseOfTheWhole) {
-    const Scene scene = room();
-    const LightmapAtlas atlas = buildAtlas(scene, kSize);
+    const Scene scene = groupRoom();
+    const LightmapAtlas atlas = buildAtlas(scene, kGroupSize);
     const WorldMesh mesh = flatten(scene, atlas);
     const PatchSet whole =
-        buildPatches(scene, mesh, rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kSize}), {});
+        buildPatches(scene, mesh, rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kGroupSize}), {});
     const TexelWindow window{24, 8, 40, 32};
     const TextureGroup group =
-        rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kSize, .window = window});
+        rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kGroupSize, .window = window});
     const PatchSet part = buildPatches(scene, mesh, group, {.part = true});
     ASSERT_EQ(part.scene.texelToPatch.size(), window.size());
     uint32_t found = 0;
     for (uint32_t y = window.row; y < window.row + window.rows; ++y)
         for (uint32_t x = window.column; x < window.column + window.columns; ++x) {
             const uint32_t own = part.scene.texelToPatch[window.index(x, y)];
-            const uint32_t other = whole.scene.texelToPatch[size_t{y} * kSize + x];
+            const uint32_t other = whole.scene.texelToPatch[size_t{y} * kGroupSize + x];
             ASSERT_EQ(own == shader::kNoPatch, other == shader::kNoPatch);
             if (own == shader::kNoPatch) continue;
             EXPECT_EQ(part.scene.patches[own].position, whole.scene.patches[other].position);

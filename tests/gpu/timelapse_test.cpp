@@ -5,6 +5,7 @@
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,15 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string bytesOf(const std::string& name) {
-    std::ifstream in(name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 Strings joined(Strings first, const Strings& second) {
     first.insert(first.end(), second.begin(), second.end());

@@ -10,8 +10,6 @@ namespace {
 constexpr double kOnePercent = 0.01;
 constexpr uint32_t kTexels = 64; // to a side of a square
 
-const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
-
 closed::Vec vec(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }

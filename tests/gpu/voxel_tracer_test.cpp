@@ -22,7 +22,7 @@ using shader::kChunk;
 using shader::kSuper;
 using shader::kSuperBlocks;
 
-constexpr uint32_t kLinkSamples = 8;
+constexpr uint32_t kVoxelLinkSamples = 8;
 
 /// Runs tracers on some pairs and directions of a scene.
 class Questions {
@@ -96,21 +96,21 @@ public:
 
     /// Of all patches; as ClosestWork has them.
     std::vector<uint32_t> links(Tracer& tracer) {
-        const vk::Buffer buffer(
-            testDevice(),
-            {.size = VkDeviceSize{kLinkSamples} * kChunk * 4, .memory = vk::Memory::Host, .name = "links"});
+        const vk::Buffer buffer(testDevice(), {.size = VkDeviceSize{kVoxelLinkSamples} * kChunk * 4,
+                                               .memory = vk::Memory::Host,
+                                               .name = "links"});
         std::vector<uint32_t> all;
         for (uint32_t chunk = 0; chunk < chunks_; ++chunk) {
             VkCommandBuffer cmd = commands_.begin();
             tracer.closest(cmd, {.firstChunk = chunk,
                                  .chunkCount = 1,
                                  .firstSample = 0,
-                                 .sampleCount = kLinkSamples,
+                                 .sampleCount = kVoxelLinkSamples,
                                  .links = &buffer});
             vk::hostBarrier(cmd);
             commands_.run();
             const auto* values = static_cast<const uint32_t*>(buffer.mapped());
-            all.insert(all.end(), values, values + kLinkSamples * kChunk);
+            all.insert(all.end(), values, values + kVoxelLinkSamples * kChunk);
         }
         return all;
     }
@@ -205,15 +205,15 @@ Disagreement compare(Questions& questions, uint32_t resolution) {
     return d;
 }
 
-struct Case {
+struct VoxelCase {
     const char* scene;
     uint32_t resolution;
     double falseShadows; // at most this share of the pairs
 };
-class VoxelAgreement : public testing::TestWithParam<Case> {};
+class VoxelAgreement : public testing::TestWithParam<VoxelCase> {};
 
 TEST_P(VoxelAgreement, withTheBvh) {
-    const Case& c = GetParam();
+    const VoxelCase& c = GetParam();
     Questions questions(generateScene(c.scene), 128, 512);
     const Disagreement d = compare(questions, c.resolution);
     RecordProperty("leaks", std::to_string(d.leaks));
@@ -229,9 +229,11 @@ TEST_P(VoxelAgreement, withTheBvh) {
 
 // About one and a half times what was measured; shadows grow by up to a voxel all around.
 INSTANTIATE_TEST_SUITE_P(Scenes, VoxelAgreement,
-                         testing::Values(Case{"cornell_geom", 64, 0.11}, Case{"cornell_geom", 256, 0.03},
-                                         Case{"cornell_statue", 128, 0.04}, Case{"cornell_layers", 128, 0.02},
-                                         Case{"gallery", 128, 0.06}, Case{"octagon", 128, 0.10}));
+                         testing::Values(VoxelCase{"cornell_geom", 64, 0.11},
+                                         VoxelCase{"cornell_geom", 256, 0.03},
+                                         VoxelCase{"cornell_statue", 128, 0.04},
+                                         VoxelCase{"cornell_layers", 128, 0.02},
+                                         VoxelCase{"gallery", 128, 0.06}, VoxelCase{"octagon", 128, 0.10}));
 
 /// A closed room with a plate half-way up, a fourth of the floor's area.
 struct PlateRoom {
@@ -303,8 +305,8 @@ TEST(VoxelTracer, linksInABoxAreThePatchesThere) {
     const auto links = questions.links(*questions.tracer(TracerKind::Voxel, {.resolution = 100}));
     for (uint32_t i = 0; i < questions.patches().count; ++i) {
         const shader::Patch& p = questions.patch(i);
-        for (uint32_t k = 0; k < kLinkSamples; ++k) {
-            const uint32_t link = links[(i / kChunk * kLinkSamples + k) * kChunk + i % kChunk];
+        for (uint32_t k = 0; k < kVoxelLinkSamples; ++k) {
+            const uint32_t link = links[(i / kChunk * kVoxelLinkSamples + k) * kChunk + i % kChunk];
             ASSERT_LT(link, questions.patches().count) << "patch " << i << ", sample " << k;
             const glm::vec3 d = shader::patchDirection(p, shader::seedKey(p), k);
             float t = 1e30f;

@@ -22,7 +22,7 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 128;
+constexpr uint32_t kSwapSize = 128;
 constexpr uint32_t kMaps = 1000; // up to 2048 every whole number is a half
 
 /// The bake thread: writes and publishes 1, 2, 3 and so on.
@@ -30,12 +30,13 @@ class Writer {
 public:
     Writer(LightmapExchange& exchange, bool shared)
         : exchange_(exchange), shared_(shared),
-          baker_(makeBaker(generateScene("cornell_small"), {.size = kSize})),
+          baker_(makeBaker(generateScene("cornell_small"), {.size = kSwapSize})),
           publisher_(testDevice(), baker_->patches(), {}), light_(baker_->patches().scene.patches.size()),
           values_(vk::makeBuffer(testDevice(), light_, "light")) {
-        MapOffer offer{.set = 1, .size = kSize, .shared = shared};
+        MapOffer offer{.set = 1, .size = kSwapSize, .shared = shared};
         for (uint32_t slot = 0; shared && slot < Publisher::kSlots; ++slot) {
-            images_[slot] = vk::SharedImage(testDevice(), {.width = kSize, .height = kSize, .name = "swap"});
+            images_[slot] =
+                vk::SharedImage(testDevice(), {.width = kSwapSize, .height = kSwapSize, .name = "swap"});
             offer.fds[slot] = images_[slot].exportFd();
             offer.memorySize = images_[slot].memorySize();
         }
@@ -86,7 +87,8 @@ class Pictures {
 public:
     Pictures() : program_(glCreateProgram()), empty_({.attributes = {}, .name = "pictures"}) {
         for (gl::Framebuffer& picture : pictures_)
-            picture = gl::Framebuffer({.width = kSize, .height = kSize, .color = GL_RGBA32F, .name = "seen"});
+            picture = gl::Framebuffer(
+                {.width = kSwapSize, .height = kSwapSize, .color = GL_RGBA32F, .name = "seen"});
         const std::array<GLuint, 2> shaders = {
             compiled(GL_VERTEX_SHADER, "#version 450\n"
                                        "void main() {\n"
@@ -108,7 +110,7 @@ public:
     // The framebuffer stays bound: a software device then puts the drawing off until it is asked for it.
     void draw(const LightmapTexture& map, uint64_t n) {
         glBindFramebuffer(GL_FRAMEBUFFER, picture(n).get());
-        glViewport(0, 0, kSize, kSize);
+        glViewport(0, 0, kSwapSize, kSwapSize);
         glDisable(GL_DEPTH_TEST);
         glDisable(GL_BLEND);
         glBindTextureUnit(0, map.texture);
@@ -119,7 +121,7 @@ public:
 
     /// Texels of picture n that are not n.
     uint32_t wrong(uint64_t n) {
-        texels_.resize(size_t{kSize} * kSize);
+        texels_.resize(size_t{kSwapSize} * kSwapSize);
         glGetTextureImage(picture(n).color().get(), 0, GL_RGBA, GL_FLOAT,
                           static_cast<GLsizei>(texels_.size() * sizeof(glm::vec4)), texels_.data());
         const auto want = static_cast<float>(n);
@@ -132,7 +134,7 @@ public:
                 wrong += !(std::abs(texel[c] - expected[c]) <= room);
             covered += texel.a == 1.0f;
         }
-        EXPECT_GT(covered, kSize * kSize / 4);
+        EXPECT_GT(covered, kSwapSize * kSwapSize / 4);
         return wrong;
     }
 
@@ -180,7 +182,8 @@ void expectNoTear(bool shared) {
 }
 
 TEST(DisplaySwap, NoSharedImageIsTornInAThousandSwaps) {
-    if (!vk::SharedImage::possible(testDevice(), kSize, kSize)) GTEST_SKIP() << "images cannot be shared";
+    if (!vk::SharedImage::possible(testDevice(), kSwapSize, kSwapSize))
+        GTEST_SKIP() << "images cannot be shared";
     testContext();
     const gl::GlSharing sharing = gl::querySharing();
     const auto& uuids = sharing.deviceUuids;

@@ -8,6 +8,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gl_environment.h"
 #include "tests/gpu/gpu_environment.h"
+#include "tests/live/quick_bake.h"
 
 #include <gtest/gtest.h>
 #include <glm/gtc/packing.hpp>
@@ -28,10 +29,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Texels = std::vector<glm::u16vec4>;
 
-constexpr uint32_t kSize = 64;
-// The bake gets what time the machine has left, under a sanitizer a tenth of that [s].
-constexpr double kPatience = 240;
-
 DisplayHost hostOfContext() {
     testContext();
     const gl::GlSharing sharing = gl::querySharing();
@@ -42,7 +39,7 @@ DisplayHost hostOfContext() {
 bool canShare() {
     const DisplayHost host = hostOfContext();
     const auto& uuids = host.deviceUuids;
-    return host.memoryObjects && vk::SharedImage::possible(testDevice(), kSize, kSize) &&
+    return host.memoryObjects && vk::SharedImage::possible(testDevice(), kQuickSize, kQuickSize) &&
            std::find(uuids.begin(), uuids.end(), testDevice().info().uuid) != uuids.end();
 }
 
@@ -64,19 +61,6 @@ double meanOf(const LightmapTexture& lightmap) {
         count += 3;
     }
     return lightmap.unit * sum / count;
-}
-
-BakeSettings quickSettings() {
-    BakeSettings settings;
-    settings.size = kSize;
-    settings.solver.method = Method::Hybrid;
-    settings.solver.error = 0.02;
-    return settings;
-}
-
-PreparedScene cornell() {
-    return prepareScene(
-        {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb", .size = kSize});
 }
 
 /// A bake and the drawing thread's end of it.
@@ -185,13 +169,13 @@ TEST_P(DisplayTest, AnotherSizeKeepsTheOldMapUntilItsOwnIsThere) {
         ASSERT_NEAR(meanOf(shown), before, 0.1 * before) << shown.size;
     };
     BakeSettings settings = quickSettings();
-    for (const uint32_t size : {kSize / 2, 2 * kSize, kSize}) {
+    for (const uint32_t size : {kQuickSize / 2, 2 * kQuickSize, kQuickSize}) {
         settings.size = size;
         display.start(settings);
         ASSERT_TRUE(display.untilShown());
         EXPECT_EQ(display.texture().size, size);
     }
-    EXPECT_EQ(sizes, (std::vector<uint32_t>{kSize, kSize / 2, 2 * kSize, kSize}));
+    EXPECT_EQ(sizes, (std::vector<uint32_t>{kQuickSize, kQuickSize / 2, 2 * kQuickSize, kQuickSize}));
 }
 
 TEST(Display, SharedAndCopiedShowTheSamePixels) {
@@ -295,7 +279,7 @@ TEST(Display, WhatOpenGlCannotImportIsRefused) {
     if (!canShare()) GTEST_SKIP() << "images cannot be shared";
     if (!testDevice().info().software()) GTEST_SKIP() << "the driver would refuse memory after it";
     LightmapExchange exchange;
-    MapOffer offer{.set = 1, .size = kSize, .shared = true, .memorySize = kSize * kSize * 8};
+    MapOffer offer{.set = 1, .size = kQuickSize, .shared = true, .memorySize = kQuickSize * kQuickSize * 8};
     for (int& fd : offer.fds)
         fd = open("/dev/null", O_RDWR | O_CLOEXEC);
     exchange.offer(offer);
@@ -308,7 +292,7 @@ TEST(Display, WhatOpenGlCannotImportIsRefused) {
     if (!exchange.refused()) GTEST_SKIP() << "this driver does not tell";
     for (const int fd : offer.fds)
         EXPECT_EQ(fcntl(fd, F_GETFD), -1) << "it stays open";
-    exchange.offer({.set = 2, .size = kSize});
+    exchange.offer({.set = 2, .size = kQuickSize});
     bridge.update();
     EXPECT_TRUE(exchange.claim()) << "memory is taken after that";
 }

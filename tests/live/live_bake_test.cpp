@@ -6,6 +6,7 @@
 #include "assets/generate.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
+#include "tests/live/quick_bake.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -23,23 +24,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-
-constexpr uint32_t kSize = 64;
-// The bake gets what time the machine has left, under a sanitizer a tenth of that [s].
-constexpr double kPatience = 240;
-
-PreparedScene cornell() {
-    return prepareScene(
-        {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb", .size = kSize});
-}
-
-BakeSettings quickSettings() {
-    BakeSettings settings;
-    settings.size = kSize;
-    settings.solver.method = Method::Hybrid;
-    settings.solver.error = 0.02;
-    return settings;
-}
 
 /// The drawing thread without OpenGL: takes every map into memory.
 class Screen {
@@ -256,7 +240,7 @@ TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     const FloatImage map = readImage(folder.path("live.exr"));
     EXPECT_EQ(map.attributes.at("relume:scene"), "saved.glb");
     std::vector<uint32_t> texels = {shader::kNoPatch};
-    for (uint32_t texel = 0; texel < kSize * kSize; ++texel)
+    for (uint32_t texel = 0; texel < kQuickSize * kQuickSize; ++texel)
         if (map.find("coverage")->at(texel) == 1.0f) texels.push_back(texel);
     bake_.askProbes({.number = 7, .texels = texels});
     std::optional<LayerProbe> probe;
@@ -356,7 +340,7 @@ TEST_F(LiveBakeTest, AnotherMethodAndSizeKeepTheOldLightUntilTheirsIsThere) {
     settings.solver.pairs.window = 2;
     start(settings);
     ASSERT_TRUE(untilShown());
-    settings.size = kSize / 2;
+    settings.size = kQuickSize / 2;
     start(settings);
     ASSERT_TRUE(untilShown());
     start(quickSettings());
@@ -411,7 +395,7 @@ TEST_F(LiveBakeTest, ShowsWhatIsInspectedAndTheLightAgain) {
     for (const MapContent content :
          {MapContent::LigIn, MapContent::LigOut, MapContent::Position, MapContent::Normal,
           MapContent::Material, MapContent::Area, MapContent::Leaves, MapContent::Error, MapContent::Seen}) {
-        bake_.inspect({.content = content, .texel = kSize * kSize / 2 + kSize / 2});
+        bake_.inspect({.content = content, .texel = kQuickSize * kQuickSize / 2 + kQuickSize / 2});
         EXPECT_TRUE(until([&] { return screen_.map()->content == content; })) << static_cast<int>(content);
     }
     EXPECT_TRUE(until([&] { return bake_.takePaths().has_value(); }));

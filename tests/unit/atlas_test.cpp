@@ -20,10 +20,10 @@ bool warns(const LightmapAtlas& atlas, const std::string& part) {
 }
 
 /// Bounds of an instance of the unit-square UVs, in texels.
-struct Box {
+struct TexelBox {
     glm::vec2 low, high;
 };
-Box boxOf(const AtlasRect& rect, uint32_t size) {
+TexelBox boxOf(const AtlasRect& rect, uint32_t size) {
     return {rect.offset * float(size), (rect.offset + rect.scale) * float(size)};
 }
 
@@ -115,17 +115,17 @@ TEST(Atlas, InstancesGetRectanglesByWorldArea) {
     test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(-1, 1, 1)));
     const LightmapAtlas atlas = buildAtlas(scene, 256);
     ASSERT_TRUE(atlas.repacked);
-    std::vector<Box> boxes;
+    std::vector<TexelBox> boxes;
     for (const AtlasRect& rect : atlas.instances)
         boxes.push_back(boxOf(rect, 256));
-    for (const Box& box : boxes) {
+    for (const TexelBox& box : boxes) {
         for (int c = 0; c < 2; ++c) { // on whole texels, inside
             EXPECT_NEAR(box.low[c], std::round(box.low[c]), 1e-3f);
             EXPECT_NEAR(box.high[c], std::round(box.high[c]), 1e-3f);
             EXPECT_GE(box.low[c], 0.0f);
             EXPECT_LE(box.high[c], 256.0f);
         }
-        for (const Box& other : boxes)
+        for (const TexelBox& other : boxes)
             EXPECT_TRUE(&box == &other || box.high.x + 2 <= other.low.x + 1e-3f ||
                         other.high.x + 2 <= box.low.x + 1e-3f || box.high.y + 2 <= other.low.y + 1e-3f ||
                         other.high.y + 2 <= box.low.y + 1e-3f);

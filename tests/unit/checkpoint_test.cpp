@@ -3,6 +3,7 @@
 #include "bake/checkpoint.h"
 #include "bake/patches.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
@@ -100,10 +101,6 @@ protected:
     const std::string path_ = folder_.path("some.checkpoint");
     const CheckpointKey key_ = {"1.2.3", "size=64 samples=16 smooth=1", 0x0123456789abcdefull};
 };
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 } // namespace
 

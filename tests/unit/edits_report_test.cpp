@@ -25,14 +25,14 @@ EditsRun made(uint32_t lamps, double first) {
     run.layers = {
         .seconds5 = 1, .seconds2 = 3, .seconds = 4, .compositeError = 0.01, .curve = {{1, {}, 0.05, {}}}};
     run.hybrid = {.seconds5 = {}, .seconds2 = {}, .seconds = 2, .compositeError = 0.1, .curve = {}};
-    run.albedo =
-        AlbedoEdit{.material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
-    run.object = ObjectEdit{.object = "Chair",
-                            .share = 0.01,
-                            .firstSeconds = 0.25,
-                            .firstError = {},
-                            .seconds = 0.5,
-                            .freshSeconds = 3.0};
+    run.albedo = MeasuredAlbedo{
+        .material = "Wall", .firstSeconds = 0.1, .firstError = 0.01, .seconds = 0.2, .rays = 0};
+    run.object = MeasuredObject{.object = "Chair",
+                                .share = 0.01,
+                                .firstSeconds = 0.25,
+                                .firstError = {},
+                                .seconds = 0.5,
+                                .freshSeconds = 3.0};
     return run;
 }
 

@@ -3,6 +3,7 @@
 #include "assets/error.h"
 #include "assets/file_write.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
@@ -31,11 +32,6 @@ protected:
 
     const TemporaryFolder folder_;
 };
-
-std::string bytesOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 void store(const std::string& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;

@@ -2,6 +2,7 @@
 #include "assets/generate.h"
 #include "assets/gltf.h"
 #include "assets/lightmap_atlas.h"
+#include "tests/text.h"
 #include "tests/unit/triangle_soup.h"
 
 #include <algorithm>
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <numeric>
 #include <random>
@@ -30,21 +30,16 @@ const Scene& sceneOf(const std::string& name) {
     return known != scenes.end() ? known->second : scenes.emplace(name, generateScene(name)).first->second;
 }
 
-std::string bytesOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 double uvArea(const SoupTriangle& t) {
     const glm::dvec2 a = t.uv[1] - t.uv[0], b = t.uv[2] - t.uv[0];
     return std::abs(a.x * b.y - a.y * b.x) / 2.0;
 }
 
 /// Bounding boxes of the charts: triangles of an instance that share atlas points.
-struct Box {
+struct ChartBox {
     glm::dvec2 low{1e9}, high{-1e9};
 };
-std::vector<Box> chartBoxes(const std::vector<SoupTriangle>& triangles) {
+std::vector<ChartBox> chartBoxes(const std::vector<SoupTriangle>& triangles) {
     std::vector<int> parent;
     const auto root = [&](int i) {
         while (parent[i] != i)
@@ -62,15 +57,15 @@ std::vector<Box> chartBoxes(const std::vector<SoupTriangle>& triangles) {
             if (k == 0) first[i] = point->second;
             parent[root(point->second)] = root(first[i]);
         }
-    std::map<int, Box> boxes;
+    std::map<int, ChartBox> boxes;
     for (size_t i = 0; i < triangles.size(); ++i) {
-        Box& box = boxes[root(first[i])];
+        ChartBox& box = boxes[root(first[i])];
         for (const glm::dvec2& uv : triangles[i].uv) {
             box.low = glm::min(box.low, uv);
             box.high = glm::max(box.high, uv);
         }
     }
-    std::vector<Box> out;
+    std::vector<ChartBox> out;
     for (const auto& [id, box] : boxes)
         out.push_back(box);
     return out;
@@ -203,7 +198,7 @@ TEST_P(GeneratedScenes, HasNoEdgeUsedTwiceTheSameWay) {
 }
 
 TEST_P(GeneratedScenes, ChartsLieOnTheCellGridOneCellApart) {
-    const std::vector<Box> boxes = chartBoxes(trianglesOf(scene()));
+    const std::vector<ChartBox> boxes = chartBoxes(trianglesOf(scene()));
     for (size_t i = 0; i < boxes.size(); ++i) {
         for (const glm::dvec2& corner : {boxes[i].low, boxes[i].high}) {
             EXPECT_EQ(corner * double(kCells), glm::round(corner * double(kCells)));

@@ -1,11 +1,11 @@
 #include "assets/error.h"
 #include "assets/gltf.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -24,11 +24,6 @@ protected:
 
     const TemporaryFolder folder_;
 };
-
-std::string bytesOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 Primitive triangle(int material) {
     Primitive p;
@@ -301,11 +296,11 @@ TEST_F(GltfExport, IsAWellFormedContainer) {
     EXPECT_EQ(header[1], 2u);
     EXPECT_EQ(header[2], bytes.size());
     EXPECT_EQ(header[3] % 4, 0u);
-    const auto json = nlohmann::json::parse(bytes.substr(20, header[3]));
-    const size_t binSize = json["buffers"][0]["byteLength"];
+    const auto parsed = nlohmann::json::parse(bytes.substr(20, header[3]));
+    const size_t binSize = parsed["buffers"][0]["byteLength"];
     EXPECT_EQ(bytes.size(), 20 + header[3] + 8 + binSize);
-    for (const auto& accessor : json["accessors"]) {
-        const auto& view = json["bufferViews"][accessor["bufferView"].get<int>()];
+    for (const auto& accessor : parsed["accessors"]) {
+        const auto& view = parsed["bufferViews"][accessor["bufferView"].get<int>()];
         const std::string type = accessor["type"];
         const size_t components = type == "SCALAR" ? 1 : static_cast<size_t>(type.back() - '0');
         const size_t size = components * (accessor["componentType"] == 5123 ? 2 : 4);

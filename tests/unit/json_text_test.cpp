@@ -23,7 +23,7 @@ TEST(JsonText, WhatStaysKeepsItsSpelling) {
     const std::string text =
         " {\"a\" : 1.50e+1,\"big\":18446744073709551617, \"s\":\"\\u0041\\/\\\"]\",\n\"b\":[ 1.0 ,2,3 ] }\n";
     EXPECT_EQ(edited(text, [](Json&) {}), text);
-    EXPECT_EQ(edited(text, [](Json& json) { json["b"][1] = 0.25; }),
+    EXPECT_EQ(edited(text, [](Json& root) { root["b"][1] = 0.25; }),
               " {\"a\" : 1.50e+1,\"big\":18446744073709551617, \"s\":\"\\u0041\\/\\\"]\",\n\"b\":[ 1.0 "
               ",0.25,3 ] }\n");
 }
@@ -32,53 +32,53 @@ TEST(JsonText, MembersAreAddedAndRemovedInTheLayoutOfTheFile) {
     const std::string lines = "{\n    \"a\": {\n        \"x\": 1\n    },\n    \"b\": [1, 2]\n}";
     EXPECT_EQ(
         edited(lines,
-               [](Json& json) {
-                   json["a"]["y"] = {{"z", {3, 4}}};
+               [](Json& root) {
+                   root["a"]["y"] = {{"z", {3, 4}}};
                }),
         "{\n    \"a\": {\n        \"x\": 1,\n        \"y\": {\n            \"z\": [\n                3,\n"
         "                4\n            ]\n        }\n    },\n    \"b\": [1, 2]\n}");
-    EXPECT_EQ(edited(lines, [](Json& json) { json["b"].push_back(3); }),
+    EXPECT_EQ(edited(lines, [](Json& root) { root["b"].push_back(3); }),
               "{\n    \"a\": {\n        \"x\": 1\n    },\n    \"b\": [1, 2, 3]\n}");
-    EXPECT_EQ(edited(lines, [](Json& json) { json.erase("a"); }), "{\n    \"b\": [1, 2]\n}");
-    EXPECT_EQ(edited(lines, [](Json& json) { json.erase("b"); }),
+    EXPECT_EQ(edited(lines, [](Json& root) { root.erase("a"); }), "{\n    \"b\": [1, 2]\n}");
+    EXPECT_EQ(edited(lines, [](Json& root) { root.erase("b"); }),
               "{\n    \"a\": {\n        \"x\": 1\n    }\n}");
     EXPECT_EQ(edited("{\"a\":1,\"b\":2}",
-                     [](Json& json) {
-                         json["c"] = {{"d", true}};
+                     [](Json& root) {
+                         root["c"] = {{"d", true}};
                      }),
               "{\"a\":1,\"b\":2,\"c\":{\"d\":true}}");
 }
 
 TEST(JsonText, WhatIsEmptyIsFilledAndEmptied) {
     EXPECT_EQ(edited("{\"a\":{},\"b\":[]}",
-                     [](Json& json) {
-                         json["a"]["x"] = 1;
-                         json["b"].push_back(2);
+                     [](Json& root) {
+                         root["a"]["x"] = 1;
+                         root["b"].push_back(2);
                      }),
               "{\"a\":{\"x\":1},\"b\":[2]}");
     EXPECT_EQ(edited("{\"a\": {\"x\": 1}, \"b\": [2]}",
-                     [](Json& json) {
-                         json["a"].erase("x");
-                         json["b"].erase(0);
+                     [](Json& root) {
+                         root["a"].erase("x");
+                         root["b"].erase(0);
                      }),
               "{\"a\": {}, \"b\": []}");
-    EXPECT_EQ(edited("{}", [](Json& json) { json["a"] = 1; }), "{\"a\":1}");
+    EXPECT_EQ(edited("{}", [](Json& root) { root["a"] = 1; }), "{\"a\":1}");
 }
 
 TEST(JsonText, ElementsAreRemovedFromTheMiddle) {
-    EXPECT_EQ(edited("[{\"a\": 1}, {\"b\": 2}, {\"c\": 3}]", [](Json& json) { json.erase(1); }),
+    EXPECT_EQ(edited("[{\"a\": 1}, {\"b\": 2}, {\"c\": 3}]", [](Json& root) { root.erase(1); }),
               "[{\"a\": 1}, {\"c\": 3}]");
 }
 
 TEST(JsonText, AKeyThatStandsTwiceIsNoTrap) {
     EXPECT_EQ(edited("{\"a\": {\"x\": [1], \"x\": 2, \"y\": 3}, \"b\": 1.0}",
-                     [](Json& json) { json["a"]["y"] = 4; }),
+                     [](Json& root) { root["a"]["y"] = 4; }),
               "{\"a\": {\"x\":2,\"y\":4}, \"b\": 1.0}");
 }
 
 TEST(JsonText, BracketsInStringsAreText) {
     EXPECT_EQ(
-        edited("{\"a]}\\\\\": \"{[\\\"\", \"b\": {\"c\": \"}\"}}", [](Json& json) { json["b"]["c"] = "]"; }),
+        edited("{\"a]}\\\\\": \"{[\\\"\", \"b\": {\"c\": \"}\"}}", [](Json& root) { root["b"]["c"] = "]"; }),
         "{\"a]}\\\\\": \"{[\\\"\", \"b\": {\"c\": \"]\"}}");
 }
 

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <ImfHeader.h>
 #include <ImfMultiPartInputFile.h>
@@ -49,10 +50,6 @@ protected:
             return error.what();
         }
         return "no error";
-    }
-    static std::string bytesOf(const std::string& path) {
-        std::ifstream file(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     }
     void store(const std::string& name, const std::string& bytes) const {
         std::ofstream(at(name), std::ios::binary) << bytes;

@@ -34,7 +34,7 @@ glm::vec3 texel(const LayeredImage& image, size_t index) {
             image.composite.planes[2][index]};
 }
 
-void expectNear(const glm::vec3& a, const glm::vec3& b) {
+void expectSameColor(const glm::vec3& a, const glm::vec3& b) {
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(a[c], b[c], 1e-6f * std::abs(b[c]));
 }
@@ -68,14 +68,14 @@ TEST(LightMix, LightsOfAGroupCannotBeSetApart) {
               "light 'Lamp 6' is part of 'rest' and cannot be set apart: set 'rest', or bake with more "
               "--layer-memory");
     mixLayers(image, sets({"rest*=0.5"}));
-    expectNear(image.layers[0].weight, {20, 10, 5});
+    expectSameColor(image.layers[0].weight, {20, 10, 5});
 }
 
 TEST(LightMix, TheSumIsThatOfWeightedLayers) {
     LayeredImage image = board();
     mixLayers(image, {});
-    expectNear(texel(image, 0), {40 * 0.01f + 1 * 0.25f, 20 * 0.02f + 2 * 0.5f, 10 * 0.03f + 4 * 0.75f});
-    expectNear(texel(image, 1), {40 * 0.5f + 0.125f, 20 * 0.5f + 0.25f, 10 * 0.5f + 0.5f});
+    expectSameColor(texel(image, 0), {40 * 0.01f + 1 * 0.25f, 20 * 0.02f + 2 * 0.5f, 10 * 0.03f + 4 * 0.75f});
+    expectSameColor(texel(image, 1), {40 * 0.5f + 0.125f, 20 * 0.5f + 0.25f, 10 * 0.5f + 0.5f});
     EXPECT_EQ(image.composite.channels, (std::vector<std::string>{"R", "G", "B", "coverage"}));
     EXPECT_EQ(*image.composite.find("coverage"), (std::vector<float>{0.5f, 1}));
     const LayeredImage once = image;
@@ -112,7 +112,7 @@ TEST(LightMix, SwitchesTurnLightsOffAndOn) {
     MixDesc desc;
     desc.muted = {"Sky"};
     mixLayers(image, desc);
-    expectNear(texel(image, 0), {0.4f, 0.4f, 0.3f});
+    expectSameColor(texel(image, 0), {0.4f, 0.4f, 0.3f});
     EXPECT_EQ(intensityOf(image.layers[2]), 4.0f); // what it had stays known
     EXPECT_EQ(colorOf(image.layers[2]), glm::vec3(0.25f, 0.5f, 1));
 
@@ -121,7 +121,7 @@ TEST(LightMix, SwitchesTurnLightsOffAndOn) {
     desc.solo = {"Sky", "Lamp"};
     desc.muted = {"Lamp"};
     mixLayers(image, desc);
-    expectNear(texel(image, 0), {0.25f, 1.0f, 3.0f});
+    expectSameColor(texel(image, 0), {0.25f, 1.0f, 3.0f});
     EXPECT_EQ(intensityOf(image.layers[0]), 20.0f);
 
     image = board();

@@ -104,9 +104,9 @@ TEST(MethodsReport, HandlesOnePointZerosAndMissingValues) {
 TEST(MethodsReport, GivesTheSameFiguresAsJson) {
     MethodRun endless = made("hybrid", "16 samples", 64, 1.0);
     endless.relRmse = std::numeric_limits<double>::infinity();
-    const auto json = methodsJson(report({made("pure", "", 64, 2), endless, skipped("static", 8, "no")}));
-    EXPECT_EQ(json.at("passes"), 2);
-    const auto& runs = json.at("runs");
+    const auto parsed = methodsJson(report({made("pure", "", 64, 2), endless, skipped("static", 8, "no")}));
+    EXPECT_EQ(parsed.at("passes"), 2);
+    const auto& runs = parsed.at("runs");
     ASSERT_EQ(runs.size(), 3u);
     EXPECT_EQ(runs[0].at("passSeconds"), 1.0);
     EXPECT_EQ(runs[0].at("rays"), 1000000);

@@ -5,13 +5,13 @@
 #include "assets/error.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
+#include "tests/text.h"
 #include "tests/unit/session_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <thread>
 
@@ -47,10 +47,6 @@ protected:
              at = bytes.find("\"light\":", at + 1))
             ++count;
         return count;
-    }
-    static std::string bytesOf(const std::string& path) {
-        std::ifstream stream(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     }
 };
 

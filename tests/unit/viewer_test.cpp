@@ -122,7 +122,7 @@ TEST(RedrawPacer, FiguresComeTenTimesASecond) {
     EXPECT_TRUE(pacer.due(0.1001).any);
 }
 
-Box unitBox() {
+Box boxAroundOrigin() {
     Box box;
     box.add(glm::vec3(-1));
     box.add(glm::vec3(1));
@@ -133,7 +133,7 @@ CameraControl aheadOfBox() {
     CameraControl control;
     ViewCamera camera;
     camera.eye = {0, 0, 5};
-    control.set(camera, unitBox());
+    control.set(camera, boxAroundOrigin());
     return control;
 }
 
@@ -173,14 +173,14 @@ TEST(CameraControl, FlightIsAsFastAsTheSceneIsLarge) {
     control.setFlight({{0, 0, 1}, false});
     EXPECT_TRUE(control.fly(0.05));
     const float slow = 5.0f - control.camera().eye.z;
-    EXPECT_NEAR(slow, 0.05f * unitBox().diagonal() / 4, 1e-4f);
+    EXPECT_NEAR(slow, 0.05f * boxAroundOrigin().diagonal() / 4, 1e-4f);
     control.setFlight({{0, 0, 1}, true});
     control.fly(0.05);
     EXPECT_NEAR(5.0f - slow - control.camera().eye.z, 4 * slow, 1e-4f);
     // After a stall it goes on where it was.
     const float before = control.camera().eye.z;
     control.fly(1e6);
-    EXPECT_LT(before - control.camera().eye.z, unitBox().diagonal());
+    EXPECT_LT(before - control.camera().eye.z, boxAroundOrigin().diagonal());
 }
 
 TEST(CameraControl, ResetGoesHome) {

@@ -1,5 +1,6 @@
 #include "app/viewer/panels/bake_panel.h"
 
+#include "app/bake_options.h"
 #include "app/viewer/panels/widgets.h"
 
 #include <algorithm>
@@ -11,21 +12,15 @@
 namespace relume {
 namespace {
 
-constexpr std::array<Method, 7> kMethods = {Method::Hybrid,  Method::Directional, Method::Pure,
-                                            Method::Static,  Method::MonteCarlo,  Method::Mipmapped,
-                                            Method::Adaptive};
+constexpr std::array<Method, 7> kOfferedMethods = {Method::Hybrid,  Method::Directional, Method::Pure,
+                                                   Method::Static,  Method::MonteCarlo,  Method::Mipmapped,
+                                                   Method::Adaptive};
 constexpr std::array<uint32_t, 10> kSizes = {32, 64, 128, 256, 384, 512, 768, 1024, 1536, 2048};
 constexpr std::array<uint32_t, 6> kWindows = {1, 2, 4, 8, 16, 32};
 constexpr std::array<uint32_t, 6> kNodes = {2, 4, 8, 16, 32, 64};
 constexpr std::array<uint32_t, 3> kScales = {1, 2, 4};
 constexpr std::array<uint32_t, 4> kVoxels = {32, 64, 128, 256};
 constexpr uint32_t kMostSamples = 65536, kMostRatio = 256;
-constexpr float kRtradReflectivity = 0.9f;
-constexpr double kMebi = 1024.0 * 1024.0;
-
-bool hasWindow(Method method) {
-    return method == Method::Static || method == Method::MonteCarlo || method == Method::Mipmapped;
-}
 
 // Of sliders and fields that one drags or types in: when they are let go of. Each step would start a bake.
 bool released() {
@@ -47,12 +42,12 @@ void BakePanel::drawMethod(bool& done) {
         done = true;
     }
     ui::tip("The reference implementation to the letter, with its clamps");
-    std::array<const char*, kMethods.size()> names{};
-    std::transform(kMethods.begin(), kMethods.end(), names.begin(), methodName);
-    auto index =
-        static_cast<size_t>(std::find(kMethods.begin(), kMethods.end(), solver.method) - kMethods.begin());
+    std::array<const char*, kOfferedMethods.size()> names{};
+    std::transform(kOfferedMethods.begin(), kOfferedMethods.end(), names.begin(), methodName);
+    auto index = static_cast<size_t>(
+        std::find(kOfferedMethods.begin(), kOfferedMethods.end(), solver.method) - kOfferedMethods.begin());
     if (ui::combo("Method", index, names)) {
-        solver.method = kMethods[index];
+        solver.method = kOfferedMethods[index];
         // What one method keeps the other has no use for.
         if (solver.cache.kind != CacheSettings::Kind::None) solver.cache.kind = CacheSettings::Kind::Auto;
         if (hasWindow(solver.method) && solver.pairs.window < 2) solver.pairs.window = 2;
@@ -76,10 +71,10 @@ void BakePanel::drawMethod(bool& done) {
         done = true;
     }
     ui::tip("Keeps for later passes what rays found");
-    double mebibytes = static_cast<double>(solver.cache.bytes) / kMebi;
+    double mebibytes = static_cast<double>(solver.cache.bytes) / ui::kMebi;
     if (ui::number("Cache memory [MiB]", mebibytes, "%.0f")) {
         constexpr double kMost = 1e7;
-        solver.cache.bytes = static_cast<uint64_t>(std::clamp(mebibytes, 0.0, kMost) * kMebi);
+        solver.cache.bytes = static_cast<uint64_t>(std::clamp(mebibytes, 0.0, kMost) * ui::kMebi);
         done = true;
     }
     ui::tip("0: a third of the free device memory");

@@ -17,8 +17,8 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-// A pixel of a drag: share of a strength, of the scene's diagonal, degrees, kelvin.
-constexpr float kStrengthStep = 0.01f, kPlaceStep = 0.001f, kAngleStep = 0.5f, kKelvinStep = 20.0f;
+// A pixel of a drag: share of a strength, kelvin.
+constexpr float kStrengthStep = 0.01f, kKelvinStep = 20.0f;
 constexpr float kLeastStep = 0.001f; // of strengths near 0
 constexpr float kMostStrength = 1e9f;
 // Emitters and a sky of no strength are no lights and would leave the board: mute does that.
@@ -30,9 +30,9 @@ constexpr float kBoardShare = 0.55f; // of the panel's height, at most
 constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
 
 /// Of one light: makes the edit under its name.
-class Editor {
+class LightEditor {
 public:
-    Editor(const PanelContext& context, const LightSource& source)
+    LightEditor(const PanelContext& context, const LightSource& source)
         : context_(context), source_(source), next(context.session.document()) {}
 
     /// To be called behind a control: `changed` as it returned.
@@ -131,7 +131,7 @@ void drawSwitches(const PanelContext& context, const LightSource& source) {
     ui::tip("Mute (Alt+M)");
 }
 
-void drawNumber(const Editor& editor, const char* what, const char* label, bool changed) {
+void drawNumber(const LightEditor& editor, const char* what, const char* label, bool changed) {
     ui::mark(label, true);
     editor.follow(what, changed);
 }
@@ -167,7 +167,7 @@ void LightsPanel::drawRow(const PanelContext& context, const LightSource& source
     drawPreview(context, source);
     ImGui::SameLine();
     ImGui::BeginGroup();
-    Editor editor(context, source);
+    LightEditor editor(context, source);
     SceneEdits& edits = editor.next.edits;
     LightPower power = powerOf(edits, source.key);
     const auto change = [&](bool changed) {
@@ -252,7 +252,7 @@ void LightsPanel::drawAdd(const PanelContext& context) {
 }
 
 void LightsPanel::drawAngles(const PanelContext& context, const LightSource& source) {
-    Editor editor(context, source);
+    LightEditor editor(context, source);
     glm::mat4& transform = editor.lamp().transform;
     const glm::mat4 typed = withAngles(transform, angles_);
     float off = anglesOf_ == source.key ? 0.0f : 1.0f;
@@ -261,17 +261,18 @@ void LightsPanel::drawAngles(const PanelContext& context, const LightSource& sou
     constexpr float kTyped = 1e-4f; // of a unit vector
     if (off > kTyped) angles_ = lightAngles(transform);
     anglesOf_ = source.key;
-    const bool changed = ImGui::DragFloat3("Angles [deg]", &angles_.x, kAngleStep, -360.0f, 360.0f, "%.1f");
+    const bool changed =
+        ImGui::DragFloat3("Angles [deg]", &angles_.x, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
     if (changed) transform = withAngles(transform, angles_);
     drawNumber(editor, "Rotation", "Angles [deg]", changed);
     ui::tip("Turn about the upright, tilt (-90: down), roll");
 }
 
 void LightsPanel::drawLamp(const PanelContext& context, const LightSource& source) {
-    Editor editor(context, source);
+    LightEditor editor(context, source);
     Light& light = editor.lamp();
     const float diagonal = std::max(context.session.scene()->geometry.bounds.diagonal(), 1e-6f);
-    const float step = kPlaceStep * diagonal;
+    const float step = ui::kPlaceStep * diagonal;
     const bool round = light.type == LightType::Point || light.type == LightType::Spot;
     const auto metres = [&](const char* label, const char* what, float& value) {
         const bool changed = ImGui::DragFloat(label, &value, step, 0.0f, 1e6f, "%.4g", kClamp);
@@ -279,7 +280,7 @@ void LightsPanel::drawLamp(const PanelContext& context, const LightSource& sourc
     };
     const auto degrees = [&](const char* label, const char* what, float& radians, float most) {
         float value = glm::degrees(radians);
-        const bool changed = ImGui::DragFloat(label, &value, kAngleStep, 0.0f, most, "%.2f", kClamp);
+        const bool changed = ImGui::DragFloat(label, &value, ui::kAngleStep, 0.0f, most, "%.2f", kClamp);
         if (changed) radians = glm::radians(value);
         light.innerConeAngle = std::min(light.innerConeAngle, light.outerConeAngle);
         drawNumber(editor, what, label, changed);
@@ -324,7 +325,7 @@ void LightsPanel::drawInspector(const PanelContext& context) {
     ImGui::TextUnformatted(
         fmt::format("{}: {}", source.name, lightTypeOf(context.session.document().edits, source.key))
             .c_str());
-    Editor editor(context, source);
+    LightEditor editor(context, source);
     SceneEdits& edits = editor.next.edits;
     LightPower power = powerOf(edits, source.key);
     bool changed = drawColour("Colour", power.color, 0);
@@ -343,7 +344,8 @@ void LightsPanel::drawInspector(const PanelContext& context) {
         return;
     }
     float rotation = glm::degrees(edits.sky.rotation);
-    const bool turned = ImGui::DragFloat("Rotation [deg]", &rotation, kAngleStep, -360.0f, 360.0f, "%.1f");
+    const bool turned =
+        ImGui::DragFloat("Rotation [deg]", &rotation, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
     if (turned) edits.sky.rotation = glm::radians(rotation);
     drawNumber(editor, "Rotation", "Rotation [deg]", turned);
     ImGui::TextWrapped("%s", edits.sky.file.empty() ? "No picture: one radiance all around"

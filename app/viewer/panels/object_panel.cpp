@@ -11,8 +11,7 @@
 namespace relume {
 namespace {
 
-// A pixel of a drag: share of the scene's diagonal, degrees, share of a scale.
-constexpr float kPlaceStep = 0.001f, kAngleStep = 0.5f, kScaleStep = 0.005f;
+constexpr float kScaleStep = 0.005f; // of a scale, a pixel of a drag
 constexpr float kLeastScale = 1e-4f; // what is flat has neither volume nor a way back
 
 void follow(const PanelContext& context, const char* label, const std::string& name, const Document* next) {
@@ -36,7 +35,8 @@ void ObjectPanel::drawAngles(const PanelContext& context, uint32_t instance, con
     constexpr float kTyped = 1e-4f; // of a unit vector
     if (off > kTyped) angles_ = anglesOf(transform);
     anglesOf_ = instance;
-    const bool changed = ImGui::DragFloat3("Rotation [deg]", &angles_.x, kAngleStep, -360.0f, 360.0f, "%.1f");
+    const bool changed =
+        ImGui::DragFloat3("Rotation [deg]", &angles_.x, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
     if (changed) transform = turnedTo(transform, angles_);
     follow(context, "Rotation [deg]", "Rotation of " + name, changed ? &next : nullptr);
     ui::tip("Turn about the upright, tilt, roll");
@@ -48,7 +48,7 @@ void ObjectPanel::draw(const PanelContext& context, uint32_t instance) {
     ImGui::TextUnformatted(name.c_str());
     Document next = context.session.document();
     Placement& placement = next.edits.placements[instance];
-    const float step = kPlaceStep * std::max(scene.geometry.bounds.diagonal(), 1e-6f);
+    const float step = ui::kPlaceStep * std::max(scene.geometry.bounds.diagonal(), 1e-6f);
     glm::vec3 place(placement.transform[3]);
     bool changed = ImGui::DragFloat3("Position [m]", &place.x, step, 0.0f, 0.0f, "%.3f");
     if (changed) placement.transform[3] = glm::vec4(place, 1.0f);

@@ -39,7 +39,6 @@ void drawFrames(const FrameFigures& figures) {
 }
 
 void drawBake(const BakeStatus& status) {
-    constexpr double kMebi = 1024.0 * 1024.0;
     const SolverProgress& progress = status.progress;
     if (!ui::beginRows("bake")) return;
     ui::row("Solving", fmt::format("{:.2f} s", progress.seconds));
@@ -49,10 +48,11 @@ void drawBake(const BakeStatus& status) {
     ui::row("Saved by the cache", fmt::format("{:.4g}", static_cast<double>(progress.raysSaved)));
     ui::row("Pairs or links gathered", fmt::format("{:.4g}", static_cast<double>(progress.pairs)));
     ui::row("Cache",
-            fmt::format("{:.1f} MiB, {:.0f} % of a pass", static_cast<double>(progress.cacheBytes) / kMebi,
-                        100.0 * progress.cachedShare));
+            fmt::format("{:.1f} MiB, {:.0f} % of a pass",
+                        static_cast<double>(progress.cacheBytes) / ui::kMebi, 100.0 * progress.cachedShare));
     if (status.deviceBytes > 0)
-        ui::row("Device memory", fmt::format("{:.1f} MiB", static_cast<double>(status.deviceBytes) / kMebi));
+        ui::row("Device memory",
+                fmt::format("{:.1f} MiB", static_cast<double>(status.deviceBytes) / ui::kMebi));
     if (status.validationMessages > 0)
         ui::row("Validation messages", std::to_string(status.validationMessages));
     const size_t count = progress.passSeconds.size();

@@ -16,7 +16,7 @@ namespace {
 constexpr float kMostExposure = 24; // [EV] to either side that the slider reaches
 constexpr uint32_t kMostMip = 4;    // of ligIn and ligOut
 constexpr std::array<uint32_t, 4> kSamples = {0, 2, 4, 8};
-constexpr std::array<uint32_t, 4> kVoxels = {32, 64, 128, 256};
+constexpr std::array<uint32_t, 4> kPreviewVoxels = {32, 64, 128, 256};
 
 void drawViews(const PanelContext& context) {
     const std::vector<ViewEntry>& entries = viewEntries();
@@ -42,15 +42,15 @@ bool drawContent(const PanelContext& context) {
         ui::tip("Means over 2^mip by 2^mip texels");
     }
     if (entry.content == MapContent::Leaves) {
-        constexpr std::array<uint32_t, 6> kNodes = {2, 4, 8, 16, 32, 64};
+        constexpr std::array<uint32_t, 6> kPreviewNodes = {2, 4, 8, 16, 32, 64};
         auto threshold = static_cast<float>(view.preview.threshold);
         changed |=
             ui::sliderFloat("Threshold", &threshold, 0.001f, 0.5f, "%.3f", ImGuiSliderFlags_Logarithmic);
         view.preview.threshold = threshold;
-        changed |= ui::combo("Largest node [texels]", view.preview.node, kNodes);
+        changed |= ui::combo("Largest node [texels]", view.preview.node, kPreviewNodes);
         ui::tip("Of the preview, where the method has no quad-tree of its own");
     }
-    if (entry.voxels) changed |= ui::combo("Voxels along an edge", view.voxels, kVoxels);
+    if (entry.voxels) changed |= ui::combo("Voxels along an edge", view.voxels, kPreviewVoxels);
     const bool ranged = entry.content == MapContent::Error || entry.content == MapContent::Area;
     if (ranged && context.map != nullptr) {
         bool automatic = !view.high;

@@ -11,6 +11,10 @@
 
 namespace relume::ui {
 
+constexpr double kMebi = 1024.0 * 1024.0; // bytes
+// A pixel of a drag: share of the scene's diagonal, degrees.
+constexpr float kPlaceStep = 0.001f, kAngleStep = 0.5f;
+
 /// Text that is shown when the last control is pointed at.
 void tip(const char* text);
 /// Tells ItemLog about the last control; framed: its label stands beside it.

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "app/bake_settings.h"
+#include "app/prepare.h"
+
+#include <string>
+
+namespace relume {
+
+constexpr uint32_t kQuickSize = 64;
+// The bake gets what time the machine has left, under a sanitizer a tenth of that [s].
+constexpr double kPatience = 240;
+
+inline BakeSettings quickSettings() {
+    BakeSettings settings;
+    settings.size = kQuickSize;
+    settings.solver.method = Method::Hybrid;
+    settings.solver.error = 0.02;
+    return settings;
+}
+
+inline PreparedScene cornell() {
+    return prepareScene(
+        {.path = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb", .size = kQuickSize});
+}
+
+} // namespace relume
