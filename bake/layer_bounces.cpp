@@ -12,6 +12,7 @@ using shader::kReplicates;
 // Of the memory that is free, what layers beside the first one may take.
 constexpr double kShare = 0.25;
 constexpr uint32_t kPasses = 2; // of which changes are told
+constexpr uint32_t kChangeValues = sizeof(glm::vec4) / sizeof(float);
 
 } // namespace
 
@@ -21,7 +22,7 @@ LayerBounces::LayerBounces(const vk::Device& device, const LightBuffers& light, 
                       .memory = vk::Memory::Host,
                       .name = "layers that bounce"}),
       totals_(device, {.size = kPasses * kMostLanes * sizeof(glm::vec4), .name = "changes by bounces"}),
-      one_(device, "bounce"), four_(device, "bounce_four"), change_(device, "bounce_change") {
+      one_(device, "bounce"), four_(device, "bounce_four"), sum_(device) {
     makeSent(1);
 }
 
@@ -115,9 +116,11 @@ void LayerBounces::endPass() {
 }
 
 void LayerBounces::recordChanges(VkCommandBuffer cmd) const {
-    const shader::BounceChangePush p{
-        .changes = changes_.address(), .totals = totals_.address(), .chunkCount = light_.chunkCount};
-    change_.dispatch(cmd, p, kPasses * lanesOf_);
+    sum_.record(cmd, {.values = changes_.address(),
+                      .sums = totals_.address(),
+                      .chunkCount = light_.chunkCount,
+                      .width = kChangeValues,
+                      .groups = kPasses * lanesOf_});
 }
 
 } // namespace relume

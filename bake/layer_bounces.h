@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/chunk_order.h"
+#include "bake/chunk_sums.h"
 #include "bake/light_buffers.h"
 #include "bake/vk/program.h"
 
@@ -68,7 +69,8 @@ private:
     std::array<vk::Buffer, 2> sent_; // uvec2[patches][lanes], one is read while the other one is made
     vk::Buffer changes_, totals_;
     std::vector<Beside> beside_; // the first lane
-    vk::ComputeProgram one_, four_, change_;
+    vk::ComputeProgram one_, four_;
+    ChunkSumPass sum_;
     uint32_t lanesOf_ = 1; // of the program that runs
     uint32_t count_ = 1;   // layers
     uint32_t live_ = 1, from_ = 0, now_ = 0;

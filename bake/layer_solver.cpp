@@ -40,9 +40,9 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                             .batch = buffers_.batchChunks,
                             .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       radiancePass_(input.device), gatherPass_(input.device, settings.transport), resolvePass_(input.device),
-      layerPass_(input.device), parts_(makeTileParts(input.patches)), commands_(input.device),
-      timestamps_(input.device, 3 * kMostPortions), order_(input.patches.chunkCount()),
-      layerBytes_(settings.layers.bytes) {
+      layerPass_(input.device), chunkSums_(input.device), parts_(makeTileParts(input.patches)),
+      commands_(input.device), timestamps_(input.device, 3 * kMostPortions),
+      order_(input.patches.chunkCount()), layerBytes_(settings.layers.bytes) {
     batchMs_ = settings.batchMs;
     settings_.transport.reflectedOnly = true;
     const VkDeviceSize lightBytes = LightBuffers::lightBytes(input.patches);
@@ -53,11 +53,13 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
     penumbra_ = {vk::makeBuffer(input.device, parts_.ofPatch, "parts of tiles"),
                  vk::Buffer(input.device, {.size = parts_.count * sizeof(glm::uvec2), .name = "penumbra"})};
-    const VkDeviceSize changes = 2 * input.patches.chunkCount() * sizeof(glm::vec4); // of two passes
-    back_ = vk::Buffer(input.device, {.size = std::max({buffers_.chunkSums.size(), changes,
-                                                        buffers_.rays.size() + penumbra_.lights.size()}),
-                                      .memory = vk::Memory::Host,
-                                      .name = "sums for the CPU"});
+    const uint32_t chunks = input.patches.chunkCount();
+    const VkDeviceSize changes = 2 * chunks * sizeof(glm::vec4); // of two passes
+    const VkDeviceSize sums = chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4));
+    back_ = vk::Buffer(input.device,
+                       {.size = std::max({sums, changes, buffers_.rays.size() + penumbra_.lights.size()}),
+                        .memory = vk::Memory::Host,
+                        .name = "sums for the CPU"});
     countSenders();
     VkCommandBuffer cmd = commands_.begin();
     for (const vk::Buffer* buffer : {&buffers_.rays, &composite_, &input.light.ligIn, &input.light.ligOut})

@@ -107,6 +107,11 @@ private:
         ClosestWork closest;
         LinkGatherPass::Work gather;
     };
+    /// Over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it.
+    struct LevelSums {
+        shader::ResolveSums indirect{};
+        glm::dvec4 result{0.0};
+    };
     /// Kept links on their way to where objects are now.
     struct Relink {
         ObjectMove move;
@@ -193,7 +198,8 @@ private:
 
     // layer_levels.cpp
     void finishLevel(const Lane& lane);
-    shader::ResolveSums resolve(uint32_t linkRounds, double sigma);
+    void recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceSize at);
+    LevelSums resolve(const Layer& layer, uint32_t linkRounds, double sigma);
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
     LayerLevel nextLevel(const Layer& layer) const;
@@ -265,6 +271,7 @@ private:
     std::unique_ptr<LayerBounces> bounces_; // where the device gathers
     ResolvePass resolvePass_;
     LayerPass layerPass_;
+    ChunkSumPass chunkSums_;
     TileParts parts_;
     Penumbra penumbra_; // of the layer whose direct light is under way
     vk::Buffer back_;   // what the CPU reads after a submit: sums per chunk, or counters of rays

@@ -68,6 +68,7 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
     constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
     chunkSums = vk::Buffer(device, {.size = chunks * kSums, .name = "sums per chunk"});
+    sums = vk::Buffer(device, {.size = kSums, .name = "sums over chunks"});
     rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 }
 

@@ -27,6 +27,7 @@ struct LinkBuffers {
     vk::Buffer distances;     // float per patch [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back
+    vk::Buffer sums;          // or over all of them
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
     uint32_t keptChunks = 0;

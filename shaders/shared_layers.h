@@ -65,9 +65,9 @@ struct BouncePush {
     float scale; // from the sum of all sums to the mean
     float reflectivity;
 };
-// Over all chunks.
-struct BounceChangePush {
-    ADDRESS changes; // vec4[2][lanes][chunkCount]
-    ADDRESS totals;  // vec4[2][lanes]
+struct ChunkSumPush {
+    ADDRESS values; // float[groups][chunkCount][width]
+    ADDRESS sums;   // float[groups][width]
     uint chunkCount;
+    uint width;
 };
