@@ -59,6 +59,23 @@ void gatherChunkLinks(const HostLinks& work, uint32_t chunk) {
     }
 }
 
+void sendChunk(const HostSend& work, uint32_t chunk) {
+    glm::vec4 change(0.0f);
+    for (size_t index = size_t{chunk} * kChunk, end = index + kChunk; index < end; ++index) {
+        const uint32_t flags = work.patches[index].flags;
+        const bool sends = (flags & shader::kPatchSends) != 0;
+        const glm::vec3 light(work.light[index]);
+        work.radiance[index] =
+            sends ? glm::vec4(work.reflectivity * glm::vec3(work.albedo[index]) * light, 0.0f)
+                  : glm::vec4(0.0f);
+        if (!work.changes || !sends || (flags & shader::kPatchBackSide) != 0) continue;
+        const glm::vec3 before(work.before[index]), by = light - before;
+        change +=
+            glm::vec4(glm::dot(by, by), light.r + light.g + light.b, 1.0f, before.r + before.g + before.b);
+    }
+    if (work.changes) work.changes[chunk] = change;
+}
+
 // Numbers of eight senders; compilers turn them into as many vector registers as it takes.
 constexpr uint32_t kLanes = 8;
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
@@ -286,6 +303,10 @@ void SideGather::gatherRow(uint32_t r, const std::vector<SenderLanes>& lanes) co
 
 void gatherLinks(WorkerPool& pool, const HostLinks& work) {
     pool.run(work.chunkCount, [&](uint32_t chunk) { gatherChunkLinks(work, chunk); });
+}
+
+void sendLight(WorkerPool& pool, const HostSend& work) {
+    pool.run(work.chunkCount, [&](uint32_t chunk) { sendChunk(work, chunk); });
 }
 
 void gatherPairs(WorkerPool& pool, const HostPairs& work) {

@@ -25,6 +25,19 @@ struct HostLinks {
 };
 void gatherLinks(WorkerPool& pool, const HostLinks& work);
 
+/// After a bounce: what patches send next, and how much the light changed.
+struct HostSend {
+    const shader::Patch* patches = nullptr;
+    const glm::vec4* albedo = nullptr;
+    const glm::vec4* before = nullptr; // of the bounce
+    const glm::vec4* light = nullptr;  // that came of it
+    glm::vec4* radiance = nullptr;     // written: reflectivity * albedo * light, of those that send
+    glm::vec4* changes = nullptr;      // per chunk, as of ChangePush; nullptr: not told
+    float reflectivity = 1;
+    uint32_t chunkCount = 0;
+};
+void sendLight(WorkerPool& pool, const HostSend& work);
+
 /// Visible pairs of whole super-blocks, by the exact form factor where they are close.
 struct HostPairs {
     std::span<const shader::SuperBlock> supers;

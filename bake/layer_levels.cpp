@@ -9,10 +9,10 @@
 namespace relume {
 namespace {
 
-// A segment towards a light costs about so many links: these are traced for all layers together, and what a
-// layer pays for itself is to gather them. Measured with 16 lamps, a segment over a sixteenth of a link's ray
-// and two gathers: 7 on an H100, 10 on CPUs; with one light it is 1.
-constexpr double kSegmentLinks = 4.0;
+// A segment towards a light counts as so many links. Links are traced once for all layers, and what a layer
+// pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
+// the memory are traced for each.
+constexpr double kSegmentLinks = 2.0;
 // Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
 constexpr uint32_t kMostGrowth = 8;
 // Directions or points per patch beyond which no error is worth the time.
@@ -42,8 +42,8 @@ LayerLevel LayerSolver::firstLevel() const {
     return {std::min(2u, last.directRounds), std::min(linkRounds, last.linkRounds)};
 }
 
-// More of what takes away more of the variance for its cost, whether or not links are there already: the level
-// must not depend on what was done before.
+// More of what takes away more of the variance for its cost, whether or not links are there already: the
+// level must not depend on what was done before.
 LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     const LayerLevel now = layer.level, last = lastLevel();
     if (settings_.error <= 0) return last;

@@ -234,9 +234,10 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     return seen;
 }
 
-// Whether the end of the pass under way is more than to count it.
+// Whether the end of the pass under way is more than to count it; what the CPU gathered in a bounce it sends,
+// too.
 bool LayerSolver::recordsPassEnd() const {
-    return work_->stage == Stage::Bounces || work_->round + 1 == work_->target.linkRounds;
+    return work_->stage == Stage::Gather && work_->round + 1 == work_->target.linkRounds;
 }
 
 // What was gathered is what the next pass, of whichever stage, begins with. Returns whether the CPU is to
@@ -296,20 +297,22 @@ void LayerSolver::recordPassLight(VkCommandBuffer cmd) {
         return bounces_->endPass();
     }
     const Work& work = *work_;
-    const bool gather = work.stage == Stage::Gather;
-    if (gather) {
-        std::swap(input_.light.ligIn, input_.light.ligOut);
-        vk::barrier(cmd);
-        gatherPass_.recordCompose(cmd, input_.light, buffers_, layerOf(work.lanes.front()).direct.get(),
-                                  work.target.linkRounds * linksOfRound_);
+    const uint32_t chunks = input_.patches.chunkCount();
+    if (work.stage == Stage::Bounces) {
+        auto* changes = tellsChange() ? back_.as<glm::vec4>() + size_t{work.bounce % 2} * chunks : nullptr;
+        gatherPass_.sendOnCpu(input_.light, settings_.transport.reflectivity, changes);
+        return std::swap(input_.light.ligIn, input_.light.ligOut);
     }
+    std::swap(input_.light.ligIn, input_.light.ligOut);
+    vk::barrier(cmd);
+    gatherPass_.recordCompose(cmd, input_.light, buffers_, layerOf(work.lanes.front()).direct.get(),
+                              work.target.linkRounds * linksOfRound_);
     if (tellsChange()) {
-        const VkDeviceSize bytes = input_.patches.chunkCount() * sizeof(glm::vec4);
         vk::barrier(cmd);
         resolvePass_.recordChange(cmd, input_.light, buffers_);
-        recordBack(cmd, buffers_.chunkSums, bytes, (gather ? work.gathers : work.bounce) % 2 * bytes);
+        recordBack(cmd, buffers_.chunkSums, chunks * sizeof(glm::vec4),
+                   work.gathers % 2 * chunks * sizeof(glm::vec4));
     }
-    if (!gather) std::swap(input_.light.ligIn, input_.light.ligOut);
     recordRadiance(cmd);
 }
 

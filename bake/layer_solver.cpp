@@ -14,6 +14,7 @@ using shader::kChunk;
 
 // A GPU's submit takes as long as rays from about so many chunks: they come along with those around them.
 constexpr uint32_t kGap = 256;
+constexpr uint32_t kGapOfCpu = 32; // which traces the rays of that many meanwhile
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
     ASSERT(settings.method == Method::Hybrid && !settings.transport.rtrad);
@@ -263,7 +264,10 @@ bool LayerSolver::orderRound() {
         for (uint32_t i = 0; i < take.size(); ++i)
             take[i] &= static_cast<uint8_t>(parts_.any(i, layer.penumbra));
     }
-    if (!input_.tracer.onCpu()) closeGaps(take, kGap);
+    if (!input_.tracer.onCpu())
+        closeGaps(take, kGap);
+    else if (!work_->mended) // of all chunks: those between have few patches that take part, or none
+        closeGaps(take, kGapOfCpu);
     for (const ChunkRange& range : rangesOf(take, false))
         order_.finish(range);
     return order_.left() > 0;

@@ -126,6 +126,17 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                          .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk});
 }
 
+void LinkGatherPass::sendOnCpu(const LightBuffers& light, float reflectivity, glm::vec4* changes) const {
+    sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
+                       .albedo = light.albedo.as<glm::vec4>(),
+                       .before = light.ligIn.as<glm::vec4>(),
+                       .light = light.ligOut.as<glm::vec4>(),
+                       .radiance = light.radiance.as<glm::vec4>(),
+                       .changes = changes,
+                       .reflectivity = reflectivity,
+                       .chunkCount = light.chunkCount});
+}
+
 void LinkGatherPass::recordPack(VkCommandBuffer cmd, const LightBuffers& light,
                                 const LinkBuffers& buffers) const {
     if (pool_) return;

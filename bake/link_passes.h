@@ -78,6 +78,9 @@ public:
     };
     /// Whether record gathers at once, on the host: what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
+    /// Where it gathers on the host, of a bounce from ligIn to ligOut: makes radiance, of no emission;
+    /// changes: as HostSend has them.
+    void sendOnCpu(const LightBuffers& light, float reflectivity, glm::vec4* changes) const;
     /// Makes packed of the light's radiance.
     void recordPack(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
