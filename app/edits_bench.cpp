@@ -20,6 +20,9 @@ namespace {
 // Of the diagonal: what the moved lamp's place differs by from run to run, or its layer of the run before
 // would serve. Far below what an error could show.
 constexpr float kRunNudge = 1e-5f;
+// Of the memory that is free before anything is baked, for links: up to three bakes are on the device at
+// once.
+constexpr uint64_t kCacheShare = 4;
 // Of the diagonal: how far an object is moved.
 constexpr float kObjectWay = 0.05f;
 
@@ -143,8 +146,9 @@ public:
 
 private:
     EditsBench(const vk::Device& device, const EditsBenchDesc& desc, PreparedScene prepared)
-        : device_(device), desc_(desc), fileLights_(std::exchange(prepared.scene.lights, {})),
-          atlas_(prepared.atlas), edited_(device, prepared.scene, prepared.mesh, settings()),
+        : device_(device), desc_(desc), cacheBytes_(device.freeMemory() / kCacheShare),
+          fileLights_(std::exchange(prepared.scene.lights, {})), atlas_(prepared.atlas),
+          edited_(device, prepared.scene, prepared.mesh, settings()),
           fresh_(device, prepared.scene, std::move(prepared.mesh), settings()),
           places_(placeLamps(edited_.baker().patches().scene,
                              *std::max_element(desc.lamps.begin(), desc.lamps.end()))) {
@@ -178,6 +182,7 @@ private:
         settings.method = Method::Hybrid;
         settings.error = desc_.error;
         settings.batchMs = desc_.batchMs;
+        settings.cache.bytes = cacheBytes_;
         return settings;
     }
     SolverSettings layers() const {
@@ -356,6 +361,7 @@ private:
 
     const vk::Device& device_;
     const EditsBenchDesc& desc_;
+    uint64_t cacheBytes_; // for links, of every bake
     std::vector<Light> fileLights_;
     LightmapAtlas atlas_;
     EditedBake edited_;

@@ -12,7 +12,7 @@ namespace {
 // A segment towards a light counts as so many links. Links are traced once for all layers, and what a layer
 // pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
 // the memory are traced for each.
-constexpr double kSegmentLinks = 2.0;
+constexpr double kSegmentLinks = 1.0;
 // Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
 constexpr uint32_t kMostGrowth = 8;
 // Directions or points per patch beyond which no error is worth the time.

@@ -69,11 +69,13 @@ void LayerSolver::adoptMove() {
         const std::vector<uint32_t>& map = input_.patches.scene.texelToPatch;
         vk::upload(input_.device, buffers_.texelToPatch, map.data(), map.size() * sizeof(map[0]));
     }
+    ObjectMove move = relink_ ? relink_->move : ObjectMove(); // which links have not all followed yet
+    move.add(*moved_);
     relink_.emplace();
     Relink& relink = *relink_;
-    relink.move = *moved_;
-    relink.boxes = vk::makeBuffer(input_.device, moved_->boxes, "boxes");
-    relink.changed = vk::makeBuffer(input_.device, moved_->changed, "changed patches");
+    relink.boxes = vk::makeBuffer(input_.device, move.boxes, "boxes");
+    relink.changed = vk::makeBuffer(input_.device, move.changed, "changed patches");
+    relink.move = std::move(move);
     const uint64_t most = uint64_t{buffers_.batchChunks} * linksOfRound_ * kChunk;
     if (!input_.tracer.onCpu())
         relink.list =
@@ -211,7 +213,7 @@ void LayerSolver::endMending() {
     layers_[work.layer]->stale.clear();
     if (staleLayer()) return work_.reset();
     sumDue_ = wantsSum();
-    if (sumDue_) return work_.reset();
+    if (sumDue_ || relink_) return work_.reset();
     begin(work.layer, work.target);
 }
 

@@ -93,8 +93,9 @@ void LayerSolver::step() {
     if (edited_ && atRest()) adopt();
     if (done_) return;
     if (sumDue_ && work_ && !work_->sum) abortPass();
-    if (!work_ && !relink_) plan();
-    if (relink_) {
+    const bool relinks = relink_ && !sumComesFirst();
+    if (!work_ && !relinks) plan();
+    if (relinks) {
         relinkBatch();
     } else if (work_) {
         if (work_->stage == Stage::Direct)

@@ -62,11 +62,9 @@ public:
     bool current() const;
     /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
     void moveObjects(const ObjectMove& move);
-    /// Whether base colours and objects may be changed now: no links are under way, and no layer to its first
-    /// level, unless all of them are seen in one.
-    bool atRest() const {
-        return !relink_ && (!work_ || work_->sum || sumShown_ || layers_[work_->layer]->has());
-    }
+    /// Whether base colours and objects may be changed now: no layer is on its way to its first level, unless
+    /// all of them are seen in one.
+    bool atRest() const { return !work_ || work_->sum || sumShown_ || layers_[work_->layer]->has(); }
 
     /// Points on each light per patch and round: few, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = shader::kReplicates;
@@ -236,6 +234,8 @@ private:
 
     // layer_sum.cpp
     bool wantsSum() const;
+    uint32_t sumRounds() const;
+    bool sumComesFirst() const;
     void beginSum();
     void showSum();
     void hideSum();

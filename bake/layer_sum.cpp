@@ -28,6 +28,16 @@ bool LayerSolver::wantsSum() const {
     return waiting > 1;
 }
 
+// Of links.
+uint32_t LayerSolver::sumRounds() const {
+    return std::max(1u, kSumLinks / linksOfRound_);
+}
+
+// Before the links of later rounds follow objects that moved: direct light does, and all is seen in one.
+bool LayerSolver::sumComesFirst() const {
+    return settings_.live && relink_->round >= sumRounds() && (work_ || sumDue_ || staleLayer());
+}
+
 bool LayerSolver::current() const {
     return !edited_ && !sumDue_ && !(work_ && work_->sum) &&
            (sumShown_ || std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
@@ -54,7 +64,7 @@ void LayerSolver::beginSum() {
     VkCommandBuffer cmd = commands_.begin();
     layerPass_.recordMixDirect(cmd, weights_, count, *sum_->direct);
     run(cmd);
-    work_ = Work{.sum = true, .target = {0, std::min(rounds, std::max(1u, kSumLinks / linksOfRound_))}};
+    work_ = Work{.sum = true, .target = {0, std::min(rounds, sumRounds())}};
     beginBounces();
 }
 

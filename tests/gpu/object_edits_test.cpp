@@ -184,6 +184,27 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
     EXPECT_LT(std::sqrt(off / squares), 1e-3) << "of the same links";
 }
 
+// The sum of all lights takes links of a few rounds: those of all the others follow once it is seen.
+TEST_P(ObjectEdits, ADraggedObjectIsSeenBeforeAllLinksHaveFollowed) {
+    BakeDesc live = desc();
+    live.live = true;
+    live.samples = 256;
+    Moving bake(movingRoom(), live);
+    for (int k = 0; k < 3; ++k) {
+        bake.put(kBlock, kBlockEnd, by({0.1f, -0.1f, 0.05f}));
+        ASSERT_TRUE(bake.follow());
+        while (!bake.solver().current())
+            bake.solver().step();
+        for (int i = 0; i < k; ++i) // some have followed when it is moved on
+            bake.solver().step();
+        EXPECT_TRUE(bake.solver().atRest());
+    }
+    bake.finish();
+    const Light4 after = bake.light(), fresh = Moving(bake.scene, live).light();
+    for (size_t i = 0; i < after.size(); ++i)
+        ASSERT_EQ(after[i], fresh[i]) << "patch " << i;
+}
+
 TEST_P(ObjectEdits, ATurnedAndScaledObjectIsAFreshBake) {
     Moving bake(movingRoom(), desc());
     bake.put(kBlock, kBlockEnd,
