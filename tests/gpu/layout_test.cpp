@@ -80,7 +80,8 @@ const std::map<std::string, size_t> kSizes = {
     SIZE_OF(LinkDistancePush), SIZE_OF(PyramidNode),     SIZE_OF(PyramidPush),    SIZE_OF(FootprintPush),
     SIZE_OF(SuperBlock),       SIZE_OF(Sender),          SIZE_OF(CoarseTaps),     SIZE_OF(InterpolatePush),
     SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),           SIZE_OF(LampPush),
-    SIZE_OF(LayerDirectPush),  SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),    SIZE_OF(LayerMixPush)};
+    SIZE_OF(LayerDirectPush),  SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),    SIZE_OF(LayerMixPush),
+    SIZE_OF(BounceLane),       SIZE_OF(BouncePush),      SIZE_OF(ChunkSumPush)};
 #undef SIZE_OF
 
 // Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
