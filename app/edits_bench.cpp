@@ -6,6 +6,8 @@
 #include "app/prepare.h"
 #include "app/stopwatch.h"
 #include "assets/error.h"
+#include "assets/gltf.h"
+#include "assets/gltf_edit.h"
 #include "assets/log.h"
 
 #include <algorithm>
@@ -134,6 +136,7 @@ public:
         : EditsBench(device, desc, prepare(desc)) {}
 
     EditsReport run(const std::function<void(const EditsRun&)>& finished) {
+        if (!desc_.sceneOutput.empty()) writeScene();
         spdlog::info("moved lamp: reference");
         references_.lamp =
             fresh_.lightOfNothingElse(moved({lampAt(places_, 0)}), fixed(hybrid(), desc_.referenceSamples));
@@ -198,6 +201,15 @@ private:
         settings.error = 0;
         settings.links.samples = samples;
         return settings;
+    }
+
+    // For other programs to bake.
+    void writeScene() const {
+        const Scene before = loadGltf(desc_.scene);
+        Scene after = edited_.scene();
+        after.lights = moved(lightsOf(*std::max_element(desc_.lamps.begin(), desc_.lamps.end())));
+        saveEditedGltf(desc_.scene, before, after, desc_.sceneOutput);
+        spdlog::info("wrote {}", desc_.sceneOutput);
     }
 
     // The first one is always the same.

@@ -21,6 +21,7 @@ struct EditsBenchDesc {
     bool onlyLamps = true; // the scene's materials and its sky do not shine
     double batchMs = 20;   // aim of one submit
     TracerKind tracer = TracerKind::Auto;
+    std::string sceneOutput; // path for the scene after the move, with the most lamps; "": not written
 };
 
 /// Lamps of the scene's own come behind the first of those that are added until there are enough. Times are

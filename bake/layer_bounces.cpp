@@ -3,6 +3,10 @@
 #include "bake/chunk_dispatch.h"
 #include "bake/vk/commands.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
 namespace relume {
 namespace {
 
@@ -11,6 +15,7 @@ using shader::kReplicates;
 
 // Of the memory that is free, what layers beside the first one may take.
 constexpr double kShare = 0.25;
+constexpr std::array kPrograms = {"bounce", "bounce_two", "bounce_four", "bounce_eight"};
 constexpr uint32_t kPasses = 2; // of which changes are told
 constexpr uint32_t kChangeValues = sizeof(glm::vec4) / sizeof(float);
 
@@ -22,7 +27,11 @@ LayerBounces::LayerBounces(const vk::Device& device, const LightBuffers& light, 
                       .memory = vk::Memory::Host,
                       .name = "layers that bounce"}),
       totals_(device, {.size = kPasses * kMostLanes * sizeof(glm::vec4), .name = "changes by bounces"}),
-      one_(device, "bounce"), four_(device, "bounce_four"), sum_(device) {
+      sum_(device) {
+    const uint32_t invocations =
+        std::min(device.limits().maxComputeWorkGroupInvocations, device.limits().maxComputeWorkGroupSize[0]);
+    for (size_t i = 0; i < kPrograms.size() && (kChunk << i) <= invocations; ++i)
+        programs_.emplace_back(device, kPrograms[i]);
     makeSent(1);
 }
 
@@ -34,23 +43,30 @@ void LayerBounces::makeSent(uint32_t lanes) {
                                     .name = "changes of chunks"});
 }
 
-uint32_t LayerBounces::room() {
-    if (!beside_.empty()) return kMostLanes;
+bool LayerBounces::grow(uint32_t lanes) {
     const VkDeviceSize light = light_.ligIn.size(), sums = sums_.size();
-    const VkDeviceSize sent = sent_.size() * kMostLanes * light_.chunkCount * kChunk * sizeof(glm::uvec2);
-    const VkDeviceSize bytes = (kMostLanes - 1) * (2 * light + sums) + sent;
-    if (static_cast<double>(bytes) > kShare * static_cast<double>(device_.freeMemory())) return 1;
-    makeSent(kMostLanes);
-    for (uint32_t lane = 1; lane < kMostLanes; ++lane)
+    const VkDeviceSize sent = sent_.size() * lanes * light_.chunkCount * kChunk * sizeof(glm::uvec2);
+    const VkDeviceSize bytes = (lanes - room_) * (2 * light + sums) + sent;
+    if (static_cast<double>(bytes) > kShare * static_cast<double>(device_.freeMemory())) return false;
+    makeSent(lanes);
+    for (; room_ < lanes; ++room_)
         beside_.push_back({vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
                            vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
                            vk::Buffer(device_, {.size = sums, .name = "link sums"})});
-    return kMostLanes;
+    return true;
+}
+
+uint32_t LayerBounces::room(uint32_t layers) {
+    const uint32_t most = 1u << (programs_.size() - 1);
+    const uint32_t wanted = std::min(std::bit_ceil(layers), most);
+    while (room_ < wanted && grow(2 * room_)) {
+    }
+    return std::min(layers, room_);
 }
 
 void LayerBounces::begin(std::span<const vk::Buffer* const> direct) {
     count_ = static_cast<uint32_t>(direct.size());
-    lanesOf_ = count_ > 1 ? kMostLanes : 1;
+    lanesOf_ = std::bit_ceil(count_);
     live_ = (1u << count_) - 1u;
     from_ = now_ = 0;
     auto* lanes = lanes_.as<shader::BounceLane>();
@@ -86,7 +102,7 @@ shader::BouncePush LayerBounces::push(float reflectivity) const {
 }
 
 void LayerBounces::dispatch(VkCommandBuffer cmd, const shader::BouncePush& push, uint32_t chunks) const {
-    dispatchChunks(lanesOf_ > 1 ? four_ : one_, cmd, push, chunks);
+    dispatchChunks(programs_[std::countr_zero(lanesOf_)], cmd, push, chunks);
 }
 
 void LayerBounces::recordSend(VkCommandBuffer cmd, float reflectivity) const {
@@ -97,12 +113,14 @@ void LayerBounces::recordSend(VkCommandBuffer cmd, float reflectivity) const {
 
 void LayerBounces::record(VkCommandBuffer cmd, const Work& work) const {
     shader::BouncePush p = push(work.reflectivity);
-    p.links = work.links;
+    std::copy(work.links.begin(), work.links.end(), p.links);
+    p.rounds = static_cast<uint32_t>(work.links.size());
     p.firstChunk = work.range.first;
     p.chunkCount = work.range.count;
     p.sampleCount = work.samples;
     p.sums = work.sums;
     p.scale = work.scale;
+    if (!work.keeps) p.live = 0;
     if (work.ends) p.sent = sent_[1 - now_].address();
     if (work.ends && work.changes)
         p.changes =

@@ -14,6 +14,7 @@ constexpr double kFirstIterationError = 0.01;
 // Bounces after which the CPU looks for the first time, and between two looks at most. A look waits for the
 // device, which takes longer than a bounce.
 constexpr uint32_t kFirstLook = 2, kMostUnseen = 8;
+constexpr uint32_t kToldBounces = 2; // of those between two looks the last ones: both changes make a ratio
 
 } // namespace
 
@@ -48,7 +49,7 @@ std::vector<LayerSolver::Lane> LayerSolver::lanes() const {
         if (target.linkRounds == work_->target.linkRounds && layer.directRounds >= target.directRounds)
             lanes.push_back({.layer = i, .target = target, .look = kFirstLook});
     }
-    if (lanes.size() > 1) lanes.resize(std::min<size_t>(lanes.size(), bounces_->room()));
+    if (lanes.size() > 1) lanes.resize(bounces_->room(static_cast<uint32_t>(lanes.size())));
     return lanes;
 }
 
@@ -108,6 +109,20 @@ LayerSolver::LinkPortion LayerSolver::nextLinks(double most) {
                        .range = range}};
 }
 
+// Rounds that are there as a whole are gathered several at a time: sums are read and written once for all of
+// them.
+void LayerSolver::takeFollowing(LinkPortion& portion, double most) {
+    const uint32_t chunks = input_.patches.chunkCount();
+    if (!bounces_ || work_->stage != Stage::Gather || portion.range.count < chunks) return;
+    for (uint32_t next = work_->round + 1; next < work_->target.linkRounds; ++next) {
+        const size_t rounds = 1 + portion.following.size();
+        if (rounds == LayerBounces::kMostRounds || static_cast<double>((rounds + 1) * chunks) > most) return;
+        const LinkCache::Place place = links_.find(next, 0, chunks);
+        if (!place.known || place.count < chunks) return;
+        portion.following.push_back(place.links->address() + place.offset * sizeof(uint32_t));
+    }
+}
+
 void LayerSolver::linkBatch() {
     const LinkPortion portion = nextLinks(gatherRate_.wanted(batchMs_));
     const bool seen = gatherPass_.onCpu() && !input_.tracer.records() ? linksAtOnce(portion)
@@ -122,11 +137,15 @@ void LayerSolver::recordGather(VkCommandBuffer cmd, const LinkPortion& portion) 
     const bool bounce = work.stage == Stage::Bounces;
     const uint32_t rounds = bounce ? 1 : work.target.linkRounds;
     const uint32_t sums = work.round == 0 ? shader::kNewSums : shader::kMoreSums;
-    LayerBounces::Work record{.links = portion.gather.address(),
+    std::vector<VkDeviceAddress> links = {portion.gather.address()};
+    links.insert(links.end(), portion.following.begin(), portion.following.end());
+    const bool lastRound = work.round + links.size() == rounds;
+    LayerBounces::Work record{.links = std::move(links),
                               .samples = linksOfRound_,
                               .range = portion.range,
                               .sums = bounce ? shader::kNoSums : sums,
-                              .ends = bounce || (work.round + 1 == rounds && !isLastGather()),
+                              .keeps = !bounce || work.bounce + 1 + kToldBounces >= nextLook(),
+                              .ends = bounce || (lastRound && !isLastGather()),
                               .scale = 1.0f / static_cast<float>(rounds * linksOfRound_),
                               .reflectivity = settings_.transport.reflectivity,
                               .changes = {}};
@@ -138,7 +157,8 @@ void LayerSolver::recordGather(VkCommandBuffer cmd, const LinkPortion& portion) 
 void LayerSolver::noteLinks(const LinkPortion& portion) {
     const ChunkRange range = portion.range;
     const auto first = senders_.begin() + range.first;
-    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
+    const uint64_t samples = uint64_t{linksOfRound_} * (1 + portion.following.size());
+    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * samples;
     const auto layers = static_cast<uint64_t>(
         std::count_if(work_->lanes.begin(), work_->lanes.end(), [](const Lane& lane) { return lane.live; }));
     progress_.rays += portion.trace ? count : 0;
@@ -146,6 +166,7 @@ void LayerSolver::noteLinks(const LinkPortion& portion) {
     progress_.pairs += count * layers;
     links_.note(work_->round, range);
     order_.finish(range);
+    work_->round += static_cast<uint32_t>(portion.following.size());
 }
 
 // Where the CPU does both, a submit would take longer than a small batch. Returns whether the CPU is to look,
@@ -212,6 +233,7 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     timestamps_.reset(cmd);
     uint32_t chunks = 0, portions = 0;
     bool seen = false;
+    takeFollowing(portion, most);
     while (true) {
         if (!work_->begun) recordPassBegin(cmd);
         timestamps_.mark(cmd, 2 * portions);
@@ -219,12 +241,13 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
         if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, portion.gather);
         timestamps_.mark(cmd, 2 * portions + 1);
         noteLinks(portion);
-        chunks += portion.range.count;
+        chunks += portion.range.count * static_cast<uint32_t>(1 + portion.following.size());
         ++portions;
         seen = order_.left() == 0 && recordPassEnd(cmd);
         if (seen || chunks >= most || portions == kMostPortions) break;
         portion = nextLinks(most - chunks);
         if (portion.trace) break;
+        takeFollowing(portion, most - chunks);
         vk::barrier(cmd); // the next one adds to the same sums
     }
     run(cmd);
@@ -287,7 +310,7 @@ bool LayerSolver::isLastGather() const {
 // Of the pass under way, while its end is recorded.
 bool LayerSolver::tellsChange() const {
     if (work_->stage == Stage::Gather) return settings_.passes == 0;
-    return work_->bounce + 2 >= nextLook();
+    return work_->bounce + kToldBounces >= nextLook();
 }
 
 // The light that was made is what is sent next.

@@ -104,6 +104,7 @@ private:
         ChunkRange range;
         ClosestWork closest;
         LinkGatherPass::Work gather;
+        std::vector<VkDeviceAddress> following; // links of rounds after it, which are gathered along
     };
     /// Over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it.
     struct LevelSums {
@@ -170,6 +171,7 @@ private:
     void beginBounces();
     std::vector<Lane> lanes() const;
     LinkPortion nextLinks(double most);
+    void takeFollowing(LinkPortion& portion, double most);
     void linkBatch();
     bool linksAtOnce(const LinkPortion& portion);
     bool linksBySubmit(const LinkPortion& portion);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "bake/chunk_order.h"
@@ -43,8 +44,8 @@ private:
     const vk::Device& device_;
     Desc desc_;
     uint64_t roundBytes_;
-    std::vector<Round> kept_;
-    vk::Buffer staging_; // of a batch beyond these
+    std::deque<Round> kept_; // where a Place points, while more are added
+    vk::Buffer staging_;     // of a batch beyond these
 };
 
 } // namespace relume

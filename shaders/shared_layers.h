@@ -47,17 +47,18 @@ struct BounceLane {
 // What becomes of sums over links.
 const uint kNoSums = 0u, kNewSums = 1u, kMoreSums = 2u;
 struct BouncePush {
-    ADDRESS lanes;  // BounceLane[LANES]
-    ADDRESS links;  // uint[chunkCount][sampleCount][64]; 0: none, light as it is
-    ADDRESS packed; // uvec2[patchCount][LANES], radiance by packLight
-    ADDRESS sent;   // as packed, of the light that is made; 0: the pass goes on
+    ADDRESS lanes;    // BounceLane[LANES]
+    ADDRESS links[4]; // of a round each: uint[chunkCount][sampleCount][64]
+    ADDRESS packed;   // uvec2[patchCount][LANES], radiance by packLight
+    ADDRESS sent;     // as packed, of the light that is made; 0: the pass goes on
     ADDRESS patches;
     ADDRESS albedo;
     ADDRESS changes; // vec4[LANES][allChunks], as ChangePush; 0: not told
     uint firstChunk;
     uint chunkCount;
     uint allChunks;
-    uint sampleCount; // a multiple of kReplicates
+    uint rounds;      // 0: light as it is
+    uint sampleCount; // of a round; a multiple of kReplicates
     uint patchCount;
     uint live; // a bit per lane: its light and sums are written
     uint from; // a bit per lane: it is its light B that bounces

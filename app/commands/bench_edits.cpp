@@ -37,6 +37,7 @@ void runBench(BenchEditsOptions o) {
     o.bench.lamps.erase(std::unique(o.bench.lamps.begin(), o.bench.lamps.end()), o.bench.lamps.end());
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.plot.empty()) checkFileWritable(o.plot, 0);
+    if (!o.bench.sceneOutput.empty()) checkFileWritable(o.bench.sceneOutput, 0);
     const vk::Device device({.select = o.device});
     EditsReport report =
         benchEdits(device, o.bench, [](const EditsRun& run) { spdlog::info("{} lamps: done", run.lamps); });
@@ -99,6 +100,11 @@ void addBenchEditsCommand(CLI::App& bench) {
         ->check(CLI::Range(0.1, 45.0));
     command->add_option("--tracer", options->tracer, "auto, rtp, query, bvh, embree or voxel")
         ->capture_default_str();
+    command
+        ->add_option(
+            "--write-scene", b.sceneOutput,
+            "Write the scene after the move, with the most lamps, to this file of the scene's ending")
+        ->type_name("OUT");
     command->add_option("--device", options->device, "Vulkan device: index or part of its name");
     command->add_option("--json", options->json, "Write the results to this file, - for standard output");
     command->add_option("--plot", options->plot, "Write error over time after a move to this SVG file");

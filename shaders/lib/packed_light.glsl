@@ -17,9 +17,12 @@ FUNCTION uvec2 packLight(vec3 light) {
     return uvec2(r | (g << 21), (g >> 11) | (b << 10));
 }
 
-FUNCTION float unpackChannel(uint bits) { return uintBitsToFloat(bits << 9) * kPackInverse; }
+FUNCTION float unpackChannel(uint bits) { return uintBitsToFloat(bits << 9); }
 
-FUNCTION vec3 unpackLight(uvec2 p) {
+// Times kPackScale: sums of many are made of these as they are, and scaled once, which is exact.
+FUNCTION vec3 unpackScaled(uvec2 p) {
     return vec3(unpackChannel(p.x & kPackMask), unpackChannel(((p.x >> 21) | (p.y << 11)) & kPackMask),
                 unpackChannel((p.y >> 10) & kPackMask));
 }
+
+FUNCTION vec3 unpackLight(uvec2 p) { return kPackInverse * unpackScaled(p); }

@@ -52,6 +52,14 @@ def diffuse(material):
     return max(emission[:3]) * strength
 
 
+def shape_lamps():
+    """Gives lamps the radius that relume's extras say; the importer makes points of them."""
+    for light in bpy.data.lights:
+        own = light.get("relume")
+        if own is not None and "radius" in own:
+            light.shadow_soft_size = own["radius"]
+
+
 def prepare(path, size):
     """Imports the scene as one object; returns the image all its materials bake into."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -60,6 +68,7 @@ def prepare(path, size):
     materials = {slot.material for mesh in meshes for slot in mesh.material_slots}
     brightest = max(diffuse(material) for material in materials)
     print("cycles_bake: %d meshes, %d materials, brightest emission %g" % (len(meshes), len(materials), brightest))
+    shape_lamps()
     bpy.ops.object.select_all(action="DESELECT")
     for mesh in meshes:
         mesh.select_set(True)

@@ -59,7 +59,15 @@ std::vector<Struct> readStructs() {
         for (i += 3; i < tokens.size() && tokens[i] != "}"; ++i) { // each turn: type name, name, ... ;
             const std::string type = tokens[i];
             for (++i; i < tokens.size() && tokens[i] != ";"; ++i)
-                if (tokens[i] != ",") entry.members.push_back({type, tokens[i]});
+                if (tokens[i] == "[") { // links[4]: a member each
+                    const std::string name = entry.members.back().name;
+                    entry.members.back().name += "[0]";
+                    for (int k = 1; k < std::stoi(tokens[i + 1]); ++k)
+                        entry.members.push_back({type, name + "[" + std::to_string(k) + "]"});
+                    i += 2;
+                } else if (tokens[i] != ",") {
+                    entry.members.push_back({type, tokens[i]});
+                }
         }
         structs.push_back(entry);
     }
