@@ -1,5 +1,7 @@
 #include "bake/host_gather.h"
 
+#include "bake/host_lanes.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -16,11 +18,6 @@ using shader::kReplicates;
 using shader::kSuper;
 using shader::kSuperPatches;
 
-using Float4 = float __attribute__((vector_size(sizeof(glm::vec4))));
-
-[[gnu::always_inline]] inline void load(Float4& v, const glm::vec4& from) {
-    std::memcpy(&v, &from, sizeof v);
-}
 glm::vec4 withAlpha(const Float4& rgb, float alpha) {
     return {rgb[0], rgb[1], rgb[2], alpha};
 }
@@ -53,16 +50,18 @@ void gatherChunkLinks(const HostLinks& work, uint32_t chunk) {
         for (uint32_t q = 0; q < kReplicates; ++q) {
             glm::vec4& out = work.sums[size_t{q} * work.patchCount + index];
             Float4 before;
-            load(before, out);
-            out = withAlpha(before + sum[q], out.w);
+            load(before, work.newSums ? kNothing : out);
+            out = withAlpha(before + sum[q], work.newSums ? 0.0f : out.w);
         }
     }
 }
 
 void sendChunk(const HostSend& work, uint32_t chunk) {
+    const bool full =
+        work.full[chunk] != 0; // else patches are looked at, three times as much memory as all else
     glm::vec4 change(0.0f);
     for (size_t index = size_t{chunk} * kChunk, end = index + kChunk; index < end; ++index) {
-        const uint32_t flags = work.patches[index].flags;
+        const uint32_t flags = full ? shader::kPatchSends : work.patches[index].flags;
         const bool sends = (flags & shader::kPatchSends) != 0;
         const glm::vec3 light(work.light[index]);
         work.radiance[index] =
@@ -76,16 +75,7 @@ void sendChunk(const HostSend& work, uint32_t chunk) {
     if (work.changes) work.changes[chunk] = change;
 }
 
-// Numbers of eight senders; compilers turn them into as many vector registers as it takes.
-constexpr uint32_t kLanes = 8;
-using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
-using Ints = int32_t __attribute__((vector_size(kLanes * sizeof(int32_t))));
 using Rows = std::array<uint64_t, kChunk>; // of each receiver of a chunk, a bit per sender of another
-
-// By reference: a vector returned by value would depend on the instruction set.
-[[gnu::always_inline]] inline void load(Floats& v, const float* lanes) {
-    std::memcpy(&v, lanes, sizeof v);
-}
 
 // A chunk of senders by component.
 struct SenderLanes {

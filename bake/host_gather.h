@@ -19,6 +19,7 @@ struct HostLinks {
     const glm::vec4* direct = nullptr;   // added to ligOut where there is one
     glm::vec4* ligOut = nullptr;         // direct + the mean over the samples; may be none
     glm::vec4* sums = nullptr;           // [kReplicates][patchCount], added to; may be none
+    bool newSums = false;                // nothing is in these yet
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t samples = 0; // a multiple of kReplicates
     uint32_t patchCount = 0;
@@ -33,6 +34,7 @@ struct HostSend {
     const glm::vec4* light = nullptr;  // that came of it
     glm::vec4* radiance = nullptr;     // written: reflectivity * albedo * light, of those that send
     glm::vec4* changes = nullptr;      // per chunk, as of ChangePush; nullptr: not told
+    const uint8_t* full = nullptr;     // per chunk, not 0: all of its patches send and are shown
     float reflectivity = 1;
     uint32_t chunkCount = 0;
 };

@@ -128,6 +128,42 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
 }
 
+bool LampLight::onCpu(uint32_t group) const {
+    const auto first = set_.lamps.begin() + groups_[group].first;
+    return std::none_of(first, first + groups_[group].count,
+                        [](const shader::Lamp& lamp) { return lamp.type == shader::kLampSky; });
+}
+
+HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
+    const Group& group = groups_[work.group];
+    return {.patches = light.patches.as<shader::Patch>(),
+            .lamps = std::span(set_.lamps).subspan(group.first, group.count),
+            .targets = targets_.as<glm::vec4>(),
+            .bits = bits_.as<uint32_t>(),
+            .parts = work.penumbra ? work.penumbra->parts.as<uint32_t>() : nullptr,
+            .penumbra = work.penumbra ? work.penumbra->lights.as<glm::uvec2>() : nullptr,
+            .firstChunk = work.range.first,
+            .chunkCount = work.range.count,
+            .targetCount = group.targets,
+            .round = work.round,
+            .patchCount = light.chunkCount * kChunk,
+            .reach = set_.reach,
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+}
+
+void LampLight::sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const {
+    sampleLamps(pool, host(light, work));
+}
+
+void LampLight::gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
+                            const vk::Buffer& sums, const vk::Buffer& direct) const {
+    HostLamps gather = host(light, work);
+    gather.newSums = newSums;
+    gather.sums = sums.as<glm::vec4>();
+    gather.direct = direct.as<glm::vec4>();
+    gatherLamps(pool, gather);
+}
+
 void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
     samples_.dispatch(cmd, push(light, work), work.range.count, groups_[work.group].count);
 }

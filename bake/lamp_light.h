@@ -3,6 +3,7 @@
 #include <span>
 
 #include "bake/chunk_order.h"
+#include "bake/host_lamps.h"
 #include "bake/lamps.h"
 #include "bake/light_buffers.h"
 #include "bake/penumbra.h"
@@ -52,6 +53,12 @@ public:
     };
     /// Barriers are the caller's, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
+    /// Whether the CPU can do both, where it traces: of all lamps but the sky.
+    bool onCpu(uint32_t group) const;
+    void sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const;
+    /// As recordGather, at once. newSums: there is nothing in them yet.
+    void gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
+                     const vk::Buffer& sums, const vk::Buffer& direct) const;
     /// rays: as SegmentWork.
     SegmentWork segments(const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after round +
@@ -70,6 +77,7 @@ private:
     };
     void group(const std::vector<uint32_t>& sets); // of each lamp
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
+    HostLamps host(const LightBuffers& light, const Work& work) const;
 
     const vk::Device& device_;
     Desc desc_;

@@ -1,4 +1,5 @@
 // Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
+#include "bake/host_resolve.h"
 #include "bake/layer_solver.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@ namespace {
 // pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
 // the memory are traced for each.
 constexpr double kSegmentLinks = 1.0;
+// Of the first level, which has no time to try which width is best [texels]: its few links are noisy.
+constexpr double kFirstSigma = 3.0;
 // Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
 constexpr uint32_t kMostGrowth = 8;
 // Directions or points per patch beyond which no error is worth the time.
@@ -34,12 +37,14 @@ LayerLevel LayerSolver::lastLevel() const {
     return {rounds(kPointsOfRound), settings_.passes == 1 ? 0 : rounds(linksOfRound_)};
 }
 
-// What a light that is moved shows at once: with a second round of direct light in its penumbra. A GPU has
-// time for a second round of links within a frame, too: an H100 at 1024 squared for 1.3 ms.
+// What a light that is moved shows at once: with another round of direct light in its penumbra. A GPU has
+// time for a second round of links within a frame, too: an H100 at 1024 squared for 1.3 ms. To a CPU, whose
+// rays are slow beside a bounce less than a GPU's, a third round of direct light is cheaper.
 LayerLevel LayerSolver::firstLevel() const {
-    const uint32_t linkRounds = input_.device.info().software() ? 1 : 2;
+    const bool software = input_.device.info().software();
+    const uint32_t directRounds = software ? 3 : 2, linkRounds = software ? 1 : 2;
     const LayerLevel last = lastLevel();
-    return {std::min(2u, last.directRounds), std::min(linkRounds, last.linkRounds)};
+    return {std::min(directRounds, last.directRounds), std::min(linkRounds, last.linkRounds)};
 }
 
 // More of what takes away more of the variance for its cost, whether or not links are there already: the
@@ -104,6 +109,7 @@ void LayerSolver::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceS
 
 // Makes the layer's result of its sums over links, none: of direct light alone.
 LayerSolver::LevelSums LayerSolver::resolve(const Layer& layer, uint32_t linkRounds, double sigma) {
+    if (gatherPass_.onCpu()) return resolveOnCpu(layer, linkRounds, sigma);
     const uint32_t chunks = input_.patches.chunkCount(), sums = bounces_ ? 1 : chunks;
     const VkDeviceSize behind = sums * sizeof(shader::ResolveSums);
     VkCommandBuffer cmd = commands_.begin();
@@ -126,6 +132,30 @@ LayerSolver::LevelSums LayerSolver::resolve(const Layer& layer, uint32_t linkRou
     return level;
 }
 
+LayerSolver::LevelSums LayerSolver::resolveOnCpu(const Layer& layer, uint32_t linkRounds,
+                                                 double sigma) const {
+    const uint32_t samples = linkRounds * linksOfRound_;
+    const auto width = static_cast<float>(sigma);
+    const bool smooths = linkRounds > 0 && buffers_.rows;
+    const HostResolveSums sums =
+        resolveLayer(gatherPass_.pool(), {.patches = input_.light.patches.as<shader::Patch>(),
+                                          .patchChart = buffers_.patchChart.as<uint32_t>(),
+                                          .texelToPatch = buffers_.texelToPatch.as<uint32_t>(),
+                                          .distances = smooths ? buffers_.distances.as<float>() : nullptr,
+                                          .sums = buffers_.linkSums.as<glm::vec4>(),
+                                          .rows = smooths ? buffers_.rows.as<glm::vec4>() : nullptr,
+                                          .direct = layer.direct->as<glm::vec4>(),
+                                          .result = layer.result.as<glm::vec4>(),
+                                          .size = input_.patches.scene.size,
+                                          .chunkCount = input_.patches.chunkCount(),
+                                          .reach = smooths ? smoothingReach(width) : 0,
+                                          .sigma = width,
+                                          .scale = samples > 0 ? static_cast<float>(shader::kReplicates) /
+                                                                     static_cast<float>(samples)
+                                                               : 0.0f});
+    return {sumsOf(sums.indirect), sumsOf(sums.result)};
+}
+
 void LayerSolver::finishLevel(const Lane& lane) {
     const Work& work = *work_;
     Layer& layer = layerOf(lane);
@@ -144,7 +174,7 @@ void LayerSolver::finishLevel(const Lane& lane) {
     if (smooths && !first)
         layer.width.settle(at);
     else
-        at(smooths ? layer.width.sigma : 0.0);
+        at(smooths ? kFirstSigma : 0.0);
     if (index > 0) std::swap(buffers_.linkSums, bounces_->sums(index));
     const glm::dvec4 total = sums.result;
     layer.level = lane.target;

@@ -60,14 +60,18 @@ void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
 }
 
 // The first bounce is that of the direct light, or, for the sum, of what is shown: an edit changes part of
-// it. To gather is to begin with sums of nothing.
+// it.
+const vk::Buffer& LayerSolver::firstLight(const Lane& lane) const {
+    return work_->sum && settings_.passes == 0 ? composite_ : *layerOf(lane).direct;
+}
+
+// To gather is to begin with sums of nothing.
 void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
     if (!work_->lit) {
         if (work_->bounce == 0 && work_->gathers == 0) {
             std::vector<const vk::Buffer*> first;
             for (const Lane& lane : work_->lanes)
-                first.push_back(work_->sum && settings_.passes == 0 ? &composite_
-                                                                    : layerOf(lane).direct.get());
+                first.push_back(&firstLight(lane));
             const VkBufferCopy all{0, 0, input_.light.ligIn.size()};
             if (bounces_)
                 bounces_->recordStart(cmd, first);
@@ -106,6 +110,7 @@ LayerSolver::LinkPortion LayerSolver::nextLinks(double most) {
                        .direct = bounces_ ? nullptr : layerOf(work_->lanes.front()).direct.get(),
                        .output = bounces,
                        .accumulate = !bounces,
+                       .newSums = work_->round == 0,
                        .range = range}};
 }
 
@@ -173,13 +178,10 @@ void LayerSolver::noteLinks(const LinkPortion& portion) {
 // as do those below.
 bool LayerSolver::linksAtOnce(const LinkPortion& portion) {
     const auto start = Clock::now();
-    const bool sums = work_->stage == Stage::Gather && work_->round == 0;
-    if (!work_->begun && (!work_->lit || sums)) {
-        VkCommandBuffer cmd = commands_.begin();
-        recordPassBegin(cmd);
-        run(cmd);
-    }
-    work_->begun = true;
+    if (!work_->lit)
+        gatherPass_.startOnCpu(input_.light, settings_.transport.reflectivity, fullChunks_,
+                               firstLight(work_->lanes.front()));
+    work_->begun = work_->lit = true;
     const auto linksStart = Clock::now();
     if (portion.trace) input_.tracer.closest(VK_NULL_HANDLE, portion.closest);
     const double traced = secondsSince(linksStart);
@@ -260,7 +262,7 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
 // Whether the end of the pass under way is more than to count it; what the CPU gathered in a bounce it sends,
 // too.
 bool LayerSolver::recordsPassEnd() const {
-    return work_->stage == Stage::Gather && work_->round + 1 == work_->target.linkRounds;
+    return work_->stage == Stage::Gather && work_->round + 1 == work_->target.linkRounds && !isLastGather();
 }
 
 // What was gathered is what the next pass, of whichever stage, begins with. Returns whether the CPU is to
@@ -323,7 +325,7 @@ void LayerSolver::recordPassLight(VkCommandBuffer cmd) {
     const uint32_t chunks = input_.patches.chunkCount();
     if (work.stage == Stage::Bounces) {
         auto* changes = tellsChange() ? back_.as<glm::vec4>() + size_t{work.bounce % 2} * chunks : nullptr;
-        gatherPass_.sendOnCpu(input_.light, settings_.transport.reflectivity, changes);
+        gatherPass_.sendOnCpu(input_.light, settings_.transport.reflectivity, fullChunks_, changes);
         return std::swap(input_.light.ligIn, input_.light.ligOut);
     }
     std::swap(input_.light.ligIn, input_.light.ligOut);

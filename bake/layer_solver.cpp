@@ -4,7 +4,9 @@
 #include "bake/point_trace.h"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace relume {
@@ -12,9 +14,8 @@ namespace {
 
 using shader::kChunk;
 
-// A GPU's submit takes as long as rays from about so many chunks: they come along with those around them.
+// A submit takes as long as rays from about so many chunks: they come along with those around them.
 constexpr uint32_t kGap = 256;
-constexpr uint32_t kGapOfCpu = 32; // which traces the rays of that many meanwhile
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
     ASSERT(settings.method == Method::Hybrid && !settings.transport.rtrad);
@@ -78,6 +79,7 @@ LayerSolver::~LayerSolver() = default;
 void LayerSolver::countSenders() {
     const std::vector<shader::Patch>& patches = input_.patches.scene.patches;
     senders_.resize(input_.patches.chunkCount(), 0);
+    fullChunks_.resize(senders_.size(), 0);
     for (uint32_t chunk = 0; chunk < senders_.size(); ++chunk) {
         if (moved_ && !moved_->changes(chunk)) continue;
         const auto first = patches.begin() + size_t{chunk} * kChunk;
@@ -85,6 +87,9 @@ void LayerSolver::countSenders() {
             static_cast<uint32_t>(std::count_if(first, first + kChunk, [](const shader::Patch& p) {
                 return (p.flags & shader::kPatchSends) != 0;
             }));
+        fullChunks_[chunk] = std::all_of(first, first + kChunk, [](const shader::Patch& p) {
+            return (p.flags & (shader::kPatchSends | shader::kPatchBackSide)) == shader::kPatchSends;
+        });
     }
 }
 
@@ -222,6 +227,9 @@ void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_
                               uint32_t mark) {
     const typename Lights::Work work{
         .group = group, .round = work_->round, .range = range, .penumbra = &penumbra_};
+    if constexpr (std::is_same_v<Lights, LampLight>) {
+        if (input_.tracer.onCpu() && gatherPass_.onCpu() && lights.onCpu(group)) return traceOnCpu(work);
+    }
     const PointTracer on{commands_, timestamps_, input_.tracer};
     const SegmentWork segments = lights.segments(work, buffers_.rays);
     const auto samples = [&](VkCommandBuffer to) {
@@ -242,6 +250,26 @@ void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_
         progress_.gatherSeconds += times.gather;
     }
     work_->begun = true;
+}
+
+// A submit takes longer than a small batch.
+void LayerSolver::traceOnCpu(const LampLight::Work& work) {
+    const bool all =
+        work_->round == 0 && !work_->mended; // patches: the first part of the layer writes all sums
+    if (!work_->begun) {
+        if (!all) std::memset(buffers_.directSums.as<uint8_t>(), 0, buffers_.directSums.size());
+        if (work_->round == 0) std::memset(penumbra_.lights.as<uint8_t>(), 0, penumbra_.lights.size());
+    }
+    work_->begun = true;
+    WorkerPool& pool = gatherPass_.pool();
+    lamps_.sampleOnCpu(pool, input_.light, work);
+    const auto start = Clock::now();
+    input_.tracer.segments(VK_NULL_HANDLE, lamps_.segments(work, buffers_.rays));
+    const auto traced = Clock::now();
+    progress_.traceSeconds += secondsSince(start);
+    lamps_.gatherOnCpu(pool, input_.light, work, all && work_->part == 0, buffers_.directSums,
+                       buffers_.direct);
+    progress_.gatherSeconds += secondsSince(traced);
 }
 
 // Of the round, where this step ends.
@@ -265,10 +293,9 @@ bool LayerSolver::orderRound() {
         for (uint32_t i = 0; i < take.size(); ++i)
             take[i] &= static_cast<uint8_t>(parts_.any(i, layer.penumbra));
     }
-    if (!input_.tracer.onCpu())
+    if (!input_.tracer.onCpu() ||
+        !work_->mended) // of all chunks those between have few patches that take part
         closeGaps(take, kGap);
-    else if (!work_->mended) // of all chunks: those between have few patches that take part, or none
-        closeGaps(take, kGapOfCpu);
     for (const ChunkRange& range : rangesOf(take, false))
         order_.finish(range);
     return order_.left() > 0;

@@ -143,12 +143,13 @@ private:
     // layer_solver.cpp
     void countSenders();
     void plan();
-    Layer& layerOf(const Lane& lane) { return work_->sum ? *sum_ : *layers_[lane.layer]; }
+    Layer& layerOf(const Lane& lane) const { return work_->sum ? *sum_ : *layers_[lane.layer]; }
     void begin(size_t layer, LayerLevel target);
     void directBatch();
     template<typename Lights>
     void traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_t group, ChunkRange range,
                      uint32_t mark);
+    void traceOnCpu(const LampLight::Work& work);
     uint32_t directEnd() const;
     bool nextDirect();
     bool orderRound();
@@ -177,6 +178,7 @@ private:
     bool linksBySubmit(const LinkPortion& portion);
     bool knownLinksBySubmit(LinkPortion portion);
     void noteLinks(const LinkPortion& portion);
+    const vk::Buffer& firstLight(const Lane& lane) const;
     void recordPassBegin(VkCommandBuffer cmd);
     void recordRadiance(VkCommandBuffer cmd);
     void recordGather(VkCommandBuffer cmd, const LinkPortion& portion);
@@ -200,6 +202,7 @@ private:
     void finishLevel(const Lane& lane);
     void recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceSize at);
     LevelSums resolve(const Layer& layer, uint32_t linkRounds, double sigma);
+    LevelSums resolveOnCpu(const Layer& layer, uint32_t linkRounds, double sigma) const;
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
     LayerLevel nextLevel(const Layer& layer) const;
@@ -279,9 +282,10 @@ private:
     vk::Buffer back_;   // what the CPU reads after a submit: sums per chunk, or counters of rays
     vk::Commands commands_;
     vk::Timestamps timestamps_;
-    ChunkOrder order_;              // of the pass under way
-    std::vector<uint8_t> seen_;     // chunks that come first
-    std::vector<uint32_t> senders_; // patches that take part, per chunk
+    ChunkOrder order_;                // of the pass under way
+    std::vector<uint8_t> seen_;       // chunks that come first
+    std::vector<uint32_t> senders_;   // patches that take part, per chunk
+    std::vector<uint8_t> fullChunks_; // not 0: all of its patches do, and are shown
     BatchRate directRate_, traceRate_, gatherRate_;
     bool distancesKnown_ = false; // of the first round's links
 

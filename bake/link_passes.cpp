@@ -11,6 +11,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace relume {
 namespace {
@@ -91,6 +92,14 @@ uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSett
            footprint + EmitterLight::bytes(chunkCount, software) + LampLight::bytes(chunkCount, software);
 }
 
+uint32_t smoothingReach(float sigma) {
+    constexpr float kReachInSigmas = 2.0f;
+    constexpr uint32_t kMaxReach = 8;   // lib/smoothing.glsl
+    constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
+    if (sigma < kLeastSigma) return 0;
+    return std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
+}
+
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks) {
     std::array<double, 6> total{};
     for (const shader::ResolveSums& s : chunks) {
@@ -120,19 +129,34 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                          .direct = work.direct && !coarse ? work.direct->as<glm::vec4>() : nullptr,
                          .ligOut = coarse || !work.output ? nullptr : light.ligOut.as<glm::vec4>(),
                          .sums = sums,
+                         .newSums = work.newSums,
                          .firstChunk = work.range.first,
                          .chunkCount = work.range.count,
                          .samples = work.samples,
                          .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk});
 }
 
-void LinkGatherPass::sendOnCpu(const LightBuffers& light, float reflectivity, glm::vec4* changes) const {
+void LinkGatherPass::sendOnCpu(const LightBuffers& light, float reflectivity,
+                               const std::vector<uint8_t>& full, glm::vec4* changes) const {
     sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
                        .albedo = light.albedo.as<glm::vec4>(),
                        .before = light.ligIn.as<glm::vec4>(),
                        .light = light.ligOut.as<glm::vec4>(),
                        .radiance = light.radiance.as<glm::vec4>(),
                        .changes = changes,
+                       .full = full.data(),
+                       .reflectivity = reflectivity,
+                       .chunkCount = light.chunkCount});
+}
+
+void LinkGatherPass::startOnCpu(const LightBuffers& light, float reflectivity,
+                                const std::vector<uint8_t>& full, const vk::Buffer& first) const {
+    std::memcpy(light.ligIn.as<glm::vec4>(), first.as<glm::vec4>(), light.ligIn.size());
+    sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
+                       .albedo = light.albedo.as<glm::vec4>(),
+                       .light = light.ligIn.as<glm::vec4>(),
+                       .radiance = light.radiance.as<glm::vec4>(),
+                       .full = full.data(),
                        .reflectivity = reflectivity,
                        .chunkCount = light.chunkCount});
 }
@@ -244,12 +268,7 @@ void ResolvePass::recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, c
 
 void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                          const Work& work) const {
-    constexpr float kReachInSigmas = 2.0f;
-    constexpr uint32_t kMaxReach = 8;   // lib/smoothing.glsl
-    constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
-    uint32_t reach = 0;
-    if (buffers.rows && work.sigma >= kLeastSigma)
-        reach = std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * work.sigma)));
+    const uint32_t reach = buffers.rows ? smoothingReach(work.sigma) : 0;
     const float perReplicate = static_cast<float>(work.samples) / static_cast<float>(kReplicates);
     const shader::SmoothPush push{
         .patches = light.patches.address(),

@@ -48,6 +48,8 @@ struct LinkBuffers {
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 };
 
+/// How far smoothing looks [texels], 0: not at all. sigma: its width [texels].
+uint32_t smoothingReach(float sigma);
 /// Of all chunks.
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks);
 glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
@@ -72,15 +74,21 @@ public:
         const vk::Buffer* direct = nullptr; // vec4 per patch, added to ligOut
         bool output = true;                 // to ligOut
         bool accumulate = false;            // add to linkSums
+        bool newSums = false;               // nothing is in these yet; on the host only
         bool distances = false;             // of recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
         VkDeviceAddress address() const { return links->address() + linksOffset * sizeof(uint32_t); }
     };
     /// Whether record gathers at once, on the host: what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
+    WorkerPool& pool() const { return *pool_; } // of the host, where it gathers there
     /// Where it gathers on the host, of a bounce from ligIn to ligOut: makes radiance, of no emission;
-    /// changes: as HostSend has them.
-    void sendOnCpu(const LightBuffers& light, float reflectivity, glm::vec4* changes) const;
+    /// full, changes: as HostSend has them.
+    void sendOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
+                   glm::vec4* changes) const;
+    /// Before any bounce: ligIn is that of `first`, and makes radiance.
+    void startOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
+                    const vk::Buffer& first) const;
     /// Makes packed of the light's radiance.
     void recordPack(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

@@ -11,6 +11,13 @@ const uint kTargetsPerWord = 32u; // lib/segments.glsl
 
 uint chunk, lane;
 
+// What was sampled; the sky's light, of three colours, is made again.
+LampRay sampled(Lamp l, Patch p, uint s) {
+    if (l.type == kLampSky) return lampRay(l, p, s);
+    float light = Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane].w;
+    return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
+}
+
 bool seen(uint target) {
     uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
     uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
@@ -32,7 +39,7 @@ void main() {
         for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
         float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
         for (uint s = 0u; s < l.samples; ++s) {
-            LampRay ray = lampRay(l, p, s);
+            LampRay ray = sampled(l, p, s);
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
             all += ray.light.r;

@@ -17,7 +17,8 @@ void main() {
         vec4 target = vec4(0.0);
         if (!leftOut) {
             LampRay ray = lampRay(l, p, s);
-            target = vec4(ray.target, ray.traced ? 1.0 : 0.0);
+            float light = l.type == kLampSky ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
+            target = vec4(ray.target, ray.traced ? light : -light);
         }
         Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane] = target;
     }

@@ -32,7 +32,7 @@ struct DirectPush {
 struct LampPush {
     ADDRESS patches;
     ADDRESS lamps;     // Lamp[]
-    ADDRESS targets;   // vec4[chunkCount][targetCount][64]: end of the segment, and 0: not to be traced
+    ADDRESS targets;   // vec4[chunkCount][targetCount][64]: end of the segment; w > 0: to be traced
     ADDRESS bits;      // as SegmentPush
     ADDRESS sums;      // vec4[kReplicates][patchCount], added to
     ADDRESS direct;    // vec4[patchCount]: the mean so far

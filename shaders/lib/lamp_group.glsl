@@ -8,9 +8,6 @@ vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
 float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
 #include "lib/sky.glsl"
 
-// Keeps the numbers of lamps apart from those of directions and of emitters.
-const uint kLampSalt = 0x85ebca6bu;
-
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
 Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp + indexInGroup]; }
 
@@ -22,7 +19,7 @@ struct LampRay {
 
 LampRay lampRay(Lamp l, Patch p, uint s) {
     uint number = push.round * l.samples + s, index = replicateIndex(number);
-    uint seed = hash32((replicateSeed(seedKey(p), number) ^ kLampSalt) + l.seed);
+    uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
     if (l.type == kLampSky) {
         // With a picture in pairs, one by each way, that share their numbers.

@@ -5,6 +5,12 @@
 // Rays end this share of their length before a lamp: one that is fixed to a surface must not be hidden by it.
 CONST float kLampGap = 1e-4f;
 
+// Keeps the numbers of lamps apart from those of directions and of emitters.
+CONST uint kLampSalt = 0x85ebca6bu;
+
+// Scrambles sample `number` of all rounds; key: seedKey of the patch.
+FUNCTION uint lampSeed(Lamp l, uint key, uint number) { return hash32((replicateSeed(key, number) ^ kLampSalt) + l.seed); }
+
 // KHR_lights_punctual: the recommended end at the range, and the spot's smooth edge. d: from the patch to the lamp [m].
 FUNCTION float lampFade(Lamp l, vec3 d) {
     float distance2 = dot(d, d), fade = 1.0f;

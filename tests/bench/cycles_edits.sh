@@ -5,7 +5,7 @@
 #   tests/bench/cycles_edits.sh RELUME SCENE OUT
 #
 # Needs Blender 3.4 or later on the PATH (apt-get install blender). What OUT holds already is not baked again. Environment:
-# SIZE (256), LIGHTS (16), CYCLES_SAMPLES (4,16: two counts), REFERENCE (directions per patch of relume's references, 1024).
+# SIZE (256), LIGHTS (16), CYCLES_SAMPLES (64,512: two counts), REFERENCE (directions per patch of relume's references, 1024).
 #
 # Cycles bakes each count twice, with two seeds: their difference over the square root of two is its error, free of what the
 # two programs see differently. How long it takes to 2 % follows from both counts: time grows by the sample, the error falls
@@ -22,7 +22,7 @@ out=$(realpath "$3")
 here=$(realpath "$(dirname "$0")")
 size=${SIZE:-256}
 bounces=24
-counts=${CYCLES_SAMPLES:-4,16}
+counts=${CYCLES_SAMPLES:-64,512}
 few=${counts%%,*}
 many=${counts##*,}
 if ! command -v blender >/dev/null; then

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -185,15 +186,20 @@ TEST(HostGather, linksAreMeansOfWhatTheyEndAt) {
         link = random() % 5 == 0 ? shader::kLinkSky : random() % World::kCount;
     std::vector<glm::vec4> direct(World::kCount, glm::vec4(0.25f)), out(World::kCount, glm::vec4(7.0f));
     std::vector<glm::vec4> sums(size_t{shader::kReplicates} * World::kCount, glm::vec4(1.0f));
-    gatherLinks(pool, {.links = links.data(),
-                       .radiance = world.radiance.data(),
-                       .direct = direct.data(),
-                       .ligOut = out.data(),
-                       .sums = sums.data(),
-                       .firstChunk = kFirst,
-                       .chunkCount = kChunks,
-                       .samples = kSamples,
-                       .patchCount = World::kCount});
+    HostLinks work{.links = links.data(),
+                   .radiance = world.radiance.data(),
+                   .direct = direct.data(),
+                   .ligOut = out.data(),
+                   .sums = sums.data(),
+                   .firstChunk = kFirst,
+                   .chunkCount = kChunks,
+                   .samples = kSamples,
+                   .patchCount = World::kCount};
+    gatherLinks(pool, work);
+    std::vector<glm::vec4> anew(sums.size(), glm::vec4(std::numeric_limits<float>::quiet_NaN()));
+    work.sums = anew.data();
+    work.newSums = true;
+    gatherLinks(pool, work);
     EXPECT_EQ(out[kFirst * kChunk - 1], glm::vec4(7.0f));
     EXPECT_EQ(out[(kFirst + kChunks) * kChunk], glm::vec4(7.0f));
     for (uint32_t i = 0; i < kChunks * kChunk; ++i) {
@@ -208,8 +214,10 @@ TEST(HostGather, linksAreMeansOfWhatTheyEndAt) {
         const uint32_t index = kFirst * kChunk + i;
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(out[index][c], 0.25 + mean[c], 1e-6);
-            for (uint32_t q = 0; q < shader::kReplicates; ++q)
+            for (uint32_t q = 0; q < shader::kReplicates; ++q) {
                 EXPECT_NEAR(sums[size_t{q} * World::kCount + index][c], 1 + replicate[q][c], 1e-6);
+                EXPECT_NEAR(anew[size_t{q} * World::kCount + index][c], replicate[q][c], 1e-6);
+            }
         }
         EXPECT_EQ(out[index].w, 1.0f);
         EXPECT_EQ(sums[index].w, 1.0f);
