@@ -254,10 +254,10 @@ void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_
 
 // A submit takes longer than a small batch.
 void LayerSolver::traceOnCpu(const LampLight::Work& work) {
-    const bool all =
-        work_->round == 0 && !work_->mended; // patches: the first part of the layer writes all sums
+    // What comes first of a layer, and of all patches, writes all sums; else they are added to.
+    const bool newSums = work_->round == 0 && work_->part == 0 && !work_->mended;
     if (!work_->begun) {
-        if (!all) std::memset(buffers_.directSums.as<uint8_t>(), 0, buffers_.directSums.size());
+        if (!newSums) std::memset(buffers_.directSums.as<uint8_t>(), 0, buffers_.directSums.size());
         if (work_->round == 0) std::memset(penumbra_.lights.as<uint8_t>(), 0, penumbra_.lights.size());
     }
     work_->begun = true;
@@ -267,8 +267,7 @@ void LayerSolver::traceOnCpu(const LampLight::Work& work) {
     input_.tracer.segments(VK_NULL_HANDLE, lamps_.segments(work, buffers_.rays));
     const auto traced = Clock::now();
     progress_.traceSeconds += secondsSince(start);
-    lamps_.gatherOnCpu(pool, input_.light, work, all && work_->part == 0, buffers_.directSums,
-                       buffers_.direct);
+    lamps_.gatherOnCpu(pool, input_.light, work, newSums, buffers_.directSums, buffers_.direct);
     progress_.gatherSeconds += secondsSince(traced);
 }
 
