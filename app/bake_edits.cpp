@@ -20,7 +20,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     applyEdits(prepared.scene, edits);
     readEditedPicture(prepared.scene.sky);
     if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
-    const vk::Device device({.select = options.device});
+    const vk::Device device({.select = options.device, .validation = options.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     warnIfDark(prepared.scene, baker.patches());
@@ -34,6 +34,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     else
         writeImage(options.output, image, ExrType::Float);
     spdlog::info("wrote {}", options.output);
+    failOnValidation(device.validationMessages());
 }
 
 } // namespace relume

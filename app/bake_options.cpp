@@ -116,8 +116,12 @@ void addSolverOptions(CLI::App& command, BakeOptions& o) {
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
         ->check(CLI::Range(1e-6, 1.0));
     addLinkOptions(command, o);
-    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or voxel")->capture_default_str();
     addVoxelOptions(command, o);
+    addMachineOptions(command, o);
+}
+
+void addMachineOptions(CLI::App& command, BakeOptions& o) {
+    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or voxel")->capture_default_str();
     command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
     command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
         ->check(CLI::Range(0.0, 10.0));

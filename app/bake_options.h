@@ -45,6 +45,8 @@ struct BakeOptions {
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 /// Those of them that say how a lightmap is made, for other verbs that need one.
 void addSolverOptions(CLI::App& command, BakeOptions& options);
+/// Those of them that go with every method and number of samples: tracer, device, patches, what is written.
+void addMachineOptions(CLI::App& command, BakeOptions& options);
 /// For a layer for each light.
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& options);
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);

@@ -1,6 +1,7 @@
 #include "app/frames_bench.h"
 
 #include "app/live/live_bake.h"
+#include "app/solve.h"
 #include "app/viewer/lightmap_bridge.h"
 #include "app/viewer/redraw_pacer.h"
 #include "assets/clock.h"
@@ -175,9 +176,7 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
         report.display = status.display;
         report.opengl = gl::describeContext();
         bake->stop();
-        if (status.validationMessages > 0)
-            throw Error(fmt::format("{} messages of the validation layers, see above: please report them",
-                                    status.validationMessages));
+        failOnValidation(status.validationMessages);
     }
     return report;
 }

@@ -76,4 +76,10 @@ void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher
     }
 }
 
+void failOnValidation(uint32_t messages) {
+    if (messages > 0)
+        throw Error(
+            fmt::format("{} messages of the validation layers, see above: please report them", messages));
+}
+
 } // namespace relume

@@ -15,4 +15,7 @@ void warnIfDark(const Scene& scene, const PatchSet& patches);
 /// Throws Error when the user interrupts.
 void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher);
 
+/// Throws Error where the validation layers had something to say.
+void failOnValidation(uint32_t messages);
+
 } // namespace relume

@@ -139,6 +139,9 @@ expectUsageError edit room.glb -o out.glb --set Lamp.intensity=nan
 expectUsageError edit room.glb -o out.glb --set Lamp.brightness=1
 expectUsageError edit room.glb -o out.glb --move Lamp=1,2
 expectUsageError edit room.glb -o out.glb --add lantern
+expectUsageError edit room.glb -o out.glb --delete Lamp --error 0.1 # of --bake alone
+expectUsageError edit room.glb --delete Lamp --bake out.png --layer-memory 1G # no layers
+expectUsageError edit room.glb --delete Lamp --bake out.exr --layer-memory lots
 
 expectUsageError mix layers.exr # neither -o nor --list
 expectUsageError mix layers.exr -o out.exr --set Lamp=nan

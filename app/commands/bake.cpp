@@ -71,10 +71,7 @@ void bake(BakeOptions o) {
                  static_cast<double>(progress.rays) * 1e-6, progress.seconds,
                  static_cast<double>(progress.rays) * 1e-6 / progress.seconds, progress.error);
     spdlog::info("wrote {} ({} in all)", o.output, formatDuration(secondsSince(start)));
-    if (device.validationMessages() > 0) {
-        throw Error(fmt::format("{} messages of the validation layers, see above: please report them",
-                                device.validationMessages()));
-    }
+    failOnValidation(device.validationMessages());
     if (o.json.empty()) return;
     std::vector<PhaseTime> phases = {
         {"load", prepared.loadSeconds}, {"atlas", prepared.atlasSeconds}, {"device", deviceSeconds}};

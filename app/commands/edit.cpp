@@ -7,6 +7,7 @@
 #include "assets/gltf.h"
 #include "assets/gltf_edit.h"
 #include "assets/log.h"
+#include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -21,13 +22,35 @@ struct EditOptions {
     BakeOptions bake; // output "": none
 };
 
-// Layers, where the file can hold them.
+// Layers, where the file can hold them. Contradictions are told before anything is written.
 BakeOptions bakeOptionsOf(const EditOptions& options) {
     BakeOptions bake = options.bake;
     bake.scene = options.scene;
     bake.layers = bake.output.ends_with(".exr");
-    resolveBakeOptions(bake); // contradictions are told before anything is written
+    if (!bake.layers && !bake.layerMemory.empty())
+        throw UsageError("--layer-memory: '" + bake.output + "' holds no layers: end its name in .exr");
+    resolveBakeOptions(bake);
     return bake;
+}
+
+// Options of the baked lightmap alone.
+void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
+    CLI::Option* output =
+        command
+            .add_option("--bake", bake.output,
+                        "Bake the edited scene into this lightmap, .exr (light by light, for `relume mix`) "
+                        "or .png; what follows is of it")
+            ->type_name("OUT");
+    const std::vector<CLI::Option*> before = command.get_options();
+    addSizeOption(command, "--size", bake);
+    command.add_option("--error", bake.error, "Stop when the remaining error is below this (0.01)")
+        ->check(CLI::Range(1e-6, 1.0));
+    command.add_option("--samples", bake.samples, "Directions per patch, whatever the error")
+        ->check(CLI::Range(1u, 65536u));
+    addMachineOptions(command, bake);
+    addLayerMemory(command, bake);
+    for (CLI::Option* option : command.get_options())
+        if (std::find(before.begin(), before.end(), option) == before.end()) option->needs(output);
 }
 
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
@@ -42,6 +65,7 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     const auto bytes = std::filesystem::file_size(options.scene, code);
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
     if (bakes) checkWritable(bake.output);
+    if (!bake.shaders.empty()) setShaderFolder(bake.shaders);
     const Scene before = loadGltf(options.scene);
     for (const std::string& warning : before.warnings)
         spdlog::warn("{}", warning);
@@ -75,20 +99,7 @@ void addEditCommand(CLI::App& app) {
                      "The edited scene, of the ending that SCENE has; may be SCENE itself")
         ->type_name("OUT");
     addEditOptions(*command);
-    command
-        ->add_option(
-            "--bake", options->bake.output,
-            "Bake the edited scene into this lightmap, .exr (light by light, for `relume mix`) or .png")
-        ->type_name("OUT");
-    addSizeOption(*command, "--size", options->bake);
-    BakeOptions& bake = options->bake;
-    command->add_option("--error", bake.error, "--bake: stop when the remaining error is below this (0.01)")
-        ->check(CLI::Range(1e-6, 1.0));
-    command->add_option("--samples", bake.samples, "--bake: directions per patch, whatever the error")
-        ->check(CLI::Range(1u, 65536u));
-    command->add_option("--tracer", bake.tracer, "--bake: auto, rtp, query, bvh, embree or voxel")
-        ->capture_default_str();
-    command->add_option("--device", bake.device, "--bake: Vulkan device, index or part of its name");
+    addOptionsOfBake(*command, options->bake);
     command->footer("NAME is what `relume info` calls a light, or an object or a material of the file; a "
                     "second \"Lamp\" is\n"
                     "\"Lamp 2\". Where a light, an object and a material share a name: light:NAME, "
