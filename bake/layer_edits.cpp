@@ -165,7 +165,7 @@ void LayerSolver::recall(Layer& layer) const {
 }
 
 // Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
-// new layer goes as far as the one before was.
+// new layer goes as far as the one before was, whose direct light may already be that of its next level.
 void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
@@ -176,7 +176,8 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.directSteps = from.directSteps;
     to.penumbra = from.penumbra;
     keepStale(from, to);
-    to.redo = from.redo ? from.redo : from.has() ? std::optional(from.level) : std::nullopt;
+    to.redo = from.redo;
+    if (!from.redo && from.has()) to.redo = LayerLevel{from.directRounds, from.level.linkRounds};
     to.redoSteps = from.redoSteps;
 }
 
@@ -202,9 +203,10 @@ void LayerSolver::adopt() {
     surfaces_ = surfacesOf(input_.scene);
     objects_ = objectsOf(input_.scene);
     if (moved_) adoptMove();
-    std::vector<const Layer*> shown;
+    std::vector<std::pair<const Layer*, glm::vec3>> shown;
     for (const std::unique_ptr<Layer>& layer : layers_)
-        shown.push_back(layer.get());
+        shown.emplace_back(layer.get(), layer->source.weight);
+    const bool standIn = static_cast<bool>(standIn_);
     adoptLayers(wantedLayers());
     updateParts();
     tellGroups();
@@ -220,15 +222,13 @@ void LayerSolver::adopt() {
             *places[i] = static_cast<size_t>(found - layers_.begin());
     }
     if (work_) work_->layer = *places.front();
-    const bool same =
-        std::equal(shown.begin(), shown.end(), layers_.begin(), layers_.end(),
-                   [](const Layer* a, const std::unique_ptr<Layer>& b) { return a == b.get(); });
-    if (!same) {
-        restOf_.reset();
-        changed_.clear();
-        for (size_t i = 0; i < layers_.size(); ++i)
+    const bool all = standIn || standIn_ || shown.size() != layers_.size();
+    if (all) restOf_.reset();
+    if (all) changed_.clear();
+    for (size_t i = 0; i < layers_.size(); ++i)
+        if (all ||
+            shown[i] != std::pair(static_cast<const Layer*>(layers_[i].get()), layers_[i]->source.weight))
             changed(i);
-    }
     moved_.reset();
     sumDue_ = wantsSum();
     if (!sumDue_) hideSum();

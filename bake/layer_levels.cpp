@@ -1,9 +1,9 @@
 // Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
 #include "bake/host_resolve.h"
 #include "bake/layer_solver.h"
+#include "bake/level_growth.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <span>
 
@@ -14,16 +14,22 @@ namespace {
 // pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
 // the memory are traced for each.
 constexpr double kSegmentLinks = 1.0;
+// Of the variance that is allowed, what a level aims at: a little too much costs bounces of another level.
+constexpr double kAimed = 0.85;
 // Of the first level, which has no time to try which width is best [texels]: its few links are noisy.
 constexpr double kFirstSigma = 3.0;
-// Rounds of a level over those of the one before, at most: what one knows of the error is not exact.
-constexpr uint32_t kMostGrowth = 8;
 // Directions or points per patch beyond which no error is worth the time.
 constexpr uint32_t kMaxSamples = 65536;
 
 // Floats per chunk.
 constexpr uint32_t kResolveValues = sizeof(shader::ResolveSums) / sizeof(float);
 constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
+
+// Noise falls as samples come in, so that the best width does, too [texels]: as in the Cornell rooms and an
+// atrium, where it is 2 to 4 with 50 directions per patch and .5 to .7 with 2000. settle() finds what it is.
+double likelyWidth(uint32_t samples) {
+    return kFirstSigma * std::pow(32.0 / std::max(samples, 32u), 0.4);
+}
 
 double strength(const glm::vec3& weight) {
     return std::max({weight.r, weight.g, weight.b});
@@ -37,43 +43,44 @@ LayerLevel LayerSolver::lastLevel() const {
     return {rounds(kPointsOfRound), settings_.passes == 1 ? 0 : rounds(linksOfRound_)};
 }
 
-// What a light that is moved shows at once: with another round of direct light in its penumbra. A GPU has
-// time for a second round of links within a frame, too: an H100 at 1024 squared for 1.3 ms. To a CPU, whose
-// rays are slow beside a bounce less than a GPU's, a third round of direct light is cheaper.
+// What a light that is moved shows at once: with another round of direct light in its penumbra.
 LayerLevel LayerSolver::firstLevel() const {
-    const bool software = input_.device.info().software();
-    const uint32_t directRounds = software ? 3 : 2, linkRounds = software ? 1 : 2;
     const LayerLevel last = lastLevel();
-    return {std::min(directRounds, last.directRounds), std::min(linkRounds, last.linkRounds)};
+    return {std::min(2u, last.directRounds), std::min(2u, last.linkRounds)};
 }
 
-// More of what takes away more of the variance for its cost, whether or not links are there already: the
-// level must not depend on what was done before.
+// The first level, where others follow.
+bool LayerSolver::isHasty(LayerLevel target) const {
+    return target == firstLevel() && target != lastLevel();
+}
+
+// Whether or not links are there already: the level must not depend on what was done before.
 LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     const LayerLevel now = layer.level, last = lastLevel();
     if (settings_.error <= 0) return last;
-    const double off = layer.error / settings_.error;
-    const auto wanted = static_cast<uint32_t>(std::clamp(off * off, 2.0, double{kMostGrowth}));
-    const uint32_t growth = std::bit_floor(wanted);
-    const double directCost = kSegmentLinks * std::max(1u, raysOf(layer)) * layer.directShare();
-    const double direct = layer.directVariance / (now.directRounds * directCost);
-    const double indirect = layer.indirectVariance / (std::max(1u, now.linkRounds) * linksOfRound_);
-    LayerLevel next = now;
-    const bool linksLeft = now.linkRounds < last.linkRounds,
-               directLeft = now.directRounds < last.directRounds;
-    if (directLeft && (direct > indirect || !linksLeft))
-        next.directRounds = std::min(last.directRounds, now.directRounds * growth);
-    else if (linksLeft)
-        next.linkRounds = std::min(last.linkRounds, now.linkRounds * growth);
-    return next;
+    const double sampled = layer.error * layer.error - layer.iterationError * layer.iterationError;
+    const double wanted = settings_.error * settings_.error - layer.iterationError * layer.iterationError;
+    const double variance = layer.directVariance + layer.indirectVariance;
+    const Rounds rounds =
+        roundsFor({.rounds = now.directRounds,
+                   .most = last.directRounds,
+                   .variance = layer.directVariance,
+                   .costOfRound = kSegmentLinks * std::max(1u, raysOf(layer)) * layer.directShare()},
+                  {.rounds = now.linkRounds,
+                   .most = last.linkRounds,
+                   .variance = layer.indirectVariance,
+                   .costOfRound = static_cast<double>(linksOfRound_)},
+                  sampled > 0.0 ? kAimed * variance * wanted / sampled : 0.0);
+    return {rounds.first, rounds.second};
 }
 
 // A level that was there before is made in the steps that it was made in. Where these begin with the first
 // level, that is seen at once.
 LayerLevel LayerSolver::targetOf(const Layer& layer) const {
     if (!layer.redo) return layer.has() ? nextLevel(layer) : firstLevel();
-    const bool first =
-        !layer.has() && !layer.redoSteps.empty() && layer.redoSteps.front() == firstLevel().directRounds;
+    const uint32_t rounds = firstLevel().directRounds;
+    const bool first = !layer.has() && layer.directRounds <= rounds && !layer.redoSteps.empty() &&
+                       layer.redoSteps.front() == rounds;
     return first ? firstLevel() : *layer.redo;
 }
 
@@ -163,15 +170,14 @@ void LayerSolver::finishLevel(const Lane& lane) {
     if (index > 0) std::swap(buffers_.linkSums, bounces_->sums(index));
     if (!layer.result) layer.result = takeBuffer("layer");
     LevelSums sums;
-    layer.width = {};
+    layer.width = {.sigma = likelyWidth(lane.target.linkRounds * linksOfRound_)};
     const auto at = [&](double sigma) {
         sums = resolve(layer, lane.target.linkRounds, sigma);
         return sums.indirect;
     };
     const bool smooths = lane.target.linkRounds > 0 && buffers_.rows;
     distancesKnown_ = distancesKnown_ || lane.target.linkRounds > 0;
-    const bool first = lane.target == firstLevel(); // which is in haste
-    if (smooths && !first)
+    if (smooths && !(lane.target == firstLevel()))
         layer.width.settle(at);
     else
         at(smooths ? kFirstSigma : 0.0);

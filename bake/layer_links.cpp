@@ -37,16 +37,40 @@ void LayerSolver::beginBounces() {
     beginPass(settings_.passes > 0 ? Stage::Gather : Stage::Bounces);
 }
 
-// The layer itself and others that want as many links and have all their direct light.
-std::vector<LayerSolver::Lane> LayerSolver::lanes() const {
-    std::vector<Lane> lanes = {{.layer = work_->layer, .target = work_->target, .look = kFirstLook}};
-    if (work_->sum || !bounces_) return lanes;
-    for (size_t i = 0; i < layers_.size() && lanes.size() < LayerBounces::kMostLanes; ++i) {
+// Others that are to go on and want as many links, gathered alike.
+std::vector<size_t> LayerSolver::companions(size_t index, LayerLevel target) const {
+    std::vector<size_t> others;
+    for (size_t i = 0; bounces_ && i < layers_.size(); ++i) {
         const Layer& layer = *layers_[i];
         const bool waits = !layer.converged && layer.stale.empty() && layer.source.weight != glm::vec3(0.0f);
-        if (i == work_->layer || !waits) continue;
-        const LayerLevel target = targetOf(layer);
-        if (target.linkRounds == work_->target.linkRounds && layer.directRounds >= target.directRounds)
+        if (i == index || !waits) continue;
+        const LayerLevel own = targetOf(layer);
+        if (own.linkRounds == target.linkRounds && isHasty(own) == isHasty(target)) others.push_back(i);
+    }
+    return others;
+}
+
+// Of layers that can bounce together one whose direct light is to be made before they do. A viewer is in
+// haste for the first level of each.
+std::optional<size_t> LayerSolver::directFirst(size_t index) const {
+    const LayerLevel target = targetOf(*layers_[index]);
+    if (target.linkRounds == 0 || (settings_.live && !layers_[index]->has())) return std::nullopt;
+    std::vector<size_t> together = companions(index, target);
+    if (together.empty()) return std::nullopt;
+    together.insert(together.begin(), index);
+    together.resize(std::min<size_t>(together.size(), LayerBounces::kMostLanes));
+    for (const size_t i : together)
+        if (layers_[i]->directRounds < targetOf(*layers_[i]).directRounds) return i;
+    return std::nullopt;
+}
+
+// The layer itself and others that have all their direct light.
+std::vector<LayerSolver::Lane> LayerSolver::lanes() const {
+    std::vector<Lane> lanes = {{.layer = work_->layer, .target = work_->target, .look = kFirstLook}};
+    if (work_->sum) return lanes;
+    for (const size_t i : companions(work_->layer, work_->target)) {
+        const LayerLevel target = targetOf(*layers_[i]);
+        if (layers_[i]->directRounds >= target.directRounds && lanes.size() < LayerBounces::kMostLanes)
             lanes.push_back({.layer = i, .target = target, .look = kFirstLook});
     }
     if (lanes.size() > 1) lanes.resize(bounces_->room(static_cast<uint32_t>(lanes.size())));
@@ -286,7 +310,7 @@ bool LayerSolver::recordPassEnd(VkCommandBuffer cmd) {
 }
 
 // What has settled over few links has their noise, which all links see then: it is gathered again until the
-// light has settled over all of them.
+// light has settled over all of them, unless that is for a look only.
 bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
     Work& work = *work_;
     const bool last = isLastGather();
@@ -306,7 +330,8 @@ bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
 
 // A gather, known to be the last one before it is made.
 bool LayerSolver::isLastGather() const {
-    return settings_.passes > 0 ? work_->gathers + 2 >= settings_.passes : work_->target.linkRounds == 1;
+    if (settings_.passes > 0) return work_->gathers + 2 >= settings_.passes;
+    return work_->target.linkRounds == 1 || isHasty(work_->target);
 }
 
 // Of the pass under way, while its end is recorded.
@@ -382,7 +407,7 @@ void LayerSolver::look() {
 
 void LayerSolver::lookAtGather() {
     Work& work = *work_;
-    const bool told = settings_.passes == 0 && work.target.linkRounds > 1;
+    const bool told = settings_.passes == 0 && !isLastGather();
     std::vector<uint32_t> ended;
     uint32_t live = 0;
     for (uint32_t i = 0; i < work.lanes.size(); ++i) {
@@ -403,8 +428,7 @@ void LayerSolver::lookAtGather() {
 
 double LayerSolver::iterationAim(const Lane& lane) const {
     const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-    const bool first = lane.target == firstLevel() && !(lane.target == lastLevel());
-    return first ? std::max(aim, kFirstIterationError) : aim;
+    return isHasty(lane.target) ? std::max(aim, kFirstIterationError) : aim;
 }
 
 // both: what the pass before changed has not been seen yet.

@@ -61,6 +61,7 @@ void LayerSolver::moveObjects(const ObjectMove& move) {
 
 // Everything that was made of the former scene; layers come after.
 void LayerSolver::adoptMove() {
+    if (!gatherPass_.onCpu() && !pool_) pool_ = std::make_unique<WorkerPool>(0);
     countSenders();
     reachMoved_ = lamps_.updateReach(input_.patches.scene.mesh);
     emitterGroups_.clear();
@@ -138,7 +139,8 @@ std::vector<uint8_t> LayerSolver::chunksOf(const LightPattern& pattern) const {
     const bool itself = pattern.kind == Kind::Emitter &&
                         std::find(moved.begin(), moved.end(), pattern.instance) != moved.end();
     if (itself || (far && reachMoved_)) return std::vector<uint8_t>(input_.patches.chunkCount(), 1);
-    return chunksReached(input_.patches, placeOf(pattern), *moved_);
+    return chunksReached(gatherPass_.onCpu() ? gatherPass_.pool() : *pool_, input_.patches, placeOf(pattern),
+                         *moved_);
 }
 
 // Of direct light that was taken over from another layer of this light.
@@ -183,6 +185,8 @@ void LayerSolver::endMendingStep() {
     const uint32_t step = *work_->mended;
     const uint32_t before = step > 0 ? layer.directSteps[step - 1] : 0;
     VkCommandBuffer cmd = commands_.begin();
+    recordPenumbraUpload(cmd);
+    vk::barrier(cmd);
     const uint32_t rounds = std::exchange(layer.directRounds, before);
     const auto kept =
         std::exchange(layer.direct, std::make_shared<vk::Buffer>(std::move(input_.light.ligOut)));

@@ -14,8 +14,9 @@ namespace {
 
 using shader::kChunk;
 
-// A submit takes as long as rays from about so many chunks: they come along with those around them.
-constexpr uint32_t kGap = 256;
+// A submit, or what a GPU waits for between two batches, takes as long as rays from about so many chunks:
+// they come along with those around them. In rounds of penumbrae alone these have hardly any rays.
+constexpr uint32_t kGap = 256, kPenumbraGap = 2048;
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
     ASSERT(settings.method == Method::Hybrid && !settings.transport.rtrad);
@@ -55,6 +56,10 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     composite_ = vk::Buffer(input.device, {.size = lightBytes, .name = "composite"});
     penumbra_ = {vk::makeBuffer(input.device, parts_.ofPatch, "parts of tiles"),
                  vk::Buffer(input.device, {.size = parts_.count * sizeof(glm::uvec2), .name = "penumbra"})};
+    if (penumbra_.lights.mapped() == nullptr)
+        newPenumbra_ = vk::Buffer(
+            input.device,
+            {.size = penumbra_.lights.size(), .memory = vk::Memory::Host, .name = "penumbra to be"});
     const uint32_t chunks = input.patches.chunkCount();
     const VkDeviceSize changes = 2 * chunks * sizeof(glm::vec4); // of two passes
     const VkDeviceSize sums = chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4));
@@ -119,11 +124,14 @@ void LayerSolver::plan() {
         done_ = true;
         return;
     }
-    begin(*next, targetOf(*layers_[*next]));
+    const std::optional<size_t> direct = stale ? std::nullopt : directFirst(*next);
+    const size_t index = direct.value_or(*next);
+    begin(index, targetOf(*layers_[index]), direct.has_value());
 }
 
-void LayerSolver::begin(size_t index, LayerLevel target) {
-    work_ = Work{.layer = index, .target = target};
+void LayerSolver::begin(size_t index, LayerLevel target, bool directAlone) {
+    work_ = Work{.layer = index, .target = target, .directAlone = directAlone};
+    penumbraDue_ = false; // of what was aborted
     Layer& layer = *layers_[index];
     if (!layer.stale.empty()) return beginMending();
     work_->round = layer.directRounds;
@@ -132,7 +140,7 @@ void LayerSolver::begin(size_t index, LayerLevel target) {
         layer.penumbra.assign(parts_.count, 0);
         layer.redoSteps.clear();
     }
-    if (!layer.penumbra.empty()) uploadPenumbra(layer);
+    if (!layer.penumbra.empty()) setPenumbra(layer);
     beginPass(Stage::Direct);
     if (raysOf(layer) == 0 || !seekRound()) endDirectStep(commands_.begin());
 }
@@ -233,6 +241,7 @@ void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_
     const PointTracer on{commands_, timestamps_, input_.tracer};
     const SegmentWork segments = lights.segments(work, buffers_.rays);
     const auto samples = [&](VkCommandBuffer to) {
+        recordPenumbraUpload(to);
         if (!work_->begun) vkCmdFillBuffer(to, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
         if (!work_->begun && work_->round == 0)
             vkCmdFillBuffer(to, penumbra_.lights.handle(), 0, VK_WHOLE_SIZE, 0);
@@ -288,12 +297,16 @@ bool LayerSolver::orderRound() {
     std::vector<uint8_t> take(order_.count(), 1);
     for (size_t i = 0; work_->mended && i < take.size(); ++i)
         take[i] = layer.stale[i] != 0;
-    if (work_->round % shader::kPenumbraRounds != 0) {
+    const bool penumbraAlone = work_->round % shader::kPenumbraRounds != 0;
+    if (penumbraAlone && work_->penumbra.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
-            take[i] &= static_cast<uint8_t>(parts_.any(i, layer.penumbra));
+            work_->penumbra.push_back(static_cast<uint8_t>(parts_.any(i, layer.penumbra)));
     }
-    if (!input_.tracer.onCpu() ||
-        !work_->mended) // of all chunks those between have few patches that take part
+    for (size_t i = 0; penumbraAlone && i < take.size(); ++i)
+        take[i] &= work_->penumbra[i];
+    if (!input_.tracer.onCpu())
+        closeGaps(take, penumbraAlone ? kPenumbraGap : kGap);
+    else if (!work_->mended) // of all chunks those between have few patches that take part
         closeGaps(take, kGap);
     for (const ChunkRange& range : rangesOf(take, false))
         order_.finish(range);
@@ -334,6 +347,7 @@ void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     const uint32_t end = directEnd(), rounds = end - layer.directRounds;
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     if (!work_->begun) vkCmdFillBuffer(cmd, buffers_.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
+    recordPenumbraUpload(cmd);
     vk::barrier(cmd);
     layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, penumbra_, rounds);
     recordRayCount(cmd);
@@ -343,7 +357,7 @@ void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     learnPenumbra();
     layer.directRounds = end;
     layer.directSteps.push_back(end);
-    if (end == work_->target.directRounds) return beginBounces();
+    if (end == work_->target.directRounds) return work_->directAlone ? work_.reset() : beginBounces();
     work_->begun = false;
     if (!seekRound()) endDirectStep(commands_.begin());
 }
@@ -362,6 +376,7 @@ void LayerSolver::learnPenumbra() {
         layer.penumbra.resize(parts_.count);
         for (size_t i = 0; i < parts_.count; ++i)
             layer.penumbra[i] = within(i);
+        work_->penumbra.clear();
         return;
     }
     std::vector<uint8_t> cut(parts_.count, 0), differs(parts_.count, 0);
@@ -373,15 +388,30 @@ void LayerSolver::learnPenumbra() {
     }
     for (uint32_t i = 0; i < layer.stale.size(); ++i)
         if (layer.stale[i] == Layer::kBeside) layer.stale[i] = parts_.any(i, differs);
-    uploadPenumbra(layer);
+    setPenumbra(layer);
 }
 
-void LayerSolver::uploadPenumbra(const Layer& layer) {
-    std::vector<glm::uvec2> lights;
-    lights.reserve(parts_.count);
-    for (const uint8_t within : layer.penumbra)
-        lights.emplace_back(within);
-    vk::upload(input_.device, penumbra_.lights, lights.data(), penumbra_.lights.size());
+// Where direct light is mended, of what takes part in that: rays are for these alone.
+void LayerSolver::setPenumbra(const Layer& layer) {
+    std::vector<uint8_t> parts = layer.penumbra;
+    if (work_->mended) {
+        std::vector<uint8_t> mended(parts_.count, 0);
+        for (uint32_t i = 0; i < layer.stale.size(); ++i)
+            if (layer.stale[i] != 0) parts_.mark(i, mended);
+        for (size_t i = 0; i < parts.size(); ++i)
+            parts[i] &= mended[i];
+    }
+    const bool direct = penumbra_.lights.mapped() != nullptr; // nothing is under way that uses it
+    auto* lights = (direct ? penumbra_.lights : newPenumbra_).as<glm::uvec2>();
+    std::transform(parts.begin(), parts.end(), lights, [](uint8_t within) { return glm::uvec2(within); });
+    penumbraDue_ = !direct;
+    work_->penumbra.clear();
+}
+
+void LayerSolver::recordPenumbraUpload(VkCommandBuffer cmd) {
+    if (!std::exchange(penumbraDue_, false)) return;
+    const VkBufferCopy all{0, 0, penumbra_.lights.size()};
+    vkCmdCopyBuffer(cmd, newPenumbra_.handle(), penumbra_.lights.handle(), 1, &all);
 }
 
 // Of direct light that a layer shares with one that is to stay as it is, a copy. Returns what that was made

@@ -88,10 +88,12 @@ private:
         size_t layer = 0;
         bool sum = false; // not a layer, but all of them together
         LayerLevel target;
-        std::vector<Lane> lanes; // once it bounces: itself, and others that bounce along
+        bool directAlone = false; // bounces wait for other layers to come along
+        std::vector<Lane> lanes;  // once it bounces: itself, and others that bounce along
         Stage stage = Stage::Direct;
         uint32_t round = 0;             // of samples, or of links that are gathered
         uint32_t part = 0;              // of Layer::parts, within a round of samples
+        std::vector<uint8_t> penumbra;  // chunks with a part of Layer::penumbra; empty: not known yet
         uint32_t bounce = 0;            // finished ones, over the links of the first round
         uint32_t gathers = 0;           // as bounces, over the links of all rounds
         bool begun = false;             // a batch of this pass has been made
@@ -144,7 +146,7 @@ private:
     void countSenders();
     void plan();
     Layer& layerOf(const Lane& lane) const { return work_->sum ? *sum_ : *layers_[lane.layer]; }
-    void begin(size_t layer, LayerLevel target);
+    void begin(size_t layer, LayerLevel target, bool directAlone = false);
     void directBatch();
     template<typename Lights>
     void traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_t group, ChunkRange range,
@@ -158,7 +160,8 @@ private:
     void endDirectStep(VkCommandBuffer cmd);
     void recordPenumbra(VkCommandBuffer cmd);
     void learnPenumbra();
-    void uploadPenumbra(const Layer& layer);
+    void setPenumbra(const Layer& layer);
+    void recordPenumbraUpload(VkCommandBuffer cmd);
     std::shared_ptr<vk::Buffer> recordOwnDirect(VkCommandBuffer cmd, Layer& layer);
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
@@ -170,6 +173,8 @@ private:
 
     // layer_links.cpp
     void beginBounces();
+    std::vector<size_t> companions(size_t index, LayerLevel target) const;
+    std::optional<size_t> directFirst(size_t index) const;
     std::vector<Lane> lanes() const;
     LinkPortion nextLinks(double most);
     void takeFollowing(LinkPortion& portion, double most);
@@ -205,6 +210,7 @@ private:
     LevelSums resolveOnCpu(const Layer& layer, uint32_t linkRounds, double sigma) const;
     std::optional<size_t> nextLayer() const;
     LayerLevel firstLevel() const;
+    bool isHasty(LayerLevel target) const;
     LayerLevel nextLevel(const Layer& layer) const;
     LayerLevel targetOf(const Layer& layer) const;
     LayerLevel lastLevel() const;
@@ -278,8 +284,10 @@ private:
     LayerPass layerPass_;
     ChunkSumPass chunkSums_;
     TileParts parts_;
-    Penumbra penumbra_; // of the layer whose direct light is under way
-    vk::Buffer back_;   // what the CPU reads after a submit: sums per chunk, or counters of rays
+    Penumbra penumbra_;        // of the layer whose direct light is under way
+    vk::Buffer newPenumbra_;   // its lights, as they are to be there; unless the CPU sees these
+    bool penumbraDue_ = false; // they wait for the next submit
+    vk::Buffer back_;          // what the CPU reads after a submit: sums per chunk, or counters of rays
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     ChunkOrder order_;                // of the pass under way
@@ -300,7 +308,8 @@ private:
     uint64_t surfaces_ = 0, objects_ = 0;
     std::optional<ObjectMove> moved_; // an edit of objects that waits to be adopted
     std::optional<Relink> relink_;
-    bool reachMoved_ = false; // rays to suns and the sky end elsewhere since objects moved
+    std::unique_ptr<WorkerPool> pool_; // for what objects that move take of the CPU, where a GPU gathers
+    bool reachMoved_ = false;          // rays to suns and the sky end elsewhere since objects moved
     std::optional<Work> work_;
     LightMix mix_;
     bool edited_ = false; // an edit waits to be adopted

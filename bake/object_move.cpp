@@ -11,6 +11,8 @@ using shader::kChunk;
 
 // So many boxes at most: beyond, one around all of them. Each is a test per ray.
 constexpr size_t kMostPlaceBoxes = 8;
+// That a thread looks at in one go.
+constexpr uint32_t kTaskChunks = 128;
 
 // Whether a segment from within a to within b may meet the box: points between are within boxes that go from
 // a to b evenly, and along each axis such a box meets the other one for an interval of the way.
@@ -55,8 +57,8 @@ void ObjectMove::add(const ObjectMove& later) {
     texels = texels || later.texels;
 }
 
-std::vector<uint8_t> chunksReached(const PatchSet& patches, const LightPlace& light, const ObjectMove& move) {
-    std::vector<uint8_t> reached(patches.chunkCount(), 0);
+std::vector<uint8_t> chunksReached(WorkerPool& pool, const PatchSet& patches, const LightPlace& light,
+                                   const ObjectMove& move) {
     const auto meets = [&](const shader::TraceBox& start, const shader::TraceBox& box) {
         return light.kind == LightPlace::Kind::Everywhere || shaftMeets(start, endOf(start, light), box);
     };
@@ -66,17 +68,24 @@ std::vector<uint8_t> chunksReached(const PatchSet& patches, const LightPlace& li
         const glm::vec3 origin = p.position + p.offset * p.normal;
         return meets({origin, origin}, box);
     };
-    for (uint32_t chunk = 0; chunk < patches.chunkCount(); ++chunk) {
+    const auto chunkReached = [&](uint32_t chunk) {
+        if (move.changes(chunk)) return true;
         const auto first = patches.scene.patches.begin() + size_t{chunk} * kChunk;
         const shader::ChunkBounds& bounds = patches.bounds[chunk];
         const glm::vec3 grown(0.01f * bounds.size); // more than a patch's offset
-        reached[chunk] = move.changes(chunk) ||
-                         std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
-                             return meets({bounds.lo - grown, bounds.hi + grown}, box) &&
-                                    std::any_of(first, first + kChunk,
-                                                [&](const shader::Patch& p) { return patchReached(p, box); });
-                         });
-    }
+        return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
+            return meets({bounds.lo - grown, bounds.hi + grown}, box) &&
+                   std::any_of(first, first + kChunk,
+                               [&](const shader::Patch& p) { return patchReached(p, box); });
+        });
+    };
+    std::vector<uint8_t> reached(patches.chunkCount(), 0);
+    const uint32_t count = patches.chunkCount();
+    pool.run((count + kTaskChunks - 1) / kTaskChunks, [&](uint32_t task) {
+        const uint32_t end = std::min(count, (task + 1) * kTaskChunks);
+        for (uint32_t chunk = task * kTaskChunks; chunk < end; ++chunk)
+            reached[chunk] = chunkReached(chunk);
+    });
     return reached;
 }
 

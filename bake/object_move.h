@@ -4,6 +4,7 @@
 
 #include "bake/patches.h"
 #include "bake/trace/retrace_types.h"
+#include "bake/worker_pool.h"
 
 namespace relume {
 
@@ -32,6 +33,7 @@ struct LightPlace {
 
 /// Per chunk 1 where direct light from there may be another one after the move, for what segments to it meet
 /// or for its patches.
-std::vector<uint8_t> chunksReached(const PatchSet& patches, const LightPlace& light, const ObjectMove& move);
+std::vector<uint8_t> chunksReached(WorkerPool& pool, const PatchSet& patches, const LightPlace& light,
+                                   const ObjectMove& move);
 
 } // namespace relume
