@@ -53,7 +53,8 @@ struct Layer {
     std::shared_ptr<vk::Buffer> direct; // nullptr: no rounds yet
     vk::Buffer result;                  // vec4 per patch: lighting, standard error; where there is a level
     uint32_t directRounds = 0;          // in direct
-    // directRounds after each level that took more; what is summed together decides the last bits.
+    // directRounds after each level that took more, the next one, too, once its direct light is there; what
+    // is summed together decides the last bits.
     std::vector<uint32_t> directSteps;
     // Per part of a tile (TileParts) 1 where the first round's rays met the light's penumbra or the edge of
     // its shadow; patches elsewhere take each kPenumbraRounds-th round alone.

@@ -135,7 +135,9 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
 void LayerSolver::remember(const Layer& layer) {
     if (layer.redo) return;
     std::erase_if(records_, [&](const Record& record) { return record.pattern == layer.pattern; });
-    records_.push_back({layer.pattern, layer.level, layer.directSteps});
+    const std::vector<uint32_t>& steps = layer.directSteps; // those made ahead are of no level yet
+    const auto end = std::upper_bound(steps.begin(), steps.end(), layer.level.directRounds);
+    records_.push_back({layer.pattern, layer.level, {steps.begin(), end}});
     const auto count = [](size_t sum, const Record& record) {
         return sum + 1 + record.pattern.members.size();
     };
@@ -223,11 +225,9 @@ void LayerSolver::adopt() {
     }
     if (work_) work_->layer = *places.front();
     const bool all = standIn || standIn_ || shown.size() != layers_.size();
-    if (all) restOf_.reset();
-    if (all) changed_.clear();
-    for (size_t i = 0; i < layers_.size(); ++i)
-        if (all ||
-            shown[i] != std::pair(static_cast<const Layer*>(layers_[i].get()), layers_[i]->source.weight))
+    if (all) allChanged();
+    for (size_t i = 0; !all && i < layers_.size(); ++i)
+        if (shown[i] != std::pair(static_cast<const Layer*>(layers_[i].get()), layers_[i]->source.weight))
             changed(i);
     moved_.reset();
     sumDue_ = wantsSum();

@@ -28,7 +28,8 @@ constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
 // Noise falls as samples come in, so that the best width does, too [texels]: as in the Cornell rooms and an
 // atrium, where it is 2 to 4 with 50 directions per patch and .5 to .7 with 2000. settle() finds what it is.
 double likelyWidth(uint32_t samples) {
-    return kFirstSigma * std::pow(32.0 / std::max(samples, 32u), 0.4);
+    constexpr double kLeast = 0.5;
+    return std::max(kLeast, kFirstSigma * std::pow(32.0 / std::max(samples, 32u), 0.4));
 }
 
 double strength(const glm::vec3& weight) {
@@ -59,7 +60,8 @@ LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     const LayerLevel now = layer.level, last = lastLevel();
     if (settings_.error <= 0) return last;
     const double sampled = layer.error * layer.error - layer.iterationError * layer.iterationError;
-    const double wanted = settings_.error * settings_.error - layer.iterationError * layer.iterationError;
+    const double iteration = std::min(layer.iterationError, kIterationShare * settings_.error); // of the next
+    const double wanted = settings_.error * settings_.error - iteration * iteration;
     const double variance = layer.directVariance + layer.indirectVariance;
     const Rounds rounds =
         roundsFor({.rounds = now.directRounds,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace relume {
 
@@ -13,6 +14,14 @@ void LayerSolver::changed(size_t layer) {
     light_.clear();
     if (sumShown_) return;
     if (std::find(changed_.begin(), changed_.end(), layer) == changed_.end()) changed_.push_back(layer);
+}
+
+void LayerSolver::allChanged() {
+    stale_ = true;
+    light_.clear();
+    restOf_.reset();
+    changed_.clear();
+    allChanged_ = true;
 }
 
 std::vector<shader::LayerWeight> LayerSolver::shares(std::optional<size_t> without,
@@ -53,7 +62,7 @@ void LayerSolver::mix(const vk::Buffer& to) {
 
 // While one layer changes again and again the sum of the others is kept: an edit then costs two layers.
 void LayerSolver::mixForViewer() {
-    if (sumShown_ || changed_.size() != 1) {
+    if (std::exchange(allChanged_, false) || sumShown_ || changed_.size() != 1) {
         mix(composite_);
         restOf_.reset();
         changed_.clear();
@@ -81,7 +90,7 @@ void LayerSolver::mixForViewer() {
 LiveLight LayerSolver::liveLight() {
     ASSERT(settings_.live);
     std::vector<ChunkRange> ranges;
-    if (!changed_.empty()) {
+    if (allChanged_ || !changed_.empty()) {
         mixForViewer();
         ranges = {{0, input_.patches.chunkCount()}};
         ++version_;

@@ -218,7 +218,7 @@ void LayerSolver::endMending() {
     if (staleLayer()) return work_.reset();
     sumDue_ = wantsSum();
     if (sumDue_ || relink_) return work_.reset();
-    begin(work.layer, work.target);
+    begin(work.layer, work.target, work.directAlone);
 }
 
 // Whose direct light is to be made anew before any layer goes on; nothing: none, or nobody looks.

@@ -18,7 +18,7 @@ public:
           mixDirect_(device, "layer_mix_direct") {}
 
     /// Takes the sums of `rounds` new rounds, vec4[kReplicates][patches], into layer.direct, which holds
-    /// layer.directRounds of them. penumbra: that of the layer.
+    /// layer.directRounds of them. penumbra: that of the layer, at least where it matters.
     void recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
                       const vk::Buffer& sums, const Penumbra& penumbra, uint32_t rounds) const;
     /// layer.result = layer.direct + indirect; vec4 per chunk in chunkSums: light, variance of the direct

@@ -140,7 +140,7 @@ void LayerSolver::begin(size_t index, LayerLevel target, bool directAlone) {
         layer.penumbra.assign(parts_.count, 0);
         layer.redoSteps.clear();
     }
-    if (!layer.penumbra.empty()) setPenumbra(layer);
+    if (work_->round > 0 || raysOf(layer) == 0) setPenumbra(layer); // else the first round finds it
     beginPass(Stage::Direct);
     if (raysOf(layer) == 0 || !seekRound()) endDirectStep(commands_.begin());
 }

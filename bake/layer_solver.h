@@ -269,6 +269,7 @@ private:
     void mix(const vk::Buffer& to);
     void mixForViewer();
     void changed(size_t layer);
+    void allChanged();
 
     const SolverInput input_;
     SolverSettings settings_;
@@ -322,6 +323,7 @@ private:
     vk::Buffer rest_;      // the composite without restOf_
     std::optional<size_t> restOf_;
     std::vector<size_t> changed_; // layers since the composite was made
+    bool allChanged_ = false;     // which ones there are, too
     bool stale_ = true;           // light_ is behind
     std::vector<glm::vec4> light_;
     uint64_t version_ = 0; // of what a viewer is shown

@@ -53,7 +53,7 @@ Rounds doubled(const SampledPart& first, const SampledPart& second) {
 } // namespace
 
 Rounds roundsFor(const SampledPart& first, const SampledPart& second, double allowed) {
-    if (allowed <= 0.0) return doubled(first, second);
+    if (!(allowed > 0.0)) return doubled(first, second);
     const double roots = std::sqrt(varianceOfRound(first) * first.costOfRound) +
                          std::sqrt(varianceOfRound(second) * second.costOfRound);
     double a = within(first, std::sqrt(varianceOfRound(first) / first.costOfRound) * roots / allowed);

@@ -1,4 +1,5 @@
 // Edits of layers against fresh bakes of what they lead to.
+#include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
@@ -219,6 +220,26 @@ TEST(Layers, ALightThatIsDraggedIsSeenAndEndsAsAFreshBake) {
     EXPECT_GT(seen, 3u);
     bake.finish();
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, desc)));
+}
+
+TEST(Layers, WithoutItsLastLightAPictureIsDark) {
+    BakeDesc desc = kQuick;
+    desc.live = true;
+    SceneMaker maker(32);
+    maker.quad({0, 0, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(16));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.0f}, 3.0f, "Bulb"));
+    Layered bake(scene, desc);
+    bake.finish();
+    const auto shown = [&] {
+        const LiveLight live = bake.solver().liveLight();
+        return vk::readBuffer<glm::vec4>(testDevice(), *live.light, bake.patches().scene.patches.size());
+    };
+    EXPECT_GT(meanOf(shown()), 0.0);
+    bake.scene.lights.clear();
+    bake.solver().edit({});
+    bake.finish();
+    EXPECT_EQ(meanOf(shown()), 0.0);
 }
 
 // A hundred edits, most of which come before the one before was followed to its end, and all of them undone.
