@@ -68,7 +68,8 @@ public:
         std::function<void(const DeviceInfo&)> chosen = {};
     };
     /// Throws Error: no loader, no driver, no such device, what it lacks. Devices alive at one time must
-    /// agree on `validation`: the function pointers are per process.
+    /// agree on `validation`, and none may be in use on another thread: the function pointers are per
+    /// process.
     explicit Device(const Desc& desc);
     ~Device();
     Device(const Device&) = delete;
