@@ -59,10 +59,12 @@ struct Layer {
     // Per part of a tile (TileParts) 1 where the first round's rays met the light's penumbra or the edge of
     // its shadow; patches elsewhere take each kPenumbraRounds-th round alone.
     std::vector<uint8_t> penumbra;
-    // Per chunk 1 where direct is of objects that have moved since, kBeside where neighbours are: only where
-    // these now are in a penumbra or are no longer it is made anew. Empty: nowhere.
-    static constexpr uint8_t kBeside = 2;
+    // Per chunk kStale where direct is of objects that have moved since, kBeside where neighbours are: only
+    // where these now are in a penumbra or are no longer it is made anew. Of kBegun ones the first of
+    // directSteps is there again, kBesideBegun are these beside stale ones. Empty: nowhere.
+    static constexpr uint8_t kStale = 1, kBeside = 2, kBegun = 3, kBesideBegun = 4;
     std::vector<uint8_t> stale;
+    bool begun = false;          // all stale chunks are
     LayerLevel level;            // of result; no rounds: there is none yet
     SmoothingWidth width;        // of the last result
     double light = 0, count = 0; // sums over patches, R, G and B together
@@ -76,6 +78,10 @@ struct Layer {
 
     /// Of the patches, the share that takes a round of direct light, in the mean; 1 before the first.
     double directShare() const;
+    /// Whether direct is still of where objects were, somewhere.
+    bool isOutdated() const { return !stale.empty() && !begun; }
+    /// Whether the next step of making direct anew is for the chunk, too.
+    bool mends(size_t chunk) const { return stale[chunk] != 0 && (begun || stale[chunk] != kBegun); }
     bool has() const { return level.linkRounds > 0 || level.directRounds > 0; }
     /// What is to be seen of it: itself or the one before; nullptr: nothing.
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }

@@ -70,7 +70,6 @@ void LayerSolver::weigh() {
         if (weight == layer.source.weight) continue;
         layer.source.weight = weight;
         changed(i);
-        sumDue_ = sumDue_ || sumShown_;
     }
     tellError();
 }
@@ -160,6 +159,7 @@ void LayerSolver::recall(Layer& layer) const {
         layer.directRounds = 0;
         layer.directSteps.clear();
         layer.stale.clear();
+        layer.begun = false;
         layer.penumbra.clear();
     }
     layer.redo = found->level;
@@ -193,17 +193,26 @@ std::vector<size_t*> LayerSolver::layersUnderWay() {
     return places;
 }
 
+// What comes again and again, sixty times a second, finds that the picture of the one before is shown.
+bool LayerSolver::takesEdits() const {
+    if (sumDue_) return false;
+    if (!work_) return true;
+    const auto lit = [&](const Layer& layer) { return layer.has() || (sumShown_ && layer.directRounds > 0); };
+    return !work_->sum && lit(*layers_[work_->layer]);
+}
+
 void LayerSolver::adopt() {
     edited_ = false;
-    if (work_ && work_->sum) work_.reset();
     const std::vector<size_t*> places = layersUnderWay();
     std::vector<LightPattern> working;
     for (const size_t* place : places)
         working.push_back(layers_[*place]->pattern);
     const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
     if (!tooMany.empty()) throw Error(tooMany);
-    surfaces_ = surfacesOf(input_.scene);
-    objects_ = objectsOf(input_.scene);
+    const uint64_t surfaces = surfacesOf(input_.scene), objects = objectsOf(input_.scene);
+    unseen_ = unseen_ || surfaces != surfaces_ || objects != objects_;
+    surfaces_ = surfaces;
+    objects_ = objects;
     if (moved_) adoptMove();
     std::vector<std::pair<const Layer*, glm::vec3>> shown;
     for (const std::unique_ptr<Layer>& layer : layers_)
@@ -230,8 +239,8 @@ void LayerSolver::adopt() {
         if (shown[i] != std::pair(static_cast<const Layer*>(layers_[i].get()), layers_[i]->source.weight))
             changed(i);
     moved_.reset();
-    sumDue_ = wantsSum();
-    if (!sumDue_) hideSum();
+    sumDue_ = canSum();
+    if (!wantsSum()) hideSum();
     done_ = false;
     tellError();
 }
@@ -256,8 +265,14 @@ void LayerSolver::adoptLayers(const std::vector<Wanted>& wanted) {
         recall(*next[i]);
         if (same == layers_.end()) continue;
         next[i]->covered = std::exchange((*same)->covered, false) || next[i]->covered;
-        next[i]->before = std::move(*same);
+        std::unique_ptr<Layer> former = std::move(*same);
         layers_.erase(same);
+        if (former->has()) {
+            next[i]->before = std::move(former);
+            continue;
+        }
+        next[i]->before = std::move(former->before);
+        recycle(*former);
     }
     for (std::unique_ptr<Layer>& gone : layers_)
         archive(std::move(gone));

@@ -96,7 +96,7 @@ LiveLight LayerSolver::liveLight() {
         ++version_;
     }
     const bool complete =
-        std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
+        sumShown_ || std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
             return layer->shown() != nullptr || layer->covered || layer->source.weight == glm::vec3(0.0f);
         });
     return {&composite_, version_, complete, std::move(ranges)};

@@ -70,17 +70,25 @@ void LayerSolver::adoptMove() {
         const std::vector<uint32_t>& map = input_.patches.scene.texelToPatch;
         vk::upload(input_.device, buffers_.texelToPatch, map.data(), map.size() * sizeof(map[0]));
     }
-    ObjectMove move = relink_ ? relink_->move : ObjectMove(); // which links have not all followed yet
-    move.add(*moved_);
-    relink_.emplace();
-    Relink& relink = *relink_;
-    relink.boxes = vk::makeBuffer(input_.device, move.boxes, "boxes");
-    relink.changed = vk::makeBuffer(input_.device, move.changed, "changed patches");
-    relink.move = std::move(move);
+    Relink relink;
+    // Of what was moved on, links of early rounds have followed the moves before, or some of them.
+    ObjectMove early = *moved_, late = *moved_;
+    if (relink_) {
+        relink.earlyRounds = std::max(relink_->round, relink_->earlyRounds);
+        if (relink_->round < relink_->earlyRounds) early.add(relink_->early.move);
+        late.add(relink_->late.move);
+    }
+    const auto path = [&](const ObjectMove& move) {
+        return Path{move, vk::makeBuffer(input_.device, move.boxes, "boxes"),
+                    vk::makeBuffer(input_.device, move.changed, "changed patches")};
+    };
+    relink.early = path(early);
+    relink.late = path(late);
     const uint64_t most = uint64_t{buffers_.batchChunks} * linksOfRound_ * kChunk;
     if (!input_.tracer.onCpu())
         relink.list =
             vk::Buffer(input_.device, {.size = (most + 1) * sizeof(uint32_t), .name = "links to trace"});
+    relink_ = std::move(relink);
 }
 
 // A batch of the links that are kept.
@@ -95,6 +103,7 @@ void LayerSolver::relinkBatch() {
             count = static_cast<uint32_t>(
                 std::min<double>({wanted, double(count), double(buffers_.batchChunks)}));
             const auto start = Clock::now();
+            const Path& path = relink.round < relink.earlyRounds ? relink.early : relink.late;
             const RetraceWork work{.closest = {.firstChunk = relink.chunk,
                                                .chunkCount = count,
                                                .firstSample = relink.round * linksOfRound_,
@@ -102,9 +111,9 @@ void LayerSolver::relinkBatch() {
                                                .rotation = settings_.links.rotation,
                                                .links = place.links,
                                                .linksOffset = place.offset},
-                                   .boxes = &relink.boxes,
-                                   .boxCount = static_cast<uint32_t>(relink.move.boxes.size()),
-                                   .changed = &relink.changed,
+                                   .boxes = &path.boxes,
+                                   .boxCount = static_cast<uint32_t>(path.move.boxes.size()),
+                                   .changed = &path.changed,
                                    .list = &relink.list,
                                    .rays = &buffers_.rays};
             VkCommandBuffer cmd = input_.tracer.records() ? commands_.begin() : VK_NULL_HANDLE;
@@ -146,27 +155,31 @@ std::vector<uint8_t> LayerSolver::chunksOf(const LightPattern& pattern) const {
 // Of direct light that was taken over from another layer of this light.
 void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     to.stale = from.stale;
+    to.begun = from.begun;
     if (!moved_) return;
     to.stale.resize(input_.patches.chunkCount(), 0);
     const auto add = [&](const LightPattern& pattern) {
         const std::vector<uint8_t> reached = chunksOf(pattern);
         for (size_t i = 0; i < reached.size(); ++i)
-            if (reached[i] != 0) to.stale[i] = 1;
+            if (reached[i] != 0) to.stale[i] = Layer::kStale;
     };
     if (to.pattern.kind != Kind::Group) add(to.pattern);
     for (const LightPattern& member : to.pattern.members)
         add(member);
     growToParts(to.stale);
-    if (std::find(to.stale.begin(), to.stale.end(), 1) == to.stale.end()) to.stale.clear();
+    to.begun = to.begun && std::find(to.stale.begin(), to.stale.end(), Layer::kStale) == to.stale.end();
+    if (std::count(to.stale.begin(), to.stale.end(), 0) == std::ssize(to.stale)) to.stale.clear();
 }
 
 // Neighbours of what is stale: that decides on their rounds, too.
 void LayerSolver::growToParts(std::vector<uint8_t>& stale) const {
     std::vector<uint8_t> parts(parts_.count, 0);
     for (uint32_t i = 0; i < stale.size(); ++i)
-        if (stale[i] == 1) parts_.mark(i, parts);
-    for (uint32_t i = 0; i < stale.size(); ++i)
+        if (stale[i] == Layer::kStale) parts_.mark(i, parts);
+    for (uint32_t i = 0; i < stale.size(); ++i) {
         if (stale[i] == 0 && parts_.any(i, parts)) stale[i] = Layer::kBeside;
+        if (stale[i] == Layer::kBegun && parts_.any(i, parts)) stale[i] = Layer::kBesideBegun;
+    }
 }
 
 // Direct light of stale chunks, made of the same rounds in the same steps as that of all others. Meanwhile
@@ -174,10 +187,23 @@ void LayerSolver::growToParts(std::vector<uint8_t>& stale) const {
 void LayerSolver::beginMending() {
     Layer& layer = *layers_[work_->layer];
     if (raysOf(layer) == 0) return endMending(); // as all of it
-    work_->mended = 0;
-    work_->round = 0;
+    work_->mended = layer.begun ? 1 : 0;
+    work_->round = layer.begun ? layer.directSteps.front() : 0;
+    if (layer.begun) {
+        VkCommandBuffer cmd = commands_.begin();
+        recordCopy(cmd, *layer.direct, input_.light.ligOut, mendedRanges(layer));
+        run(cmd);
+        setPenumbra(layer); // else the first round finds it
+    }
     beginPass(Stage::Direct);
-    seekRound();
+    if (!seekRound()) endMendingStep();
+}
+
+std::vector<ChunkRange> LayerSolver::mendedRanges(const Layer& layer) {
+    std::vector<uint8_t> mends(layer.stale.size());
+    for (size_t i = 0; i < mends.size(); ++i)
+        mends[i] = layer.mends(i);
+    return rangesOf(mends, true);
 }
 
 void LayerSolver::endMendingStep() {
@@ -196,7 +222,10 @@ void LayerSolver::endMendingStep() {
     layer.directRounds = rounds;
     work_->mended = step + 1;
     work_->begun = false;
-    if (step + 1 < layer.directSteps.size()) {
+    const bool last = step + 1 == layer.directSteps.size();
+    const bool some = std::find(layer.stale.begin(), layer.stale.end(), Layer::kBegun) != layer.stale.end();
+    const bool pauses = !last && step == 0 && (some || wantsSum());
+    if (!last && !pauses) {
         run(cmd);
         if (!seekRound()) endMendingStep();
         return;
@@ -204,28 +233,40 @@ void LayerSolver::endMendingStep() {
     vk::barrier(cmd);
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd, layer);
     vk::barrier(cmd);
-    recordCopy(cmd, input_.light.ligOut, *layer.direct, rangesOf(layer.stale, true));
+    recordCopy(cmd, input_.light.ligOut, *layer.direct, mendedRanges(layer));
     recordRayCount(cmd);
     run(cmd);
     countRays();
-    endMending();
+    if (last) return endMending();
+    std::replace(layer.stale.begin(), layer.stale.end(), Layer::kStale, Layer::kBegun);
+    layer.begun = true;
+    sumDue_ = canSum();
+    work_.reset();
 }
 
-// A viewer gets all direct light first, so that the sum of all lights can be shown.
+// A viewer gets the first step of all direct light first, then all of it, and the sum of all lights after
+// either.
 void LayerSolver::endMending() {
     const Work work = *work_;
     layers_[work.layer]->stale.clear();
-    if (staleLayer()) return work_.reset();
-    sumDue_ = wantsSum();
-    if (sumDue_ || relink_) return work_.reset();
+    layers_[work.layer]->begun = false;
+    const bool more = staleLayer().has_value();
+    sumDue_ = canSum() && (unseen_ || !more);
+    if (more || sumDue_ || sumShown_ || relink_) return work_.reset();
     begin(work.layer, work.target, work.directAlone);
 }
 
-// Whose direct light is to be made anew before any layer goes on; nothing: none, or nobody looks.
+// Whose direct light is to be made anew before any layer goes on, those of which nothing is there yet first;
+// nothing: none, or nobody looks.
 std::optional<size_t> LayerSolver::staleLayer() const {
-    for (size_t i = 0; settings_.live && i < layers_.size(); ++i)
-        if (layers_[i]->source.weight != glm::vec3(0.0f) && !layers_[i]->stale.empty()) return i;
-    return std::nullopt;
+    std::optional<size_t> stale;
+    for (size_t i = 0; settings_.live && i < layers_.size(); ++i) {
+        const Layer& layer = *layers_[i];
+        if (layer.source.weight == glm::vec3(0.0f) || layer.stale.empty()) continue;
+        if (layer.isOutdated()) return i;
+        if (!stale) stale = i;
+    }
+    return stale;
 }
 
 } // namespace relume

@@ -100,7 +100,7 @@ void LayerSolver::countSenders() {
 
 void LayerSolver::step() {
     const auto start = Clock::now();
-    if (edited_ && atRest()) adopt();
+    if (edited_ && takesEdits()) adopt();
     if (done_) return;
     if (sumDue_ && work_ && !work_->sum) abortPass();
     const bool relinks = relink_ && !sumComesFirst();
@@ -114,12 +114,16 @@ void LayerSolver::step() {
             linkBatch();
         progress_.passFraction = 1.0 - static_cast<double>(order_.left()) / std::max(1u, order_.count());
     }
+    if (isWhole()) unseen_ = false;
     progress_.seconds += secondsSince(start);
 }
 
 void LayerSolver::plan() {
     if (sumDue_) return beginSum();
-    const std::optional<size_t> stale = staleLayer(), next = stale ? stale : nextLayer();
+    const std::optional<size_t> stale = staleLayer();
+    const std::optional<size_t> unlit = stale && layers_[*stale]->isOutdated() ? std::nullopt : unlitLayer();
+    if (unlit) return begin(*unlit, targetOf(*layers_[*unlit]), true);
+    const std::optional<size_t> next = stale ? stale : nextLayer();
     if (!next) {
         done_ = true;
         return;
@@ -296,7 +300,7 @@ bool LayerSolver::orderRound() {
     order_.begin(input_.patches.chunkCount(), seen_);
     std::vector<uint8_t> take(order_.count(), 1);
     for (size_t i = 0; work_->mended && i < take.size(); ++i)
-        take[i] = layer.stale[i] != 0;
+        take[i] = layer.mends(i);
     const bool penumbraAlone = work_->round % shader::kPenumbraRounds != 0;
     if (penumbraAlone && work_->penumbra.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
@@ -357,7 +361,12 @@ void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     learnPenumbra();
     layer.directRounds = end;
     layer.directSteps.push_back(end);
-    if (end == work_->target.directRounds) return work_->directAlone ? work_.reset() : beginBounces();
+    if (end == work_->target.directRounds && !work_->directAlone) return beginBounces();
+    if (end == work_->target.directRounds) {
+        work_.reset();
+        sumDue_ = sumShown_ && canSum();
+        return;
+    }
     work_->begun = false;
     if (!seekRound()) endDirectStep(commands_.begin());
 }
@@ -381,13 +390,17 @@ void LayerSolver::learnPenumbra() {
     }
     std::vector<uint8_t> cut(parts_.count, 0), differs(parts_.count, 0);
     for (uint32_t i = 0; i < layer.stale.size(); ++i)
-        if (layer.stale[i] == 0) parts_.mark(i, cut);
+        if (!layer.mends(i)) parts_.mark(i, cut);
     for (size_t i = 0; i < parts_.count; ++i) {
         differs[i] = cut[i] == 0 && layer.penumbra[i] != within(i);
         if (differs[i] != 0) layer.penumbra[i] = within(i);
     }
-    for (uint32_t i = 0; i < layer.stale.size(); ++i)
-        if (layer.stale[i] == Layer::kBeside) layer.stale[i] = parts_.any(i, differs);
+    for (uint32_t i = 0; i < layer.stale.size(); ++i) {
+        uint8_t& stale = layer.stale[i];
+        if (stale != Layer::kBeside && stale != Layer::kBesideBegun) continue;
+        const uint8_t as = stale == Layer::kBeside ? 0 : Layer::kBegun;
+        stale = parts_.any(i, differs) ? Layer::kStale : as;
+    }
     setPenumbra(layer);
 }
 
@@ -397,7 +410,7 @@ void LayerSolver::setPenumbra(const Layer& layer) {
     if (work_->mended) {
         std::vector<uint8_t> mended(parts_.count, 0);
         for (uint32_t i = 0; i < layer.stale.size(); ++i)
-            if (layer.stale[i] != 0) parts_.mark(i, mended);
+            if (layer.mends(i)) parts_.mark(i, mended);
         for (size_t i = 0; i < parts.size(); ++i)
             parts[i] &= mended[i];
     }
@@ -445,6 +458,7 @@ void LayerSolver::abortPass() {
         run(cmd);
         countRays();
     }
+    sumDue_ = sumDue_ || work_->sum;
     work_.reset();
     progress_.passFraction = 0;
 }

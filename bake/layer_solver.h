@@ -63,8 +63,8 @@ public:
     /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
     void moveObjects(const ObjectMove& move);
     /// Whether base colours and objects may be changed now: no layer is on its way to its first level, unless
-    /// all of them are seen in one.
-    bool atRest() const { return !work_ || work_->sum || sumShown_ || layers_[work_->layer]->has(); }
+    /// all of them are seen in one, and a viewer was shown what was changed before.
+    bool atRest() const { return takesEdits() && !(settings_.live && unseen_); }
 
     /// Points on each light per patch and round: few, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = shader::kReplicates;
@@ -113,10 +113,16 @@ private:
         shader::ResolveSums indirect{};
         glm::dvec4 result{0.0};
     };
+    /// Where objects were and are, for tracers.
+    struct Path {
+        ObjectMove move;
+        vk::Buffer boxes, changed;
+    };
     /// Kept links on their way to where objects are now.
     struct Relink {
-        ObjectMove move;
-        vk::Buffer boxes, changed, list;
+        Path early, late; // of the first earlyRounds rounds, of the others
+        uint32_t earlyRounds = 0;
+        vk::Buffer list;
         BatchRate rate;
         uint32_t round = 0, chunk = 0; // next
     };
@@ -217,6 +223,7 @@ private:
     void tellError();
 
     // layer_edits.cpp
+    bool takesEdits() const;
     void adopt();
     std::vector<size_t*> layersUnderWay();
     void weigh();
@@ -245,8 +252,11 @@ private:
 
     // layer_sum.cpp
     bool wantsSum() const;
+    bool canSum() const;
+    std::optional<size_t> unlitLayer() const;
     uint32_t sumRounds() const;
     bool sumComesFirst() const;
+    bool isWhole() const;
     void beginSum();
     void showSum();
     void hideSum();
@@ -259,6 +269,7 @@ private:
     void keepStale(const Layer& from, Layer& to) const;
     void growToParts(std::vector<uint8_t>& stale) const;
     void beginMending();
+    static std::vector<ChunkRange> mendedRanges(const Layer& layer);
     void endMendingStep();
     void endMending();
     std::optional<size_t> staleLayer() const;
@@ -314,6 +325,7 @@ private:
     std::optional<Work> work_;
     LightMix mix_;
     bool edited_ = false; // an edit waits to be adopted
+    bool unseen_ = false; // base colours or objects were changed, and there is no whole picture of it yet
 
     std::unique_ptr<Layer> sum_; // of all lights with their weights: direct light, and what came of it
     bool sumDue_ = false, sumShown_ = false;

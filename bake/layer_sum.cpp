@@ -14,18 +14,38 @@ bool shines(const Layer& layer) {
     return layer.source.weight != glm::vec3(0.0f);
 }
 
+// Whether there is direct light of it.
+bool isInSum(const Layer& layer) {
+    return layer.directRounds > 0 && !layer.isOutdated();
+}
+
 } // namespace
 
-// Of fewer than two layers it would be no faster.
+// One layer alone is seen as soon itself, unless it takes more links. What is shown stays until all are
+// there.
 bool LayerSolver::wantsSum() const {
     if (!settings_.live || settings_.passes == 1) return false;
     size_t waiting = 0;
+    bool deep = false;
     for (const std::unique_ptr<Layer>& layer : layers_) {
-        if (!shines(*layer)) continue;
-        if (layer->directRounds == 0 || !layer->stale.empty()) return false;
-        waiting += layer->has() ? 0 : 1;
+        if (!shines(*layer) || layer->has()) continue;
+        ++waiting;
+        deep = deep || (layer->redo && layer->redo->linkRounds > sumRounds());
     }
-    return waiting > 1;
+    return waiting > 1 || (waiting == 1 && (deep || sumShown_));
+}
+
+bool LayerSolver::canSum() const {
+    return wantsSum() && std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
+               return !shines(*layer) || isInSum(*layer);
+           });
+}
+
+// Whose direct light is to be made before any layer goes on, so that it is seen among all lights.
+std::optional<size_t> LayerSolver::unlitLayer() const {
+    for (size_t i = 0; sumShown_ && i < layers_.size(); ++i)
+        if (shines(*layers_[i]) && layers_[i]->directRounds == 0) return i;
+    return std::nullopt;
 }
 
 // Of links.
@@ -35,19 +55,25 @@ uint32_t LayerSolver::sumRounds() const {
 
 // Before the links of later rounds follow objects that moved: direct light does, and all is seen in one.
 bool LayerSolver::sumComesFirst() const {
-    return settings_.live && relink_->round >= sumRounds() && (work_ || sumDue_ || staleLayer());
+    return settings_.live && relink_->round >= sumRounds() &&
+           (work_ || sumDue_ || staleLayer() || unlitLayer());
 }
 
 bool LayerSolver::current() const {
-    return !edited_ && !sumDue_ && !(work_ && work_->sum) &&
-           (sumShown_ || std::all_of(layers_.begin(), layers_.end(), [](const std::unique_ptr<Layer>& layer) {
-                return layer->has() || !shines(*layer);
-            }));
+    return !edited_ && isWhole();
+}
+
+// Whether what is shown is of the last edit that was adopted.
+bool LayerSolver::isWhole() const {
+    if (sumDue_ || (work_ && work_->sum)) return false;
+    return std::all_of(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {
+        return !shines(*layer) || (sumShown_ ? isInSum(*layer) : layer->has());
+    });
 }
 
 void LayerSolver::beginSum() {
     sumDue_ = false;
-    if (!wantsSum()) return hideSum(); // a light that shines again may have nothing yet
+    if (!canSum()) return; // an edit that is not adopted yet has switched a light on
     if (!sum_) {
         sum_ = std::make_unique<Layer>();
         sum_->direct = std::make_shared<vk::Buffer>(takeBuffer("direct light of all layers"));

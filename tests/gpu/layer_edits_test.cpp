@@ -142,6 +142,47 @@ TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
     EXPECT_GT(distance(atOnce, after), 0.05);
 }
 
+// While layers follow a colour lights are dragged and dimmed: what is shown keeps up, and does not go back to
+// the colour before.
+TEST(Layers, WhileAllAreSeenAtOnceLightsAreEditedAsEver) {
+    BakeDesc desc = kQuick;
+    desc.live = true;
+    desc.batchMs = 1.0;
+    Layered bake(room(), desc);
+    bake.finish();
+    const Light4 before = bake.light();
+    bake.scene.materials[0].baseColor = {0.1f, 0.1f, 0.1f, 1.0f};
+    bake.edit();
+    while (!bake.solver().current())
+        bake.solver().step();
+    const double off = 0.7 * distance(before, bake.light());
+    const auto seen = [&] {
+        const uint64_t from = bake.solver().liveLight().version;
+        for (int i = 0; i < 2000 && bake.solver().liveLight().version == from; ++i) {
+            bake.solver().edit({}); // each step is a frame in which the mouse was moved
+            bake.solver().step();
+            EXPECT_GT(distance(before, bake.light()), off);
+        }
+        return bake.solver().liveLight().version != from;
+    };
+    for (int i = 0; i < 3; ++i) {
+        bake.scene.lights[0].transform = at({0.3f + 0.1f * i, 0.5f, 1.2f});
+        EXPECT_TRUE(seen()) << "a light that is moved";
+        bake.scene.lights[1].intensity *= 0.9f;
+        EXPECT_TRUE(seen()) << "a light that is dimmed";
+    }
+    bake.scene.lights.push_back(lightAt(LightType::Point, {0.3f, 1.5f, 1.5f}, 1.0f, "New"));
+    EXPECT_TRUE(seen()) << "a light that is added";
+    bake.scene.lights.erase(bake.scene.lights.begin());
+    EXPECT_TRUE(seen()) << "a light that is deleted";
+    while (!bake.solver().done()) {
+        bake.solver().step();
+        EXPECT_TRUE(bake.solver().liveLight().complete);
+        EXPECT_GT(distance(before, bake.light()), off);
+    }
+    EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, desc)));
+}
+
 TEST(Layers, ALightUnmutedWhileAllAreSeenAtOnceIsBaked) {
     BakeDesc desc = kQuick;
     desc.live = true;
