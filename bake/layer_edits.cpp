@@ -167,12 +167,13 @@ void LayerSolver::recall(Layer& layer) const {
 }
 
 // Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
-// new layer goes as far as the one before was, whose direct light may already be that of its next level.
+// new layer goes as far as the one before was, whose direct light may already be that of its next level. That
+// of a group which was dark while objects moved has not followed them.
 void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
     alike.objects = to.pattern.objects;
-    if (!(alike == to.pattern) || from.directRounds == 0) return;
+    if (!(alike == to.pattern) || from.pattern.objects != objectsBefore_ || from.directRounds == 0) return;
     to.direct = from.direct;
     to.directRounds = from.directRounds;
     to.directSteps = from.directSteps;
@@ -195,10 +196,8 @@ std::vector<size_t*> LayerSolver::layersUnderWay() {
 
 // What comes again and again, sixty times a second, finds that the picture of the one before is shown.
 bool LayerSolver::takesEdits() const {
-    if (sumDue_) return false;
-    if (!work_) return true;
-    const auto lit = [&](const Layer& layer) { return layer.has() || (sumShown_ && layer.directRounds > 0); };
-    return !work_->sum && lit(*layers_[work_->layer]);
+    if (sumDue_ || unlitLayer()) return false;
+    return !work_ || (!work_->sum && (sumShown_ || layers_[work_->layer]->has()));
 }
 
 void LayerSolver::adopt() {
@@ -210,9 +209,9 @@ void LayerSolver::adopt() {
     const std::string tooMany = problem(input_.scene, input_.patches, layerBytes_);
     if (!tooMany.empty()) throw Error(tooMany);
     const uint64_t surfaces = surfacesOf(input_.scene), objects = objectsOf(input_.scene);
-    unseen_ = unseen_ || surfaces != surfaces_ || objects != objects_;
+    unseen_ = unseen_ || (!layers_.empty() && (surfaces != surfaces_ || objects != objects_));
     surfaces_ = surfaces;
-    objects_ = objects;
+    objectsBefore_ = std::exchange(objects_, objects);
     if (moved_) adoptMove();
     std::vector<std::pair<const Layer*, glm::vec3>> shown;
     for (const std::unique_ptr<Layer>& layer : layers_)

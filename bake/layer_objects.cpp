@@ -214,11 +214,10 @@ void LayerSolver::endMendingStep() {
     recordPenumbraUpload(cmd);
     vk::barrier(cmd);
     const uint32_t rounds = std::exchange(layer.directRounds, before);
-    const auto kept =
-        std::exchange(layer.direct, std::make_shared<vk::Buffer>(std::move(input_.light.ligOut)));
+    auto kept = std::exchange(layer.direct, std::make_shared<vk::Buffer>(std::move(input_.light.ligOut)));
     layerPass_.recordDirect(cmd, input_.light, layer, buffers_.directSums, penumbra_, work_->round - before);
     input_.light.ligOut = std::move(*layer.direct);
-    layer.direct = kept;
+    layer.direct = std::move(kept); // a second owner would make it a copy
     layer.directRounds = rounds;
     work_->mended = step + 1;
     work_->begun = false;
@@ -248,10 +247,11 @@ void LayerSolver::endMendingStep() {
 // either.
 void LayerSolver::endMending() {
     const Work work = *work_;
+    const bool outdated = layers_[work.layer]->isOutdated();
     layers_[work.layer]->stale.clear();
     layers_[work.layer]->begun = false;
     const bool more = staleLayer().has_value();
-    sumDue_ = canSum() && (unseen_ || !more);
+    sumDue_ = canSum() && (outdated || !more);
     if (more || sumDue_ || sumShown_ || relink_) return work_.reset();
     begin(work.layer, work.target, work.directAlone);
 }

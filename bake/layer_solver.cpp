@@ -364,7 +364,7 @@ void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     if (end == work_->target.directRounds && !work_->directAlone) return beginBounces();
     if (end == work_->target.directRounds) {
         work_.reset();
-        sumDue_ = sumShown_ && canSum();
+        sumDue_ = canSum();
         return;
     }
     work_->begun = false;

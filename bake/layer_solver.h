@@ -53,9 +53,9 @@ public:
     std::vector<glm::vec4> layerLight(const Layer& layer) const;
 
     /// The scene's lights, its sky, the colours of its materials (Baker::updateMaterials) or switches are
-    /// others now: the scene that the solver was made with has been changed. Weights count at once; layers
-    /// whose pattern changed are made anew once the first level of the layer under way is through, so that a
-    /// light that is dragged is seen.
+    /// others now: the scene that the solver was made with has been changed. Weights count at once, or in
+    /// the next sum of all lights while all are seen in one; layers whose pattern changed are made anew once
+    /// the first level of the layer under way is through, so that a light that is dragged is seen.
     void edit(const LightMix& mix);
     /// Whether what is shown is of the newest colours of surfaces and places of objects: layer by layer, or
     /// all in one.
@@ -63,7 +63,8 @@ public:
     /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
     void moveObjects(const ObjectMove& move);
     /// Whether base colours and objects may be changed now: no layer is on its way to its first level, unless
-    /// all of them are seen in one, and a viewer was shown what was changed before.
+    /// all of them are seen in one, nor are all of them on the way to that, and a viewer was shown what was
+    /// changed before.
     bool atRest() const { return takesEdits() && !(settings_.live && unseen_); }
 
     /// Points on each light per patch and round: few, so that a light that moves is seen soon.
@@ -318,6 +319,7 @@ private:
     std::string toldGroups_;                     // to the log
     vk::Buffer standIn_; // vec4 per patch: light of those that were grouped otherwise before
     uint64_t surfaces_ = 0, objects_ = 0;
+    uint64_t objectsBefore_ = 0;      // before the newest edit
     std::optional<ObjectMove> moved_; // an edit of objects that waits to be adopted
     std::optional<Relink> relink_;
     std::unique_ptr<WorkerPool> pool_; // for what objects that move take of the CPU, where a GPU gathers

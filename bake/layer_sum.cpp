@@ -14,7 +14,7 @@ bool shines(const Layer& layer) {
     return layer.source.weight != glm::vec3(0.0f);
 }
 
-// Whether there is direct light of it.
+// Whether there is direct light of it, of where objects are.
 bool isInSum(const Layer& layer) {
     return layer.directRounds > 0 && !layer.isOutdated();
 }
@@ -43,7 +43,8 @@ bool LayerSolver::canSum() const {
 
 // Whose direct light is to be made before any layer goes on, so that it is seen among all lights.
 std::optional<size_t> LayerSolver::unlitLayer() const {
-    for (size_t i = 0; sumShown_ && i < layers_.size(); ++i)
+    const bool summed = sumShown_ || (unseen_ && wantsSum());
+    for (size_t i = 0; summed && i < layers_.size(); ++i)
         if (shines(*layers_[i]) && layers_[i]->directRounds == 0) return i;
     return std::nullopt;
 }

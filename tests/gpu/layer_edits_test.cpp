@@ -173,6 +173,17 @@ TEST(Layers, WhileAllAreSeenAtOnceLightsAreEditedAsEver) {
     }
     bake.scene.lights.push_back(lightAt(LightType::Point, {0.3f, 1.5f, 1.5f}, 1.0f, "New"));
     EXPECT_TRUE(seen()) << "a light that is added";
+    bake.scene.lights.push_back(lightAt(LightType::Point, {1.7f, 0.3f, 1.5f}, 1.0f, "Newer"));
+    uint64_t version = bake.solver().liveLight().version, versions = 0;
+    for (int i = 0; i < 400; ++i) { // and a light that is dragged on and on
+        bake.scene.lights[0].transform = at({0.3f + 0.002f * i, 0.5f, 1.2f});
+        bake.solver().edit({});
+        bake.solver().step();
+        const uint64_t now = bake.solver().liveLight().version;
+        versions += now != version;
+        version = now;
+    }
+    EXPECT_GT(versions, 3u);
     bake.scene.lights.erase(bake.scene.lights.begin());
     EXPECT_TRUE(seen()) << "a light that is deleted";
     while (!bake.solver().done()) {

@@ -219,6 +219,24 @@ TEST(LayerGroups, AnObjectThatMovesIsAFreshBake) {
     }
 }
 
+TEST(LayerGroups, AGroupThatWasOffWhileAnObjectMovedIsAFreshBake) {
+    const Scene start = yard();
+    const BakeDesc desc = quick(start);
+    Layered bake(start, desc);
+    bake.finish();
+    const LightMix sky{.muted = {}, .solo = {{LightKey::Kind::Sky, 0, 0}}};
+    bake.edit(sky);
+    bake.finish();
+    bake.scene.instances[5].transform = at({-0.2f, 0.1f, 0.05f});
+    const std::optional<ObjectMove> move = bake.baker().moveObjects(buildAtlas(start, desc.size));
+    ASSERT_TRUE(move);
+    bake.solver().moveObjects(*move);
+    bake.solver().edit(sky);
+    bake.finish();
+    bake.edit();
+    expectFresh(bake, desc, "on again");
+}
+
 TEST(LayerGroups, LightsBeyondTheMemoryAreGroupedAndTakenApartAgain) {
     Scene start = yard();
     start.lights.resize(2); // with sky and plates 5

@@ -183,6 +183,24 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
     EXPECT_LT(distance(soon, after), 1e-3) << "of the same rays to lights and links";
 }
 
+// The lamp, too, in its new place, before any layer is there.
+TEST(ObjectEdits, ALampThatIsMovedAtOnceWithAnObjectIsSeenInAllLights) {
+    BakeDesc live = kQuickMoving;
+    live.live = true;
+    Moving bake(movingRoom(), live);
+    bake.put(kBlock, kBlockEnd, by({0.4f, -0.3f, 0.2f}));
+    bake.scene.lights[0].transform = by({0.4f, 0.5f, 1.2f});
+    ASSERT_TRUE(bake.follow());
+    while (!bake.solver().current())
+        bake.solver().step();
+    const auto& layers = bake.solver().layers();
+    EXPECT_TRUE(std::none_of(layers.begin(), layers.end(), [](const auto& layer) { return layer->has(); }));
+    const Light4 atOnce = bake.light();
+    bake.finish();
+    EXPECT_LT(distance(atOnce, bake.light()), 0.03);
+    EXPECT_TRUE(sameBytes(bake.light(), Moving(bake.scene, live).light()));
+}
+
 // The sum of all lights takes links of a few rounds: those of all the others follow once it is seen.
 TEST_P(ObjectEdits, ADraggedObjectIsSeenBeforeAllLinksHaveFollowed) {
     BakeDesc live = desc();
