@@ -82,7 +82,7 @@ void LayerSolver::adoptMove() {
         return Path{move, vk::makeBuffer(input_.device, move.boxes, "boxes"),
                     vk::makeBuffer(input_.device, move.changed, "changed patches")};
     };
-    relink.early = path(early);
+    if (relink.earlyRounds > 0) relink.early = path(early);
     relink.late = path(late);
     const uint64_t most = uint64_t{buffers_.batchChunks} * linksOfRound_ * kChunk;
     if (!input_.tracer.onCpu())

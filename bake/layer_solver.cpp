@@ -361,8 +361,8 @@ void LayerSolver::endDirectStep(VkCommandBuffer cmd) {
     learnPenumbra();
     layer.directRounds = end;
     layer.directSteps.push_back(end);
-    if (end == work_->target.directRounds && !work_->directAlone) return beginBounces();
     if (end == work_->target.directRounds) {
+        if (!work_->directAlone) return beginBounces();
         work_.reset();
         sumDue_ = canSum();
         return;

@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -209,39 +208,6 @@ TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
     const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
     for (size_t c = 0; c < expected.planes.size(); ++c)
         EXPECT_EQ(got.planes[c], expected.planes[c]);
-}
-
-// What is dragged on without a pause is seen where it is meanwhile.
-TEST_F(LiveBakeTest, AnObjectThatIsDraggedIsSeenAllTheTime) {
-    BakeSettings settings = quickSettings();
-    settings.solver.layers.on = true;
-    edits_.lights.push_back({.name = "Bulb"});
-    edits_.lights.back().transform[3] = glm::vec4(0.0f, 1.5f, 0.5f, 1.0f);
-    start(settings, false);
-    ASSERT_TRUE(untilShown());
-    const double before = screen_.mean();
-    std::vector<double> means;
-    onMap_ = [&] { means.push_back(screen_.mean()); };
-    const auto& instances = scene_.scene.instances;
-    const auto box = std::find_if(instances.begin(), instances.end(),
-                                  [](const Instance& instance) { return instance.name == "Tall box"; });
-    ASSERT_NE(box, instances.end());
-    glm::mat4& transform = edits_.placements[static_cast<size_t>(box - instances.begin())].transform;
-    const auto places = [&] { // of light, one not like the other
-        std::vector<double> sorted = means;
-        std::sort(sorted.begin(), sorted.end());
-        const auto alike = [&](double a, double b) { return b - a < 1e-4 * before; };
-        return std::unique(sorted.begin(), sorted.end(), alike) - sorted.begin();
-    };
-    const float from = transform[3].x;
-    const auto end = Clock::now() + std::chrono::duration<double>(kPatience);
-    for (int i = 1; places() < 8 && Clock::now() < end; ++i) {
-        transform[3].x = from + 0.4f * std::sin(0.05f * static_cast<float>(i));
-        start(settings);
-        until([] { return false; }, 0.005);
-    }
-    EXPECT_GE(places(), 8);
-    ASSERT_TRUE(untilShown());
 }
 
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
