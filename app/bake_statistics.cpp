@@ -56,6 +56,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"gridError", p.gridError},
                        {"converged", p.converged},
                        {"pairs", p.pairs},
+                       {"linksRead", p.linksRead},
                        {"rays", p.rays},
                        {"raysSaved", p.raysSaved},
                        {"cacheBytes", p.cacheBytes},

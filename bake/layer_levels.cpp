@@ -206,6 +206,9 @@ void LayerSolver::finishLevel(const Lane& lane) {
     layer.converged =
         !layer.redo && (layer.level == lastLevel() ||
                         (settings_.error > 0 && layer.error <= settings_.error) || layer.light <= 0);
+    // As the level takes them, whoever bounced along and whatever was begun in vain: the light's own history.
+    progress_.passes += lane.looked + work.gathers;
+    progress_.pairs += lane.gathered;
     progress_.cacheBytes = links_.bytes();
     if (work.sum) return showSum();
     if (layer.before) archive(std::move(layer.before));

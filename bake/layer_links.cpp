@@ -188,11 +188,15 @@ void LayerSolver::noteLinks(const LinkPortion& portion) {
     const auto first = senders_.begin() + range.first;
     const uint64_t samples = uint64_t{linksOfRound_} * (1 + portion.following.size());
     const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * samples;
-    const auto layers = static_cast<uint64_t>(
-        std::count_if(work_->lanes.begin(), work_->lanes.end(), [](const Lane& lane) { return lane.live; }));
+    uint64_t layers = 0;
+    for (Lane& lane : work_->lanes) {
+        if (!lane.live) continue;
+        lane.gathered += count;
+        ++layers;
+    }
     progress_.rays += portion.trace ? count : 0;
     progress_.raysSaved += count * (layers - (portion.trace ? 1 : 0));
-    progress_.pairs += count * layers;
+    progress_.linksRead += count;
     links_.note(work_->round, range);
     order_.finish(range);
     work_->round += static_cast<uint32_t>(portion.following.size());
@@ -299,7 +303,6 @@ bool LayerSolver::recordPassEnd(VkCommandBuffer cmd) {
         return false;
     }
     recordPassLight(cmd);
-    ++progress_.passes;
     ++work.bounce;
     if (work.bounce < nextLook()) {
         beginPass(Stage::Bounces);
@@ -317,7 +320,6 @@ bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
     if (!last) recordPassLight(cmd);
     work.round = 0;
     ++work.gathers;
-    ++progress_.passes;
     if (last) return true;
     work.lit = true;
     if (settings_.passes > 0 || work.gathers == 1) {

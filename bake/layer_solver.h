@@ -79,9 +79,10 @@ private:
     struct Lane {
         size_t layer = 0;
         LayerLevel target;
-        bool live = true;    // goes on in this stage
-        uint32_t look = 0;   // after so many bounces the CPU looks whether they have settled
-        uint32_t looked = 0; // after so many it did
+        bool live = true;      // goes on in this stage
+        uint32_t look = 0;     // after so many bounces the CPU looks whether they have settled
+        uint32_t looked = 0;   // after so many it did
+        uint64_t gathered = 0; // links, in all its passes
         double change = 0, ratio = 0, iterationError = 1;
     };
     /// A layer on its way to the next level.

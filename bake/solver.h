@@ -101,6 +101,7 @@ struct SolverCounters {
     uint64_t rays = 0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both
                        // ends), or directions and segments traced
     uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered
+    uint64_t linksRead = 0;                     // of layers: a link is read once for all that bounce together
     double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
     double seconds = 0;                         // inside step()
     bool converged = false;  // error below the aim (else the number of passes or samples ended it)

@@ -40,17 +40,17 @@ void expectAsAlone(const BakeDesc& desc, const std::vector<Light>& more = {}) {
     scene.lights.insert(scene.lights.end(), more.begin(), more.end());
     Layered bake(scene, desc);
     bake.finish();
-    const uint64_t rays = bake.progress().rays, passes = bake.progress().passes;
+    const uint64_t rays = bake.progress().rays, read = bake.progress().linksRead;
     bake.scene.materials[0].baseColor = {0.3f, 0.7f, 0.5f, 1.0f};
     bake.edit();
     bake.finish();
-    const uint64_t traced = bake.progress().rays - rays, bounced = bake.progress().passes - passes;
+    const uint64_t traced = bake.progress().rays - rays, readAgain = bake.progress().linksRead - read;
     Layered alone(bake.scene, desc);
     bakeOneByOne(alone);
     if (desc.error == 0) {
         EXPECT_EQ(traced, 0u);
-        EXPECT_LT(2 * bounced, alone.progress().passes) << "they bounced alone";
-        EXPECT_LT(2 * passes, alone.progress().passes) << "they bounced alone";
+        EXPECT_LT(2 * readAgain, alone.progress().linksRead) << "they bounced alone";
+        EXPECT_LT(2 * read, alone.progress().linksRead) << "they bounced alone";
     }
     if (desc.error == 0)
         expectSameLayers(bake, alone);
