@@ -15,7 +15,7 @@ LightDifference compareLight(const PatchSet& patches, const PatchLight& light, c
     uint64_t count = 0;
     for (size_t i = 0; i < patches.count; ++i) {
         const uint32_t flags = patches.scene.patches[i].flags;
-        if ((flags & shader::kPatchSends) == 0 || (flags & shader::kPatchBackSide) != 0) continue;
+        if (!shader::patchIsShown(flags)) continue;
         for (int k = 0; k < 3; ++k) {
             const double off = double{scale[k]} * light[i][k] - reference[i][k];
             squared += off * off;

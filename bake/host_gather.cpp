@@ -67,7 +67,7 @@ void sendChunk(const HostSend& work, uint32_t chunk) {
         work.radiance[index] =
             sends ? glm::vec4(work.reflectivity * glm::vec3(work.albedo[index]) * light, 0.0f)
                   : glm::vec4(0.0f);
-        if (!work.changes || !sends || (flags & shader::kPatchBackSide) != 0) continue;
+        if (!work.changes || !shader::patchIsShown(flags)) continue;
         const glm::vec3 before(work.before[index]), by = light - before;
         change +=
             glm::vec4(glm::dot(by, by), light.r + light.g + light.b, 1.0f, before.r + before.g + before.b);

@@ -224,7 +224,7 @@ void resolveChunk(const HostResolve& work, uint32_t chunk, shader::ResolveSums& 
         const glm::vec4& direct = work.direct[index];
         const glm::vec3 light = glm::vec3(direct) + glm::vec3(indirect[0], indirect[1], indirect[2]);
         work.result[index] = glm::vec4(light, std::sqrt((direct.w + variance) / 3.0f));
-        if ((p.flags & shader::kPatchSends) == 0 || (p.flags & shader::kPatchBackSide) != 0) continue;
+        if (!shader::patchIsShown(p.flags)) continue;
         indirectSums.light += indirect[0] + indirect[1] + indirect[2];
         indirectSums.indirect += variance;
         indirectSums.raw += smooths ? spread(raw) : variance;

@@ -93,7 +93,7 @@ void LayerSolver::countSenders() {
                 return (p.flags & shader::kPatchSends) != 0;
             }));
         fullChunks_[chunk] = std::all_of(first, first + kChunk, [](const shader::Patch& p) {
-            return (p.flags & (shader::kPatchSends | shader::kPatchBackSide)) == shader::kPatchSends;
+            return shader::patchIsShown(p.flags);
         });
     }
 }

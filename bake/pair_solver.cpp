@@ -396,7 +396,7 @@ PairSolver::ChangeSums PairSolver::changeOf(uint32_t first) const {
     ChangeSums sums;
     for (uint32_t i = first; i < std::min(first + kMeasured, patches_.count); ++i) {
         const uint32_t flags = patches_.scene.patches[i].flags;
-        if ((flags & shader::kPatchSends) == 0 || (flags & shader::kPatchBackSide) != 0) continue;
+        if (!shader::patchIsShown(flags)) continue;
         const glm::dvec3 change = glm::dvec3(last_[i]) - glm::dvec3(before_[i]);
         sums.squares += glm::dot(change, change);
         sums.light += double{last_[i].r} + last_[i].g + last_[i].b;

@@ -216,6 +216,7 @@ private:
         result.edges = {side, glm::cross(normal, side)};
         fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
              texel.y * group_.size + texel.x);
+        result.patch.flags |= shader::kPatchThin;
         result.material = m.material[thin.triangle];
         result.instance = m.instance[thin.triangle];
         const Material& material = materials_[result.material];

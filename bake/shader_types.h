@@ -10,9 +10,11 @@ using glm::uint;
 #define FUNCTION inline
 #define INOUT(T) T&
 #include "shaders/shared.h"
+#include "shaders/lib/patch_flags.glsl"
 #include "shaders/lib/pairs.glsl"
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
+#include "shaders/lib/polygon_sample.glsl"
 #include "shaders/lib/emitters.glsl"
 #include "shaders/lib/lamps.glsl"
 #include "shaders/lib/footprint.glsl"

@@ -47,7 +47,7 @@ void send(vec3 light) {
     bool sends = (flags & kPatchSends) != 0u;
     if (push.changes != 0ul) {
         vec3 before = lightNow().items[index].rgb, change = light - before;
-        float weight = sends && (flags & kPatchBackSide) == 0u ? 1.0 : 0.0;
+        float weight = patchIsShown(flags) ? 1.0 : 0.0;
         terms[l][i] = weight * vec4(dot(change, change), light.r + light.g + light.b, 1.0, before.r + before.g + before.b);
     }
     if (push.rounds > 0u && has(push.live)) lightNext().items[index] = vec4(light, 1.0);

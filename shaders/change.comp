@@ -15,7 +15,7 @@ void main() {
     uint index = chunk * kChunk + lane;
     uint flags = loadPatch(push.patches, index).flags;
     vec4 term = vec4(0.0);
-    if ((flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u) {
+    if (patchIsShown(flags)) {
         vec3 now = Vec4s(push.ligOut).items[index].rgb, before = Vec4s(push.ligIn).items[index].rgb, change = now - before;
         term = vec4(dot(change, change), now.r + now.g + now.b, 1.0, before.r + before.g + before.b);
     }

@@ -5,6 +5,7 @@
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
+#include "lib/polygon_sample.glsl"
 #include "lib/emitters.glsl"
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
@@ -47,11 +48,10 @@ void main() {
             uint number = all ? push.round * push.pointCount + s : pick;
             uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
-            vec3 y = emitterPoint(e, sobolPoint(turn, seed));
-            float f = emitterPointFactor(p.position, p.shading, e, y);
+            EmitterSample y = emitterSample(p.position, p.shading, e, sobolPoint(turn, seed));
             // Below the geometric horizon it is hidden, and not asked for.
-            bool above = dot(y - p.position, p.normal) > p.offset;
-            target = vec4(y + off, above ? f : -f);
+            bool above = dot(y.point - p.position, p.normal) > p.offset;
+            target = vec4(y.point + off, above ? y.factor : -y.factor);
         }
         Vec4s(push.targets).items[(base + s) * kChunk + lane] = target;
     }

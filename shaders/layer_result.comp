@@ -17,7 +17,7 @@ void main() {
     vec3 light = direct.rgb + indirect.rgb;
     Vec4s(push.result).items[index] = vec4(light, sqrt(direct.w / 3.0 + indirect.w * indirect.w));
     uint flags = loadPatch(push.patches, index).flags;
-    bool counts = (flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u;
+    bool counts = patchIsShown(flags);
     terms[lane] = counts ? vec4(light.r + light.g + light.b, direct.w, 1.0, 0.0) : vec4(0.0);
     barrier();
     if (lane != 0u) return;

@@ -45,7 +45,7 @@ void main() {
     ResolveSums term = ResolveSums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     uint flags = loadPatch(push.patches, index).flags;
     float directVariance = spread(direct), indirectVariance = spread(smoothed);
-    if ((flags & kPatchSends) != 0u && (flags & kPatchBackSide) == 0u) {
+    if (patchIsShown(flags)) {
         term.light = light.r + light.g + light.b;
         term.direct = directVariance;
         term.indirect = indirectVariance;

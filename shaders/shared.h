@@ -29,6 +29,7 @@ CONST uint kReplicates = 4u;
 // Patch::flags, bits 0..7
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
+CONST uint kPatchThin = 4u;     // stands for a chart that covers no texel centre: shown nowhere either
 
 // What patches side by side have in common of their directions: nothing; those in the same place of their 4 x
 // 4 texels all; a chunk's all.

@@ -1,4 +1,4 @@
-// Lights with an area, sampled as lights. Legal as GLSL and as C++ (namespace relume::shader); after lib/form_factor.glsl.
+// Lights with an area, sampled as lights. Legal as GLSL and as C++ (namespace relume::shader); after lib/polygon_sample.glsl.
 // Occlusion is the caller's.
 
 // Exact, from a point p [m] of unit normal n to the whole polygon, clipped to the horizon of n. In [0, 1]; 0 behind it.
@@ -16,25 +16,19 @@ FUNCTION vec3 emitterNormal(EmitterPolygon e) {
     return size > 0.0f ? front / size : vec3(0.0f, 0.0f, 0.0f);
 }
 
-// The unit square onto a triangle, keeping areas and, better than square roots do, neighbours [Heitz 2019].
-FUNCTION vec3 trianglePoint(vec3 a, vec3 b, vec3 c, vec2 u) {
-    float s, t;
-    if (u.y > u.x) {
-        s = 0.5f * u.x;
-        t = u.y - s;
-    } else {
-        t = 0.5f * u.y;
-        s = u.x - t;
-    }
-    return a + s * (b - a) + t * (c - a);
+FUNCTION PolygonPart emitterPart(EmitterPolygon e) {
+    PolygonPart q;
+    q.a = e.c0;
+    q.b = e.c1;
+    q.c = e.c2;
+    q.d = e.c3;
+    q.shape = e.shape;
+    q.split = e.split;
+    return q;
 }
 
 // A point on the polygon, uniform in area for uniform u in [0, 1)^2; stratified where u is.
-FUNCTION vec3 emitterPoint(EmitterPolygon e, vec2 u) {
-    if (e.shape == kEmitterParallelogram) return e.c0 + u.x * (e.c1 - e.c0) + u.y * (e.c3 - e.c0);
-    if (u.x < e.split) return trianglePoint(e.c0, e.c1, e.c2, vec2(u.x / e.split, u.y));
-    return trianglePoint(e.c0, e.c2, e.c3, vec2((u.x - e.split) / (1.0f - e.split), u.y));
-}
+FUNCTION vec3 emitterPoint(EmitterPolygon e, vec2 u) { return partPoint(emitterPart(e), u); }
 
 // What the point y of the polygon says about its form factor: cos cos A / (pi r^2), 0 below the horizon and behind. Its
 // mean over emitterPoint is emitterFormFactor.
@@ -44,6 +38,20 @@ FUNCTION float emitterPointFactor(vec3 p, vec3 n, EmitterPolygon e, vec3 y) {
     float received = dot(n, d), sent = -0.5f * dot(emitterFront(e), d); // cosines times distance; times area
     if (!(received > 0.0f && sent > 0.0f && d2 > 0.0f)) return 0.0f;
     return kInvPi * (received / d2) * (sent / d2);
+}
+
+struct EmitterSample {
+    vec3 point;
+    float factor; // its mean over u is emitterFormFactor
+};
+
+// As emitterPoint, but of an emitter that is near more points lie where most of its light comes from.
+FUNCTION EmitterSample emitterSample(vec3 p, vec3 n, EmitterPolygon e, vec2 u) {
+    PolygonPoint y = polygonPoint(p, n, emitterPart(e), u);
+    EmitterSample s;
+    s.point = y.point;
+    s.factor = emitterPointFactor(p, n, e, y.point) * y.weight;
+    return s;
 }
 
 // Largest cosine that a direction to p can have with a normal of the node's cone. cosAxis: with its axis, from the box's

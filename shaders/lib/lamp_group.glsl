@@ -2,6 +2,7 @@
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
+#include "lib/polygon_sample.glsl"
 #include "lib/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
 vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }

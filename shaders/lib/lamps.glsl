@@ -1,5 +1,5 @@
 // What shines without geometry: points, spheres, suns, rectangles and discs. Legal as GLSL and as C++ (namespace
-// relume::shader); after lib/form_factor.glsl and lib/sampling.glsl. Factors are lighting (irradiance / pi) per unit of the
+// relume::shader); after lib/polygon_sample.glsl and lib/sampling.glsl. Factors are lighting (irradiance / pi) per unit of the
 // lamp's colour; occlusion is the caller's.
 
 // Rays end this share of their length before a lamp: one that is fixed to a surface must not be hidden by it.
@@ -34,13 +34,25 @@ FUNCTION vec3 coneDirection(vec3 axis, float sine2, vec2 u) {
 
 FUNCTION vec3 rectangleCorner(Lamp l, float u, float v) { return l.position + (u - 0.5f) * l.edgeU + (v - 0.5f) * l.edgeV; }
 
+FUNCTION PolygonPart rectanglePart(Lamp l) {
+    PolygonPart q;
+    q.a = rectangleCorner(l, 0.0f, 0.0f);
+    q.b = rectangleCorner(l, 1.0f, 0.0f);
+    q.c = rectangleCorner(l, 1.0f, 1.0f);
+    q.d = rectangleCorner(l, 0.0f, 1.0f);
+    q.shape = kEmitterParallelogram;
+    q.split = 0.5f;
+    return q;
+}
+
 // Of the whole lamp, unshadowed; negative where only samples tell. A sphere or sun that stands above the horizon as a whole
 // lights like its centre.
 FUNCTION float lampWhole(Lamp l, Patch p) {
     if (l.type == kLampDisc || l.type == kLampSky) return -1.0f;
-    if (l.type == kLampRectangle)
-        return polygonFormFactor(p.position, p.shading, rectangleCorner(l, 0.0f, 0.0f), rectangleCorner(l, 1.0f, 0.0f),
-                                 rectangleCorner(l, 1.0f, 1.0f), rectangleCorner(l, 0.0f, 1.0f));
+    if (l.type == kLampRectangle) {
+        PolygonPart q = rectanglePart(l);
+        return polygonFormFactor(p.position, p.shading, q.a, q.b, q.c, q.d);
+    }
     if (l.type == kLampSun) {
         float c = -dot(p.shading, l.axis);
         if (l.radius > 0.0f && abs(c) < l.radius) return -1.0f;
@@ -72,11 +84,14 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
     }
     if (l.type == kLampRectangle || l.type == kLampDisc) {
         float area = length(cross(l.edgeU, l.edgeV));
-        s.target = rectangleCorner(l, u.x, u.y);
         if (l.type == kLampDisc) {
             vec3 c = cosineDirection(u);
             s.target = l.position + l.radius * (c.x * l.edgeU + c.y * l.edgeV);
             area = 3.14159265f * l.radius * l.radius;
+        } else {
+            PolygonPoint y = polygonPoint(p.position, p.shading, rectanglePart(l), u);
+            s.target = y.point;
+            area *= y.weight;
         }
         vec3 d = s.target - p.position;
         float d2 = dot(d, d), received = dot(p.shading, d), sent = -dot(l.axis, d);

@@ -7,4 +7,5 @@
 #endif
 #define INOUT(T) inout T
 #include "shared.h"
+#include "lib/patch_flags.glsl"
 #include "lib/buffers.glsl"

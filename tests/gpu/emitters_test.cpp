@@ -18,6 +18,7 @@ const char* const kKernel = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 #include "lib/form_factor.glsl"
+#include "lib/polygon_sample.glsl"
 #include "lib/emitters.glsl"
 layout(push_constant, scalar) uniform Push { ADDRESS nodes, polygons, receivers, result; } push;
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }

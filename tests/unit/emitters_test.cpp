@@ -59,6 +59,19 @@ double meanFactor(const EmitterSet& set, glm::vec3 corner, glm::vec3 u, glm::vec
     return sum / (n * n);
 }
 
+// A triangle, a kite and a rectangle in z = 0, seen from above.
+std::vector<EmitterPolygon> nearShapes() {
+    const auto shape = [](glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d, uint32_t kind, float split) {
+        EmitterPolygon e{};
+        e.c0 = a, e.c1 = b, e.c2 = c, e.c3 = d, e.shape = kind, e.split = split;
+        e.area = 0.5f * glm::length(shader::emitterFront(e));
+        return e;
+    };
+    return {shape({0, 0, 0}, {2, 0, 0}, {0.5f, 1, 0}, {0.5f, 1, 0}, shader::kEmitterTriangle, 1.0f),
+            shape({0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 1, 0}, shader::kEmitterQuad, 0.75f),
+            shape({0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, shader::kEmitterParallelogram, 0.5f)};
+}
+
 } // namespace
 
 TEST(Emitters, SquaresLightSquaresAsInTheCatalogue) {
@@ -143,6 +156,60 @@ TEST(Emitters, PointFactorsAverageToTheFormFactor) {
     const EmitterPolygon& e = set.polygons[0];
     EXPECT_EQ(shader::emitterPointFactor({0, 0, -1}, {0, 0, 1}, e, {0.5f, 0.5f, 0}), 0.0f); // behind
     EXPECT_EQ(shader::emitterPointFactor({0, 0, 1}, {0, 0, 1}, e, {0.5f, 0.5f, 0}), 0.0f);  // turned away
+}
+
+TEST(Emitters, SamplesOfNearEmittersAverageToTheFormFactorAndAreEven) {
+    for (const EmitterPolygon& e : nearShapes()) {
+        for (const glm::vec3 p : {glm::vec3(0.3f, 0.4f, 0.5f), {0.8f, 0.3f, 0.02f}, {0.7f, -0.001f, 0.01f}}) {
+            for (const glm::vec3 n : {glm::vec3(0, 0, -1), glm::normalize(glm::vec3(1, 1, -1))}) {
+                constexpr int side = 256;
+                double sum = 0, squares = 0;
+                for (int i = 0; i < side * side; ++i) {
+                    const glm::vec2 u = (glm::vec2(i % side, i / side) + 0.5f) / float(side);
+                    const double f = shader::emitterSample(p, n, e, u).factor;
+                    sum += f, squares += f * f;
+                }
+                const double mean = sum / (side * side), exact = shader::emitterFormFactor(p, n, e);
+                EXPECT_NEAR(mean, exact, 0.015 * exact)
+                    << e.shape << " at " << p.z; // what a grid of numbers leaves
+                const double variance = squares / (side * side) - mean * mean;
+                EXPECT_LT(std::sqrt(std::max(0.0, variance)), 0.7 * mean) << e.shape << " at " << p.z;
+            }
+        }
+    }
+    const EmitterPolygon e = nearShapes()[0]; // far away nothing is halved
+    const glm::vec2 u(0.3f, 0.8f);
+    EXPECT_EQ(shader::emitterSample({1, 1, 9}, {0, 0, -1}, e, u).point, shader::emitterPoint(e, u));
+}
+
+// Each round's few points tell the share of a near emitter that is seen; the mean of many rounds is the
+// share, whatever the numbers were scrambled with. The half of it where x < .7 is hidden, so that the rest's
+// own form factor is exact.
+TEST(Emitters, SharesOfNearEmittersConvergeWhateverTheSeed) {
+    const EmitterPolygon e = nearShapes()[2];
+    ASSERT_EQ(e.shape, shader::kEmitterParallelogram);
+    constexpr float edge = 0.7f;
+    for (const glm::vec3 p : {glm::vec3(0.72f, 0.4f, 0.03f), {0.6f, 0.5f, 0.2f}, {0.69f, 1.2f, 0.01f}}) {
+        const glm::vec3 n(0, 0, -1);
+        const double exact =
+            shader::polygonFormFactor(p, n, {edge, 0, 0}, {2, 0, 0}, {2, 2, 0}, {edge, 2, 0}) /
+            shader::emitterFormFactor(p, n, e);
+        for (uint32_t seed : {1u, 77u, 4242u, 987'654u}) {
+            constexpr uint32_t rounds = 8192, points = 4;
+            double mean = 0;
+            for (uint32_t round = 0; round < rounds; ++round) {
+                double visible = 0, all = 0;
+                for (uint32_t s = 0; s < points; ++s) {
+                    const shader::EmitterSample y =
+                        shader::emitterSample(p, n, e, shader::sobolPoint(round * points + s, seed));
+                    all += y.factor;
+                    if (y.point.x > edge) visible += y.factor;
+                }
+                if (all > 0) mean += visible / all / rounds;
+            }
+            EXPECT_NEAR(mean, exact, 0.006) << p.z << " seed " << seed;
+        }
+    }
 }
 
 TEST(Emitters, TrianglesOfOnePlaneBecomeQuadrilaterals) {
