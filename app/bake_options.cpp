@@ -1,5 +1,6 @@
 #include "app/bake_options.h"
 
+#include "app/option_checks.h"
 #include "app/typed_numbers.h"
 #include "bake/link_solver.h"
 
@@ -16,22 +17,22 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
         .add_option(
             "--samples", o.samples,
             "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
-        ->check(CLI::Range(1u, LinkSolver::kMaxSamples));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     command
         .add_option("--directions", o.directions,
                     "directional, hybrid: sobol (default), or lec, the thesis' largest-empty-circle sets")
-        ->check(CLI::IsMember({"sobol", "lec"}));
+        ->check(oneOf({"sobol", "lec"}));
     command
         .add_option(
             "--rotate", o.rotate,
             "directional, hybrid: directions differ from patch to patch (default), interleaved in 4x4 "
             "patches, or from tile to tile")
-        ->check(CLI::IsMember({"patch", "interleaved", "tile"}));
+        ->check(oneOf({"patch", "interleaved", "tile"}));
     command
         .add_option("--indirect-scale", o.indirectScale,
                     "directional, hybrid: follow directions from one patch of so many by so many texels and "
                     "interpolate: 1 (default), 2 or 4")
-        ->check(CLI::IsMember({1u, 2u, 4u}));
+        ->check(oneOf({"1", "2", "4"}));
     command.add_flag("--footprint", o.footprint,
                      "directional, hybrid: read the mean light over what each direction stands for, within a "
                      "chart: less noise from few directions, but biased, which --error does not tell");
@@ -43,7 +44,7 @@ void addCheckpointOptions(CLI::App& command, BakeOptions& o) {
         "--checkpoint", o.checkpoint, "Save to this file every so often, and on Ctrl-C, what --resume needs");
     command.add_option("--checkpoint-every", o.checkpointEvery, "Seconds between two of these")
         ->capture_default_str()
-        ->check(CLI::Range(0.05, 86400.0))
+        ->check(numberFrom(0.05, 86400.0))
         ->needs(checkpoint);
     command.add_option("--resume", o.resume,
                        "Go on from a checkpoint of the same bake: the result will be the same");
@@ -90,15 +91,31 @@ void addVoxelOptions(CLI::App& command, BakeOptions& o) {
     command
         .add_option("--voxels", o.voxels,
                     "Voxels along each edge of the voxel map (default 128; --tracer voxel, --voxel-ratio)")
-        ->check(CLI::Range(kMinVoxels, kMaxVoxels));
+        ->check(wholeFrom(kMinVoxels, kMaxVoxels));
     command
         .add_option("--voxel-ratio", o.voxelRatio,
                     "One sender in this many marches through voxels; 0: none, 1: all")
         ->capture_default_str()
-        ->check(CLI::Range(0u, 256u));
+        ->check(wholeFrom(0, 256));
 }
 
 } // namespace
+
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const Method method : {Method::Pure, Method::Static, Method::MonteCarlo, Method::Mipmapped,
+                                Method::Adaptive, Method::Directional, Method::Hybrid})
+        names.emplace_back(methodName(method));
+    return names;
+}
+
+std::vector<std::string> tracerNames() {
+    std::vector<std::string> names;
+    for (const TracerKind kind : {TracerKind::Auto, TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh,
+                                  TracerKind::Embree, TracerKind::Voxel})
+        names.emplace_back(tracerName(kind));
+    return names;
+}
 
 void addSolverOptions(CLI::App& command, BakeOptions& o) {
     command
@@ -106,49 +123,50 @@ void addSolverOptions(CLI::App& command, BakeOptions& o) {
             "--method", o.method,
             "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
             "adaptive")
-        ->check(CLI::IsMember(
-            {"pure", "static", "montecarlo", "mipmapped", "adaptive", "directional", "hybrid"}));
+        ->check(oneOf(methodNames()));
     addPairOptions(command, o.pairs);
     command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
-        ->check(CLI::Range(1u, Solver::kMaxPasses));
+        ->check(wholeFrom(1, Solver::kMaxPasses));
     command
         .add_option("--error", o.error,
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
-        ->check(CLI::Range(1e-6, 1.0));
+        ->check(numberFrom(1e-6, 1.0));
     addLinkOptions(command, o);
     addVoxelOptions(command, o);
     addMachineOptions(command, o);
 }
 
 void addMachineOptions(CLI::App& command, BakeOptions& o) {
-    command.add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or voxel")->capture_default_str();
+    command.add_option("--tracer", o.tracer, "What traces rays")
+        ->capture_default_str()
+        ->check(oneOf(tracerNames()));
     command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
     command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
-        ->check(CLI::Range(0.0, 10.0));
+        ->check(numberFrom(0.0, 10.0));
     command.add_option("--dilate", o.dilate, "Rings of texels filled around charts")
         ->capture_default_str()
-        ->check(CLI::Range(0u, 64u));
+        ->check(wholeFrom(0, 64));
     command.add_flag("--no-sew", o.noSew, "Leave the texels around charts empty");
     command.add_flag("--conservative", o.conservative, "Every texel that a triangle touches becomes a patch");
     command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
     command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
-        ->check(CLI::PositiveNumber);
+        ->check(numberAbove(0, 1e6));
     command.add_flag("--device-gather", o.deviceGather,
                      "Gather by the device's shaders also where it is the CPU, whose own loops are faster");
     command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 45.0));
+        ->check(numberFrom(0.1, 45.0));
     command
         .add_option("--shaders", o.shaders,
                     "Compile the shaders from this folder instead of the built-in ones")
-        ->check(CLI::ExistingDirectory);
+        ->check(existingFolder());
     command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
 }
 
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
     command.add_option(name, o.size, "Lightmap edge in texels")
         ->capture_default_str()
-        ->check(CLI::Range(8u, Baker::kMaxSize));
+        ->check(wholeFrom(8, Baker::kMaxSize));
 }
 
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
@@ -169,11 +187,11 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command
         .add_option("--quantity", o.quantity,
                     "lighting: irradiance / pi; radiance: emission + albedo * lighting")
-        ->check(CLI::IsMember({"lighting", "radiance"}));
+        ->check(oneOf({"lighting", "radiance"}));
     command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
-        ->check(CLI::IsMember({"rtrad"}));
+        ->check(oneOf({"rtrad"}));
     command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
-        ->check(CLI::Range(0.0, 2.0));
+        ->check(numberFrom(0.0, 2.0));
     CLI::Option* layers = command.add_flag(
         "--layers", o.layers,
         "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/pair_options.h"
 #include "app/prepare.h"
@@ -47,6 +48,9 @@ void addBakeOptions(CLI::App& command, BakeOptions& options);
 void addSolverOptions(CLI::App& command, BakeOptions& options);
 /// Those of them that go with every method and number of samples: tracer, device, patches, what is written.
 void addMachineOptions(CLI::App& command, BakeOptions& options);
+/// How users name methods and tracers.
+std::vector<std::string> methodNames();
+std::vector<std::string> tracerNames();
 /// For a layer for each light.
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& options);
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);

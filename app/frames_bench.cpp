@@ -37,6 +37,14 @@ public:
     }
 
     bool update() { return bridge_.update(); }
+
+    /// Counts rays and keeps the bake busy. Light stays on screen until there is new one.
+    void follow() {
+        const BakeStatus status = bake_.status();
+        if (status.phase == BakeStatus::Phase::Failed) throw Error(status.doing);
+        rays_.see(status.rays);
+        if (status.phase == BakeStatus::Phase::Done) bake_.reset();
+    }
     bool complete() const { return bridge_.map() != nullptr && bridge_.map()->complete; }
 
     /// One frame with the camera moved on; how long it took [ms].
@@ -49,12 +57,13 @@ public:
         return 1000.0 * secondsSince(start);
     }
 
-    FramesPart moving(const std::string& name, double batchMs) {
+    FramesPart moving(const std::string& name, double batchMs, bool bakes) {
         FramesPart part = begin(name);
         bake_.setBatchMs(batchMs);
         auto next = Clock::now();
         while (secondsSince(start_) < desc_.seconds) {
             update();
+            if (bakes) follow();
             part.frames.push_back(frame(true));
             if (desc_.rate <= 0) continue;
             next = std::max(next + std::chrono::duration_cast<Clock::duration>(
@@ -72,6 +81,7 @@ public:
         RedrawPacer pacer;
         while (secondsSince(start_) < desc_.seconds) {
             if (update()) pacer.newMap();
+            follow();
             const Redraw redraw = pacer.due(secondsSince(start_));
             if (redraw.any) {
                 const double ms = frame(false);
@@ -89,21 +99,26 @@ public:
     FramesPart bakeAlone(const std::string& name) {
         FramesPart part = begin(name);
         bake_.setBatchMs(desc_.budget);
-        std::this_thread::sleep_for(std::chrono::duration<double>(desc_.seconds));
+        while (secondsSince(start_) < desc_.seconds) {
+            follow();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
         return end(std::move(part));
     }
 
 private:
     FramesPart begin(const std::string& name) {
         start_ = Clock::now();
-        rays_ = bake_.status().progress.rays;
+        rays_.see(bake_.status().rays);
+        raysBefore_ = rays_.total();
         FramesPart part;
         part.name = name;
         return part;
     }
     FramesPart end(FramesPart part) {
         part.seconds = secondsSince(start_);
-        part.raysPerSecond = static_cast<double>(bake_.status().progress.rays - rays_) / part.seconds;
+        rays_.see(bake_.status().rays);
+        part.raysPerSecond = static_cast<double>(rays_.total() - raysBefore_) / part.seconds;
         return part;
     }
 
@@ -115,7 +130,8 @@ private:
     gl::Framebuffer target_;
     ViewCamera camera_;
     Clock::time_point start_{};
-    uint64_t rays_ = 0;
+    RayCount rays_;
+    uint64_t raysBefore_ = 0; // this part
 };
 
 void waitFor(LiveBake& bake, Loop& loop, bool (*reached)(const LiveBake&, const Loop&)) {
@@ -141,9 +157,11 @@ double percentile(std::vector<double> values, double share) {
 
 FramesReport measureFrames(const FramesBenchDesc& desc) {
     BakeRequest request = resolveBakeOptions(desc.bake);
-    // It goes on for as long as it is looked at.
-    request.bake.solver.error = 0;
-    request.bake.solver.passes = isPairMethod(request.bake.solver.method) ? Solver::kMaxPasses : 0;
+    // It goes on for as long as it can, as in a viewer that was asked for an error that no one reaches.
+    constexpr double kNoOnesError = 1e-9;
+    const bool pairs = isPairMethod(request.bake.solver.method);
+    request.bake.solver.error = pairs ? 0.0 : kNoOnesError;
+    request.bake.solver.passes = pairs ? Solver::kMaxPasses : 0;
     request.bake.solver.links.samples = 0;
     request.bake.solver.layers.on = true; // as in the viewer
     const PreparedScene scene = prepareScene(request.prepare);
@@ -165,12 +183,14 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
         for (int i = 0; i < kWarmUp; ++i)
             loop.frame(true);
         report.bakeAlone = loop.bakeAlone("bake alone");
-        report.moving = loop.moving("both, camera moves", std::max(1.0, 0.25 * desc.budget));
+        report.moving = loop.moving("both, camera moves", std::max(1.0, 0.25 * desc.budget), true);
         report.still = loop.still("both, camera still");
         bake->pause();
-        waitFor(*bake, loop,
-                [](const LiveBake& b, const Loop&) { return b.status().phase == BakeStatus::Phase::Paused; });
-        report.alone = loop.moving("frames alone", desc.budget);
+        waitFor(*bake, loop, [](const LiveBake& b, const Loop&) {
+            const BakeStatus::Phase phase = b.status().phase;
+            return phase == BakeStatus::Phase::Paused || phase == BakeStatus::Phase::Done;
+        });
+        report.alone = loop.moving("frames alone", desc.budget, false);
         const BakeStatus status = bake->status();
         report.device = status.device;
         report.display = status.display;

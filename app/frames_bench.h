@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace relume {
 
 /// What `relume bench frames` measures: how a bake and the drawing of its scene get on with each other.
 struct FramesBenchDesc {
-    BakeOptions bake; // its error and samples are unused: the bake never ends
+    BakeOptions bake; // its error and samples are unused: the bake is to go on
     DisplayMode display = DisplayMode::Auto;
     uint32_t width = 1920, height = 1080; // of the pictures
     double seconds = 8;                   // of each part
@@ -35,7 +36,22 @@ struct FramesReport {
     FramesPart alone, bakeAlone, moving, still;
 };
 
-/// Needs no display. Throws Error.
+/// Adds up the rays of bakes that follow one another, from what each tells of itself now and then.
+class RayCount {
+public:
+    void see(uint64_t raysOfBake) {
+        total_ +=
+            raysOfBake >= last_ ? raysOfBake - last_ : raysOfBake; // fewer than before: of the next bake
+        last_ = raysOfBake;
+    }
+    uint64_t total() const { return total_; }
+
+private:
+    uint64_t total_ = 0, last_ = 0;
+};
+
+/// A bake that comes to its end, as every one does, begins again: what is measured is always one that goes
+/// on. Needs no display. Throws Error.
 FramesReport measureFrames(const FramesBenchDesc& desc);
 
 /// Of a list of times, the one that `share` of them do not exceed; 0 for none.

@@ -1,5 +1,4 @@
-#include "app/command.h"
-#include "app/viewer/view_options.h"
+#include "app/command_line.h"
 #include "assets/error.h"
 #include "assets/log.h"
 
@@ -8,6 +7,8 @@
 #include <exception>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 int main(int argc, char** argv) {
     CLI::App app{"Relume bakes the radiosity lightmap of a glTF scene."};
@@ -19,25 +20,10 @@ int main(int argc, char** argv) {
     app.parse_complete_callback([&] { relume::setupLog(quiet); });
     relume::setupLog(false);
 
-    relume::addViewCommand(app);
-    relume::addBakeCommand(app);
-    relume::addShotCommand(app);
-    relume::addTimelapseCommand(app);
-    relume::addEditCommand(app);
-    relume::addInfoCommand(app);
-    relume::addUnwrapCommand(app);
-    relume::addSceneCommand(app);
-    relume::addDevicesCommand(app);
-    relume::addMixCommand(app);
-    relume::addCompareCommand(app);
-    relume::addBenchCommand(app);
-    relume::addSamplesCommand(app);
+    relume::addCommands(app);
 
     try {
-        std::vector<std::string> verbs;
-        for (const CLI::App* verb : app.get_subcommands({}))
-            verbs.push_back(verb->get_name());
-        std::vector<std::string> arguments = relume::withViewVerb({argv + 1, argv + argc}, verbs);
+        std::vector<std::string> arguments = relume::parserArguments({argv + 1, argv + argc}, app);
         std::reverse(arguments.begin(), arguments.end()); // as this overload takes them
         app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {
@@ -49,7 +35,7 @@ int main(int argc, char** argv) {
         spdlog::error("{}", error.what());
         return 1;
     } catch (const std::bad_alloc&) {
-        spdlog::error("out of memory: use a smaller --size or close other programs");
+        spdlog::error("{}", relume::outOfMemoryMessage(app));
         return 1;
     } catch (const std::exception& error) {
         spdlog::error("unexpected: {}", error.what());

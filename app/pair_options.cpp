@@ -1,5 +1,6 @@
 #include "app/pair_options.h"
 
+#include "app/option_checks.h"
 #include "app/typed_numbers.h"
 
 #include <algorithm>
@@ -17,13 +18,7 @@ namespace {
 
 constexpr uint32_t kMaxWindow = 32, kMinNode = 2, kMaxNode = 64; // [texels]
 constexpr uint32_t kDefaultWindow = 2;
-constexpr double kMaxThreshold = 1e6;
-
-uint32_t powerOfTwo(const char* option, int64_t value, uint32_t least, uint32_t most) {
-    if (value >= least && value <= most && std::has_single_bit(static_cast<uint64_t>(value)))
-        return static_cast<uint32_t>(value);
-    throw UsageError(fmt::format("{} {}: choose a power of two from {} to {}", option, value, least, most));
-}
+constexpr double kMaxThreshold = 1e6, kMaxRamp = 10;
 
 CacheSettings::Kind parseCache(const std::string& name, Method method) {
     if (name == "none") return CacheSettings::Kind::None;
@@ -44,59 +39,48 @@ bool hasWindow(Method method) {
 }
 
 void addPairOptions(CLI::App& command, PairOptions& o) {
-    command.add_option(
-        "--window", o.window,
-        "Methods static, montecarlo, mipmapped: texels along a window (default 2): 1 2 4 8 16 32");
+    command
+        .add_option("--window", o.window,
+                    "Methods static, montecarlo, mipmapped: texels along a window (default 2)")
+        ->check(powerOfTwo(1, kMaxWindow));
     command
         .add_option("--threshold", o.threshold,
                     "Method adaptive: difference up to which nodes are merged, relative to the mean light "
                     "(default 0.05; preset rtrad: absolute)")
-        ->each([&o](const std::string&) { o.thresholdGiven = true; });
-    command.add_option("--node", o.node,
-                       "Method adaptive: texels along the largest node (default 8): 2 4 8 16 32 64");
+        ->check(numberFrom(0, kMaxThreshold));
+    command.add_option("--node", o.node, "Method adaptive: texels along the largest node (default 8)")
+        ->check(powerOfTwo(kMinNode, kMaxNode));
     command
         .add_option("--threshold-ramp", o.thresholdRamp,
                     "Method adaptive: factor on the threshold from pass to pass (default 1)")
-        ->each([&o](const std::string&) { o.rampGiven = true; });
+        ->check(numberAbove(0, kMaxRamp));
     command
         .add_option(
             "--cache", o.cache,
             "Keep for later passes what rays found: bits (pair methods), links (directional, hybrid), "
             "none or auto")
         ->capture_default_str()
-        ->check(CLI::IsMember({"auto", "none", "bits", "links"}));
+        ->check(oneOf({"auto", "none", "bits", "links"}));
     command.add_option("--cache-memory", o.cacheMemory,
                        "At most so much, as 512M or 2G (default: a third of the free device memory)");
 }
 
 void resolvePairOptions(const PairOptions& o, SolverSettings& settings) {
     const char* method = methodName(settings.method);
-    if (o.window != -1 && !hasWindow(settings.method))
+    if (o.window && !hasWindow(settings.method))
         throw UsageError(
             fmt::format("--window: --method {} has none; static, montecarlo and mipmapped have", method));
     const bool adaptive = settings.method == Method::Adaptive;
-    if (!adaptive && (o.node != -1 || o.thresholdGiven || o.rampGiven))
+    if (!adaptive && (o.node || o.threshold || o.thresholdRamp))
         throw UsageError(fmt::format("{}: only with --method adaptive, not {}",
-                                     o.node != -1       ? "--node"
-                                     : o.thresholdGiven ? "--threshold"
-                                                        : "--threshold-ramp",
+                                     o.node        ? "--node"
+                                     : o.threshold ? "--threshold"
+                                                   : "--threshold-ramp",
                                      method));
-    settings.pairs.window = o.window != -1               ? powerOfTwo("--window", o.window, 1, kMaxWindow)
-                            : hasWindow(settings.method) ? kDefaultWindow
-                                                         : 1;
-    if (o.node != -1) settings.pairs.node = powerOfTwo("--node", o.node, kMinNode, kMaxNode);
-    if (o.thresholdGiven) {
-        if (!(o.threshold >= 0 && o.threshold <= kMaxThreshold))
-            throw UsageError(fmt::format("--threshold {}: give a number from 0 on", o.threshold));
-        settings.pairs.threshold = o.threshold;
-    }
-    if (o.rampGiven) {
-        constexpr double kMostRamp = 10;
-        if (!(o.thresholdRamp > 0 && o.thresholdRamp <= kMostRamp))
-            throw UsageError(fmt::format("--threshold-ramp {}: give a factor above 0, at most {}",
-                                         o.thresholdRamp, kMostRamp));
-        settings.pairs.thresholdRamp = o.thresholdRamp;
-    }
+    settings.pairs.window = o.window.value_or(hasWindow(settings.method) ? kDefaultWindow : 1);
+    settings.pairs.node = o.node.value_or(settings.pairs.node);
+    if (o.threshold) settings.pairs.threshold = *o.threshold;
+    settings.pairs.thresholdRamp = o.thresholdRamp.value_or(settings.pairs.thresholdRamp);
     settings.cache.kind = parseCache(o.cache, settings.method);
     if (!o.cacheMemory.empty()) {
         if (settings.cache.kind == CacheSettings::Kind::None)

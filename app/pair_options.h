@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "bake/solver.h"
@@ -16,9 +17,8 @@ bool hasWindow(Method method);
 
 /// What the user typed for the pair methods and the caches.
 struct PairOptions {
-    int64_t window = -1, node = -1; // -1: not given
-    double threshold = -1, thresholdRamp = -1;
-    bool thresholdGiven = false, rampGiven = false;
+    std::optional<uint32_t> window, node; // [texels]
+    std::optional<double> threshold, thresholdRamp;
     std::string cache = "auto", cacheMemory;
 };
 

@@ -16,12 +16,16 @@ PreparedScene prepareScene(const PrepareDesc& desc) {
         spdlog::warn("{}", warning);
 
     const auto atlasStart = Clock::now();
+    requireArea(result.scene);
     if (desc.unwrap) {
         const UnwrapResult made = unwrap(result.scene, {.density = desc.density, .size = desc.size});
-        spdlog::info("unwrapped {} meshes into {} charts at {:.3g} texels/m", made.meshes, made.charts,
-                     made.density);
+        if (made.meshes == 0)
+            spdlog::info("unwrapped nothing: every mesh with an area has valid lightmap UVs");
+        else
+            spdlog::info("unwrapped {} meshes into {} charts at {:.3g} texels/m", made.meshes, made.charts,
+                         made.density);
     }
-    result.atlas = buildAtlas(result.scene, desc.size);
+    result.atlas = buildAtlas(result.scene, desc.size, desc.unwrap);
     for (const std::string& warning : result.atlas.warnings)
         spdlog::warn("{}", warning);
     const size_t before = result.scene.warnings.size();

@@ -1,5 +1,6 @@
 #include "app/shot_options.h"
 
+#include "app/option_checks.h"
 #include "app/typed_numbers.h"
 #include "assets/error.h"
 #include "assets/warnings.h"
@@ -16,10 +17,14 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kMinEdge = 16, kMaxEdge = 16384; // of a picture [pixels]
+constexpr float kMostMetres = 1e9f; // squares and products of such places are far from what floats can hold
 
 glm::vec3 parsePoint(const std::string& option, const std::string& text) {
     const std::vector<float> numbers = typedNumbers(text, 3);
-    if (numbers.empty()) throw UsageError(option + ": '" + text + "' is no point: write x,y,z in metres");
+    const auto isNear = [](float number) { return std::abs(number) <= kMostMetres; };
+    if (numbers.empty() || !std::all_of(numbers.begin(), numbers.end(), isNear))
+        throw UsageError(option + ": " + inQuotes(text) +
+                         " is no point: write x,y,z in metres, each from -1e9 to 1e9");
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -59,21 +64,21 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--eye", o.eye, "Look from this point [m]; with --target")->type_name("X,Y,Z");
     command.add_option("--target", o.target, "Look at this point [m]; with --eye")->type_name("X,Y,Z");
     command.add_option("--fov", o.fov, "Angle of the picture's height in degrees")
-        ->check(CLI::Range(1.0, 170.0));
+        ->check(numberFrom(1.0, 170.0));
     command
         .add_option(
             "--view", o.view,
             "lit, lighting, albedo, emission, normal, material, instance, checker (lightmap texels), density "
             "(texels per metre) or coverage")
         ->capture_default_str()
-        ->check(CLI::IsMember(viewNames()));
+        ->check(oneOf(viewNames()));
     command.add_option("--exposure", o.exposure, "Of light, in EV, or auto")->capture_default_str();
     command.add_option("--tone", o.tone, "Tone mapping: agx, aces or none")
         ->capture_default_str()
-        ->check(CLI::IsMember(toneNames()));
+        ->check(oneOf(toneNames()));
     command.add_option("--filter", o.filter, "Of the lightmap: bilinear, bicubic or nearest")
         ->capture_default_str()
-        ->check(CLI::IsMember(filterNames()));
+        ->check(oneOf(filterNames()));
 }
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {

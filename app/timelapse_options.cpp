@@ -1,6 +1,7 @@
 #include "app/timelapse_options.h"
 
 #include "app/frame_writer.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
             "--fps", o.fps,
             "Without --at: a frame every 1/N second of the solver's time, from the first light on. Also "
             "the rate of a video (default with --at: 2)")
-        ->check(CLI::Range(kLeastRate, kMostRate))
+        ->check(numberFrom(kLeastRate, kMostRate))
         ->type_name("N");
     command.add_flag("--no-caption", o.noCaption,
                      "Leave out scene, method, passes or directions, error and solver time");

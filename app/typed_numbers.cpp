@@ -11,12 +11,36 @@
 
 namespace relume {
 
-std::optional<float> typedNumber(std::string_view text) {
-    float value = 0;
+namespace {
+
+template<typename Number>
+std::optional<Number> allOf(std::string_view text) {
+    Number value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return value;
+}
+
+// from_chars knows no plus sign; users may write one.
+template<typename Number>
+std::optional<Number> finiteOf(std::string_view text) {
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    const std::optional<Number> value = allOf<Number>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+} // namespace
+
+std::optional<double> finiteNumber(std::string_view text) {
+    return finiteOf<double>(text);
+}
+
+std::optional<uint64_t> wholeNumber(std::string_view text) {
+    return allOf<uint64_t>(text);
+}
+
+std::optional<float> typedNumber(std::string_view text) {
+    return finiteOf<float>(text);
 }
 
 std::vector<float> typedNumbers(std::string_view text, size_t count) {

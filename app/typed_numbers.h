@@ -8,7 +8,13 @@
 
 namespace relume {
 
-/// All of `text` as a number that is finite.
+/// All of `text` as a finite number, "2", "-0.5", "+1e3". Nothing for nan, inf and what a double cannot hold.
+std::optional<double> finiteNumber(std::string_view text);
+
+/// All of `text` as decimal digits, "512"; no sign.
+std::optional<uint64_t> wholeNumber(std::string_view text);
+
+/// As finiteNumber, of what a float can hold.
 std::optional<float> typedNumber(std::string_view text);
 
 /// `count` of them with commas between, "1,2.5,-3"; empty where `text` is anything else.

@@ -209,12 +209,33 @@ void LightEdit::remove(const Light& light) {
     emptied_.push_back(light.node);
 }
 
+/// Where among the default scene's nodes a new one has to be, so that its light comes before those that are
+/// behind it in the list: one that was deleted, saved and brought back. The last place where they are in one
+/// tree with those before it, and for a light that is the last.
+size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
+    EditedJson* scenes = find(edit_.json, {"scenes"});
+    if (!scenes || scenes->empty()) return kLastPlace;
+    const EditedJson* roots = find(defaultScene(edit_), {"nodes"});
+    if (!roots) return kLastPlace;
+    const auto placeOf = [&](int node) -> size_t {
+        const int root = static_cast<size_t>(node) < tree_.size() ? tree_.root(node) : node;
+        return static_cast<size_t>(std::find(roots->begin(), roots->end(), root) - roots->begin());
+    };
+    const auto isPlaced = [](int node) { return node >= 0; };
+    const auto at = nodes.begin() + static_cast<std::ptrdiff_t>(index);
+    const auto next = std::find_if(at, nodes.end(), isPlaced);
+    if (next == nodes.end()) return kLastPlace;
+    const auto last = std::find_if(std::make_reverse_iterator(at), nodes.rend(), isPlaced);
+    const size_t place = placeOf(*next);
+    return last == nodes.rend() || placeOf(*last) < place ? place : kLastPlace;
+}
+
 /// A light that the file has not goes to the node it had once, if nothing else took that, else to a new one.
-int LightEdit::adopt(const Light& light, Moves& moves) {
+int LightEdit::adopt(const Light& light, size_t rootPlace, Moves& moves) {
     const bool known = light.node >= 0 && static_cast<size_t>(light.node) < tree_.size() &&
                        tree_.inScene(light.node) && !holds(light.node, isAreaLight(light.type));
     if (!known) {
-        const int node = addNode(edit_, light.name, -1);
+        const int node = addNode(edit_, light.name, -1, rootPlace);
         writeRigid(edit_.json["nodes"][static_cast<size_t>(node)], light.transform);
         write(node, light, nullptr);
         return node;
@@ -251,7 +272,7 @@ std::vector<int> LightEdit::apply(const std::vector<Light>& before, const std::v
     for (size_t i = 0; i < after.size(); ++i) {
         if (nodes[i] >= 0) continue;
         requireGood(after[i]);
-        nodes[i] = adopt(after[i], moves);
+        nodes[i] = adopt(after[i], rootPlace(nodes, i), moves);
     }
     return nodes;
 }

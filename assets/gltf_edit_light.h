@@ -22,7 +22,8 @@ public:
     const std::vector<int>& emptied() const { return emptied_; }
 
 private:
-    int adopt(const Light& light, Moves& moves);
+    int adopt(const Light& light, size_t rootPlace, Moves& moves);
+    size_t rootPlace(const std::vector<int>& nodes, size_t index) const;
     void remove(const Light& light);
     EditedJson& ownLight(int node);
     void write(int node, const Light& light, const Light* before);

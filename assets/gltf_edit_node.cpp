@@ -106,10 +106,18 @@ void requireInvertible(const FileEdit& edit, const glm::dmat4& transform, const 
                                 edit.file.path, inQuotes(move.name)));
 }
 
-int moveToChild(FileEdit& edit, const NodeTree& tree, int index, Carried carried, const Move& move) {
+/// What leaves its node for a new child, and the place that this gets among the node's children.
+struct Leaving {
+    int node;
+    Carried carried;
+    size_t place;
+};
+
+int moveToChild(FileEdit& edit, const NodeTree& tree, const Leaving& leaving, const Move& move) {
+    const auto [index, carried, place] = leaving;
     const glm::dmat4 world = tree.world(index);
     requireInvertible(edit, world, move);
-    const int child = addNode(edit, move.name, index);
+    const int child = addNode(edit, move.name, index, place);
     EditedJson& nodes = edit.json["nodes"];
     EditedJson &from = nodes[static_cast<size_t>(index)], &to = nodes[static_cast<size_t>(child)];
     // Coming from where the node is, as though the child had been there all along.
@@ -127,6 +135,16 @@ int moveToChild(FileEdit& edit, const NodeTree& tree, int index, Carried carried
             if (target["node"] == index && target.value("path", "") == "weights") target["node"] = child;
         });
     return child;
+}
+
+/// All that has to go to children of a node where these moves are made by children. A node's light of
+/// KHR_lights_punctual comes before its area light, which follows it where it stands, or it would come first.
+std::map<Carried, Move> withFollower(EditedJson& node, const glm::mat4& world,
+                                     std::map<Carried, Move> moves) {
+    if (moves.contains(Carried::Light) && !moves.contains(Carried::AreaLight) &&
+        carries(node, Carried::AreaLight))
+        moves[Carried::AreaLight] = {node.value("name", ""), world, world};
+    return moves;
 }
 
 /// Whether a node may be named by a number that nothing here knows of.
@@ -185,10 +203,14 @@ const json& NodeTree::node(int index) const {
     return file_.json["nodes"][static_cast<size_t>(index)];
 }
 
-bool NodeTree::inScene(int index) const {
+int NodeTree::root(int index) const {
     while (parents_[static_cast<size_t>(index)] >= 0)
         index = parents_[static_cast<size_t>(index)];
-    return roots_[static_cast<size_t>(index)];
+    return index;
+}
+
+bool NodeTree::inScene(int index) const {
+    return roots_[static_cast<size_t>(root(index))];
 }
 
 glm::dmat4 NodeTree::world(int index) const {
@@ -206,7 +228,7 @@ glm::dmat4 NodeTree::parentWorld(int index) const {
     return world;
 }
 
-int addNode(FileEdit& edit, const std::string& name, int parent) {
+int addNode(FileEdit& edit, const std::string& name, int parent, size_t place) {
     EditedJson& nodes = edit.json["nodes"];
     if (nodes.is_null()) nodes = EditedJson::array();
     const int index = static_cast<int>(nodes.size());
@@ -219,7 +241,7 @@ int addNode(FileEdit& edit, const std::string& name, int parent) {
     EditedJson& holder = parent < 0 ? defaultScene(edit) : nodes[static_cast<size_t>(parent)];
     EditedJson& list = holder[parent < 0 ? "nodes" : "children"];
     if (list.is_null()) list = EditedJson::array();
-    list.push_back(index);
+    list.insert(list.begin() + static_cast<std::ptrdiff_t>(std::min(place, list.size())), index);
     return index;
 }
 
@@ -235,8 +257,10 @@ std::map<std::pair<int, Carried>, int> moveCarried(FileEdit& edit, const NodeTre
             transform.mayBeMatrix = !isAnimated(edit, index);
             if (editTransform(node, tree.node(index), transform)) continue;
         }
-        for (const auto& [what, single] : carried)
-            children[{index, what}] = moveToChild(edit, tree, index, what, single);
+        const glm::mat4 world(tree.world(index));
+        size_t place = 0;
+        for (const auto& [what, single] : withFollower(node, world, carried))
+            children[{index, what}] = moveToChild(edit, tree, {index, what, place++}, single);
     }
     return children;
 }

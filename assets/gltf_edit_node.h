@@ -32,6 +32,8 @@ public:
     const nlohmann::json& node(int index) const;
     /// Of a node of the default scene, or of any without scenes.
     bool inScene(int index) const;
+    /// The node at the top of the tree that a node is in.
+    int root(int index) const;
     glm::dmat4 world(int index) const;
     /// The world transform of a node's parent.
     glm::dmat4 parentWorld(int index) const;
@@ -42,11 +44,16 @@ private:
     std::vector<bool> roots_;  // of the default scene
 };
 
-/// The index of a new node of this name, a child of `parent` or, at -1, a root of the default scene.
-int addNode(FileEdit& edit, const std::string& name, int parent);
+constexpr size_t kLastPlace = static_cast<size_t>(-1);
+
+/// The index of a new node of this name, a child of `parent` or, at -1, a root of the default scene. `place`:
+/// among these, as far as the file has a list of them.
+int addNode(FileEdit& edit, const std::string& name, int parent, size_t place = kLastPlace);
 
 /// Moves what nodes carry, each by its node where nothing else would move along, else by a new child of the
-/// node, which carries it from now on. Returns those children by what they carry. Throws Error.
+/// node, which carries it from now on. Returns those children by what they carry. A scene is read from each
+/// node down, children in their order, and users tell things of one name apart by that: such a child is the
+/// first of its node, so that objects and lights keep their order. Throws Error.
 std::map<std::pair<int, Carried>, int> moveCarried(FileEdit& edit, const NodeTree& tree, const Moves& moves);
 
 /// Takes away the last nodes of the file as far as they are among `candidates`, carry nothing and are named

@@ -226,7 +226,9 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
     atlas.repacked = true;
 }
 
-std::vector<MeshChoice> chooseSets(const Scene& scene, LightmapAtlas& atlas, Warnings& warnings) {
+std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas,
+                                   Warnings& warnings) {
+    const char* mend = unwrapped ? "give its triangles an area" : "run 'relume unwrap' or pass --unwrap";
     std::vector<MeshChoice> choices(scene.meshes.size());
     std::vector<bool> chosen(scene.meshes.size());
     size_t usable = 0;
@@ -239,8 +241,7 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, LightmapAtlas& atlas, War
             choices[mesh] = chooseSet(scene, mesh, warnings);
             const std::string& problem = choices[mesh].quality.fault;
             if (choices[mesh].texCoord < 0)
-                warnings.add(nameOf(scene.meshes, mesh),
-                             problem + ", it blocks light only: run 'relume unwrap' or pass --unwrap");
+                warnings.add(nameOf(scene.meshes, mesh), problem + ", it blocks light only: " + mend);
             if (choices[mesh].texCoord < 0 && fault.empty())
                 fault = nameOf(scene.meshes, mesh) + " " + problem;
         }
@@ -248,20 +249,19 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, LightmapAtlas& atlas, War
         usable += choices[mesh].texCoord >= 0;
     }
     if (usable == 0)
-        throw Error(
-            fmt::format("{}: no mesh has usable lightmap UVs ({}): run 'relume unwrap' or pass --unwrap",
-                        scene.path, fault.empty() ? "there is none" : fault));
+        throw Error(fmt::format("{}: no mesh has usable lightmap UVs ({}): {}", scene.path,
+                                fault.empty() ? "there is none" : fault, mend));
     return choices;
 }
 
 } // namespace
 
-LightmapAtlas buildAtlas(const Scene& scene, uint32_t size) {
+LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped) {
     ASSERT(size > 0);
     LightmapAtlas atlas;
     atlas.instances.resize(scene.instances.size());
     Warnings warnings;
-    const std::vector<MeshChoice> choices = chooseSets(scene, atlas, warnings);
+    const std::vector<MeshChoice> choices = chooseSets(scene, unwrapped, atlas, warnings);
     if (!formOneAtlas(scene, atlas)) repack(scene, choices, size, atlas);
     atlas.warnings = warnings.lines(scene.path);
     return atlas;

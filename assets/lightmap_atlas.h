@@ -28,8 +28,8 @@ struct LightmapAtlas {
 /// below 1 % of the UV area). If all instances together form one valid atlas it is used as it is; otherwise
 /// each valid instance gets its own rectangle by world area with 2 texels of gutter at `size`. An instance
 /// without usable UVs blocks light and is warned about. size [texels]. Throws Error when no instance has
-/// usable UVs (mend: --unwrap).
-LightmapAtlas buildAtlas(const Scene& scene, uint32_t size);
+/// usable UVs. The mend that is told is an unwrap, unless the scene is `unwrapped` already.
+LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped = false);
 
 /// The scene with the atlas in TEXCOORD_1: instances that were moved in it get a mesh of their own.
 Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas);

@@ -8,9 +8,11 @@
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace relume {
 
@@ -77,24 +79,36 @@ double areaOf(const std::vector<glm::dvec3>& corners) {
     return area;
 }
 
-/// Gives each chart whole texels and packs them.
-Packing packCharts(const std::vector<PlanarChart>& charts, double density, const std::string& name) {
-    Packing packing;
-    packing.rects.resize(charts.size());
+glm::dvec2 texelsOf(const PlanarChart& chart, double density) {
+    return glm::max(glm::round(chart.extent * density), glm::dvec2(1.0));
+}
+
+/// Of all charts with their gutters [texels]; nothing where a mesh would need more texels than one can have.
+std::optional<double> chartArea(const std::vector<PlanarChart>& charts, double density) {
     double area = 0.0;
-    uint32_t width = 1;
-    for (size_t i = 0; i < charts.size(); ++i) {
-        const glm::dvec2 texels = glm::max(glm::round(charts[i].extent * density), glm::dvec2(1.0));
+    for (const PlanarChart& chart : charts) {
+        const glm::dvec2 texels = texelsOf(chart, density);
         area += (texels.x + kChartGutter) * (texels.y + kChartGutter);
         if (!(std::max(texels.x, texels.y) <= kMaxTexels) || !(std::sqrt(area) <= kMaxTexels))
-            throw Error(
-                fmt::format("{} needs more than {} texels a side at {} texels/m: use a lower --density", name,
-                            kMaxTexels, density));
+            return std::nullopt;
+    }
+    return area;
+}
+
+/// Gives each chart whole texels and packs them, where there is an area for them.
+Packing packCharts(const std::vector<PlanarChart>& charts, double density) {
+    const std::optional<double> area = chartArea(charts, density);
+    ASSERT(area);
+    Packing packing;
+    packing.rects.resize(charts.size());
+    uint32_t width = 1;
+    for (size_t i = 0; i < charts.size(); ++i) {
+        const glm::dvec2 texels = texelsOf(charts[i], density);
         packing.rects[i].width = static_cast<uint32_t>(texels.x);
         packing.rects[i].height = static_cast<uint32_t>(texels.y);
         width = std::max(width, packing.rects[i].width);
     }
-    width = std::max(width, static_cast<uint32_t>(std::ceil(std::sqrt(area))));
+    width = std::max(width, static_cast<uint32_t>(std::ceil(std::sqrt(*area))));
     constexpr uint32_t kAnyHeight = 1u << 30;
     ASSERT(packRects(packing.rects, width, kAnyHeight, kChartGutter));
     for (const PackedRect& rect : packing.rects)
@@ -233,13 +247,34 @@ double shareOf(const Scene& scene, const std::vector<Job>& jobs) {
 }
 
 /// Texels that all instances need together at a density, gutters included.
-double texelsAt(const Scene& scene, const std::vector<Job>& jobs, double density) {
+double texelsAt(const std::vector<Job>& jobs, double density) {
     double texels = 0.0;
     for (const Job& job : jobs) {
-        const double side = packCharts(job.charts, density, nameOf(scene, job)).side;
+        const double side = packCharts(job.charts, density).side;
         texels += job.instances * side * side;
     }
     return texels;
+}
+
+/// The density, or the next lower one by halves at which no mesh needs more texels than it can have: one may
+/// be far longer than its area tells. No density helps where there are too many charts.
+double allowedDensity(const std::vector<Job>& jobs, double density) {
+    const auto allowed = [&] {
+        return std::all_of(jobs.begin(), jobs.end(),
+                           [&](const Job& job) { return chartArea(job.charts, density).has_value(); });
+    };
+    while (density > 0.0 && !allowed())
+        density *= 0.5;
+    return density;
+}
+
+void warnAboutLongest(const Scene& scene, const std::vector<Job>& jobs, double density) {
+    const auto longest = std::find_if(jobs.begin(), jobs.end(),
+                                      [&](const Job& job) { return !chartArea(job.charts, density); });
+    spdlog::warn(
+        "{} is so long that all others get very few texels, or none would be left for them: cut it up, take "
+        "it out of the scene or pass --density",
+        nameOf(scene, *longest));
 }
 
 /// The density at which `texels` texels hold the instances of all jobs, with their gutters at full width.
@@ -250,14 +285,17 @@ double densityThatFits(const Scene& scene, const std::vector<Job>& jobs, double 
         area += job.instances * areaOf(job.corners);
         charts += job.charts.size();
     }
-    double density = area > 0.0 && std::isfinite(area) ? std::sqrt(kFill * texels / area) : 1.0, best = 0.0;
+    const double start = area > 0.0 && std::isfinite(area) ? std::sqrt(kFill * texels / area) : 1.0;
+    double density = allowedDensity(jobs, start), best = 0.0;
+    if (density < start) warnAboutLongest(scene, jobs, start);
     const int steps = charts > kManyCharts ? 2 : kSearchSteps;
-    for (int step = 0; step < steps; ++step) {
-        const double need = texelsAt(scene, jobs, density);
+    for (int step = 0; step < steps && density > 0.0; ++step) {
+        const double need = texelsAt(jobs, density);
         if (need <= texels) best = std::max(best, density);
         density *= std::sqrt(texels / need);
         // Packings jump: creep up on the limit from below once it has been met.
         if (best > 0.0 && density <= best) density = best * 1.01;
+        density = allowedDensity(jobs, density);
     }
     return best > 0.0 ? best : density;
 }
@@ -269,7 +307,12 @@ void unwrapMesh(Scene& scene, Job& job, const UnwrapDesc& desc, bool alone, Unwr
         // Overlap finer than the grid that looks for it adds up in no known mesh; single triangles cannot
         // overlap.
         if (single) job.charts = cutSingleTriangles(job.corners);
-        const Packing packing = packCharts(job.charts, result.density, nameOf(scene, job));
+        if (!chartArea(job.charts, result.density))
+            throw Error(fmt::format("{} needs more than {} texels a side at {:.4g} texels/m: {}",
+                                    nameOf(scene, job), kMaxTexels, result.density,
+                                    desc.density > 0.0 ? "use a lower --density"
+                                                       : "pass a lower --density than that"));
+        const Packing packing = packCharts(job.charts, result.density);
         // A mesh alone in its scene is the atlas: its texels shall be those of the lightmap.
         const bool aligned = alone && desc.density <= 0.0 && packing.side <= desc.size;
         mesh = original;
@@ -280,7 +323,24 @@ void unwrapMesh(Scene& scene, Job& job, const UnwrapDesc& desc, bool alone, Unwr
     result.charts += static_cast<uint32_t>(job.charts.size());
 }
 
+bool hasArea(const Primitive& primitive, const glm::dmat3& linear) {
+    for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        const auto corner = [&](size_t k) {
+            return linear * glm::dvec3(primitive.positions[primitive.indices[i + k]]);
+        };
+        if (glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0))) > 0.0) return true;
+    }
+    return false;
+}
+
 } // namespace
+
+void requireArea(const Scene& scene) {
+    for (const Instance& instance : scene.instances)
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
+            if (hasArea(primitive, glm::dmat3(glm::mat3(instance.transform)))) return;
+    throw Error(scene.path + ": has no triangle with an area: export it with its geometry");
+}
 
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc) {
     std::vector<bool> chosen(scene.meshes.size());
@@ -294,6 +354,7 @@ UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc) {
     const bool alone = scene.instances.size() == 1;
     const double texels = (alone ? 1.0 : kRectFill) * desc.size * desc.size * shareOf(scene, jobs);
     UnwrapResult result;
+    if (jobs.empty()) return result;
     result.density = desc.density > 0.0 ? desc.density : densityThatFits(scene, jobs, texels);
     for (Job& job : jobs)
         unwrapMesh(scene, job, desc, alone, result);

@@ -15,7 +15,7 @@ struct UnwrapDesc {
 struct UnwrapResult {
     uint32_t meshes = 0;  // that got new UVs
     uint32_t charts = 0;  // of these
-    double density = 0.0; // [texels/m] used
+    double density = 0.0; // [texels/m] used; 0: for none
 };
 
 /// Writes lightmap UVs into TEXCOORD_1 of the scene's meshes: planar charts with 2 texels between them at the
@@ -23,5 +23,8 @@ struct UnwrapResult {
 /// a triangle with an area. Splits vertices where charts meet. Throws Error for a density that would need
 /// absurdly many texels.
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc);
+
+/// Throws Error for a scene of points and lines: no lightmap UVs would help it.
+void requireArea(const Scene& scene);
 
 } // namespace relume

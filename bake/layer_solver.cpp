@@ -450,14 +450,20 @@ void LayerSolver::countRays() {
     progress_.rays = std::accumulate(counters, counters + shader::kRayCounters, progress_.rays);
 }
 
-void LayerSolver::abortPass() {
-    if (!work_) return;
-    if (work_->stage == Stage::Direct) {
+// Direct light is counted on the device, for as long as a step of many rounds takes.
+uint64_t LayerSolver::raysSoFar() {
+    if (work_ && work_->stage == Stage::Direct) {
         VkCommandBuffer cmd = commands_.begin();
         recordRayCount(cmd);
         run(cmd);
         countRays();
     }
+    return progress_.rays;
+}
+
+void LayerSolver::abortPass() {
+    if (!work_) return;
+    raysSoFar();
     sumDue_ = sumDue_ || work_->sum;
     work_.reset();
     progress_.passFraction = 0;

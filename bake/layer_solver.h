@@ -36,6 +36,7 @@ public:
     void setPriority(std::vector<uint8_t> chunkSeen) override;
     bool passBoundary() const override { return done_ || !work_; }
     void abortPass() override;
+    uint64_t raysSoFar() override; // asks the device
     LiveLight liveLight() override;
     SolverState state() override;
     std::vector<StatePart> stateParts() override;

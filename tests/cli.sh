@@ -37,11 +37,19 @@ expectHelp() {
     [ ! -s "$work/err" ] || fail "$command: something on stderr"
 }
 
-# Wrong usage: status 2, nothing on stdout, a word on stderr.
+# Wrong usage: status 2, nothing on stdout, one line on stderr.
 expectUsageError() {
     expectStatus 2 "$@"
     [ ! -s "$work/out" ] || fail "$command: something on stdout"
-    [ -s "$work/err" ] || fail "$command: nothing on stderr"
+    [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$command: stderr is not one line"
+}
+
+# $1: all that stderr says; the rest: the command line.
+expectRefusal() {
+    local text=$1
+    shift
+    expectUsageError "$@"
+    [ "$(cat "$work/err")" = "$text" ] || fail "$command: stderr is not '$text'"
 }
 
 # $1: what the only line on stderr must name; the rest: the command line.
@@ -75,6 +83,19 @@ for verb in bake shot timelapse edit info unwrap mix compare; do
 done
 expectUsageError bake room.glb # no -o
 expectUsageError bake room.glb -o room.exr --size many
+expectUsageError bake room.glb -o room.exr --half=nan
+expectRefusal "error: --density: '-1' is not allowed: give a number above 0, at most 1000000" \
+    bake room.glb -o room.exr --density -1
+expectRefusal "error: --window: '-1' is not allowed: choose 1, 2, 4, 8, 16 or 32" bake room.glb -o room.exr --window -1
+expectRefusal "error: --indirect-scale: 'abc' is not allowed: choose 1, 2 or 4" \
+    bake room.glb -o room.exr --indirect-scale abc
+expectRefusal "error: --size: '' is not allowed: give a whole number from 8 to 4096" \
+    bake room.glb -o room.exr --size= --error 0.1
+expectRefusal "error: --ppd: 'nan' is not allowed: give a number from 1 to 1000" compare a.exr b.exr --ppd nan
+expectRefusal "error: --error: 'nan' is not allowed: give a number from 0.0001 to 1" bench edits room.glb --error nan
+expectRefusal "error: --msaa: 'abc' is not allowed: choose 0, 2, 4 or 8" bench frames room.glb --msaa abc
+expectRefusal "error: --display: 'x' is not allowed: choose auto, shared or copied" bench frames room.glb --display x
+expectRefusal "error: 'bakee' is no verb and no scene (.glb or .gltf): did you mean 'bake'?" bakee room.glb
 expectUsageError bake room.glb -o room.exr --picture room.jpg
 expectUsageError bake room.glb -o room.exr --tracer nosuchtracer
 expectUsageError bake room.glb -o room.exr --tracer voxel --voxels 31
@@ -125,6 +146,7 @@ expectUsageError shot room.glb # no -o
 expectUsageError shot room.glb -o shot.jpg
 expectUsageError shot room.glb -o shot.png --size 640
 expectUsageError shot room.glb -o shot.png --eye 1,2,3
+expectUsageError shot room.glb -o shot.png --eye 1e30,0,0 --target 0,0,0
 expectUsageError shot room.glb -o shot.png --view nosuchview
 expectUsageError shot room.glb -o shot.png --lightmap room.exr --method pure
 expectUsageError timelapse room.glb # no -o

@@ -1,4 +1,6 @@
+#include "app/bake_options.h"
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "app/prepare.h"
 #include "app/trace_bench.h"
 #include "assets/file_write.h"
@@ -100,16 +102,17 @@ void addBenchCommand(CLI::App& app) {
     trace->add_option("--sizes", options->sizes, "Lightmap edges")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(CLI::Range(8u, Baker::kMaxSize));
+        ->check(wholeFrom(8, Baker::kMaxSize));
     trace->add_option("--tracer", options->tracers, "Tracers to measure (default: all this device can run)")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->check(oneOf(tracerNames()));
     trace->add_option("--device", options->device, "Vulkan device: index or part of its name");
     trace->add_option("--seconds", options->bench.seconds, "About how long each kernel runs")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 60.0));
+        ->check(numberFrom(0.1, 60.0));
     trace->add_option("--batch-ms", options->bench.batchMs, "Aim of one submit")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 45.0));
+        ->check(numberFrom(0.1, 45.0));
     trace->add_option("--json", options->json, "Write the results to this file, - for standard output");
     trace->callback([options] { benchTrace(*options); });
 }

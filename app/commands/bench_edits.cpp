@@ -1,8 +1,11 @@
+#include "app/bake_options.h"
 #include "app/command.h"
 #include "app/edits_bench.h"
 #include "app/interrupt.h"
+#include "app/option_checks.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
+#include "bake/link_solver.h"
 
 #include <algorithm>
 #include <iostream>
@@ -71,35 +74,36 @@ void addBenchEditsCommand(CLI::App& bench) {
     command->add_option("--lights", b.lamps, "Numbers of lamps; as many are added as the scene has too few")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(CLI::Range(1u, 1024u));
+        ->check(wholeFrom(1, 1024));
     command
         ->add_flag("--only-lamps,!--all-lights", b.onlyLamps,
                    "Materials and sky of the scene do not shine (default), or do as well")
         ->default_str("true");
     command->add_option("--size", b.size, "Lightmap edge in texels")
         ->capture_default_str()
-        ->check(CLI::Range(8u, Baker::kMaxSize));
+        ->check(wholeFrom(8, Baker::kMaxSize));
     command->add_option("--error", b.error, "That every light is to reach, relRMSE as it is told")
         ->capture_default_str()
-        ->check(CLI::Range(1e-4, 1.0));
+        ->check(numberFrom(1e-4, 1.0));
     command
         ->add_option("--samples", b.samples,
                      "Directions per patch where the sum of layers is compared with fresh bakes")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 1u << 16));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     command
         ->add_option("--reference-samples", b.referenceSamples,
                      "Directions per patch of the bakes that errors refer to")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 1u << 16));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     command->add_option("--runs", b.runs, "Of each edit and fresh bake; medians are told")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 100u));
+        ->check(wholeFrom(1, 100));
     command->add_option("--batch-ms", b.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 45.0));
-    command->add_option("--tracer", options->tracer, "auto, rtp, query, bvh, embree or voxel")
-        ->capture_default_str();
+        ->check(numberFrom(0.1, 45.0));
+    command->add_option("--tracer", options->tracer, "What traces rays")
+        ->capture_default_str()
+        ->check(oneOf(tracerNames()));
     command
         ->add_option(
             "--write-scene", b.sceneOutput,

@@ -1,11 +1,12 @@
 #include "app/command.h"
 #include "app/frames_bench.h"
+#include "app/option_checks.h"
+#include "app/viewer/view_options.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
 #include "shaders/shader_library.h"
 
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -15,7 +16,7 @@ namespace {
 
 struct BenchFramesOptions {
     FramesBenchDesc bench;
-    std::string json;
+    std::string display = "auto", json;
 };
 
 nlohmann::ordered_json describe(const FramesPart& part) {
@@ -39,9 +40,9 @@ void print(const FramesReport& report) {
                                 static_cast<double>(part->frames.size()) / part->seconds,
                                 percentile(part->frames, 0.5), percentile(part->frames, 0.95),
                                 percentile(part->frames, 0.99));
-        if (part != &report.alone)
-            line += fmt::format(" {:>10.1f} {:>7.0f}%", 1e-6 * part->raysPerSecond,
-                                100.0 * part->raysPerSecond / std::max(1.0, report.bakeAlone.raysPerSecond));
+        if (part != &report.alone) line += fmt::format(" {:>10.1f}", 1e-6 * part->raysPerSecond);
+        if (part != &report.alone && report.bakeAlone.raysPerSecond > 0)
+            line += fmt::format(" {:>7.0f}%", 100.0 * part->raysPerSecond / report.bakeAlone.raysPerSecond);
         fmt::print("{}\n", line);
     }
 }
@@ -49,6 +50,7 @@ void print(const FramesReport& report) {
 void benchFrames(BenchFramesOptions o) {
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.bench.bake.shaders.empty()) setShaderFolder(o.bench.bake.shaders);
+    o.bench.display = displayModeOf(o.display);
     const FramesReport report = measureFrames(o.bench);
     if (o.json != "-") print(report);
     if (o.json.empty()) return;
@@ -82,26 +84,23 @@ void addBenchFramesCommand(CLI::App& bench) {
     addSolverOptions(*command, b.bake);
     command->add_option("--width", b.width, "Of the pictures, in pixels")
         ->capture_default_str()
-        ->check(CLI::Range(16u, 16384u));
+        ->check(wholeFrom(16, 16384));
     command->add_option("--height", b.height, "Of the pictures, in pixels")
         ->capture_default_str()
-        ->check(CLI::Range(16u, 16384u));
+        ->check(wholeFrom(16, 16384));
     command->add_option("--seconds", b.seconds, "Of each part")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 600.0));
+        ->check(numberFrom(0.1, 600.0));
     command->add_option("--rate", b.rate, "Frames per second at most; 0: as many as there can be")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 1000.0));
+        ->check(numberFrom(0.0, 1000.0));
     command->add_option("--budget", b.budget, "Aim of one batch of the bake in milliseconds")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 45.0));
-    command->add_option("--msaa", b.samples, "Samples of each pixel: 0, 2, 4, 8")
+        ->check(numberFrom(0.1, 45.0));
+    command->add_option("--msaa", b.samples, "Samples of each pixel")
         ->capture_default_str()
-        ->check(CLI::IsMember({0u, 2u, 4u, 8u}));
-    static const std::map<std::string, DisplayMode> modes = {
-        {"auto", DisplayMode::Auto}, {"shared", DisplayMode::Shared}, {"copied", DisplayMode::Copied}};
-    command->add_option("--display", b.display, "How light reaches OpenGL: auto, shared, copied")
-        ->transform(CLI::CheckedTransformer(modes));
+        ->check(oneOf({"0", "2", "4", "8"}));
+    addDisplayOption(*command, options->display);
     command->add_option("--json", options->json, "Write the results to this file, - for standard output");
     command->callback([options] { benchFrames(*options); });
 }

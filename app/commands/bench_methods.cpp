@@ -1,10 +1,13 @@
+#include "app/bake_options.h"
 #include "app/command.h"
 #include "app/interrupt.h"
 #include "app/methods_bench.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 #include "assets/file_write.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
+#include "bake/link_solver.h"
 
 #include <algorithm>
 #include <iostream>
@@ -111,40 +114,30 @@ void addSweep(CLI::App& command, BenchMethodsOptions& o) {
     bench.sizes = {64, 128, 256};
     bench.windows = {1, 2, 4, 8, 16};
     bench.samples = {16, 64, 256, 1024};
-    const auto powerOfTwo = [](const char* what, uint32_t least, uint32_t most) {
-        return CLI::Validator(
-            [=](std::string& text) -> std::string {
-                uint32_t value = 0;
-                if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most &&
-                    (value & (value - 1)) == 0)
-                    return "";
-                return fmt::format("{} is no {}: use a power of two from {} to {}", text, what, least, most);
-            },
-            "");
-    };
     command.add_option("--sizes", bench.sizes, "Lightmap edges")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(CLI::Range(8u, Baker::kMaxSize));
+        ->check(wholeFrom(8, Baker::kMaxSize));
     command.add_option("--methods", o.methods, "What to compare; DFPR needs pure among them")
         ->delimiter(',')
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(oneOf(methodNames()));
     command.add_option("--windows", bench.windows, "Windows of static, montecarlo and mipmapped")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(powerOfTwo("window", 1, 32));
+        ->check(powerOfTwo(1, 32));
     command.add_option("--nodes", bench.nodes, "Nodes of adaptive")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(powerOfTwo("node", 2, 64));
+        ->check(powerOfTwo(2, 64));
     command.add_option("--thresholds", bench.thresholds, "Thresholds of adaptive")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(numberFrom(0.0, 100.0));
     command.add_option("--samples", bench.samples, "Samples per patch of directional and hybrid")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(CLI::Range(1u, 1u << 20));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
 }
 
 } // namespace
@@ -160,24 +153,26 @@ void addBenchMethodsCommand(CLI::App& bench) {
     addSweep(*command, o);
     command->add_option("--passes", o.bench.passes, "Passes (bounces) of every bake")
         ->capture_default_str()
-        ->check(CLI::Range(1u, Solver::kMaxPasses));
+        ->check(wholeFrom(1, Solver::kMaxPasses));
     command
         ->add_option("--reference-samples", o.bench.referenceSamples,
                      "Samples per patch of the reference, which is baked by hybrid")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 1u << 20));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     command->add_option("--max-seconds", o.bench.maxSeconds, "Give a bake up after so much solver time")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_option("--picture-size", o.bench.pictureSize,
-                        "Show the lightmaps of this size (default: the "
-                        "largest)");
+        ->check(numberAbove(0, 1e6));
+    command
+        ->add_option("--picture-size", o.bench.pictureSize,
+                     "Show the lightmaps of this size, one of --sizes (default: the largest)")
+        ->check(wholeFrom(8, Baker::kMaxSize));
     command->add_flag("--no-smooth", o.noSmooth, "Leave hybrid's indirect light as it is sampled");
     command->add_option("--cache", o.cache, "What later passes may keep: auto, none, bits or links")
         ->capture_default_str()
-        ->check(CLI::IsMember({"auto", "none", "bits", "links"}));
-    command->add_option("--tracer", o.tracer, "auto, rtp, query, bvh, embree or another that bake knows")
-        ->capture_default_str();
+        ->check(oneOf({"auto", "none", "bits", "links"}));
+    command->add_option("--tracer", o.tracer, "What traces rays")
+        ->capture_default_str()
+        ->check(oneOf(tracerNames()));
     command->add_option("--device", o.device, "Vulkan device: index or part of its name");
     command->callback([options] { runBench(*options); });
 }

@@ -1,5 +1,6 @@
 #include "app/command.h"
 #include "app/heat_map.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 #include "assets/log.h"
 #include "bake/flip.h"
@@ -169,7 +170,7 @@ void addCompareCommand(CLI::App& app) {
                      "Print only these values, a line each: relrmse, rmse, dfpr, flip, maximum, bias")
         ->delimiter(',')
         ->allow_extra_args(false) // else it would take A and B
-        ->transform(CLI::IsMember(names, CLI::ignore_case))
+        ->transform(oneOfAnyCase(names))
         ->type_name("NAME,...");
     command->add_option("--mask", options->mask,
                         "Image of the same size: compare only where its R (or coverage) is above 0.5");
@@ -179,7 +180,7 @@ void addCompareCommand(CLI::App& app) {
     command
         ->add_option("--ppd", options->pixelsPerDegree, "Pixels per degree of the viewer's sight, for FLIP")
         ->capture_default_str()
-        ->check(CLI::Range(1.0, 1000.0));
+        ->check(numberFrom(1.0, 1000.0));
     command->add_flag("--json", options->json, "Print JSON instead of a table");
     command->callback([options] { runCompare(*options); });
 }

@@ -1,12 +1,14 @@
 #include "app/command.h"
 #include "app/edit_options.h"
 #include "app/bake_edits.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 #include "assets/float_image.h"
 #include "assets/file_write.h"
 #include "assets/gltf.h"
 #include "assets/gltf_edit.h"
 #include "assets/log.h"
+#include "bake/link_solver.h"
 #include "shaders/shader_library.h"
 
 #include <algorithm>
@@ -44,9 +46,9 @@ void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
     const std::vector<CLI::Option*> before = command.get_options();
     addSizeOption(command, "--size", bake);
     command.add_option("--error", bake.error, "Stop when the remaining error is below this (0.01)")
-        ->check(CLI::Range(1e-6, 1.0));
+        ->check(numberFrom(1e-6, 1.0));
     command.add_option("--samples", bake.samples, "Directions per patch, whatever the error")
-        ->check(CLI::Range(1u, 65536u));
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     addMachineOptions(command, bake);
     addLayerMemory(command, bake);
     for (CLI::Option* option : command.get_options())

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "app/scene_info.h"
 #include "app/light_names.h"
 #include "assets/gltf.h"
@@ -217,7 +218,7 @@ void addInfoCommand(CLI::App& app) {
         ->type_name("SCENE");
     command->add_option("--size", options->size, "Lightmap edge [texels]")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 65536u));
+        ->check(wholeFrom(1, 65536));
     command->add_flag("--json", options->json, "Print JSON instead of a table, with the atlas mapping");
     command->callback([options] { runInfo(*options); });
 }

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
@@ -9,6 +10,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 namespace relume {
@@ -70,13 +72,15 @@ void addSamplesCommand(CLI::App& app) {
     const auto options = std::make_shared<SamplesOptions>();
     command->add_option("count", options->count, "How many")
         ->required()
-        ->check(CLI::Range(1u, kMostDirections));
+        ->check(wholeFrom(1, kMostDirections));
     command
         ->add_option("--set", options->set,
                      "lec: insertion into the largest empty circle of the disc; sobol: Owen-scrambled Sobol")
         ->capture_default_str()
-        ->check(CLI::IsMember({"lec", "sobol"}));
-    command->add_option("--seed", options->seed, "Of sobol's scrambling")->capture_default_str();
+        ->check(oneOf({"lec", "sobol"}));
+    command->add_option("--seed", options->seed, "Of sobol's scrambling")
+        ->capture_default_str()
+        ->check(wholeFrom(0, std::numeric_limits<uint32_t>::max()));
     command->add_option("-o,--output", options->output,
                         "File to write, .csv or .json (default: CSV to standard output)");
     command->callback([options] { runSamples(*options); });

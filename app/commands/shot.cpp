@@ -52,11 +52,10 @@ void shoot(ShotOptions o) {
         image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.scene));
         request.prepare.size = image->width; // the gutters of a repacked atlas depend on it
     }
-    PreparedScene prepared;
+    PreparedScene prepared = prepareScene(request.prepare);
+    stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(o.bake);
-    prepared = prepareScene(request.prepare);
-    stopIfInterrupted();
     studio.open(o, shot, prepared);
     if (!image && readsLightmap(shot.draw.view)) {
         bake = std::make_unique<PictureBake>(o.bake, request, prepared);

@@ -28,11 +28,10 @@ void makeTimelapse(const TimelapseOptions& o) {
                                          .hold = kHoldLast,
                                          .overwrite = o.overwrite});
     if (!options.shaders.empty()) setShaderFolder(options.shaders);
-    PreparedScene prepared;
+    PreparedScene prepared = prepareScene(bakeRequest.prepare);
+    stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(options);
-    prepared = prepareScene(bakeRequest.prepare);
-    stopIfInterrupted();
     studio.open(o.shot, request.shot, prepared);
 
     bake = std::make_unique<PictureBake>(options, bakeRequest, prepared);

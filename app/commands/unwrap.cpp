@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "assets/error.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
@@ -23,12 +24,14 @@ void runUnwrap(const UnwrapOptions& options) {
     Scene scene = loadGltf(options.scene);
     for (const std::string& warning : scene.warnings)
         spdlog::warn("{}", warning);
+    requireArea(scene);
     UnwrapDesc desc = options.desc;
     desc.onlyMissing = !options.all;
     const UnwrapResult result = unwrap(scene, desc);
-    if (result.meshes == 0)
-        spdlog::warn("{}: every mesh has valid lightmap UVs, they are kept: pass --all to replace them",
-                     options.scene);
+    if (result.meshes == 0 && !options.all)
+        spdlog::warn(
+            "{}: every mesh with an area has valid lightmap UVs, they are kept: pass --all to replace them",
+            options.scene);
     saveGlb(scene, options.output);
     std::printf("%s: %u meshes unwrapped into %u charts at %.4g texels/m\n", options.output.c_str(),
                 result.meshes, result.charts, result.density);
@@ -47,10 +50,10 @@ void addUnwrapCommand(CLI::App& app) {
         ->required()
         ->type_name("OUT.glb");
     command->add_option("--density", options->desc.density, "Texels per metre; without it, what fills --size")
-        ->check(CLI::PositiveNumber);
+        ->check(numberAbove(0, 1e6));
     command->add_option("--size", options->desc.size, "Lightmap edge the density aims at [texels]")
         ->capture_default_str()
-        ->check(CLI::Range(1u, 65536u));
+        ->check(wholeFrom(1, 65536));
     command->add_flag("--all", options->all, "Replace valid lightmap UVs too");
     command->callback([options] { runUnwrap(*options); });
 }

@@ -298,6 +298,7 @@ void BakeLoop::begin() {
     status_.doing.clear();
     status_.fraction = 0;
     status_.progress = {};
+    status_.rays = 0;
     status_.history.clear();
     status_.raysPerSecond = 0;
     status_.secondsLeft = -1;
@@ -436,7 +437,8 @@ void BakeLoop::measure() {
     if (secondsSince(measured_) < kMeasureSeconds || !baker_) return;
     measured_ = Clock::now();
     Solver& solver = baker_->solver();
-    meter_.add(solver.progress().seconds, solver.raysSoFar());
+    status_.rays = solver.raysSoFar();
+    meter_.add(solver.progress().seconds, status_.rays);
     status_.raysPerSecond = meter_.perSecond();
     status_.deviceBytes =
         device_->info().deviceMemory - std::min(device_->freeMemory(), device_->info().deviceMemory);
@@ -447,6 +449,7 @@ void BakeLoop::follow() {
     if (!baker_) return;
     const SolverProgress& now = baker_->solver().progress();
     status_.progress = now;
+    status_.rays = std::max(status_.rays, now.rays);
     status_.stale = layered() ? staleReasons(*layered()) : std::vector<std::string>();
     status_.groups = layered() ? groupsOf(*layered()) : std::vector<LightGroup>();
     std::vector<ConvergencePoint>& history = status_.history;

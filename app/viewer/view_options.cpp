@@ -1,5 +1,7 @@
 #include "app/viewer/view_options.h"
 
+#include "app/option_checks.h"
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -31,20 +33,29 @@ bool isScene(std::string name) {
 
 } // namespace
 
+void addDisplayOption(CLI::App& command, std::string& display) {
+    command
+        .add_option("--display", display,
+                    "How the lightmap comes to OpenGL: shared (no copy), copied, or auto")
+        ->capture_default_str()
+        ->check(oneOf({"auto", "shared", "copied"}));
+}
+
+DisplayMode displayModeOf(const std::string& display) {
+    if (display == "shared") return DisplayMode::Shared;
+    return display == "copied" ? DisplayMode::Copied : DisplayMode::Auto;
+}
+
 void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb (default: none yet)");
     addSizeOption(command, "--size", o.bake);
     addSolverOptions(command, o.bake);
     command.add_option("--preset", o.bake.preset, "rtrad: the reference implementation to the letter")
-        ->check(CLI::IsMember({"rtrad"}));
+        ->check(oneOf({"rtrad"}));
     command.add_option("--budget", o.budget, "Aim of one batch in milliseconds while the camera is still")
         ->capture_default_str()
-        ->check(CLI::Range(1.0, 45.0));
-    command
-        .add_option("--display", o.display,
-                    "How the lightmap comes to OpenGL: shared (no copy), copied, or auto")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"auto", "shared", "copied"}));
+        ->check(numberFrom(1.0, 45.0));
+    addDisplayOption(command, o.display);
     command.add_flag("--no-layers", o.noLayers,
                      "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
     addLayerMemory(command, o.bake);
@@ -61,9 +72,7 @@ ViewerDesc resolveViewOptions(const ViewOptions& o) {
                     .request = resolveBakeOptions(o.bake),
                     .device = o.bake.device,
                     .validation = o.bake.validate,
-                    .display = o.display == "shared"   ? DisplayMode::Shared
-                               : o.display == "copied" ? DisplayMode::Copied
-                                                       : DisplayMode::Auto,
+                    .display = displayModeOf(o.display),
                     .budgetMs = o.budget,
                     .watch = o.watch,
                     .camera = o.camera,

@@ -16,6 +16,9 @@ struct ViewOptions {
 };
 
 void addViewOptions(CLI::App& command, ViewOptions& options);
+/// --display, and what its text means.
+void addDisplayOption(CLI::App& command, std::string& display);
+DisplayMode displayModeOf(const std::string& display);
 
 /// What the options ask for. Throws UsageError when they are wrong or contradict each other.
 ViewerDesc resolveViewOptions(const ViewOptions& options);

@@ -44,6 +44,27 @@ TEST(Layers, ConvergeToWhatTheHybridConvergesTo) {
     EXPECT_LE(relativeError(bake.image(), expected), 0.002);
 }
 
+// A step of many rounds lasts: what is told of its rays meanwhile must not stand still, nor change the count.
+TEST(Layers, CountRaysWhileDirectLightIsSampled) {
+    BakeDesc desc = kQuick;
+    desc.samples = 256;
+    Layered quiet(room(), desc), asked(room(), desc);
+    quiet.finish();
+    uint64_t before = 0, rises = 0;
+    for (LayerSolver& solver = asked.solver(); !solver.done();) {
+        solver.setBatchMs(0.1);
+        solver.step();
+        const bool isDirect = solver.progress().pairs == 0;
+        const uint64_t now = solver.raysSoFar();
+        EXPECT_GE(now, before);
+        rises += isDirect && now > before;
+        before = now;
+    }
+    EXPECT_GT(rises, 3u);
+    EXPECT_EQ(asked.progress().rays, quiet.progress().rays);
+    EXPECT_TRUE(sameBytes(asked.light(), quiet.light()));
+}
+
 // Every wall of a closed box shines with e and reflects a: lighting is e / (1 - a) everywhere.
 TEST(Layers, SumToTheFurnace) {
     constexpr float kAlbedo = 0.5f, kEmission = 2.0f;

@@ -197,10 +197,11 @@ TEST_F(GltfEditNode, AnObjectMovesWithoutItsChildren) {
     const EditedNodes moved = save(path, [&](Scene& s) { s.instances[0].transform = to; });
     EXPECT_EQ(moved.instances, (std::vector<int>{2, 1}));
     const Scene after = loadGltf(path);
-    expectNear(after.instances[0].transform, before.instances[1].transform);
-    expectNear(after.instances[1].transform, to);
-    EXPECT_EQ(after.instances[1].node, 2);
+    expectNear(after.instances[0].transform, to);
+    EXPECT_EQ(after.instances[0].node, 2);
+    expectNear(after.instances[1].transform, before.instances[1].transform);
     const json file = jsonOf(path);
+    EXPECT_EQ(file["nodes"][0]["children"], json::array({2, 1}));
     EXPECT_EQ(file["nodes"][2]["weights"], json::array({0.5}));
     EXPECT_FALSE(file["nodes"][0].contains("mesh"));
     EXPECT_EQ(file["animations"][0]["channels"][0]["target"]["node"], 2);

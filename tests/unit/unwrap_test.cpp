@@ -90,6 +90,60 @@ TEST(Unwrap, TrianglesInAnyOrder) {
     expectValid(test::sceneOf(test::soup(1, 3, 3)), {}, "single");
 }
 
+std::string unwrapError(Scene scene, const UnwrapDesc& desc) {
+    try {
+        unwrap(scene, desc);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST(Unwrap, ANeedleLowersTheDensityThatNobodyGave) {
+    Primitive needle = test::square();
+    needle.texCoord1.clear();
+    for (glm::vec3& p : needle.positions)
+        p *= glm::vec3(1e6f, 1e-3f, 1.0f);
+    Scene scene = test::sceneOf(test::cube());
+    test::addInstance(scene, test::addMesh(scene, needle, "Needle"));
+    EXPECT_EQ(
+        unwrapError(scene, withDensity(10)),
+        "test.glb: mesh 'Needle' needs more than 65536 texels a side at 10 texels/m: use a lower --density");
+    const UnwrapResult result = unwrap(scene, {});
+    EXPECT_EQ(result.meshes, 2u);
+    EXPECT_LE(result.density, 512.0 / 1e6);
+    EXPECT_GT(result.density, 0.1 * 512.0 / 1e6);
+    for (const Mesh& mesh : scene.meshes)
+        EXPECT_EQ(lightmapSet(mesh), 1);
+}
+
+TEST(Unwrap, WithoutAnAreaNoUnwrapIsAdvised) {
+    Primitive line = test::square();
+    line.texCoord1.clear();
+    for (glm::vec3& p : line.positions)
+        p.y = p.z = 0;
+    Scene scene = test::sceneOf(line);
+    scene.path = "line.glb";
+    const UnwrapResult result = unwrap(scene, {});
+    EXPECT_EQ(result.meshes, 0u);
+    EXPECT_EQ(result.density, 0.0);
+    try {
+        requireArea(scene);
+        ADD_FAILURE() << "a line has an area";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "line.glb: has no triangle with an area: export it with its geometry");
+    }
+    test::addInstance(scene, test::addMesh(scene, test::cube()));
+    EXPECT_NO_THROW(requireArea(scene));
+    const auto warning = [&](bool unwrapped) {
+        Scene mapped = scene;
+        unwrap(mapped, {});
+        return buildAtlas(mapped, 64, unwrapped).warnings.at(0);
+    };
+    EXPECT_NE(warning(false).find("pass --unwrap"), std::string::npos) << warning(false);
+    EXPECT_EQ(warning(true).find("pass --unwrap"), std::string::npos) << warning(true);
+}
+
 TEST(Unwrap, MoebiusStrip) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
