@@ -14,9 +14,10 @@ fail() {
     errors=$((errors + 1))
 }
 
-# Pipes of a script into grep -q, grep -m, head, a sed that quits, an awk that exits or a single read.
+# Pipes of a script into grep -q, grep -m, head, a sed that quits, an awk that exits or a single read. One that is meant
+# says "# is to end first".
 hastyPipes() {
-    sed -e 's/^[ \t]*#.*//' "$1" |
+    sed -e 's/^[ \t]*#.*//' -e '/# is to end first$/d' "$1" |
         sed -e ':join' -e '/[|\\]$/{N;s/\\*\n[ \t]*/ /;bjoin' -e '}' |
         grep -E '[^|][|] *(grep +(-[a-zA-Z]+ +)*(-[a-zA-Z]*[qlm]|--(quiet|silent|max-count))|head\b|sed +[^|]*[0-9/;]q\b|awk +[^|]*\bexit\b|read\b)'
 }

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/prepare.h"
 #include "app/trace_bench.h"
 #include "assets/file_write.h"
@@ -35,6 +36,7 @@ std::vector<TracerKind> tracersOf(const BenchOptions& o, const vk::DeviceInfo& i
 }
 
 void benchTrace(const BenchOptions& o) {
+    CommandFiles().readsScene("SCENE", o.scene).writes("--json", o.json).check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
@@ -80,10 +82,13 @@ void benchTrace(const BenchOptions& o) {
                                            {"device", device.info().name},
                                            {"driver", device.info().driver},
                                            {"results", results}};
+    // A file name need not be UTF-8.
+    const std::string text =
+        report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (o.json == "-")
-        std::cout << report.dump(2) << std::endl;
+        std::cout << text << std::flush;
     else
-        writeFileAtomically(o.json, report.dump(2) + "\n");
+        writeFileAtomically(o.json, text);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/interrupt.h"
 #include "app/methods_bench.h"
 #include "assets/error.h"
@@ -77,6 +78,11 @@ std::string commandOf(const BenchMethodsOptions& o, const MethodsBenchDesc& desc
 void runBench(const BenchMethodsOptions& o) {
     const InterruptGuard guard;
     const MethodsBenchDesc desc = resolve(o);
+    CommandFiles()
+        .readsScene("SCENE", o.bench.scene)
+        .writes("--html", o.html)
+        .writes("--json", o.json)
+        .check();
     checkFileWritable(o.html, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     const bool table = o.json != "-";
