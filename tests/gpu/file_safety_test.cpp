@@ -116,7 +116,7 @@ TEST_F(FileSafety, StatisticsThatDoNotArriveAreAnError) {
         "/bin/sh", {"-c", "exec \"$0\" -q bake \"$1\" --size 64 --samples 4 -o \"$2\" --json - >/dev/full",
                     RELUME_BINARY, scene_, path("map.exr")});
     EXPECT_EQ(r.status, 1);
-    EXPECT_TRUE(contains(r.err, "the standard output cannot be written: No space left on device")) << r.err;
+    EXPECT_TRUE(contains(r.err, "the standard output cannot be written")) << r.err;
     EXPECT_EQ(readImage(path("map.exr")).width, 64u);
 }
 
