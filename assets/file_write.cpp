@@ -93,9 +93,11 @@ std::string giveSavedName(Spool& spool, const std::string& path) {
 AtomicFile::AtomicFile(const std::string& path, OnFailure onFailure)
     : target_(lookAtTarget(path)), onFailure_(onFailure) {
     const WritePlan plan = planWrite(target_);
-    if (plan.way == WriteWay::Refuse) throw Error(path + ": " + plan.problem);
+    // What could be written when it was checked may have changed since: the content has a place all the same.
+    if (plan.way == WriteWay::Refuse && onFailure == OnFailure::Drop) throw Error(path + ": " + plan.problem);
     way_ = plan.way;
-    spool_ = spoolFor(target_, way_);
+    problem_ = plan.problem;
+    spool_ = spoolFor(target_, way_ == WriteWay::Refuse ? WriteWay::Stream : way_);
     if (spool_.error() != 0) fail(spool_.error());
 }
 
@@ -187,7 +189,7 @@ void AtomicFile::commit() {
     if (way_ == WriteWay::Replace) error = noRoom_ != 0 ? noRoom_ : takeName();
     if (way_ == WriteWay::InPlace) error = overwrite();
     if (way_ == WriteWay::Stream) error = pour();
-    if (error != 0) fail(error);
+    if (error != 0 || way_ == WriteWay::Refuse) fail(error);
     spool_ = Spool();
 }
 
@@ -206,8 +208,10 @@ void AtomicFile::fail(int error) {
     spool_ = Spool(); // leaves nothing else behind
     const std::string mend =
         isLackOfSpace(error) ? "free some space or choose another folder" : "choose another folder";
-    throw Error(target_.path + ": cannot write: " + std::generic_category().message(error) + ": " +
-                (saved.empty() ? mend : "it was saved as '" + saved + "', move it where it belongs"));
+    const std::string problem =
+        problem_.empty() ? "cannot write: " + std::generic_category().message(error) + ": " + mend : problem_;
+    throw Error(target_.path + ": " + problem +
+                (saved.empty() ? "" : ": it was saved as '" + saved + "', move it where it belongs"));
 }
 
 void writeFileAtomically(const std::string& path, std::string_view bytes, OnFailure onFailure) {

@@ -49,6 +49,7 @@ private:
     WriteTarget target_;
     WriteWay way_ = WriteWay::Refuse;
     OnFailure onFailure_;
+    std::string problem_; // of Refuse
     Spool spool_;
     int noRoom_ = 0; // errno of the folder in which the content was to wait, when it waits in another one
 };

@@ -256,6 +256,16 @@ TEST_F(FileWrite, WhatIsOfNoUseIsNotSaved) {
     EXPECT_EQ(folder_.files(), Names{"o.exr"});
 }
 
+TEST_F(FileWrite, WhatIsRefusedAfterTheWorkIsSavedAllTheSame) {
+    fs::create_directory(path("taken.exr"));
+    const std::string error = errorOf([&] { writeFileAtomically(path("taken.exr"), "a result"); });
+    EXPECT_NE(error.find("is a folder: name a file in it: it was saved as '"), std::string::npos) << error;
+    const size_t from = error.find('\'') + 1;
+    const std::string saved = error.substr(from, error.find('\'', from) - from);
+    EXPECT_EQ(contentOf(saved), "a result");
+    fs::remove(saved);
+}
+
 TEST_F(FileWrite, AFolderThatIsGoneLosesNothing) {
     fs::create_directory(path("sub"));
     AtomicFile file(path("sub/gone.exr"));
