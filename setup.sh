@@ -25,28 +25,30 @@ packages=(
 # The software devices of Vulkan and OpenGL. Both of one version: the viewer shares images between them.
 mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0)
 testedMesa=25 # on Debian 12 an older one is brought up to date; elsewhere the stock one is taken
+backports=/etc/apt/sources.list.d/relume-backports.sources
 
-case "${1:-}" in
-    "") ;;
-    --ci) packages+=(clang-format) ;;
-    *) sed -n '2,5s/^# \{0,1\}//p' "$0"; exit 2 ;;
-esac
+usage() { sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 
-system=unknown
-if [ -r /etc/os-release ]; then
-    system=$(. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
-fi
-case "$system" in
-    "debian 12" | "debian 13" | "ubuntu 24.04") ;;
-    *)
-        {
-            echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
-            echo "Install these (Debian's names) by hand, then build as the README says:"
-            echo "  ${packages[*]} and drivers of Vulkan 1.2 and OpenGL 4.5 (tested: Mesa $testedMesa)"
-        } >&2
-        exit 1
-        ;;
-esac
+# "debian 12": what this machine runs.
+systemName() {
+    if [ -r /etc/os-release ]; then
+        (. /etc/os-release && echo "${ID:-unknown} ${VERSION_ID:-}")
+    else
+        echo unknown
+    fi
+}
+
+requireKnownSystem() {
+    case "$system" in
+        "debian 12" | "debian 13" | "ubuntu 24.04") return ;;
+    esac
+    {
+        echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
+        echo "Install these (Debian's names) by hand, then build as the README says:"
+        echo "  ${packages[*]} and drivers of Vulkan 1.2 and OpenGL 4.5 (tested: Mesa $testedMesa)"
+    } >&2
+    exit 1
+}
 
 installedVersion() { # of one package, empty where it is not installed
     { dpkg-query -W -f='${db:Status-Status} ${Version}\n' "$1" 2>/dev/null || true; } | sed -n 's/^installed //p'
@@ -54,34 +56,32 @@ installedVersion() { # of one package, empty where it is not installed
 
 isInstalled() { [ -n "$(installedVersion "$1")" ]; }
 
-missing=()
-for package in "${packages[@]}"; do
-    isInstalled "$package" || missing+=("$package")
-done
-needsMesa=false
-for package in "${mesa[@]}"; do
-    mesaVersion=$(installedVersion "$package")
-    if [ -z "$mesaVersion" ]; then
-        needsMesa=true
-    elif [ "$system" = "debian 12" ] && [ -z "${RELUME_KEEP_MESA:-}" ] &&
-        dpkg --compare-versions "$mesaVersion" lt "$testedMesa"; then
-        needsMesa=true
+lookForPackages() { # sets missing and needsMesa
+    local package mesaVersion
+    for package in "${packages[@]}"; do
+        isInstalled "$package" || missing+=("$package")
+    done
+    for package in "${mesa[@]}"; do
+        mesaVersion=$(installedVersion "$package")
+        if [ -z "$mesaVersion" ]; then
+            needsMesa=true
+        elif [ "$system" = "debian 12" ] && [ -z "${RELUME_KEEP_MESA:-}" ] &&
+            dpkg --compare-versions "$mesaVersion" lt "$testedMesa"; then
+            needsMesa=true
+        fi
+    done
+}
+
+becomeRoot() {
+    if [ "$(id -u)" -eq 0 ]; then
+        return
     fi
-done
-
-if [ ${#missing[@]} -eq 0 ] && [ $needsMesa = false ]; then
-    echo "setup: everything is installed"
-    exit 0
-fi
-
-root=()
-if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
         echo "setup: installing packages needs root: run $0 as root or install sudo" >&2
         exit 1
     fi
     root=(sudo)
-fi
+}
 
 aptGet() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 "$@"
@@ -91,18 +91,23 @@ install() {
     aptGet install -q -y --no-install-recommends --no-remove "$@"
 }
 
+# A pipe into a reader that ends before its input does, as `grep -q` and `head` do, ends the writer by SIGPIPE, which
+# pipefail makes the status of all: what apt prints is read to its end before anything is looked for in it.
+
 # Lines "suite component uri" of every package source that apt is configured with, in either file format.
 sources() {
     apt-get indextargets --format '$(CREATED_BY) $(RELEASE) $(COMPONENT) $(REPO_URI)' | sed -n 's/^Packages //p'
 }
 
-backports=/etc/apt/sources.list.d/relume-backports.sources
 addBackports() {
-    if sources | grep -Eq '^(bookworm|stable|oldstable)-backports main '; then
+    local all mirrors mirror
+    all=$(sources)
+    if grep -Eq '^(bookworm|stable|oldstable)-backports main ' <<<"$all"; then
         return
     fi
-    local mirror # the machine's own one, so that proxies and local mirrors go on working
-    mirror=$(sources | sed -En 's,^(bookworm|stable|oldstable) main (https?://),\2,p' | head -n 1)
+    # The machine's own mirror, so that proxies and local mirrors go on working.
+    mirrors=$(sed -En 's,^(bookworm|stable|oldstable) main (https?://),\2,p' <<<"$all")
+    mirror=${mirrors%%$'\n'*}
     mirror=${mirror:-http://deb.debian.org/debian}
     echo "setup: adding bookworm-backports from $mirror in $backports"
     {
@@ -111,29 +116,61 @@ addBackports() {
         if [ -r $keyring ]; then
             printf 'Signed-By: %s\n' $keyring
         fi
-    } | "${root[@]}" tee $backports >/dev/null
+    } | "${root[@]}" tee "$backports" >/dev/null
 }
 
-wanted=("${missing[@]}")
-if [ $needsMesa = true ]; then
-    wanted+=("${mesa[@]}")
-fi
-echo "setup: installing ${wanted[*]}"
-if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
-    addBackports
-fi
-aptGet update -q
-
-if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
-    if ! apt-cache madison "${mesa[0]}" | grep -q bpo12; then
+requireBackports() {
+    local versions
+    versions=$(apt-cache madison "${mesa[0]}")
+    if ! grep -q bpo12 <<<"$versions"; then
         echo "setup: the mirror has no bookworm-backports: put one that has it into $backports" >&2
         exit 1
     fi
-    install -t bookworm-backports "${mesa[@]}"
-elif [ $needsMesa = true ]; then
-    install "${mesa[@]}"
+}
+
+installAll() {
+    local wanted=("${missing[@]}")
+    if [ $needsMesa = true ]; then
+        wanted+=("${mesa[@]}")
+    fi
+    echo "setup: installing ${wanted[*]}"
+    if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
+        addBackports
+    fi
+    aptGet update -q
+    if [ $needsMesa = true ] && [ "$system" = "debian 12" ]; then
+        requireBackports
+        install -t bookworm-backports "${mesa[@]}"
+    elif [ $needsMesa = true ]; then
+        install "${mesa[@]}"
+    fi
+    if [ ${#missing[@]} -gt 0 ]; then
+        install "${missing[@]}"
+    fi
+}
+
+setUp() {
+    case "${1:-}" in
+        "") ;;
+        --ci) packages+=(clang-format) ;;
+        *) usage; exit 2 ;;
+    esac
+    system=$(systemName)
+    requireKnownSystem
+    missing=()
+    needsMesa=false
+    lookForPackages
+    if [ ${#missing[@]} -eq 0 ] && [ $needsMesa = false ]; then
+        echo "setup: everything is installed"
+        return
+    fi
+    root=()
+    becomeRoot
+    installAll
+    echo "setup: done"
+}
+
+# tests/scripts.sh takes the functions alone.
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+    setUp "$@"
 fi
-if [ ${#missing[@]} -gt 0 ]; then
-    install "${missing[@]}"
-fi
-echo "setup: done"

@@ -52,9 +52,9 @@ void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings
     next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(every_);
 }
 
-void BakeCheckpoints::save(Solver& solver) {
+void BakeCheckpoints::save(Solver& solver, OnFailure onFailure) {
     const auto start = Clock::now();
-    const uint64_t bytes = saveCheckpoint(path_, key_, solver);
+    const uint64_t bytes = saveCheckpoint(path_, key_, solver, onFailure);
     const auto end = Clock::now();
     const std::chrono::duration<double> took = end - start;
     if (took.count() > kWorthTelling)
@@ -66,7 +66,7 @@ void BakeCheckpoints::save(Solver& solver) {
 void BakeCheckpoints::afterStep(Solver& solver) {
     if (path_.empty() || Clock::now() < next_) return;
     try {
-        save(solver);
+        save(solver, OnFailure::Drop); // the next one will do
     } catch (const Error& error) {
         spdlog::warn("no checkpoint: {}", error.what());
         next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(every_);
@@ -76,7 +76,7 @@ void BakeCheckpoints::afterStep(Solver& solver) {
 void BakeCheckpoints::interrupt(Solver& solver) {
     if (path_.empty()) throw Error("interrupted: nothing was written");
     try {
-        save(solver);
+        save(solver, OnFailure::Keep);
     } catch (const Error& error) {
         throw Error(std::string("interrupted: ") + error.what());
     }

@@ -6,6 +6,7 @@
 #include "app/bake_options.h"
 #include "app/solve_watcher.h"
 #include "assets/clock.h"
+#include "assets/file_write.h"
 #include "bake/checkpoint.h"
 
 namespace relume {
@@ -24,7 +25,7 @@ public:
     [[noreturn]] void interrupt(Solver& solver) override;
 
 private:
-    void save(Solver& solver);
+    void save(Solver& solver, OnFailure onFailure);
 
     std::string path_; // "": none is saved
     std::string shaders_;

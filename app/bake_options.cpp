@@ -229,8 +229,9 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
     if (!o.picture.empty() && !o.picture.ends_with(".png"))
         throw UsageError("--picture: '" + o.picture + "' does not end in .png");
-    if (!o.checkpoint.empty() && o.checkpoint == o.output)
-        throw UsageError("--checkpoint: '" + o.checkpoint + "' is the lightmap's own name");
+    if (!o.sceneOut.empty() && !o.sceneOut.ends_with(".glb"))
+        throw UsageError("--scene-out: '" + o.sceneOut +
+                         "' does not end in .glb: scenes are written as binary glTF");
     if (o.layers && !o.output.ends_with(".exr"))
         throw UsageError("--layers: layers are kept in OpenEXR only: give -o a name that ends in .exr");
     if (o.layers && o.quantity == "radiance")

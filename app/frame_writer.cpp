@@ -25,6 +25,9 @@ public:
             folder_.pop_back();
         std::error_code code;
         if (!fs::exists(folder_, code)) {
+            if (fs::is_symlink(folder_, code))
+                throw Error(folder_ +
+                            ": is a link to a folder that does not exist: create that or name another");
             checkFileWritable(folder_, 0);
             return;
         }
@@ -35,6 +38,8 @@ public:
             throw Error(folder_ + ": holds frames (" + old_.front().filename().string() +
                         "): name another folder, or pass --overwrite to lose them");
         }
+        for (const fs::path& frame : old_)
+            checkFileWritable(frame.string(), 0);
         checkFileWritable(folder_ + "/frame_0001.png", 0);
     }
 
@@ -42,25 +47,17 @@ public:
         if (count_ == 0) begin();
         const std::string png = encodePng(frame, folder_);
         for (uint32_t i = 0; i < times; ++i)
-            writeFileAtomically(fmt::format("{}/frame_{:04}.png", folder_, ++count_), png);
+            writeFileAtomically(fmt::format("{}/frame_{:04}.png", folder_, ++count_), png, OnFailure::Drop);
     }
     void finish() override {}
     bool keepsFrames() const override { return true; }
 
 private:
-    static bool isFrame(const std::string& name) {
-        constexpr std::string_view kBefore = "frame_", kAfter = ".png";
-        constexpr size_t kLeastDigits = 4;
-        if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return false;
-        if (name.size() < kBefore.size() + kLeastDigits + kAfter.size()) return false;
-        return std::all_of(name.begin() + kBefore.size(), name.end() - kAfter.size(),
-                           [](unsigned char letter) { return std::isdigit(letter) != 0; });
-    }
     std::vector<fs::path> oldFrames() const {
         std::vector<fs::path> frames;
         std::error_code code;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder_, code))
-            if (isFrame(entry.path().filename().string())) frames.push_back(entry.path());
+            if (isFrameName(entry.path().filename().string())) frames.push_back(entry.path());
         if (code) throw Error(folder_ + ": cannot be read: " + code.message() + ": name another folder");
         std::sort(frames.begin(), frames.end());
         return frames;
@@ -79,6 +76,15 @@ private:
 };
 
 } // namespace
+
+bool isFrameName(const std::string& name) {
+    constexpr std::string_view kBefore = "frame_", kAfter = ".png";
+    constexpr size_t kLeastDigits = 4;
+    if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return false;
+    if (name.size() < kBefore.size() + kLeastDigits + kAfter.size()) return false;
+    return std::all_of(name.begin() + kBefore.size(), name.end() - kAfter.size(),
+                       [](unsigned char letter) { return std::isdigit(letter) != 0; });
+}
 
 bool isVideo(const std::string& path) {
     return path.ends_with(".mp4");

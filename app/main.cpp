@@ -1,4 +1,5 @@
 #include "app/command_line.h"
+#include "app/standard_output.h"
 #include "assets/error.h"
 #include "assets/log.h"
 
@@ -10,7 +11,9 @@
 
 #include <CLI/CLI.hpp>
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
     CLI::App app{"Relume bakes the radiosity lightmap of a glTF scene."};
     app.name("relume");
     app.set_version_flag("--version", "relume " RELUME_VERSION);
@@ -38,8 +41,16 @@ int main(int argc, char** argv) {
         spdlog::error("{}", relume::outOfMemoryMessage(app));
         return 1;
     } catch (const std::exception& error) {
-        spdlog::error("unexpected: {}", error.what());
+        // A library's own word for output that is lost, of which finishOutput() tells.
+        if (!relume::outputFailed()) spdlog::error("unexpected: {}", error.what());
         return 1;
     }
     return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    relume::holdStandardStreams();
+    return relume::finishOutput(run(argc, argv));
 }

@@ -1,7 +1,6 @@
 #include "app/video_writer.h"
 
 #include "assets/error.h"
-#include "assets/file_write.h"
 
 #include <cerrno>
 #include <cmath>
@@ -39,6 +38,9 @@ std::string findProgram(const std::string& name) {
     return "";
 }
 
+// Of the file that ffmpeg writes, as ffmpeg has it: it goes to and fro in it, and opens it a second time.
+constexpr int kVideoDescriptor = 3;
+
 void closeDescriptor(int& descriptor) {
     if (descriptor >= 0) close(descriptor);
     descriptor = -1;
@@ -58,7 +60,7 @@ std::string lastLine(int descriptor) {
 
 // H.264 that every player takes: half the colours, in the standard of high-definition television, and told
 // so.
-std::vector<std::string> ffmpegArguments(const FrameWriter::Desc& desc, const std::string& output) {
+std::vector<std::string> ffmpegArguments(const FrameWriter::Desc& desc) {
     // Constant rate factor of x264, 0 lossless, 23 its default: noise is what a time lapse shows, and low
     // factors keep it.
     constexpr const char* kQuality = "16";
@@ -94,7 +96,7 @@ std::vector<std::string> ffmpegArguments(const FrameWriter::Desc& desc, const st
             "-f",
             "mp4",
             "-y",
-            "file:" + output};
+            fmt::format("file:/proc/self/fd/{}", kVideoDescriptor)};
 }
 
 } // namespace
@@ -106,9 +108,6 @@ VideoWriter::VideoWriter(const Desc& desc) : desc_(desc), program_(findProgram("
                     ": a video needs ffmpeg, which is not installed: run 'apt-get install ffmpeg', "
                     "or name a folder for the frames");
     }
-    const fs::path parent = fs::path(desc.path).parent_path();
-    temporary_ =
-        ((parent.empty() ? fs::path(".") : parent) / fmt::format(".relume-{}.mp4.tmp", getpid())).string();
 }
 
 VideoWriter::~VideoWriter() {
@@ -118,12 +117,11 @@ VideoWriter::~VideoWriter() {
         wait();
     }
     closeDescriptor(log_);
-    std::error_code code;
-    fs::remove(temporary_, code); // it is gone when it took its name
 }
 
 // Beside us, in a process group of its own: Ctrl-C is for us.
 void VideoWriter::start() {
+    file_.emplace(desc_.path);
     int ends[2] = {-1, -1};
     // A socket, as a write to one can fail instead of raising SIGPIPE.
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
@@ -136,10 +134,11 @@ void VideoWriter::start() {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, log_, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, file_->descriptor(), kVideoDescriptor);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    std::vector<std::string> arguments = ffmpegArguments(desc_, temporary_);
+    std::vector<std::string> arguments = ffmpegArguments(desc_);
     std::vector<char*> argv;
     for (std::string& argument : arguments)
         argv.push_back(argument.data());
@@ -191,10 +190,7 @@ void VideoWriter::finish() {
         send();
     closeDescriptor(pipe_);
     if (wait() != 0) fail();
-    if (std::rename(temporary_.c_str(), desc_.path.c_str()) != 0) {
-        throw Error(desc_.path + ": cannot write: " + std::strerror(errno) +
-                    ": name a file in another folder");
-    }
+    file_->commit();
 }
 
 } // namespace relume

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <sys/types.h>
 
 #include "app/frame_writer.h"
+#include "assets/file_write.h"
 
 namespace relume {
 
@@ -28,8 +30,9 @@ private:
     [[noreturn]] void fail();
 
     Desc desc_;
-    std::string program_, temporary_, pixels_; // pixels_: of the last frame
-    pid_t child_ = 0;                          // 0: not running
+    std::string program_, pixels_; // pixels_: of the last frame
+    std::optional<AtomicFile> file_;
+    pid_t child_ = 0; // 0: not running
     int pipe_ = -1, log_ = -1;
 };
 

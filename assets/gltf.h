@@ -17,4 +17,7 @@ Scene loadGltf(const std::string& path);
 /// gives the same scene. Throws Error.
 void saveGlb(const Scene& scene, const std::string& path);
 
+/// Throws the Error of a saveGlb() that is sure to fail for what the scene is. Changes nothing.
+void checkGlb(const Scene& scene, const std::string& path);
+
 } // namespace relume

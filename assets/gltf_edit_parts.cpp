@@ -2,12 +2,12 @@
 
 #include "assets/error.h"
 #include "assets/gltf_edit_node.h"
+#include "assets/uri.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -119,50 +119,13 @@ void editBaseColor(FileEdit& edit, EditedJson& material, const glm::vec4& color,
     }
 }
 
-int digitOf(char c) {
-    const char* const digits = "0123456789abcdef";
-    const char* const found = std::find(digits, digits + 16, static_cast<char>(std::tolower(c)));
-    return found == digits + 16 ? -1 : static_cast<int>(found - digits);
-}
-
-std::string decodedUri(const std::string& uri) {
-    std::string out;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        const bool escape = uri[i] == '%' && i + 2 < uri.size();
-        const int high = escape ? digitOf(uri[i + 1]) : -1, low = escape ? digitOf(uri[i + 2]) : -1;
-        if (high < 0 || low < 0) {
-            out += uri[i];
-        } else {
-            out += static_cast<char>(high * 16 + low);
-            i += 2;
-        }
-    }
-    return out;
-}
-
-std::string encodedUri(const std::string& path) {
-    std::string out;
-    for (const char c : path) {
-        const bool plain = static_cast<unsigned char>(c) >= 0x80 || std::isalnum(c) ||
-                           std::string_view("-._~/").find(c) != std::string_view::npos;
-        out += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-    }
-    return out;
-}
-
-/// Relative to the file, not data, a web address or a path from the root.
-bool isRelative(const std::string& uri) {
-    return !uri.empty() && uri[0] != '/' && uri[0] != '#' &&
-           uri.find(':') > std::min(uri.find('/'), uri.size() - 1);
-}
-
 void moveUrisIn(EditedJson& value, const fs::path& from, const fs::path& to) {
     if (value.is_array())
         for (EditedJson& element : value)
             moveUrisIn(element, from, to);
     if (!value.is_object()) return;
     for (auto& [key, member] : value.items()) {
-        if (key == "uri" && member.is_string() && isRelative(member.get<std::string>())) {
+        if (key == "uri" && member.is_string() && isRelativeUri(member.get<std::string>())) {
             member = encodedUri(pathFrom(to, from / decodedUri(member.get<std::string>())));
         } else if (key != "extras") { // what is in those only their owner knows
             moveUrisIn(member, from, to);
@@ -239,7 +202,12 @@ void editSky(FileEdit& edit, const Sky& before, const Sky& after, const std::str
     if (after.file.empty()) {
         sky.erase("file");
     } else if (before.file != after.file || elsewhere) {
-        sky["file"] = pathFrom(folder, after.file);
+        const std::string file = pathFrom(folder, after.file);
+        if (!isUtf8(file))
+            throw Error(fmt::format("{}: the path of the sky's picture {} is no UTF-8, as which glTF would "
+                                    "hold it: rename it",
+                                    target, after.file));
+        sky["file"] = file;
     }
     if (after.rotation == 0.0f) {
         sky.erase("rotation");

@@ -4,6 +4,7 @@
 #include "assets/file_write.h"
 #include "assets/float_image.h"
 #include "assets/gltf_light_json.h"
+#include "assets/uri.h"
 
 #include <algorithm>
 #include <bit>
@@ -432,32 +433,53 @@ std::vector<uint8_t> GlbWriter::write() {
     return out;
 }
 
-// Where the sky's picture is from the folder of the file at `path`; one that is in memory alone is written
-// there.
-std::string placeSkyPicture(const Sky& sky, const std::string& path) {
-    namespace fs = std::filesystem;
-    const fs::path folder = fs::path(path).parent_path();
+// Whether the picture is in memory alone, so that it needs a file.
+bool skyIsHomeless(const Sky& sky) {
     std::error_code code;
-    if (sky.pixels.empty() || (!sky.file.empty() && fs::exists(sky.file, code))) {
-        if (sky.file.empty()) return "";
+    return !sky.pixels.empty() && (sky.file.empty() || !std::filesystem::exists(sky.file, code));
+}
+
+// Where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to hold
+// it.
+std::string skyPathFrom(const Sky& sky, const std::string& path) {
+    namespace fs = std::filesystem;
+    std::string file;
+    if (skyIsHomeless(sky)) {
+        file = fs::path(path).stem().string() + "_sky.exr";
+    } else if (!sky.file.empty()) {
+        const fs::path folder = fs::path(path).parent_path();
+        std::error_code code;
         const fs::path relative = fs::relative(sky.file, folder.empty() ? "." : folder, code);
-        return (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
+        file = (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
     }
+    if (!isUtf8(file))
+        throw Error(path + ": the path of the sky's picture, '" + file +
+                    "', is no UTF-8, as which glTF would hold it: rename it");
+    return file;
+}
+
+void writeSkyPicture(const Sky& sky, const std::string& path) {
     FloatImage image{sky.width, sky.height, {}, {}, {}};
     for (int c = 0; c < 3; ++c) {
         std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
         for (size_t i = 0; i < plane.size(); ++i)
             plane[i] = sky.pixels[i][c];
     }
-    const std::string name = fs::path(path).stem().string() + "_sky.exr";
-    writeImage((folder / name).string(), image);
-    return name;
+    writeImage(path, image);
 }
 
 } // namespace
 
+void checkGlb(const Scene& scene, const std::string& path) {
+    const std::string skyFile = skyPathFrom(scene.sky, path);
+    if (skyIsHomeless(scene.sky))
+        checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
+}
+
 void saveGlb(const Scene& scene, const std::string& path) {
-    const std::string skyFile = placeSkyPicture(scene.sky, path);
+    const std::string skyFile = skyPathFrom(scene.sky, path);
+    if (skyIsHomeless(scene.sky))
+        writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
     std::vector<uint8_t> bytes;
     try {
         bytes = GlbWriter(scene, skyFile).write();

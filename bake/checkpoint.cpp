@@ -59,7 +59,9 @@ private:
 // Hashes what it writes, in pieces of whole words.
 class Writer {
 public:
-    explicit Writer(const std::string& path) : file_(path) { pending_.reserve(kPiece); }
+    Writer(const std::string& path, OnFailure onFailure) : file_(path, onFailure) {
+        pending_.reserve(kPiece);
+    }
     void bytes(const void* data, uint64_t size) {
         const char* from = static_cast<const char*>(data);
         while (size > 0) {
@@ -175,10 +177,11 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches) {
     return hash.value();
 }
 
-uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver) {
+uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver,
+                        OnFailure onFailure) {
     const SolverState state = solver.state();
     const std::vector<StatePart> parts = solver.stateParts();
-    Writer writer(path);
+    Writer writer(path, onFailure);
     writer.bytes(kMagic.data(), kMagic.size());
     writer.section(key.version.data(), key.version.size());
     writer.section(key.settings.data(), key.settings.size());

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "assets/file_write.h"
 #include "bake/solver.h"
 
 namespace relume {
@@ -22,7 +23,8 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches);
 
 /// Writes where the solver stands, through a temporary file and piece by piece: memory for another copy of
 /// its light is not needed. Returns the file's size [bytes]. Throws Error; `path` then is as it was.
-uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver);
+uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver,
+                        OnFailure onFailure = OnFailure::Keep);
 
 /// A checkpoint that was found to be whole. Holds the file open, not its light.
 class Checkpoint {

@@ -142,6 +142,9 @@ expectWorldError nosuchfolder samples 16 -o nosuchfolder/directions.csv
 expectStatus 0 samples 16
 [ "$(wc -l <"$work/out")" -eq 17 ] || fail "relume samples 16: not a head line and 16 directions"
 
+expectUsageError bake room.glb -o room.exr --scene-out scene.gltf # written as binary glTF
+expectUsageError scene cornell_small -o scene.gltf
+expectUsageError unwrap room.glb -o scene.gltf
 expectUsageError shot room.glb # no -o
 expectUsageError shot room.glb -o shot.jpg
 expectUsageError shot room.glb -o shot.png --size 640
@@ -193,9 +196,140 @@ expectWorldError nosuchfolder bench edits broken.glb --plot nosuchfolder/edits.s
 expectWorldError nosuchfolder compare a.exr b.exr --diff nosuchfolder/diff.png
 expectWorldError nosuchfolder bake broken.glb -o room.exr --picture nosuchfolder/room.png
 
+# Outputs that cannot be written are found before anything is read.
+long=$(printf 'b%.0s' {1..252})
+expectWorldError 'its name is too long' bake broken.glb -o "$long.exr"
+expectWorldError 'its name is too long' bake broken.glb -o room.exr --json "$long.json"
+expectWorldError 'its name is too long' shot broken.glb -o "$long.png"
+expectWorldError 'its name is too long' timelapse broken.glb -o "$long$long"
+expectWorldError 'its name is too long' edit broken.glb -o "$long.glb" --delete Lamp
+expectWorldError 'its name is too long' unwrap broken.glb -o "$long.glb"
+expectWorldError 'its name is too long' mix broken.exr -o "$long.exr"
+expectWorldError 'its name is too long' compare a.exr b.exr --diff "$long.png"
+expectWorldError 'its name is too long' samples 16 -o "$long.csv"
+
 # A run that fails leaves nothing behind.
 left=$(ls | grep -vx broken.glb)
 [ -z "$left" ] || fail "failed runs left behind: $left"
+
+# $1: an option, $2: another; the rest: a command line in which both name one file. Nothing is changed.
+expectOneFile() {
+    local first=$1 second=$2 before
+    shift 2
+    before=$(cat -- * 2>/dev/null | cksum)
+    expectUsageError "$@"
+    [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$command: stderr is not one line"
+    grep -qF -e "$first" "$work/err" || fail "$command: stderr does not name $first"
+    grep -qF -e "$second" "$work/err" || fail "$command: stderr does not name $second"
+    [ "$(cat -- * 2>/dev/null | cksum)" = "$before" ] || fail "$command: a file has changed"
+}
+
+mkdir "$work/files"
+cd "$work/files"
+expectStatus 0 scene lamps -o s.glb
+ln -s s.glb soft.exr
+ln -s s.glb soft.png
+ln s.glb hard.exr
+ln -s o.exr dangling
+expectOneFile --json SCENE bake s.glb -o o.exr --json s.glb
+expectOneFile --json SCENE bake s.glb -o o.exr --json ./s.glb
+expectOneFile --output SCENE bake s.glb -o hard.exr
+expectOneFile --output SCENE bake s.glb -o soft.exr
+expectOneFile --checkpoint SCENE bake s.glb -o o.exr --checkpoint s.glb
+expectOneFile --scene-out SCENE bake s.glb -o o.exr --scene-out s.glb
+expectOneFile --output --json bake s.glb -o o.exr --json o.exr
+expectOneFile --output --error-map bake s.glb -o o.exr --error-map "$PWD/o.exr"
+expectOneFile --output --checkpoint bake s.glb -o o.exr --checkpoint dangling
+expectOneFile --picture --error-map bake s.glb -o o.exr --picture p.png --error-map ./p.png
+expectOneFile --checkpoint --json bake s.glb -o o.exr --checkpoint c --json c --resume c
+expectOneFile --output SCENE shot s.glb -o soft.png
+expectOneFile --output --lightmap shot s.glb --lightmap a.png -o a.png
+expectOneFile --output SCENE unwrap s.glb -o s.glb
+expectOneFile --bake SCENE edit s.glb --delete Bulb --bake hard.exr
+expectOneFile --output --bake edit s.glb --delete Bulb -o o.exr --bake o.exr
+expectOneFile --output LAYERS mix a.exr -o a.exr
+expectOneFile --diff A compare a.png b.exr --diff a.png
+expectOneFile --diff B compare a.exr b.png --diff b.png
+expectOneFile --diff --mask compare a.exr b.exr --mask m.png --diff ./m.png
+expectOneFile --json SCENE bench trace s.glb --json s.glb
+expectOneFile --json SCENE bench frames s.glb --json s.glb
+expectOneFile --json SCENE bench edits s.glb --json s.glb
+expectOneFile --json --plot bench edits s.glb --json j --plot j
+expectOneFile --html SCENE bench methods s.glb --html s.glb
+expectOneFile --html --json bench methods s.glb --html j --json j
+
+# A scene's own files count, too.
+printf '{"asset":{"version":"2.0"},"images":[{"uri":"wall.png"}],"scenes":[{"extras":{"relume":{"sky":
+{"file":"sky.exr"}}}}]}' >own.gltf
+: >wall.png
+expectOneFile --picture SCENE bake own.gltf -o o.exr --picture wall.png
+expectOneFile --output SCENE bake own.gltf -o sky.exr
+mkdir frames
+printf '{"asset":{"version":"2.0"},"images":[{"uri":"frames/frame_0002.png"}]}' >framed.gltf
+: >frames/frame_0002.png
+expectOneFile --output SCENE timelapse framed.gltf -o frames --overwrite
+
+# A scene may be edited in place, and keeps its rights; devices, FIFOs and links stay what they are.
+chmod 600 s.glb
+expectStatus 0 edit s.glb --add point,name=P,position=0,1,0 -o s.glb
+[ "$(stat -c %a s.glb)" = 600 ] || fail "$command: rights are $(stat -c %a s.glb), not 600"
+[ s.glb -ef hard.exr ] || fail "$command: a hard link was cut"
+[ -L soft.exr ] || fail "$command: a link is gone"
+expectStatus 0 info hard.exr
+mkfifo fifo.csv
+cat fifo.csv >got &
+expectStatus 0 samples 16 -o fifo.csv
+wait $!
+[ -p fifo.csv ] || fail "$command: the FIFO is none any more"
+[ "$(wc -l <got)" -eq 17 ] || fail "$command: $(wc -l <got) lines came out of the FIFO"
+ln -s /dev/null null.csv
+expectStatus 0 samples 16 -o null.csv
+[ -c /dev/null ] && [ -L null.csv ] || fail "$command: a device or a link to it is none any more"
+rm -rf -- *
+
+# Names of files need not be UTF-8.
+name=$(printf 'caf\351')
+mkdir "$name"
+expectStatus 0 scene cornell_small -o "$name/$name.glb"
+expectStatus 0 info "$name/$name.glb"
+expectStatus 0 info --json "$name/$name.glb"
+expectStatus 0 edit "$name/$name.glb" --add point,name=P,position=0,1,0 -o "$name.glb"
+expectStatus 0 unwrap "$name/$name.glb" -o "$name.glb" --all
+expectStatus 0 samples 4 -o "$name.json"
+cd "$work/here"
+
+# What is printed and does not arrive is an error; a reader that has enough is none.
+expectLostOutput() {
+    command="relume $*"
+    "$relume" "$@" >/dev/full 2>"$work/err" </dev/null
+    status=$?
+    [ $status -eq 1 ] || fail "$command >/dev/full: status $status, not 1"
+    [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$command >/dev/full: stderr is not one line"
+    grep -q 'the standard output cannot be written' "$work/err" || fail "$command >/dev/full: not told"
+}
+if [ -c /dev/full ]; then
+    "$relume" -q scene cornell_small -o s.glb
+    expectLostOutput --help
+    expectLostOutput --version
+    expectLostOutput bake --help
+    expectLostOutput scene --list
+    expectLostOutput samples 16
+    expectLostOutput samples 60000
+    expectLostOutput info s.glb
+    expectLostOutput info --json s.glb
+    expectLostOutput -q edit s.glb --add point,name=P,position=0,1,0 -o edited.glb
+fi
+"$relume" samples 16 >&- 2>"$work/err"
+[ $? -eq 1 ] || fail "relume samples 16 >&-: a closed standard output is no error"
+"$relume" samples 16 -o closed.csv >&- 2>"$work/err"
+[ $? -eq 0 ] && [ "$(wc -l <closed.csv)" -eq 17 ] || fail "relume samples 16 -o closed.csv >&-: the file is not whole"
+ignored=$(sed -n 's/^SigIgn:[[:space:]]*//p' /proc/self/status)
+if ((16#${ignored:-0} >> 12 & 1)); then
+    echo "command line: who runs this ignores SIGPIPE: not tested"
+else
+    "$relume" samples 60000 2>"$work/err" | sed -n 1q # is to end first
+    [ "${PIPESTATUS[0]}" -eq 141 ] && [ ! -s "$work/err" ] || fail "a reader that has enough: $(cat "$work/err")"
+fi
 
 [ $errors -eq 0 ] && echo "command line: all as expected" || echo "command line: $errors failures"
 [ $errors -eq 0 ]

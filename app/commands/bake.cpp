@@ -1,6 +1,7 @@
 #include "app/bake_checkpoints.h"
 #include "app/bake_statistics.h"
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/interrupt.h"
 #include "app/layer_file.h"
 #include "app/lightmap_attributes.h"
@@ -23,10 +24,25 @@ double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+void checkFiles(const BakeOptions& o) {
+    CommandFiles()
+        .readsScene("SCENE", o.scene)
+        .reads("--resume", o.resume)
+        .writes("--output", o.output)
+        .writes("--picture", o.picture)
+        .writes("--error-map", o.errorMap)
+        .writes("--checkpoint", o.checkpoint)
+        .writes("--json", o.json)
+        .writes("--scene-out", o.sceneOut)
+        .mayBe("--checkpoint", "--resume")
+        .check();
+}
+
 void bake(BakeOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(o);
+    checkFiles(o);
     o.method = methodName(request.bake.solver.method);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
@@ -38,6 +54,7 @@ void bake(BakeOptions o) {
     BakeCheckpoints checkpoints(o);
 
     PreparedScene prepared = prepareScene(request.prepare);
+    if (!o.sceneOut.empty()) checkGlb(prepared.scene, o.sceneOut);
     stopIfInterrupted();
     const auto deviceStart = Clock::now();
     const vk::Device device({.select = o.device, .validation = o.validate});

@@ -1,5 +1,6 @@
 #include "app/bake_options.h"
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/option_checks.h"
 #include "app/prepare.h"
 #include "app/trace_bench.h"
@@ -37,6 +38,7 @@ std::vector<TracerKind> tracersOf(const BenchOptions& o, const vk::DeviceInfo& i
 }
 
 void benchTrace(const BenchOptions& o) {
+    CommandFiles().readsScene("SCENE", o.scene).writes("--json", o.json).check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
@@ -82,10 +84,13 @@ void benchTrace(const BenchOptions& o) {
                                            {"device", device.info().name},
                                            {"driver", device.info().driver},
                                            {"results", results}};
+    // A file name need not be UTF-8.
+    const std::string text =
+        report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (o.json == "-")
-        std::cout << report.dump(2) << std::endl;
+        std::cout << text << std::flush;
     else
-        writeFileAtomically(o.json, report.dump(2) + "\n");
+        writeFileAtomically(o.json, text);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "app/bake_options.h"
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/edits_bench.h"
 #include "app/interrupt.h"
 #include "app/option_checks.h"
@@ -38,6 +39,12 @@ void runBench(BenchEditsOptions o) {
     o.bench.tracer = parseTracerKind(o.tracer);
     std::sort(o.bench.lamps.begin(), o.bench.lamps.end());
     o.bench.lamps.erase(std::unique(o.bench.lamps.begin(), o.bench.lamps.end()), o.bench.lamps.end());
+    CommandFiles()
+        .readsScene("SCENE", o.bench.scene)
+        .writes("--json", o.json)
+        .writes("--plot", o.plot)
+        .writes("--write-scene", o.bench.sceneOutput)
+        .check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.plot.empty()) checkFileWritable(o.plot, 0);
     if (!o.bench.sceneOutput.empty()) checkFileWritable(o.bench.sceneOutput, 0);

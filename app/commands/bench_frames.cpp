@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/frames_bench.h"
 #include "app/option_checks.h"
 #include "app/viewer/view_options.h"
@@ -48,6 +49,7 @@ void print(const FramesReport& report) {
 }
 
 void benchFrames(BenchFramesOptions o) {
+    CommandFiles().readsScene("SCENE", o.bench.bake.scene).writes("--json", o.json).check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     if (!o.bench.bake.shaders.empty()) setShaderFolder(o.bench.bake.shaders);
     o.bench.display = displayModeOf(o.display);
@@ -66,10 +68,13 @@ void benchFrames(BenchFramesOptions o) {
                                          {"bakeAlone", describe(report.bakeAlone)},
                                          {"cameraMoves", describe(report.moving)},
                                          {"cameraStill", describe(report.still)}};
+    // A file name need not be UTF-8.
+    const std::string text =
+        json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (o.json == "-")
-        std::cout << json.dump(2) << std::endl;
+        std::cout << text << std::flush;
     else
-        writeFileAtomically(o.json, json.dump(2) + "\n");
+        writeFileAtomically(o.json, text);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "app/bake_options.h"
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/interrupt.h"
 #include "app/methods_bench.h"
 #include "app/option_checks.h"
@@ -80,6 +81,11 @@ std::string commandOf(const BenchMethodsOptions& o, const MethodsBenchDesc& desc
 void runBench(const BenchMethodsOptions& o) {
     const InterruptGuard guard;
     const MethodsBenchDesc desc = resolve(o);
+    CommandFiles()
+        .readsScene("SCENE", o.bench.scene)
+        .writes("--html", o.html)
+        .writes("--json", o.json)
+        .check();
     checkFileWritable(o.html, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     const bool table = o.json != "-";

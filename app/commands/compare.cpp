@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/heat_map.h"
 #include "app/option_checks.h"
 #include "assets/error.h"
@@ -125,6 +126,12 @@ void runCompare(const CompareOptions& options) {
     if (!options.diff.empty()) {
         if (!options.diff.ends_with(".png"))
             throw UsageError("--diff: '" + options.diff + "' does not end in .png");
+        CommandFiles()
+            .reads("A", options.a)
+            .reads("B", options.b)
+            .reads("--mask", options.mask)
+            .writes("--diff", options.diff)
+            .check();
         checkWritable(options.diff);
     }
     const FloatImage a = readImage(options.a), b = readImage(options.b);

@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/edit_options.h"
 #include "app/bake_edits.h"
 #include "app/option_checks.h"
@@ -55,6 +56,25 @@ void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
         if (std::find(before.begin(), before.end(), option) == before.end()) option->needs(output);
 }
 
+std::vector<Setting> settingsOf(const SceneEdit& edit) {
+    if (const auto* set = std::get_if<SetEdit>(&edit)) return {set->setting};
+    if (const auto* light = std::get_if<AddLightEdit>(&edit)) return light->settings;
+    if (const auto* sky = std::get_if<AddSkyEdit>(&edit)) return sky->settings;
+    return {};
+}
+
+// Pictures that edits give the sky are read by --bake.
+void checkFiles(const EditOptions& options, const std::vector<TypedEdit>& typed) {
+    CommandFiles files;
+    files.readsScene("SCENE", options.scene).writes("--output", options.output).mayBe("--output", "SCENE");
+    files.writes("--bake", options.bake.output);
+    for (const TypedEdit& edit : typed)
+        for (const Setting& setting : settingsOf(edit.edit))
+            if (setting.property == Property::File)
+                files.reads(edit.option, std::get<std::string>(setting.value));
+    files.check();
+}
+
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     if (options.output.empty() && options.bake.output.empty())
         throw UsageError(
@@ -63,6 +83,7 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     const BakeOptions bake = bakes ? bakeOptionsOf(options) : BakeOptions{};
     if (typed.empty())
         throw UsageError("edit: no edit is given: add --set, --move, --add, --delete or another one");
+    checkFiles(options, typed);
     std::error_code code; // a missing scene is told by who reads it
     const auto bytes = std::filesystem::file_size(options.scene, code);
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);

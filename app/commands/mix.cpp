@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/light_mix.h"
 #include "assets/error.h"
 #include "assets/log.h"
@@ -58,6 +59,7 @@ void printList(const LayeredImage& image) {
 
 void runMix(const MixOptions& options) {
     const MixDesc desc = resolve(options);
+    CommandFiles().reads("LAYERS", options.layers).writes("--output", options.output).check();
     if (!options.output.empty()) checkWritable(options.output);
     LayeredImage image = readLayeredExr(options.layers);
     try {

@@ -54,6 +54,7 @@ void runSamples(const SamplesOptions& options) {
     const bool json = options.output.ends_with(".json");
     if (!options.output.empty() && !json && !options.output.ends_with(".csv"))
         throw UsageError("--output: '" + options.output + "' ends neither in .csv nor in .json");
+    if (!options.output.empty()) checkFileWritable(options.output, 0);
     const std::vector<glm::dvec3> directions = directionsOf(options);
     const std::string text = json ? jsonOf(options, directions) : csvOf(directions);
     if (options.output.empty()) {

@@ -1,6 +1,7 @@
 #include "app/command.h"
 
 #include "assets/error.h"
+#include "assets/file_write.h"
 #include "assets/generate.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
@@ -31,6 +32,7 @@ void makeScene(const SceneOptions& options) {
     if (!options.output.ends_with(".glb"))
         throw UsageError("scene: '" + options.output +
                          "' does not end in .glb: scenes are written as binary glTF");
+    checkFileWritable(options.output, 0);
     const Scene scene = generateScene(options.name);
     saveGlb(scene, options.output);
     size_t triangles = 0;

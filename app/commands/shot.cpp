@@ -1,5 +1,6 @@
 #include "app/bake_checkpoints.h"
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/interrupt.h"
 #include "app/picture_studio.h"
 #include "app/progress.h"
@@ -45,6 +46,11 @@ void shoot(ShotOptions o) {
     const InterruptGuard guard;
     const ShotRequest shot = resolveShotOptions(o);
     BakeRequest request = resolveBakeOptions(o.bake);
+    CommandFiles()
+        .readsScene("SCENE", o.bake.scene)
+        .reads("--lightmap", o.lightmap)
+        .writes("--output", o.bake.output)
+        .check();
     checkWritable(o.bake.output);
     if (!o.bake.shaders.empty()) setShaderFolder(o.bake.shaders);
     std::unique_ptr<FloatImage> image;

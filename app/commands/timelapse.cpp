@@ -1,4 +1,5 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/solve.h"
@@ -21,6 +22,13 @@ void makeTimelapse(const TimelapseOptions& o) {
     const TimelapseRequest request = resolveTimelapseOptions(o);
     const BakeOptions& options = o.shot.bake;
     const BakeRequest bakeRequest = resolveBakeOptions(options);
+    CommandFiles files;
+    files.readsScene("SCENE", options.scene);
+    if (isVideo(options.output))
+        files.writes("--output", options.output);
+    else
+        files.writesFrames("--output", options.output);
+    files.check();
     const auto writer = makeFrameWriter({.path = options.output,
                                          .width = request.shot.width,
                                          .height = request.shot.height,

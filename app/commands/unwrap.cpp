@@ -1,6 +1,8 @@
 #include "app/command.h"
+#include "app/command_files.h"
 #include "app/option_checks.h"
 #include "assets/error.h"
+#include "assets/file_write.h"
 #include "assets/gltf.h"
 #include "assets/log.h"
 #include "assets/unwrap.h"
@@ -21,6 +23,8 @@ struct UnwrapOptions {
 void runUnwrap(const UnwrapOptions& options) {
     if (std::filesystem::path(options.output).extension() != ".glb")
         throw UsageError(options.output + ": unwrap writes GLB: give a name that ends in .glb");
+    CommandFiles().readsScene("SCENE", options.scene).writes("--output", options.output).check();
+    checkFileWritable(options.output, 0);
     Scene scene = loadGltf(options.scene);
     for (const std::string& warning : scene.warnings)
         spdlog::warn("{}", warning);

@@ -3,6 +3,7 @@
 #include "assets/error.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
+#include "assets/uri.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +82,18 @@ private:
     int& wrong_;
 };
 
+constexpr std::string_view kFileUri = "file://";
+
+// A path as JSON can hold it: one that is no UTF-8 as a URI.
+std::string storedPath(const std::string& path) {
+    return isUtf8(path) ? path : std::string(kFileUri) + encodedUri(path);
+}
+
+std::string pathOf(const std::string& stored) {
+    return stored.starts_with(kFileUri) ? decodedUri(std::string_view(stored).substr(kFileUri.size()))
+                                        : stored;
+}
+
 Json point(const glm::vec3& p) {
     return {p.x, p.y, p.z};
 }
@@ -118,7 +131,7 @@ void readBookmarks(const Json& json, Preferences& preferences, int& wrong) {
     for (const auto& [scene, list] : json.items())
         for (const Json& entry : list) {
             const std::optional<Bookmark> mark = readBookmark(entry, wrong);
-            if (mark) preferences.bookmarks[scene].push_back(*mark);
+            if (mark) preferences.bookmarks[pathOf(scene)].push_back(*mark);
         }
 }
 
@@ -130,13 +143,15 @@ Json toJson(const Preferences& p) {
                  {"caption", p.caption},
                  {"filter", filterNames()[static_cast<size_t>(p.filter)]},
                  {"tone", toneNames()[static_cast<size_t>(p.tone)]},
-                 {"captureFolder", p.captureFolder},
-                 {"recent", p.recent}};
+                 {"captureFolder", storedPath(p.captureFolder)},
+                 {"recent", Json::array()}};
+    for (const std::string& path : p.recent)
+        json["recent"].push_back(storedPath(path));
     if (p.samples) json["samples"] = *p.samples;
     json["bookmarks"] = Json::object();
     for (const auto& [scene, marks] : p.bookmarks)
         for (const Bookmark& mark : marks)
-            json["bookmarks"][scene].push_back(writeBookmark(mark));
+            json["bookmarks"][storedPath(scene)].push_back(writeBookmark(mark));
     return json;
 }
 
@@ -190,6 +205,7 @@ Preferences readPreferences(const std::string& path) {
     reader.choice("filter", preferences.filter, filterNames());
     reader.choice("tone", preferences.tone, toneNames());
     reader.text("captureFolder", preferences.captureFolder);
+    preferences.captureFolder = pathOf(preferences.captureFolder);
     if (reader.find("samples") != nullptr) {
         uint32_t samples = 0;
         const int before = wrong;
@@ -199,7 +215,7 @@ Preferences readPreferences(const std::string& path) {
     if (const Json* recent = reader.find("recent"); recent != nullptr && recent->is_array()) {
         for (const Json& entry : *recent)
             if (entry.is_string() && preferences.recent.size() < Preferences::kMostRecent)
-                preferences.recent.push_back(entry.get<std::string>());
+                preferences.recent.push_back(pathOf(entry.get<std::string>()));
     }
     if (const Json* bookmarks = reader.find("bookmarks"); bookmarks != nullptr && bookmarks->is_object())
         readBookmarks(*bookmarks, preferences, wrong);
@@ -211,8 +227,9 @@ void writePreferences(const std::string& path, const Preferences& preferences) {
     std::error_code code;
     fs::create_directories(fs::path(path).parent_path(), code);
     if (code) throw Error(path + ": its folder cannot be made: " + code.message() + ": set XDG_CONFIG_HOME");
-    // Names of files may be no UTF-8: what is not is replaced.
-    writeFileAtomically(path, toJson(preferences).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    // Names of bookmarks may be no UTF-8: what is not is replaced.
+    writeFileAtomically(path, toJson(preferences).dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+                        OnFailure::Drop);
 }
 
 } // namespace relume

@@ -1,5 +1,6 @@
 #include "app/viewer/viewer.h"
 
+#include "app/command_files.h"
 #include "app/scene_edit.h"
 #include "assets/warnings.h"
 
@@ -73,6 +74,9 @@ void Viewer::exportLightmap(const std::string& path) {
     tell("export", path);
     if (!path.ends_with(".exr") && !path.ends_with(".png"))
         return note(path + ": a lightmap ends in .exr or .png", true);
+    const std::string problem =
+        CommandFiles().readsScene("the scene", session_->path()).writes("the lightmap", path).clash();
+    if (!problem.empty()) return note(problem, true);
     bake_->exportLightmap(
         {.path = path, .lightmap = session_->document().lightmap, .scene = session_->path()});
     note("writing " + path);
@@ -81,6 +85,12 @@ void Viewer::exportLightmap(const std::string& path) {
 void Viewer::save(const std::string& path) {
     endEdit();
     tell("save", path.empty() ? session_->path() : path);
+    const std::string problem = CommandFiles()
+                                    .readsScene("the scene", session_->path())
+                                    .writes("the saved scene", path)
+                                    .mayBe("the saved scene", "the scene")
+                                    .clash();
+    if (!problem.empty()) return note(problem, true);
     session_->save(path);
     pacer_.input();
 }

@@ -287,6 +287,26 @@ TEST_F(GltfEditBeside, UrisLeadFromAnotherFolderToTheSameFiles) {
     EXPECT_EQ(back.meshes[0].primitives[0].positions, before.meshes[0].primitives[0].positions);
 }
 
+// JSON holds UTF-8 alone, names of folders need not be.
+TEST_F(GltfEditBeside, UrisLeadOutOfAFolderWhoseNameIsNoUtf8) {
+    const std::string folder = folder_.path("caf\xe9"), path = folder + "/scene.gltf";
+    std::filesystem::rename(folder_.path("my scene"), folder);
+    const std::string target = folder_.path("saved/copy.gltf");
+    const Scene before = loadGltf(path);
+    Scene after = before;
+    after.lights[1].intensity = 7.5f;
+    saveEditedGltf(path, before, after, target);
+    EXPECT_EQ(jsonOf(target)["images"][0]["uri"], "../caf%E9/red.png");
+    EXPECT_EQ(loadGltf(target).images.size(), 1u);
+    // A path that is no URI has no escapes.
+    after.sky.radiance = glm::vec3(1);
+    after.sky.file = folder + "/dome.exr";
+    const std::string bytes = readAll(target);
+    EXPECT_NE(messageOf([&] { saveEditedGltf(path, before, after, target); }).find("is no UTF-8"),
+              std::string::npos);
+    EXPECT_EQ(readAll(target), bytes);
+}
+
 TEST_F(GltfEditBeside, InItsOwnFolderOnlyTheLinesOfTheEditChange) {
     std::string expected = readAll(path_);
     save(path_, [](Scene& scene) { scene.lights[1].transform[3].x = -1.5f; });

@@ -249,6 +249,23 @@ TEST_F(GltfExport, WritesASkyPictureWithoutAFileBesideTheScene) {
     EXPECT_TRUE(back.warnings.empty());
 }
 
+TEST_F(GltfExport, ASkyPictureWhosePathJsonCannotHoldIsToldBeforehand) {
+    const std::string folder = file("caf\xe9");
+    std::filesystem::create_directories(folder);
+    Scene scene = twoInstances();
+    scene.sky.radiance = glm::vec3(1.0f);
+    scene.sky.width = scene.sky.height = 1;
+    scene.sky.pixels = {{1, 2, 3}};
+    saveGlb(scene, folder + "/a.glb");
+    const Scene saved = loadGltf(folder + "/a.glb");
+    checkGlb(saved, folder + "/b.glb"); // in the same folder its name is enough
+    saveGlb(saved, folder + "/b.glb");
+    EXPECT_EQ(loadGltf(folder + "/b.glb").sky.pixels, scene.sky.pixels);
+    EXPECT_THROW(checkGlb(saved, file("c.glb")), Error);
+    EXPECT_THROW(saveGlb(saved, file("c.glb")), Error);
+    EXPECT_FALSE(std::filesystem::exists(file("c.glb")));
+}
+
 TEST_F(GltfExport, RefersToTheSkyPictureFromWhereItIsSaved) {
     Scene scene = twoInstances();
     scene.sky.radiance = glm::vec3(1.0f);

@@ -58,6 +58,20 @@ TEST_F(PreferencesFile, ComesBackAsItWas) {
     EXPECT_EQ(after.bookmarks.at("one.glb").front().camera.yfov, 0.5f);
 }
 
+// JSON holds UTF-8 alone, names of files need not be.
+TEST_F(PreferencesFile, NamesThatAreNoUtf8ComeBack) {
+    Preferences before;
+    before.captureFolder = "caf\xe9/shots";
+    before.recent = {"/home/caf\xe9/a b%20.glb", "/home/caf\xc3\xa9/plain%20.glb"};
+    before.bookmarks[before.recent[0]] = {{"corner", {}}};
+    before.bookmarks[before.recent[0]][0].camera.eye = {1, 2, 3};
+    writePreferences(path("p.json"), before);
+    const Preferences after = readPreferences(path("p.json"));
+    EXPECT_EQ(after.captureFolder, before.captureFolder);
+    EXPECT_EQ(after.recent, before.recent);
+    EXPECT_EQ(after.bookmarks.count(before.recent[0]), 1u);
+}
+
 TEST_F(PreferencesFile, BrokenOnesKeepTheDefaults) {
     const Preferences defaults;
     for (const char* text : {"", "{", "[]", "null", "17", "{\"window\": 3}", "\xff\xfe"}) {

@@ -1,0 +1,34 @@
+#include "assets/uri.h"
+
+#include <gtest/gtest.h>
+
+namespace relume {
+namespace {
+
+TEST(Uri, KnowsUtf8) {
+    for (const char* text :
+         {"", "plain", "h\xc3\xa4user", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xf4\x8f\xbf\xbf"})
+        EXPECT_TRUE(isUtf8(text)) << text;
+    for (const char* text : {"\xe9", "a\xe9z", "\xc3", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80",
+                             "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\x80", "\xe2\x82"})
+        EXPECT_FALSE(isUtf8(text)) << text;
+}
+
+TEST(Uri, ComesBackAsItWas) {
+    for (const std::string path : {"a b/c%20d.bin", "h\xc3\xa4user/x", "caf\xe9/\xff.png", "100%"}) {
+        EXPECT_EQ(decodedUri(encodedUri(path)), path);
+        EXPECT_TRUE(isUtf8(encodedUri(path)));
+    }
+    EXPECT_EQ(encodedUri("h\xc3\xa4user"), "h\xc3\xa4user");
+    EXPECT_EQ(encodedUri("caf\xe9"), "caf%E9");
+}
+
+TEST(Uri, TellsWhatIsRelative) {
+    for (const char* uri : {"a.bin", "sub/a:b.bin", "./x"})
+        EXPECT_TRUE(isRelativeUri(uri)) << uri;
+    for (const char* uri : {"", "/a", "#a", "data:x", "https://x"})
+        EXPECT_FALSE(isRelativeUri(uri)) << uri;
+}
+
+} // namespace
+} // namespace relume
