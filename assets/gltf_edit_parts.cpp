@@ -119,27 +119,6 @@ void editBaseColor(FileEdit& edit, EditedJson& material, const glm::vec4& color,
     }
 }
 
-int digitOf(char c) {
-    const char* const digits = "0123456789abcdef";
-    const char* const found = std::find(digits, digits + 16, static_cast<char>(std::tolower(c)));
-    return found == digits + 16 ? -1 : static_cast<int>(found - digits);
-}
-
-std::string decodedUri(const std::string& uri) {
-    std::string out;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        const bool escape = uri[i] == '%' && i + 2 < uri.size();
-        const int high = escape ? digitOf(uri[i + 1]) : -1, low = escape ? digitOf(uri[i + 2]) : -1;
-        if (high < 0 || low < 0) {
-            out += uri[i];
-        } else {
-            out += static_cast<char>(high * 16 + low);
-            i += 2;
-        }
-    }
-    return out;
-}
-
 std::string encodedUri(const std::string& path) {
     std::string out;
     for (const char c : path) {

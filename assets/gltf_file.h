@@ -33,6 +33,9 @@ std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json);
 /// none.
 const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key);
 
+/// A URI's percent escapes replaced by what they stand for.
+std::string decodedUri(const std::string& uri);
+
 /// The file's JSON text. Lives as long as the file's bytes.
 std::string_view jsonText(const File& file);
 
