@@ -2,9 +2,10 @@
 # Sets up, builds and tests Relume; ends with ctest's summary and its status.
 #
 #   ./test.sh                          everything, release build
-#   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan
+#   ./test.sh PRESET                   of CMakePresets.json: release, debug, asan, tsan, fuzz (libFuzzer, needs clang)
 #   ./test.sh PRESET LABEL             only one label: unit (no Vulkan), core (of these, without the program), gpu,
-#                                      live (any Vulkan device), ui (Xvfb), bench; with preset tsan: thread
+#                                      live (any Vulkan device), ui (Xvfb), bench; with preset tsan: thread;
+#                                      with asan or fuzz: fuzz
 #   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
 #
 # RELUME_WERROR=ON makes warnings errors.
@@ -16,7 +17,7 @@ label=${2:-all}
 shift $(($# < 2 ? $# : 2))
 case "$preset $label" in
     -* | *" -"*)
-        sed -n '2,10s/^# \{0,1\}//p' "$0"
+        sed -n '2,11s/^# \{0,1\}//p' "$0"
         exit 2
         ;;
 esac

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,8 +14,6 @@
 // What readers and writers of OpenEXR files have in common, be they of one part or of several. Whatever is
 // wrong with a file is thrown as std::exception.
 namespace relume::exr {
-
-constexpr uint64_t kMostPacking = 65536; // pixels per byte; the best case of EXR's codecs is far below
 
 class MemoryInput : public Imf::IStream {
 public:
@@ -48,25 +47,33 @@ std::string readBytes(const std::string& path);
 void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels);
 
 /// The image that a header tells of, without its pixels; channels R, G, B, A first, then by name. Throws
-/// Error where it has more than `mostPixels`; `bytes`: of the file, which must hold that many.
-FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t bytes, uint64_t mostPixels);
+/// Error where it has more than `mostPixels`.
+FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t mostPixels);
 
 /// The header that an image is written with.
 Imf::Header headerOf(const FloatImage& image, ExrType type);
 
-/// Reads the pixels of an Imf::InputFile or Imf::InputPart.
+/// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
+/// claims and the file does not have costs none.
 template<class Part>
-FloatImage readPart(Part& part, const std::string& path, uint64_t bytes, uint64_t mostPixels) {
-    FloatImage image = imageOf(part.header(), path, bytes, mostPixels);
+FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
+    constexpr int kLines = 256; // whole chunks of all codecs
+    FloatImage image = imageOf(part.header(), path, mostPixels);
     const Imath::Box2i window = part.header().dataWindow();
     Imf::FrameBuffer frame;
     image.planes.resize(image.channels.size());
     for (size_t c = 0; c < image.channels.size(); ++c) {
-        image.planes[c].resize(size_t(image.width) * image.height);
+        image.planes[c].reserve(size_t(image.width) * image.height);
         frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), window));
     }
     part.setFrameBuffer(frame);
-    part.readPixels(window.min.y, window.max.y);
+    for (int done = 0; done < int(image.height);) {
+        const int lines = std::min(kLines, int(image.height) - done);
+        for (std::vector<float>& plane : image.planes)
+            plane.resize(plane.size() + size_t(image.width) * size_t(lines));
+        part.readPixels(window.min.y + done, window.min.y + done + lines - 1);
+        done += lines;
+    }
     return image;
 }
 

@@ -1,8 +1,11 @@
 #include "assets/float_image.h"
 
 #include "assets/error.h"
+#include "assets/exr_check.h"
 #include "assets/exr_part.h"
 #include "assets/file_write.h"
+#include "assets/log.h"
+#include "assets/png_check.h"
 #include "assets/radiance_hdr.h"
 
 #include <ImfInputFile.h>
@@ -32,6 +35,9 @@
 namespace relume {
 namespace {
 
+// Pixels per byte: DEFLATE makes 1032 bytes of one at best, each of eight pixels.
+constexpr uint64_t kMostPngPacking = 8 * 1040;
+
 enum class Format { Exr, Png, Hdr };
 enum class Access { Read, Write };
 
@@ -47,9 +53,10 @@ Format formatOf(const std::string& path, Access access) {
 }
 
 FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
+    exr::checkHeaders(bytes);
     exr::MemoryInput stream(path.c_str(), bytes);
     Imf::InputFile file(stream); // of several parts the first one
-    return exr::readPart(file, path, bytes.size(), mostPixels);
+    return exr::readPart(file, path, mostPixels);
 }
 
 std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type) {
@@ -65,20 +72,29 @@ std::string encodeExr(const std::string& path, const FloatImage& image, ExrType 
 
 FloatImage readHdr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
     const RadianceHeader header = readRadianceHeader(bytes);
-    if (uint64_t(header.width) * header.height / exr::kMostPacking > bytes.size())
-        throw std::runtime_error("its header claims " + std::to_string(header.width) + " x " +
-                                 std::to_string(header.height));
     exr::checkPixels(path, header.width, header.height, mostPixels);
     return decodeRadiance(bytes, header);
 }
 
-FloatImage readPng(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
+/// What is missing of a PNG's end is given to it, for stb knows no picture without.
+std::string mendedPng(const std::string& path, std::string bytes) {
+    PngDamage damage = findPngDamage(bytes);
+    if (!damage.problem.empty())
+        spdlog::warn("{}: {}: it is damaged, make or copy it again", path, damage.problem);
+    return damage.mended.empty() ? std::move(bytes) : std::move(damage.mended);
+}
+
+FloatImage readPng(const std::string& path, std::string bytes, uint64_t mostPixels) {
     if (bytes.size() > size_t(std::numeric_limits<int>::max())) throw std::runtime_error("too large");
+    bytes = mendedPng(path, std::move(bytes));
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = int(bytes.size());
     int width = 0, height = 0, channels = 0;
-    if (stbi_info_from_memory(data, size, &width, &height, &channels))
+    if (stbi_info_from_memory(data, size, &width, &height, &channels)) {
         exr::checkPixels(path, uint64_t(width), uint64_t(height), mostPixels);
+        if (uint64_t(width) * uint64_t(height) / kMostPngPacking > bytes.size())
+            throw std::runtime_error(fmt::format("its header claims {} x {} pixels", width, height));
+    }
     // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
     const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
@@ -119,10 +135,11 @@ double linearFromSrgb(double encoded) {
 
 FloatImage readImage(const std::string& path, uint64_t mostPixels) {
     const Format format = formatOf(path, Access::Read);
-    const std::string bytes = exr::readBytes(path);
+    std::string bytes = exr::readBytes(path);
     try {
         if (format == Format::Hdr) return readHdr(path, bytes, mostPixels);
-        return format == Format::Exr ? readExr(path, bytes, mostPixels) : readPng(path, bytes, mostPixels);
+        return format == Format::Exr ? readExr(path, bytes, mostPixels)
+                                     : readPng(path, std::move(bytes), mostPixels);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
+#include "assets/gltf_size.h"
 #include "assets/scene.h"
 #include "assets/warnings.h"
 
@@ -18,6 +19,7 @@ struct Build {
     nlohmann::json nodes, scenes; // arrays as in the file
     nlohmann::json lights;        // the array of KHR_lights_punctual as in the file
     int defaultScene = 0;
+    SizeLimit limit;
     Scene scene;
     Warnings warnings;
 };
@@ -46,6 +48,10 @@ void addLights(Build& build, size_t node, const glm::mat4& world);
 
 /// Fills Scene::sky from the default scene's extras, its picture included. Throws Error.
 void buildSky(Build& build);
+
+/// An image of the file as 8-bit RGBA; the parsed file's bytes of it are dropped. Throws Error where it is
+/// missing, cannot be decoded or is too large; warns where it is damaged.
+Image decodeImage(Build& build, int index);
 
 /// A numeric member of an extension's JSON, `fallback` where it is missing.
 double numberOr(const tinygltf::Value& value, const char* key, double fallback);

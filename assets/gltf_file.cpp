@@ -1,16 +1,14 @@
 #include "assets/gltf_file.h"
 
 #include "assets/error.h"
+#include "assets/file_read.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 namespace relume::gltf {
@@ -29,20 +27,11 @@ uint32_t readU32(const std::vector<uint8_t>& bytes, size_t offset) {
 }
 
 std::vector<uint8_t> readBytes(const std::string& path) {
-    std::error_code code;
-    if (std::filesystem::is_directory(path, code))
-        throw Error(fmt::format("{}: is a folder: name a .gltf or .glb file", path));
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    if (!stream)
-        throw Error(fmt::format("{}: cannot be opened ({}): check the path", path, std::strerror(errno)));
-    const std::streamoff size = stream.tellg();
-    if (size < 0) throw Error(fmt::format("{}: is not a regular file: name a .gltf or .glb file", path));
-    if (static_cast<uint64_t>(size) > std::numeric_limits<uint32_t>::max())
+    RegularFile file(path, "name a .gltf or .glb file");
+    if (file.size() > std::numeric_limits<uint32_t>::max())
         throw Error(fmt::format("{}: is larger than 4 GiB, which glTF cannot hold: split the scene", path));
-    std::vector<uint8_t> bytes(static_cast<size_t>(size));
-    stream.seekg(0);
-    stream.read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!stream) throw Error(fmt::format("{}: cannot be read ({})", path, std::strerror(errno)));
+    std::vector<uint8_t> bytes(file.size());
+    file.read(bytes.data(), bytes.size());
     return bytes;
 }
 

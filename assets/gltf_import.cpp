@@ -1,6 +1,7 @@
 #include "assets/gltf.h"
 
 #include "assets/error.h"
+#include "assets/file_read.h"
 #include "assets/gltf_build.h"
 #include "assets/gltf_check.h"
 #include "assets/gltf_file.h"
@@ -38,6 +39,28 @@ json takeLights(json& document) {
     return lights;
 }
 
+/// Regular files only, by their name alone: the parser's own would wait for pipes.
+bool isFile(const std::string& path, void*) {
+    std::error_code code;
+    return std::filesystem::is_regular_file(path, code);
+}
+
+std::string sameName(const std::string& path, void*) {
+    return path;
+}
+
+bool readAll(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+    try {
+        RegularFile file(path, "name a file");
+        out->resize(file.size());
+        file.read(out->data(), out->size());
+        return true;
+    } catch (const Error& reason) {
+        *error = reason.what();
+        return false;
+    }
+}
+
 /// Hands the parser all but what the checked JSON already tells as well.
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
@@ -51,6 +74,7 @@ void parse(File file, Build& build) {
 
     tinygltf::TinyGLTF parser;
     parser.SetImageLoader(keepImageBytes, nullptr);
+    parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, nullptr});
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
     const unsigned int size = static_cast<unsigned int>(bytes.size());
     std::string error, warning;
@@ -78,6 +102,21 @@ void warnUnsupported(const File& file, Build& build) {
         build.warnings.add("animations", "are not supported, the scene stands as stored");
 }
 
+/// Of all instances.
+double triangleCount(const Scene& scene) {
+    std::vector<double> ofMesh;
+    for (const Mesh& mesh : scene.meshes) {
+        double corners = 0;
+        for (const Primitive& primitive : mesh.primitives)
+            corners += static_cast<double>(primitive.indices.size());
+        ofMesh.push_back(corners / 3);
+    }
+    double triangles = 0;
+    for (const Instance& instance : scene.instances)
+        triangles += ofMesh[static_cast<size_t>(instance.mesh)];
+    return triangles;
+}
+
 } // namespace
 
 } // namespace gltf
@@ -87,12 +126,14 @@ Scene loadGltf(const std::string& path) {
     build.path = path;
     gltf::File file = gltf::readFile(path);
     gltf::check(file);
+    build.limit = gltf::checkSizes(file);
     gltf::warnUnsupported(file, build);
     gltf::parse(std::move(file), build);
     build.scene.path = path;
     gltf::buildMaterials(build);
     gltf::buildMeshes(build);
     gltf::buildNodes(build);
+    build.limit.require(gltf::Made::Triangles, gltf::triangleCount(build.scene));
     gltf::buildSky(build);
     if (build.scene.instances.empty())
         throw Error(

@@ -274,7 +274,10 @@ void buildSky(Build& build) {
         for (const std::string& warning : readSkyPicture(sky))
             build.warnings.add("sky " + inQuotes(file), warning);
     } catch (const Error& error) {
-        throw Error(fmt::format("{}: its sky: {}", build.path, error.what()));
+        std::string reason = error.what(); // with the name as the file spells it
+        std::replace_if(
+            reason.begin(), reason.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+        throw Error(fmt::format("{}: its sky: {}", build.path, reason));
     }
 }
 

@@ -62,46 +62,10 @@ glm::mat3 transformMatrix(const tinygltf::Value& extension) {
     return translation * rotation * scaling;
 }
 
-/// Decodes PNG, JPEG and the like to 8-bit RGBA; false where the bytes are no such image.
-bool decode(const tinygltf::Image& source, int index, Image& image) {
-    tinygltf::Image decoded;
-    std::string error, warning;
-    const bool good = !source.image.empty() &&
-                      tinygltf::LoadImageData(&decoded, index, &error, &warning, 0, 0, source.image.data(),
-                                              static_cast<int>(source.image.size()), nullptr);
-    if (!good || decoded.width <= 0 || decoded.height <= 0) return false;
-    image.width = static_cast<uint32_t>(decoded.width);
-    image.height = static_cast<uint32_t>(decoded.height);
-    const size_t values = size_t(image.width) * image.height * 4;
-    if (decoded.component != 4 || decoded.image.size() < values * static_cast<size_t>(decoded.bits / 8))
-        return false;
-    if (decoded.bits == 8) {
-        image.rgba = std::move(decoded.image);
-        image.rgba.resize(values);
-        return true;
-    }
-    image.rgba.resize(values);
-    for (size_t i = 0; i < values; ++i)
-        image.rgba[i] = decoded.image[2 * i + 1]; // the high byte of 16 bits
-    return true;
-}
-
 int MaterialBuilder::image(int source) {
     int& known = imageIndex_[static_cast<size_t>(source)];
     if (known >= 0) return known;
-    const tinygltf::Image& from = build_.model.images[static_cast<size_t>(source)];
-    const std::string where = from.uri.empty() ? fmt::format("image {} {}", source, inQuotes(from.name))
-                                               : fmt::format("image file {}", inQuotes(from.uri));
-    if (from.image.empty())
-        throw Error(
-            fmt::format("{}: {} is missing or empty: put it beside the scene or export with embedded images",
-                        build_.path, where));
-    Image image;
-    image.name = from.name;
-    if (!decode(from, source, image))
-        throw Error(
-            fmt::format("{}: {} cannot be decoded: export textures as PNG or JPEG", build_.path, where));
-    build_.scene.images.push_back(std::move(image));
+    build_.scene.images.push_back(decodeImage(build_, source));
     return known = static_cast<int>(build_.scene.images.size()) - 1;
 }
 
@@ -178,12 +142,6 @@ Material MaterialBuilder::material(const tinygltf::Material& source) {
 double numberOr(const tinygltf::Value& value, const char* key, double fallback) {
     if (!value.IsObject() || !value.Has(key) || !value.Get(key).IsNumber()) return fallback;
     return value.Get(key).GetNumberAsDouble();
-}
-
-bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                    const unsigned char* bytes, int size, void*) {
-    image->image.assign(bytes, bytes + size);
-    return true;
 }
 
 void buildMaterials(Build& build) {

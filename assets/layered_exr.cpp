@@ -1,6 +1,7 @@
 #include "assets/layered_exr.h"
 
 #include "assets/error.h"
+#include "assets/exr_check.h"
 #include "assets/exr_part.h"
 #include "assets/file_write.h"
 #include "assets/warnings.h"
@@ -78,8 +79,7 @@ void requireColors(const std::string& path, const FloatImage& image, const std::
                                     channel));
 }
 
-LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& file, int index,
-                              uint64_t bytes) {
+LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& file, int index) {
     const Imf::Header& header = file.header(index);
     LayeredImage::Layer layer;
     const auto* name = header.findTypedAttribute<Imf::StringAttribute>(kName);
@@ -94,7 +94,7 @@ LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& 
             throw Error(fmt::format("{}: the weight of its part {} is not finite: bake it again", path,
                                     inQuotes(layer.name)));
     Imf::InputPart part(file, index);
-    layer.image = exr::readPart(part, path, bytes, kMostImagePixels);
+    layer.image = exr::readPart(part, path, kMostImagePixels);
     requireColors(path, layer.image, layer.name);
     layer.attributes = std::move(layer.image.attributes);
     layer.attributes.erase(kName);
@@ -102,14 +102,13 @@ LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& 
     return layer;
 }
 
-/// Before pixels are read: memory is asked for what the file can hold.
-void checkParts(const std::string& path, const Imf::MultiPartInputFile& file, uint64_t bytes) {
+/// Before pixels are read, which may take long.
+void checkParts(const std::string& path, const Imf::MultiPartInputFile& file) {
     const auto* layers = file.header(0).findTypedAttribute<Imf::IntAttribute>(kLayers);
     if (!layers) throw Error(path + ": has no layers: name a file that 'relume bake --layers' wrote");
     if (layers->value() != file.parts() - 1)
         throw Error(fmt::format("{}: has {} of its {} layers: is it complete?", path, file.parts() - 1,
                                 layers->value()));
-    uint64_t pixels = 0;
     for (int p = 0; p < file.parts(); ++p) {
         if (!file.partComplete(p))
             throw Error(fmt::format("{}: its part {} is not complete: copy or bake it again", path,
@@ -118,23 +117,21 @@ void checkParts(const std::string& path, const Imf::MultiPartInputFile& file, ui
         if (window != first)
             throw Error(fmt::format("{}: its part {} has another size than the composite: bake it again",
                                     path, inQuotes(file.header(p).name())));
-        const FloatImage part = exr::imageOf(file.header(p), path, bytes, kMostImagePixels);
-        pixels += uint64_t(part.width) * part.height;
     }
-    if (pixels / exr::kMostPacking > bytes) throw std::runtime_error("its headers claim too many pixels");
 }
 
 LayeredImage read(const std::string& path, const std::string& bytes) {
+    exr::checkHeaders(bytes);
     exr::MemoryInput stream(path.c_str(), bytes);
     Imf::MultiPartInputFile file(stream);
-    checkParts(path, file, bytes.size());
+    checkParts(path, file);
     LayeredImage image;
     Imf::InputPart composite(file, 0);
-    image.composite = exr::readPart(composite, path, bytes.size(), kMostImagePixels);
+    image.composite = exr::readPart(composite, path, kMostImagePixels);
     requireColors(path, image.composite, kCompositeName);
     std::set<std::string> names;
     for (int p = 1; p < file.parts(); ++p) {
-        image.layers.push_back(readLayer(path, file, p, bytes.size()));
+        image.layers.push_back(readLayer(path, file, p));
         if (!names.insert(image.layers.back().name).second)
             throw Error(fmt::format("{}: has two layers named {}: bake it again", path,
                                     inQuotes(image.layers.back().name)));

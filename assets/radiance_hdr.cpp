@@ -17,6 +17,10 @@ using Rgbe = std::array<uint8_t, 4>;
 // Rows of other widths are never stored channel by channel.
 constexpr uint32_t kNarrowestPlanar = 8, kWidestPlanar = 0x7fff;
 
+// Runs of rows stored channel by channel make 16 pixels of a byte, older ones of one colour more, up to whole
+// rows.
+constexpr uint64_t kMostHdrPacking = 1024, kFreePixels = 1 << 24;
+
 std::string_view takeLine(std::string_view bytes, size_t& at) {
     const size_t end = bytes.find('\n', at);
     if (end == std::string_view::npos) throw std::runtime_error("its header does not end");
@@ -45,11 +49,14 @@ class PixelReader {
 public:
     PixelReader(std::string_view bytes, size_t at) : bytes_(bytes), at_(at) {}
 
-    void row(std::vector<Rgbe>& row) {
-        if (row.size() >= kNarrowestPlanar && row.size() <= kWidestPlanar && isPlanar(row.size()))
+    void row(std::vector<Rgbe>& row, size_t width) {
+        row.clear();
+        if (width >= kNarrowestPlanar && width <= kWidestPlanar && isPlanar(width)) {
+            row.resize(width);
             planarRow(row);
-        else
-            pixelRow(row);
+        } else {
+            pixelRow(row, width);
+        }
     }
 
 private:
@@ -79,21 +86,20 @@ private:
     }
 
     // Pixel by pixel; (1, 1, 1, n) repeats the pixel before n times, further ones are higher digits of n.
-    void pixelRow(std::vector<Rgbe>& row) {
+    void pixelRow(std::vector<Rgbe>& row, size_t width) {
         int shift = 0;
-        for (size_t x = 0; x < row.size();) {
+        while (row.size() < width) {
             Rgbe pixel;
             for (uint8_t& byte : pixel)
                 byte = next();
             if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
-                row[x++] = pixel;
+                row.push_back(pixel);
                 shift = 0;
                 continue;
             }
-            const size_t count = shift < 24 ? size_t{pixel[3]} << shift : row.size() + 1;
-            if (x == 0 || count > row.size() - x) throw std::runtime_error("a run is damaged");
-            for (size_t i = 0; i < count; ++i, ++x)
-                row[x] = row[x - 1];
+            const size_t count = shift < 24 ? size_t{pixel[3]} << shift : width + 1;
+            if (row.empty() || count > width - row.size()) throw std::runtime_error("a run is damaged");
+            row.resize(row.size() + count, Rgbe(row.back()));
             shift += 8;
         }
     }
@@ -117,22 +123,28 @@ RadianceHeader readRadianceHeader(std::string_view bytes) {
     std::string_view size = takeLine(bytes, header.dataBegin);
     header.height = takeExtent(size, "-Y ");
     header.width = takeExtent(size, "+X ");
+    const uint64_t pixels = uint64_t{header.width} * header.height;
+    if (pixels > kFreePixels && pixels / kMostHdrPacking > bytes.size())
+        throw std::runtime_error("its header claims " + std::to_string(header.width) + " x " +
+                                 std::to_string(header.height) + " pixels");
     return header;
 }
 
 FloatImage decodeRadiance(std::string_view bytes, const RadianceHeader& header) {
-    FloatImage image{header.width, header.height, {}, {}, {}};
-    for (const char* channel : {"R", "G", "B"})
-        image.add(channel);
+    FloatImage image{header.width, header.height, {"R", "G", "B"}, {}, {}};
+    image.planes.resize(3);
+    for (std::vector<float>& plane : image.planes)
+        plane.reserve(size_t{header.width} *
+                      header.height); // filled as rows come: a header may claim anything
     PixelReader reader(bytes, header.dataBegin);
-    std::vector<Rgbe> row(header.width);
+    std::vector<Rgbe> row;
     for (size_t y = 0; y < header.height; ++y) {
-        reader.row(row);
+        reader.row(row, header.width);
         for (size_t x = 0; x < header.width; ++x) {
             // The exponent is that of a mantissa below 1 with an excess of 128, the mantissa is in 1/256.
             const float unit = row[x][3] == 0 ? 0.0f : std::ldexp(1.0f, int{row[x][3]} - (128 + 8));
             for (size_t c = 0; c < 3; ++c)
-                image.planes[c][y * header.width + x] = unit * static_cast<float>(row[x][c]);
+                image.planes[c].push_back(unit * static_cast<float>(row[x][c]));
         }
     }
     return image;

@@ -1,6 +1,7 @@
 #include "bake/checkpoint.h"
 
 #include "assets/error.h"
+#include "assets/file_read.h"
 #include "assets/file_write.h"
 #include "bake/lamps.h"
 #include "bake/patches.h"
@@ -194,9 +195,15 @@ uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solve
     return writer.finish();
 }
 
-Checkpoint::Checkpoint(const std::string& path, const std::string& version)
-    : path_(path), file_(path, std::ios::binary) {
-    std::error_code code;
+uint64_t checkpointHash(std::string_view bytes) {
+    Hash hash;
+    hash.add(bytes.data(), bytes.size());
+    return hash.value();
+}
+
+Checkpoint::Checkpoint(const std::string& path, const std::string& version) : path_(path) {
+    refuseOddKind(path, "name a file that --checkpoint wrote");
+    file_.open(path, std::ios::binary);
     if (!file_ || file_.peek() == std::ifstream::traits_type::eof()) {
         const int error = file_.is_open() ? 0 : errno;
         fail((error != 0 ? "cannot read: " + std::generic_category().message(error) : "is empty") +

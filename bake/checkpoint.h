@@ -26,6 +26,9 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches);
 uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver,
                         OnFailure onFailure = OnFailure::Keep);
 
+/// What a checkpoint ends with, of all bytes before: for tests, which change what a damaged file could not.
+uint64_t checkpointHash(std::string_view bytes);
+
 /// A checkpoint that was found to be whole. Holds the file open, not its light.
 class Checkpoint {
 public:

@@ -1,6 +1,7 @@
 #include "app/viewer/preferences.h"
 
 #include "assets/error.h"
+#include "assets/file_read.h"
 #include "assets/file_write.h"
 #include "assets/log.h"
 #include "assets/uri.h"
@@ -123,7 +124,12 @@ std::optional<Bookmark> readBookmark(const Json& json, int& wrong) {
     const float sum = glm::length(camera.eye) + glm::length(camera.target) + glm::length(camera.up);
     const bool usable = !mark.name.empty() && std::isfinite(sum) && camera.eye != camera.target &&
                         glm::length(camera.up) > 0.0f;
-    reader.take(usable, [&] { camera.up = glm::normalize(camera.up); });
+    // What is of unit length but for rounding stays as it is: each file would have other digits than the one
+    // before.
+    const float length = glm::length(camera.up);
+    reader.take(usable, [&] {
+        if (std::abs(length - 1.0f) > 1e-6f) camera.up = glm::normalize(camera.up);
+    });
     return wrong == before ? std::optional(mark) : std::nullopt;
 }
 
@@ -185,6 +191,10 @@ std::string defaultCaptureFolder() {
 
 Preferences readPreferences(const std::string& path) {
     Preferences preferences;
+    if (const std::string kind = oddKindOf(path); !kind.empty()) { // reading a pipe would wait
+        spdlog::warn("{}: {}: all settings keep their defaults", path, kind);
+        return preferences;
+    }
     std::ifstream file(path, std::ios::binary);
     if (!file) return preferences;
     std::ostringstream bytes;

@@ -1,10 +1,10 @@
 // Which side of a surface sends, receives and blocks.
 #include "assets/log.h"
+#include "tests/log_capture.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
 
 #include <sstream>
 
@@ -22,25 +22,6 @@ Witnesses addWitnesses(SceneMaker& maker) {
 }
 
 const double kParallel = closed::parallelRectangles(1, 1, 1);
-
-/// Warnings logged while it lives.
-class LogCapture {
-public:
-    LogCapture() : old_(spdlog::default_logger()) {
-        auto sink = std::make_shared<spdlog::sinks::ostream_sink_mt>(text_);
-        spdlog::set_default_logger(std::make_shared<spdlog::logger>("capture", sink));
-        spdlog::set_level(spdlog::level::warn);
-    }
-    ~LogCapture() {
-        spdlog::set_default_logger(old_);
-        spdlog::set_level(spdlog::level::info);
-    }
-    std::string text() const { return text_.str(); }
-
-private:
-    std::ostringstream text_;
-    std::shared_ptr<spdlog::logger> old_;
-};
 
 } // namespace
 

@@ -4,7 +4,7 @@
 #include "assets/lightmap_atlas.h"
 #include "assets/unwrap.h"
 #include "assets/world_mesh.h"
-#include "tests/unit/glb_builder.h"
+#include "tests/unit/rich_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,9 @@ namespace {
 
 using nlohmann::json;
 using test::GlbBuilder;
+using test::richScene;
 using test::squareScene;
+using test::useImage;
 
 /// Loading must fail with one line that names the file and holds `part`.
 void expectError(const std::string& path, const std::string& part) {
@@ -191,12 +193,6 @@ TEST(GltfBadInput, RequiredExtensions) {
                   [](GlbBuilder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; });
 }
 
-void useImage(GlbBuilder& b, const json& image) {
-    b.json["images"] = {image};
-    b.json["textures"] = {{{"source", 0}}};
-    b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-}
-
 TEST(GltfBadInput, MissingOrBrokenImages) {
     expectSpoiled("missing", "image file 'nowhere.png' is missing", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
@@ -228,46 +224,6 @@ TEST(GltfBadInput, TrianglesWithNanAreDroppedWithAWarning) {
         bad.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
             bad.accessor<float>({inf, 0, 0, 1, nan, 0, 1, inf, 0, nan, 1, 0}, "VEC3");
     });
-}
-
-/// A scene that uses most of what the import knows.
-GlbBuilder richScene() {
-    GlbBuilder b = squareScene();
-    useImage(b, {{"bufferView", b.view(test::kTwoPixels)}, {"mimeType", "image/png"}});
-    b.json["samplers"] = {{{"wrapS", 33071}}};
-    b.json["textures"][0]["sampler"] = 0;
-    b.json["materials"][0]["emissiveFactor"] = {1, 1, 1};
-    b.json["materials"][0]["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 2;
-    b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]
-          ["KHR_texture_transform"] = {
-        {"offset", {0, 1}}, {"rotation", 1}, {"scale", {.5, .5}}, {"texCoord", 1}};
-    json& primitive = b.json["meshes"][0]["primitives"][0];
-    primitive["material"] = 0;
-    primitive["attributes"]["COLOR_0"] = b.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, "VEC3");
-    b.json["accessors"][0]["sparse"] = {
-        {"count", 1},
-        {"indices", {{"bufferView", b.view<uint16_t>({1, 0})}, {"componentType", 5123}}},
-        {"values", {{"bufferView", b.view<float>({7, 8, 9})}}}};
-    b.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-    b.json["nodes"][0]["translation"] = {1, 2, 3};
-    b.json["nodes"][0]["camera"] = 0;
-    b.node({{"children", {0}}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}});
-    b.json["scenes"] = {{{"nodes", {1}}}};
-    b.json["scene"] = 0;
-    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", .7}, {"znear", .1}}}}};
-    while (b.bin.size() % 4 != 0)
-        b.bin.push_back(0);
-    b.json["buffers"] = {{{"byteLength", b.bin.size()}}};
-    b.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"},
-                                                              {"color", {1, 1, 1}},
-                                                              {"spot", {{"outerConeAngle", .6}}},
-                                                              {"extras", {{"relume", {{"radius", .1}}}}}}};
-    b.json["nodes"][0]["extras"]["relume"]["areaLight"] = {
-        {"type", "rectangle"}, {"color", {1, 1, 1}}, {"intensity", 2}, {"size", {1, 2}}};
-    b.json["scenes"][0]["extras"]["relume"]["sky"] = {
-        {"color", {1, 1, 1}}, {"intensity", 2}, {"rotation", 1}};
-    return b;
 }
 
 struct Outcomes {

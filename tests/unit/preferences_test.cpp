@@ -2,6 +2,7 @@
 #include "app/viewer/preferences.h"
 #include "assets/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,6 +10,8 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+
+#include <sys/stat.h>
 
 namespace relume {
 namespace {
@@ -70,6 +73,23 @@ TEST_F(PreferencesFile, NamesThatAreNoUtf8ComeBack) {
     EXPECT_EQ(after.captureFolder, before.captureFolder);
     EXPECT_EQ(after.recent, before.recent);
     EXPECT_EQ(after.bookmarks.count(before.recent[0]), 1u);
+}
+
+TEST_F(PreferencesFile, ReadAndWrittenAgainABookmarkKeepsItsDigits) {
+    Preferences preferences;
+    Bookmark mark{"corner", {}};
+    mark.camera.up = {8, 1, 0}; // as somebody may type it; it is made one of unit length
+    preferences.bookmarks["scene.glb"] = {mark};
+    writePreferences(path("typed"), preferences);
+    writePreferences(path("once"), readPreferences(path("typed")));
+    writePreferences(path("twice"), readPreferences(path("once")));
+    EXPECT_EQ(bytesOf(path("once")), bytesOf(path("twice")));
+}
+
+TEST_F(PreferencesFile, APipeIsNotWaitedFor) {
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    EXPECT_EQ(readPreferences(path("pipe")).width, Preferences().width);
+    EXPECT_EQ(readPreferences(folder_.path()).width, Preferences().width);
 }
 
 TEST_F(PreferencesFile, BrokenOnesKeepTheDefaults) {
