@@ -4,6 +4,7 @@
 #include "assets/gltf_build.h"
 #include "assets/gltf_check.h"
 #include "assets/gltf_file.h"
+#include "assets/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -97,6 +98,10 @@ Scene loadGltf(const std::string& path) {
     if (build.scene.instances.empty())
         throw Error(
             fmt::format("{}: has no mesh with triangles in its scene: export it with its geometry", path));
+    dropFarTriangles(build.scene, build.warnings);
+    if (build.scene.instances.empty())
+        throw Error(fmt::format("{}: all its triangles reach beyond {:g} m: make it smaller or move it", path,
+                                kFarthest));
     build.scene.warnings = build.warnings.lines(path);
     return std::move(build.scene);
 }

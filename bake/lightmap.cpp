@@ -1,6 +1,7 @@
 #include "bake/lightmap.h"
 
 #include "assets/error.h"
+#include "assets/finite_image.h"
 
 #include <array>
 
@@ -89,6 +90,7 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
         planes.set(texel, value, kPatchCoverage);
     }
     if (desc.sew) sewSeams(planes, desc.rtrad ? 1 : desc.dilate, desc.rtrad);
+    requireFinite(image, "the lightmap");
     return image;
 }
 

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/log.h"
+#include "assets/scene_limits.h"
 #include "renderer/good_view.h"
 
 #include <algorithm>
@@ -237,6 +238,7 @@ void Session::startBake(bool keepLight) {
 void Session::edit(const std::string& name, const Document& wanted) {
     Document next = wanted;
     file_.number(next.edits.lights);
+    if (scene_) limitEdits(scene_->prepared.scene, document_.edits, next.edits);
     if (open_ && done_ == steps_.size() && done_ > 0 && steps_.back().name == name) {
         steps_.back().after = next;
     } else {
