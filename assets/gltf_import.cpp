@@ -5,6 +5,7 @@
 #include "assets/gltf_check.h"
 #include "assets/gltf_file.h"
 #include "assets/scene_limits.h"
+#include "assets/watch.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -86,8 +87,11 @@ void warnUnsupported(const File& file, Build& build) {
 Scene loadGltf(const std::string& path) {
     gltf::Build build;
     build.path = path;
+    tellWatch("loading");
     gltf::File file = gltf::readFile(path);
+    tellWatch("loading");
     gltf::check(file);
+    tellWatch("loading");
     gltf::warnUnsupported(file, build);
     gltf::parse(std::move(file), build);
     build.scene.path = path;

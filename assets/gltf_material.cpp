@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/scene_limits.h"
+#include "assets/watch.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -98,6 +99,7 @@ int MaterialBuilder::image(int source) {
         throw Error(
             fmt::format("{}: {} is missing or empty: put it beside the scene or export with embedded images",
                         build_.path, where));
+    tellWatch("loading");
     Image image;
     image.name = from.name;
     if (!decode(from, source, image))

@@ -3,6 +3,7 @@
 #include "assets/error.h"
 #include "assets/rect_pack.h"
 #include "assets/uv_grid.h"
+#include "assets/watch.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -202,6 +203,7 @@ std::vector<PackedRect> packDensest(const Scene& scene, const std::vector<Footpr
     if (packAt(footprints, high, size, rects)) return rects;
     constexpr int kSteps = 14; // leaves 1/16384 of the bound
     for (int step = 0; step < kSteps; ++step) {
+        tellWatch("atlas", double(step) / kSteps);
         const double middle = 0.5 * (low + high);
         const bool fits = packAt(footprints, middle, size, rects);
         (fits ? low : high) = middle;
@@ -242,7 +244,8 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, LightmapAtlas& atlas, War
     std::vector<bool> chosen(scene.meshes.size());
     size_t usable = 0;
     std::string fault;
-    for (size_t i = 0; i < scene.instances.size(); ++i) {
+    WatchedLoop loop("atlas", static_cast<double>(scene.instances.size()));
+    for (size_t i = 0; i < scene.instances.size(); ++i, loop.step()) {
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
         if (scene.meshes[mesh].primitives.empty()) continue;
         if (!chosen[mesh]) {

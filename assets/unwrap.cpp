@@ -5,6 +5,7 @@
 #include "assets/numbering.h"
 #include "assets/planar_charts.h"
 #include "assets/rect_pack.h"
+#include "assets/watch.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -79,6 +80,7 @@ double areaOf(const std::vector<glm::dvec3>& corners) {
 
 /// Gives each chart whole texels and packs them.
 Packing packCharts(const std::vector<PlanarChart>& charts, double density, const std::string& name) {
+    tellWatch("packing charts");
     Packing packing;
     packing.rects.resize(charts.size());
     double area = 0.0;
@@ -212,6 +214,7 @@ std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) 
     }
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         if (!chosen[i]) continue;
+        tellWatch("unwrapping", double(i) / double(scene.meshes.size()));
         Job job{i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0};
         job.charts = cutPlanarCharts(job.corners);
         const double largest = areaOf(job.corners);

@@ -4,6 +4,7 @@
 #include "assets/log.h"
 #include "assets/scene_limits.h"
 #include "assets/uv_charts.h"
+#include "assets/watch.h"
 
 #include <array>
 #include <cfloat>
@@ -123,7 +124,9 @@ void Flattener::add(const Part& part) {
         positions_[v] = glm::vec3(part.transform * glm::vec4(primitive.positions[v], 1.0f));
         normals_[v] = primitive.normals.empty() ? glm::vec3(0.0f) : toNormal * primitive.normals[v];
     }
-    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+    constexpr unsigned kTriangles = 4096;
+    WatchedLoop loop("triangles", static_cast<double>(primitive.indices.size() / 3), kTriangles);
+    for (size_t i = 0; i < primitive.indices.size(); i += 3, loop.step()) {
         std::array<uint32_t, 3> corners = {primitive.indices[i], primitive.indices[i + 1],
                                            primitive.indices[i + 2]};
         if (mirrored) std::swap(corners[1], corners[2]);

@@ -10,6 +10,7 @@
 #include "shaders/shader_library.h"
 
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -55,6 +56,7 @@ void shoot(ShotOptions o) {
     PreparedScene prepared;
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(o.bake);
+    std::optional<PhaseProgress> phase(std::in_place, true);
     prepared = prepareScene(request.prepare);
     stopIfInterrupted();
     studio.open(o, shot, prepared);
@@ -62,6 +64,7 @@ void shoot(ShotOptions o) {
         bake = std::make_unique<PictureBake>(o.bake, request, prepared);
         image = std::make_unique<FloatImage>(bakeLightmap(o, request, *bake));
     }
+    phase.reset();
     std::unique_ptr<LightmapImage> lightmap;
     if (image)
         lightmap = std::make_unique<LightmapImage>(*image, o.lightmap.empty() ? "lightmap" : o.lightmap);

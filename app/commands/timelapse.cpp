@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -31,6 +32,7 @@ void makeTimelapse(const TimelapseOptions& o) {
     PreparedScene prepared;
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(options);
+    std::optional<PhaseProgress> phase(std::in_place, false); // there is a video on its way
     prepared = prepareScene(bakeRequest.prepare);
     stopIfInterrupted();
     studio.open(o.shot, request.shot, prepared);
@@ -46,6 +48,7 @@ void makeTimelapse(const TimelapseOptions& o) {
          .title = fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.scene).stem().string(),
                               methodName(solver.method), options.size, options.size),
          .pairs = isPairMethod(solver.method)});
+    phase.reset();
     solve(bake->baker().solver(), solver, timelapse);
     bake->logEnd();
     timelapse.finish();
