@@ -413,21 +413,4 @@ bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount) {
     return backs >= kLeastBacks * sampleCount && 2 * backs + sky > sampleCount;
 }
 
-uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
-    uint32_t marked = 0;
-    for (uint32_t i = 0; i < patches.count; ++i) {
-        uint32_t backs = 0, sky = 0;
-        const size_t base = size_t{i / kChunk} * sampleCount * kChunk + i % kChunk;
-        for (uint32_t k = 0; k < sampleCount; ++k) {
-            const uint32_t link = links[base + size_t{k} * kChunk];
-            backs += link == shader::kLinkBack;
-            sky += link == shader::kLinkSky;
-        }
-        if (!liesInside(backs, sky, sampleCount)) continue;
-        patches.scene.patches[i].flags &= ~shader::kPatchSends;
-        ++marked;
-    }
-    return marked;
-}
-
 } // namespace relume
