@@ -4,17 +4,21 @@
 #include "app/interrupt.h"
 #include "app/layer_file.h"
 #include "app/lightmap_attributes.h"
+#include "app/progress.h"
 #include "app/solve.h"
 #include "assets/error.h"
 #include "assets/log.h"
 #include "assets/sky_picture.h"
 #include "bake/vk/device.h"
 
+#include <optional>
+
 namespace relume {
 
 void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(options);
+    std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
     const bool moved = editsOf(prepared.scene).placements != edits.placements;
     applyEdits(prepared.scene, edits);
@@ -25,7 +29,9 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     warnIfDark(prepared.scene, baker.patches());
     BakeCheckpoints none(options);
+    phase.reset();
     solve(baker.solver(), request.bake.solver, none);
+    phase.emplace(false);
     FloatImage image = baker.lightmap(request.lightmap);
     addLightmapAttributes(image, options.scene, request.bake, request.lightmap, baker.solver().progress());
     if (options.layers)

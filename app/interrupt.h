@@ -13,4 +13,18 @@ public:
     static bool requested();
 };
 
+/// Throws Error when Ctrl-C was pressed while an InterruptGuard exists.
+void stopIfInterrupted();
+
+/// While one exists, beside an InterruptGuard, no file is being written and no work is worth being saved:
+/// what has not stopped by itself 0.4 s after Ctrl-C, because a library or a driver does not come back, is
+/// ended as an interrupted job is, with the same message and exit status.
+class Abandonable {
+public:
+    Abandonable();
+    ~Abandonable();
+    Abandonable(const Abandonable&) = delete;
+    Abandonable& operator=(const Abandonable&) = delete;
+};
+
 } // namespace relume

@@ -36,6 +36,21 @@ void ProgressLine::show(const std::string& text) {
     std::fflush(stderr);
 }
 
+PhaseProgress::PhaseProgress(bool nothingToLose) : scope_(*this) {
+    if (nothingToLose) abandonable_.emplace();
+}
+
+PhaseProgress::~PhaseProgress() = default;
+
+void PhaseProgress::hear(const char* phase, double done) {
+    stopIfInterrupted();
+    if (line_.due()) line_.show(phaseText(phase, done));
+}
+
+std::string phaseText(const char* phase, double done) {
+    return done >= 0 ? fmt::format("{}  {:.0f} %", phase, 100.0 * done) : phase;
+}
+
 std::string formatDuration(double seconds) {
     if (!(seconds >= 0)) return "?";
     const auto s = static_cast<long>(seconds + 0.5);

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
+
+#include "app/interrupt.h"
+#include "assets/watch.h"
 
 namespace relume {
 
@@ -22,6 +26,24 @@ private:
     bool terminal_;
     std::chrono::steady_clock::time_point next_;
 };
+
+/// Shows how what comes before and after a bake's steps stands, phase by phase, and ends it on Ctrl-C.
+class PhaseProgress final : public Watch {
+public:
+    /// nothingToLose: as Abandonable has it.
+    explicit PhaseProgress(bool nothingToLose);
+    ~PhaseProgress() override;
+    /// Throws Error when Ctrl-C was pressed while an InterruptGuard exists.
+    void hear(const char* phase, double done) override;
+
+private:
+    ProgressLine line_;
+    std::optional<Abandonable> abandonable_;
+    WatchScope scope_;
+};
+
+/// "patches  45 %", or "tracer" where the share is not known.
+std::string phaseText(const char* phase, double done);
 
 /// "12 s", "3 min 05 s", "2 h 10 min"; "?" for a negative number.
 std::string formatDuration(double seconds);

@@ -5,6 +5,7 @@
 #include "app/scene_pose.h"
 #include "assets/black_body.h"
 #include "assets/error.h"
+#include "assets/scene_limits.h"
 #include "assets/sky_picture.h"
 #include "assets/warnings.h"
 
@@ -117,6 +118,9 @@ void setLamp(Light& light, const Setting& setting) {
 
 /// What several settings together must be.
 void requireGood(const Light& light) {
+    Light limited = light;
+    if (const std::vector<std::string> problems = limitLight(limited); !problems.empty())
+        throw UsageError(fmt::format("the light {}: give a smaller number", problems.front()));
     if (light.type == LightType::Disc && !(light.radius > 0.0f))
         throw UsageError("a disc needs a radius: give metres above 0");
     if (light.type == LightType::Spot && light.innerConeAngle > light.outerConeAngle)
@@ -148,6 +152,7 @@ void setSky(SkySettings& sky, const Setting& setting) {
     Sky picture; // read for what is wrong with it: it would be found at the next load only
     picture.file = sky.file;
     readSkyPicture(picture);
+    limitSky(picture);
     if (!(largest(sky.radiance) > 0.0f)) sky.radiance = glm::vec3(1.0f);
 }
 
@@ -171,7 +176,17 @@ struct Editor {
     NamedThing find(const std::string& name, const ThingKinds& kinds) const {
         return findThing(namedThings(scene, edits), name, kinds);
     }
-    glm::mat4& transformOf(const NamedThing& thing) const {
+    /// Throws UsageError where it would reach too far.
+    void place(const NamedThing& thing, const glm::mat4& transform) const {
+        requirePlace(glm::vec3(transform[3]));
+        const bool isLamp = thing.kind == ThingKind::Lamp;
+        const int mesh = isLamp ? -1 : scene.instances[thing.index].mesh;
+        if (mesh >= 0 && !isWithinReach(scene.meshes[static_cast<size_t>(mesh)], transform))
+            throw UsageError(
+                fmt::format("{} would reach beyond {:g} m: keep it nearer", thing.label(), kFarthest));
+        (isLamp ? edits.lights[thing.index].transform : edits.placements[thing.index].transform) = transform;
+    }
+    const glm::mat4& transformOf(const NamedThing& thing) const {
         return thing.kind == ThingKind::Lamp ? edits.lights[thing.index].transform
                                              : edits.placements[thing.index].transform;
     }
@@ -210,23 +225,23 @@ std::string Editor::operator()(const SetEdit& edit) const {
 std::string Editor::operator()(const MoveEdit& edit) const {
     requirePoint(edit.place);
     const NamedThing thing = find(edit.name, kPlaced);
-    glm::mat4& transform = transformOf(thing);
-    const glm::vec3 place = edit.relative ? glm::vec3(transform[3]) + edit.place : edit.place;
-    transform[3] = glm::vec4(place, 1.0f);
-    return fmt::format("{}: at {:.6g},{:.6g},{:.6g}", thing.label(), place.x, place.y, place.z);
+    glm::mat4 transform = transformOf(thing);
+    const glm::vec3 to = edit.relative ? glm::vec3(transform[3]) + edit.place : edit.place;
+    transform[3] = glm::vec4(to, 1.0f);
+    place(thing, transform);
+    return fmt::format("{}: at {:.6g},{:.6g},{:.6g}", thing.label(), to.x, to.y, to.z);
 }
 
 std::string Editor::operator()(const RotateEdit& edit) const {
     requirePoint(edit.degrees);
     const NamedThing thing = find(edit.name, kPlaced);
-    glm::mat4& transform = transformOf(thing);
-    transform = turned(transform, edit.degrees);
+    place(thing, turned(transformOf(thing), edit.degrees));
     return fmt::format("{}: turned to {:.6g},{:.6g},{:.6g} degrees", thing.label(), edit.degrees.x,
                        edit.degrees.y, edit.degrees.z);
 }
 
 std::string Editor::operator()(const AimEdit& edit) const {
-    requirePoint(edit.target);
+    requirePlace(edit.target);
     const NamedThing thing = find(edit.name, {.lamps = true});
     Light& light = edits.lights[thing.index];
     light.transform = aimed(light, edit.target);
@@ -239,7 +254,7 @@ std::string Editor::operator()(const AddLightEdit& edit) const {
     light.type = edit.type;
     light.name = lightTypeName(edit.type);
     if (light.type == LightType::Disc) light.radius = 0.5f; // 1 m across, as a rectangle is
-    requirePoint(edit.position);
+    requirePlace(edit.position);
     requirePoint(edit.rotation);
     for (const Setting& setting : edit.settings) {
         relume::requireGood(setting);
@@ -249,7 +264,7 @@ std::string Editor::operator()(const AddLightEdit& edit) const {
     light.transform[3] = glm::vec4(edit.position, 1.0f);
     light.transform = turned(light.transform, edit.rotation);
     if (edit.aim) {
-        requirePoint(*edit.aim);
+        requirePlace(*edit.aim);
         light.transform = aimed(light, *edit.aim);
     }
     edits.lights.push_back(light);

@@ -1,6 +1,7 @@
 #include "app/scene_pose.h"
 
 #include "assets/error.h"
+#include "assets/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -50,6 +51,13 @@ void requirePoint(const glm::vec3& point) {
         if (!std::isfinite(point[i]))
             throw UsageError(fmt::format("{:.6g},{:.6g},{:.6g} are no finite numbers: give x,y,z", point.x,
                                          point.y, point.z));
+}
+
+void requirePlace(const glm::vec3& place) {
+    requirePoint(place);
+    if (!isWithinReach(place))
+        throw UsageError(fmt::format("{:.6g},{:.6g},{:.6g} is too far away: give metres from -{:g} to {:g}",
+                                     place.x, place.y, place.z, kFarthest, kFarthest));
 }
 
 glm::mat4 turned(const glm::mat4& transform, const glm::vec3& degrees) {

@@ -8,6 +8,8 @@ namespace relume {
 
 /// Throws UsageError where a coordinate is not finite.
 void requirePoint(const glm::vec3& point);
+/// The same where it is farther away than things of a scene may be (assets/scene_limits.h).
+void requirePlace(const glm::vec3& place);
 
 /// The transform with another rotation: from the unturned state about the world's X, then Y, then Z
 /// [degrees]. Place, scale, shear and mirroring stay.

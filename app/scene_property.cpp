@@ -4,6 +4,7 @@
 #include "assets/black_body.h"
 #include "assets/error.h"
 #include "assets/float_image.h"
+#include "assets/scene_limits.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -33,27 +34,28 @@ struct PropertyRow {
 
 constexpr std::array kRows = {
     PropertyRow{"name", Property::Name, ValueKind::Text, 0, 0, "give a text"},
-    PropertyRow{"intensity", Property::Intensity, ValueKind::Number, 0, kMostNumber,
-                "give a number of 0 or more"},
+    PropertyRow{"intensity", Property::Intensity, ValueKind::Number, 0, kBrightest,
+                "give a number from 0 to 1e12"},
     PropertyRow{"color", Property::Color, ValueKind::Color, 0, 1,
                 "give #rrggbb or r,g,b from 0 to 1, and what is brighter by the intensity"},
     PropertyRow{"temperature", Property::Temperature, ValueKind::Number, kLowestTemperature,
                 kHighestTemperature, "give kelvins from 1000 to 15000"},
-    PropertyRow{"radius", Property::Radius, ValueKind::Number, 0, kMostNumber, "give metres, 0 or more"},
+    PropertyRow{"radius", Property::Radius, ValueKind::Number, 0, kFarthest, "give metres from 0 to 1e8"},
     PropertyRow{"angle", Property::Angle, ValueKind::Number, 0, 180, "give degrees from 0 to 180"},
-    PropertyRow{"size", Property::Size, ValueKind::Pair, 0, kMostNumber,
-                "give width,height in metres above 0"},
+    PropertyRow{"size", Property::Size, ValueKind::Pair, 0, kFarthest,
+                "give width,height in metres above 0, up to 1e8"},
     PropertyRow{"range", Property::Range, ValueKind::Number, 0, kMostNumber,
                 "give metres, or 0 for no limit"},
     PropertyRow{"inner", Property::Inner, ValueKind::Number, 0, 90,
                 "give degrees from 0 to the outer cone's"},
     PropertyRow{"outer", Property::Outer, ValueKind::Number, kNarrowestCone, 90,
                 "give degrees from the axis, from 0.0573 to 90"},
-    PropertyRow{"strength", Property::Strength, ValueKind::Number, 0, kMostNumber, "give cd/m^2, 0 or more"},
+    PropertyRow{"strength", Property::Strength, ValueKind::Number, 0, kBrightest,
+                "give cd/m^2 from 0 to 1e12"},
     PropertyRow{"baseColor", Property::BaseColor, ValueKind::Color, 0, 1,
                 "give #rrggbb or r,g,b from 0 to 1"},
-    PropertyRow{"emission", Property::Emission, ValueKind::Radiance, 0, kMostNumber,
-                "give r,g,b in cd/m^2, 0 or more"},
+    PropertyRow{"emission", Property::Emission, ValueKind::Radiance, 0, kBrightest,
+                "give r,g,b in cd/m^2 from 0 to 1e12"},
     PropertyRow{"rotation", Property::Rotation, ValueKind::Number, -kMostNumber, kMostNumber, "give degrees"},
     PropertyRow{"file", Property::File, ValueKind::Text, 0, 0, "name an .exr or .hdr file"},
 };

@@ -31,10 +31,6 @@ std::string progressText(Solver& solver, const SolverSettings& settings) {
 
 } // namespace
 
-void stopIfInterrupted() {
-    if (InterruptGuard::requested()) throw Error("interrupted: nothing was written");
-}
-
 void warnIfDark(const Scene& scene, const PatchSet& patches) {
     for (uint32_t i = 0; i < patches.count; ++i) {
         const bool emits =

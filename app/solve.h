@@ -1,12 +1,10 @@
 #pragma once
 
+#include "app/interrupt.h"
 #include "app/solve_watcher.h"
 #include "bake/baker.h"
 
 namespace relume {
-
-/// Throws Error when Ctrl-C was pressed while an InterruptGuard exists.
-void stopIfInterrupted();
 
 /// Warns about a scene in which nothing emits.
 void warnIfDark(const Scene& scene, const PatchSet& patches);

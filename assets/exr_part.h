@@ -9,6 +9,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 
+#include "assets/watch.h"
 #include "assets/float_image.h"
 
 // What readers and writers of OpenEXR files have in common, be they of one part or of several. Whatever is
@@ -92,7 +93,12 @@ void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
         frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, part.header().dataWindow()));
     }
     part.setFrameBuffer(frame);
-    part.writePixels(int(image.height));
+    // In portions, between which a job can be told how far it is, and ended.
+    constexpr int kRows = 64;
+    for (int left = int(image.height); left > 0; left -= kRows) {
+        tellWatch("writing", 1.0 - double(left) / image.height);
+        part.writePixels(std::min(left, kRows));
+    }
 }
 
 void warnAboutCut(const std::string& path, size_t cut);

@@ -190,6 +190,8 @@ void writeImage(const std::string& path, const FloatImage& image, ExrType type) 
             bytes = encodeExr(path, image, type);
         } catch (const std::bad_alloc&) {
             throw;
+        } catch (const Error&) { // of who watches
+            throw;
         } catch (const std::exception& error) {
             throw Error(path + ": cannot be encoded as OpenEXR: " + error.what());
         }

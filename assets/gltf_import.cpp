@@ -5,6 +5,8 @@
 #include "assets/gltf_build.h"
 #include "assets/gltf_check.h"
 #include "assets/gltf_file.h"
+#include "assets/scene_limits.h"
+#include "assets/watch.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -124,9 +126,12 @@ double triangleCount(const Scene& scene) {
 Scene loadGltf(const std::string& path) {
     gltf::Build build;
     build.path = path;
+    tellWatch("loading");
     gltf::File file = gltf::readFile(path);
+    tellWatch("loading");
     gltf::check(file);
     build.limit = gltf::checkSizes(file);
+    tellWatch("loading");
     gltf::warnUnsupported(file, build);
     gltf::parse(std::move(file), build);
     build.scene.path = path;
@@ -138,6 +143,10 @@ Scene loadGltf(const std::string& path) {
     if (build.scene.instances.empty())
         throw Error(
             fmt::format("{}: has no mesh with triangles in its scene: export it with its geometry", path));
+    dropFarTriangles(build.scene, build.warnings);
+    if (build.scene.instances.empty())
+        throw Error(fmt::format("{}: all its triangles reach beyond {:g} m: make it smaller or move it", path,
+                                kFarthest));
     build.scene.warnings = build.warnings.lines(path);
     return std::move(build.scene);
 }

@@ -1,6 +1,7 @@
 #include "assets/error.h"
 #include "assets/gltf_build.h"
 #include "assets/gltf_file.h"
+#include "assets/scene_limits.h"
 #include "assets/sky_picture.h"
 
 #include <glm/gtc/constants.hpp>
@@ -172,6 +173,15 @@ void addLight(Build& build, Light light, const Source& source, const Numbers& nu
     light.transform = *transform;
     light.color = glm::vec3(numbers.color());
     light.intensity = numbers.notNegative("intensity", 1.0f);
+    for (const std::string& problem : limitLight(light))
+        numbers.warn(problem);
+    if (light.type == LightType::Directional) {
+        if (!isWithinReach(glm::vec3(light.transform[3])))
+            light.transform[3] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f); // which means nothing to it
+    } else if (!isWithinReach(glm::vec3(light.transform[3]))) {
+        numbers.warn(fmt::format("stands more than {:g} m away and is ignored: move it", kFarthest));
+        return;
+    }
     build.scene.lights.push_back(std::move(light));
 }
 
@@ -262,17 +272,21 @@ void buildSky(Build& build) {
     const Numbers numbers(*source, "sky", build.warnings);
     Sky& sky = build.scene.sky;
     const glm::dvec3 radiance = numbers.color() * double(numbers.notNegative("intensity", 1.0f));
-    constexpr double kLargest = std::numeric_limits<float>::max();
-    if (std::max({radiance.r, radiance.g, radiance.b}) > kLargest)
-        numbers.warn("its color times its intensity is too large and is cut");
+    constexpr double kLargest = std::numeric_limits<float>::max(); // limitSky has a closer bound
     sky.radiance = glm::vec3(glm::min(radiance, kLargest));
     sky.rotation = numbers.number("rotation", 0.0f);
     const std::string file = source->value("file", "");
-    if (file.empty()) return;
+    if (file.empty()) {
+        for (const std::string& problem : limitSky(sky))
+            numbers.warn(problem);
+        return;
+    }
     sky.file = (std::filesystem::path(build.path).parent_path() / file).string();
     try {
         for (const std::string& warning : readSkyPicture(sky))
             build.warnings.add("sky " + inQuotes(file), warning);
+        for (const std::string& problem : limitSky(sky))
+            build.warnings.add("sky " + inQuotes(file), problem);
     } catch (const Error& error) {
         std::string reason = error.what(); // with the name as the file spells it
         std::replace_if(

@@ -1,11 +1,14 @@
 #include "assets/gltf_build.h"
 
 #include "assets/error.h"
+#include "assets/scene_limits.h"
+#include "assets/watch.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace relume::gltf {
 
@@ -65,6 +68,7 @@ glm::mat3 transformMatrix(const tinygltf::Value& extension) {
 int MaterialBuilder::image(int source) {
     int& known = imageIndex_[static_cast<size_t>(source)];
     if (known >= 0) return known;
+    tellWatch("loading");
     build_.scene.images.push_back(decodeImage(build_, source));
     return known = static_cast<int>(build_.scene.images.size()) - 1;
 }
@@ -112,7 +116,6 @@ float bounded(double value, double low, double high) {
 }
 
 Material MaterialBuilder::material(const tinygltf::Material& source) {
-    constexpr double kBrightest = 1e12; // [cd/m^2], a thousand times the sun's disc; keeps float sums finite
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     Material material;
     material.name = source.name;
@@ -123,8 +126,8 @@ Material MaterialBuilder::material(const tinygltf::Material& source) {
     const auto extension = source.extensions.find("KHR_materials_emissive_strength");
     if (extension != source.extensions.end()) strength = numberOr(extension->second, "emissiveStrength", 1.0);
     for (int c = 0; c < 3; ++c)
-        material.emission[c] =
-            bounded(source.emissiveFactor[static_cast<size_t>(c)] * strength, 0.0, kBrightest);
+        material.emission[c] = bounded(source.emissiveFactor[static_cast<size_t>(c)] * strength, 0.0,
+                                       std::numeric_limits<float>::max()); // limitMaterial has a closer bound
     if (material.emission != glm::vec3(0.0f)) material.emissionTexture = reference(source.emissiveTexture);
     material.metallic = bounded(pbr.metallicFactor, 0.0, 1.0);
     material.roughness = bounded(pbr.roughnessFactor, 0.0, 1.0);
@@ -148,6 +151,8 @@ void buildMaterials(Build& build) {
     MaterialBuilder builder(build);
     for (size_t i = 0; i < build.model.materials.size(); ++i) {
         build.scene.materials.push_back(builder.material(build.model.materials[i]));
+        for (const std::string& problem : limitMaterial(build.scene.materials.back()))
+            build.warnings.add(nameOf("material", build.model.materials[i].name, i), problem);
         if (build.scene.materials.back().alphaMode == AlphaMode::Blend)
             build.warnings.add(nameOf("material", build.model.materials[i].name, i),
                                "alpha mode BLEND is baked as opaque");

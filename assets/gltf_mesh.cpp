@@ -1,6 +1,7 @@
 #include "assets/gltf_build.h"
 
 #include "assets/error.h"
+#include "assets/watch.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -257,7 +258,8 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
 } // namespace
 
 void buildMeshes(Build& build) {
-    for (size_t i = 0; i < build.model.meshes.size(); ++i) {
+    WatchedLoop loop("loading", static_cast<double>(build.model.meshes.size()));
+    for (size_t i = 0; i < build.model.meshes.size(); ++i, loop.step()) {
         const tinygltf::Mesh& source = build.model.meshes[i];
         const std::string where =
             source.name.empty() ? fmt::format("mesh {}", i) : "mesh " + inQuotes(source.name);

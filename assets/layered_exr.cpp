@@ -154,6 +154,8 @@ void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType
     std::string bytes;
     try {
         bytes = encode(path, image, type);
+    } catch (const Error&) { // of who watches
+        throw;
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {

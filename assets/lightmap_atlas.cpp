@@ -3,6 +3,7 @@
 #include "assets/error.h"
 #include "assets/rect_pack.h"
 #include "assets/uv_grid.h"
+#include "assets/watch.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -29,6 +30,7 @@ struct SetQuality {
     std::string fault;     // why it is not usable
     glm::dvec2 low{0.0}, high{0.0};
     double uvArea = 0.0;
+    uint64_t visits = 0; // of cells, to find overlaps
 };
 
 /// The set chosen for a mesh; texCoord -1: none.
@@ -51,6 +53,14 @@ void forEachUvTriangle(const Mesh& mesh, int set, const Visit& visit) {
             visit(glm::dvec2(uvs[t[0]]), glm::dvec2(uvs[t[1]]), glm::dvec2(uvs[t[2]]));
         }
     }
+}
+
+/// Adds a mesh's triangles as long as the grid can still say that they do not overlap: each may cover all
+/// cells, so that many triangles, or meshes, of the same UVs would cost their product.
+void addWhileFree(UvGrid& grid, const Mesh& mesh, int set) {
+    forEachUvTriangle(mesh, set, [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+        if (!grid.mustOverlap(kMaxOverlap)) grid.add(a, b, c);
+    });
 }
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -86,9 +96,9 @@ SetQuality assess(const Mesh& mesh, int set) {
         return quality;
     }
     UvGrid grid(UvGrid::sizeFor(triangles), quality.low, quality.high);
-    forEachUvTriangle(
-        mesh, set, [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { grid.add(a, b, c); });
-    if (static_cast<double>(grid.overlapped()) > kMaxOverlap * static_cast<double>(grid.covered())) {
+    addWhileFree(grid, mesh, set);
+    quality.visits = grid.visits();
+    if (grid.overlaps(kMaxOverlap)) {
         quality.fault = fmt::format("has a TEXCOORD_{} overlapping itself by more than 1 %", set);
         return quality;
     }
@@ -101,12 +111,14 @@ std::string nameOf(const std::vector<Mesh>& meshes, size_t index) {
     return name.empty() ? fmt::format("mesh {}", index) : "mesh " + inQuotes(name);
 }
 
-MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings) {
+MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings, uint64_t& visits) {
     const Mesh& mesh = scene.meshes[meshIndex];
     const std::string name = nameOf(scene.meshes, meshIndex);
     SetQuality second = assess(mesh, 1);
+    visits += second.visits;
     if (second.usable && second.complete) return {1, second};
     SetQuality first = assess(mesh, 0);
+    visits += first.visits;
     const bool takeFirst = first.usable && (first.complete || !second.usable);
     if (takeFirst && !second.fault.empty() && second.fault != "has no TEXCOORD_1")
         warnings.add(name, second.fault + ": TEXCOORD_0 is taken instead");
@@ -141,7 +153,7 @@ double worldArea(const Instance& instance, const Mesh& mesh, int set) {
 }
 
 /// Whether all instances' UVs, as they are, make one atlas.
-bool formOneAtlas(const Scene& scene, const LightmapAtlas& atlas) {
+bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
     std::vector<bool> seen(scene.meshes.size());
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         if (atlas.instances[i].texCoord < 0) continue;
@@ -152,10 +164,10 @@ bool formOneAtlas(const Scene& scene, const LightmapAtlas& atlas) {
     UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
     for (size_t i = 0; i < scene.instances.size(); ++i)
         if (atlas.instances[i].texCoord >= 0)
-            forEachUvTriangle(
-                scene.meshes[static_cast<size_t>(scene.instances[i].mesh)], atlas.instances[i].texCoord,
-                [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) { grid.add(a, b, c); });
-    return static_cast<double>(grid.overlapped()) <= kMaxOverlap * static_cast<double>(grid.covered());
+            addWhileFree(grid, scene.meshes[static_cast<size_t>(scene.instances[i].mesh)],
+                         atlas.instances[i].texCoord);
+    atlas.visits += grid.visits();
+    return !grid.overlaps(kMaxOverlap);
 }
 
 /// An instance's UV bounds and how many metres one unit of UV is.
@@ -191,6 +203,7 @@ std::vector<PackedRect> packDensest(const Scene& scene, const std::vector<Footpr
     if (packAt(footprints, high, size, rects)) return rects;
     constexpr int kSteps = 14; // leaves 1/16384 of the bound
     for (int step = 0; step < kSteps; ++step) {
+        tellWatch("atlas", double(step) / kSteps);
         const double middle = 0.5 * (low + high);
         const bool fits = packAt(footprints, middle, size, rects);
         (fits ? low : high) = middle;
@@ -233,12 +246,13 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapA
     std::vector<bool> chosen(scene.meshes.size());
     size_t usable = 0;
     std::string fault;
-    for (size_t i = 0; i < scene.instances.size(); ++i) {
+    WatchedLoop loop("atlas", static_cast<double>(scene.instances.size()));
+    for (size_t i = 0; i < scene.instances.size(); ++i, loop.step()) {
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
         if (scene.meshes[mesh].primitives.empty()) continue;
         if (!chosen[mesh]) {
             chosen[mesh] = true;
-            choices[mesh] = chooseSet(scene, mesh, warnings);
+            choices[mesh] = chooseSet(scene, mesh, warnings, atlas.visits);
             const std::string& problem = choices[mesh].quality.fault;
             if (choices[mesh].texCoord < 0)
                 warnings.add(nameOf(scene.meshes, mesh), problem + ", it blocks light only: " + mend);

@@ -22,6 +22,7 @@ struct LightmapAtlas {
     std::vector<AtlasRect> instances; // one per Scene::instances
     bool repacked = false;            // every instance got a rectangle of its own
     std::vector<std::string> warnings;
+    uint64_t visits = 0; // of grid cells, which is what finding overlaps has cost
 };
 
 /// Chooses the lightmap UVs: TEXCOORD_1, else TEXCOORD_0 where it is a valid atlas (inside [0,1], overlap

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/float_image.h"
+#include "assets/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -71,7 +72,9 @@ std::vector<std::string> readSkyPicture(Sky& sky) {
 }
 
 void readEditedPicture(Sky& sky) {
-    if (!sky.file.empty() && sky.pixels.empty()) readSkyPicture(sky);
+    if (sky.file.empty() || !sky.pixels.empty()) return;
+    readSkyPicture(sky);
+    limitSky(sky);
 }
 
 } // namespace relume

@@ -5,6 +5,7 @@
 #include "assets/numbering.h"
 #include "assets/planar_charts.h"
 #include "assets/rect_pack.h"
+#include "assets/watch.h"
 #include "assets/warnings.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -97,6 +98,7 @@ std::optional<double> chartArea(const std::vector<PlanarChart>& charts, double d
 
 /// Gives each chart whole texels and packs them, where there is an area for them.
 Packing packCharts(const std::vector<PlanarChart>& charts, double density) {
+    tellWatch("packing charts");
     const std::optional<double> area = chartArea(charts, density);
     ASSERT(area);
     Packing packing;
@@ -226,6 +228,7 @@ std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) 
     }
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         if (!chosen[i]) continue;
+        tellWatch("unwrapping", double(i) / double(scene.meshes.size()));
         Job job{i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0};
         job.charts = cutPlanarCharts(job.corners);
         const double largest = areaOf(job.corners);

@@ -69,8 +69,12 @@ bool UvGrid::forEachSpan(glm::dvec2 pa, glm::dvec2 pb, glm::dvec2 pc, const Visi
 
 void UvGrid::add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     forEachSpan(a, b, c, [this](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i)
+        visits_ += end - begin;
+        for (size_t i = begin; i < end; ++i) {
+            covered_ += counts_[i] == 0;
+            overlapped_ += counts_[i] == 1;
             counts_[i] = static_cast<uint8_t>(std::min(counts_[i] + 1, 255));
+        }
         return true;
     });
 }
@@ -83,16 +87,6 @@ bool UvGrid::addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     });
     if (isFree) add(a, b, c);
     return isFree;
-}
-
-uint64_t UvGrid::covered() const {
-    return static_cast<uint64_t>(
-        std::count_if(counts_.begin(), counts_.end(), [](uint8_t n) { return n > 0; }));
-}
-
-uint64_t UvGrid::overlapped() const {
-    return static_cast<uint64_t>(
-        std::count_if(counts_.begin(), counts_.end(), [](uint8_t n) { return n > 1; }));
 }
 
 uint32_t UvGrid::sizeFor(size_t triangles) {

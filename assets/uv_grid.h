@@ -20,9 +20,19 @@ public:
     /// Adds the triangle unless it covers a cell that another one covers; tells whether it was added.
     bool addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
-    uint64_t covered() const;    // cells with at least one triangle
-    uint64_t overlapped() const; // cells with at least two
+    uint64_t covered() const { return covered_; }       // cells with at least one triangle
+    uint64_t overlapped() const { return overlapped_; } // cells with at least two
     uint64_t cells() const { return counts_.size(); }
+    uint64_t visits() const { return visits_; } // cells of all triangles so far: what adding them has cost
+
+    /// Whether more than this share of the covered cells is overlapped.
+    bool overlaps(double share) const {
+        return static_cast<double>(overlapped_) > share * static_cast<double>(covered_);
+    }
+    /// Whether it will be, even if what follows covers all other cells once: then the rest need not be added.
+    bool mustOverlap(double share) const {
+        return static_cast<double>(overlapped_) > share * static_cast<double>(cells());
+    }
     uint8_t count(uint32_t x, uint32_t y) const { return counts_[size_t(y) * size_ + x]; } // stops at 255
 
     /// Cells to a side that resolve the overlap of so many triangles to well below 1 %.
@@ -39,6 +49,7 @@ private:
     uint32_t size_;
     glm::dvec2 low_, scale_;
     std::vector<uint8_t> counts_;
+    uint64_t covered_ = 0, overlapped_ = 0, visits_ = 0;
 };
 
 } // namespace relume

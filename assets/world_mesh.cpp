@@ -2,11 +2,14 @@
 
 #include "assets/error.h"
 #include "assets/log.h"
+#include "assets/scene_limits.h"
 #include "assets/uv_charts.h"
+#include "assets/watch.h"
 
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace relume {
@@ -45,6 +48,8 @@ public:
     void reserve(size_t triangles);
     void add(const Part& part);
     size_t dropped() const { return dropped_; }
+    /// Triangles that reach beyond kFarthest, by mesh.
+    const std::map<int, size_t>& far() const { return far_; }
 
 private:
     void addUvs(const TextureRef* use, const Primitive& primitive, const uint32_t* corners,
@@ -55,6 +60,7 @@ private:
     WorldMesh& mesh_;
     std::vector<glm::vec3> positions_, normals_; // of the part's vertices, world space
     size_t dropped_ = 0;
+    std::map<int, size_t> far_;
 };
 
 void Flattener::reserve(size_t triangles) {
@@ -118,15 +124,21 @@ void Flattener::add(const Part& part) {
         positions_[v] = glm::vec3(part.transform * glm::vec4(primitive.positions[v], 1.0f));
         normals_[v] = primitive.normals.empty() ? glm::vec3(0.0f) : toNormal * primitive.normals[v];
     }
-    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+    constexpr unsigned kTriangles = 4096;
+    WatchedLoop loop("triangles", static_cast<double>(primitive.indices.size() / 3), kTriangles);
+    for (size_t i = 0; i < primitive.indices.size(); i += 3, loop.step()) {
         std::array<uint32_t, 3> corners = {primitive.indices[i], primitive.indices[i + 1],
                                            primitive.indices[i + 2]};
         if (mirrored) std::swap(corners[1], corners[2]);
         const std::array<glm::vec3, 3> p = {positions_[corners[0]], positions_[corners[1]],
                                             positions_[corners[2]]};
+        if (!isWithinReach(p[0]) || !isWithinReach(p[1]) || !isWithinReach(p[2])) {
+            ++far_[part.scene->instances[part.instance].mesh];
+            continue;
+        }
         const glm::vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
         const float square = glm::dot(face, face);
-        // Below FLT_MIN normalizing is no longer exact; infinite corners make the square infinite or NaN.
+        // Below FLT_MIN normalizing is no longer exact.
         if (!(square > FLT_MIN) || !std::isfinite(square)) {
             ++dropped_;
             continue;
@@ -177,6 +189,16 @@ private:
     size_t triangles_ = 0;
 };
 
+void warnAboutDropped(const Scene& scene, const Flattener& flattener) {
+    if (flattener.dropped() > 0)
+        spdlog::warn("{}: {} triangles without area are dropped", scene.path, flattener.dropped());
+    Warnings warnings;
+    for (const auto& [mesh, count] : flattener.far())
+        warnings.add("mesh " + inQuotes(scene.meshes[static_cast<size_t>(mesh)].name), farTriangles(count));
+    for (const std::string& line : warnings.lines(scene.path))
+        spdlog::warn("{}", line);
+}
+
 /// Numbers the charts that have triangles left from 0 on, in order of appearance.
 void compactCharts(WorldMesh& mesh, uint32_t bound) {
     std::vector<uint32_t> number(bound, kNoChart);
@@ -201,8 +223,7 @@ WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
     mesh.opaqueCount = mesh.triangleCount();
     for (const Part& part : list.parts())
         if (isMasked(scene, part.primitive->material)) flattener.add(part);
-    if (flattener.dropped() > 0)
-        spdlog::warn("{}: {} triangles without area are dropped", scene.path, flattener.dropped());
+    warnAboutDropped(scene, flattener);
     compactCharts(mesh, list.chartBound());
     return mesh;
 }

@@ -14,8 +14,8 @@ constexpr uint32_t kNoChart = 0xffffffffu;
 /// All instances of a scene as one list of world-space triangles: what the solver bakes and every tracer
 /// traces. Opaque triangles come first, those of alpha-masked materials behind them; within each part in file
 /// order. Corner arrays hold three entries per triangle. Counter-clockwise is the front, mirrored instances
-/// included, so cross(p1 - p0, p2 - p0) points to the front. No triangle has zero area or a non-finite
-/// corner.
+/// included, so cross(p1 - p0, p2 - p0) points to the front. No triangle has zero area or a corner
+/// beyond kFarthest (scene_limits.h).
 struct WorldMesh {
     std::vector<glm::vec3> positions;  // [m]
     std::vector<glm::vec3> normals;    // unit, shading
@@ -32,8 +32,8 @@ struct WorldMesh {
     uint32_t triangleCount() const { return static_cast<uint32_t>(material.size()); }
 };
 
-/// Flattens a scene with the atlas it was given. Drops zero-area triangles and hidden instances. Throws Error
-/// when nothing is left.
+/// Flattens a scene with the atlas it was given. Drops triangles of no area, those that reach too far, and
+/// hidden instances. Throws Error when nothing is left.
 WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas);
 /// The same of these instances alone, hidden or not, in ascending order; charts are counted among them. May
 /// be empty.

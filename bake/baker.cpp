@@ -1,6 +1,8 @@
 #include "bake/baker.h"
 
 #include "assets/log.h"
+#include "assets/watch.h"
+#include "bake/inside_search.h"
 #include "bake/object_mover.h"
 #include "bake/texture_group.h"
 #include "bake/vk/commands.h"
@@ -73,21 +75,20 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bo
 }
 
 Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
-             PhaseHook onPhase)
-    : device_(device), scene_(scene), settings_(settings), onPhase_(std::move(onPhase)) {
-    if (!onPhase_) onPhase_ = [](const char*) {};
+             PhaseHook phaseHook)
+    : device_(device), scene_(scene), settings_(settings), phaseHook_(std::move(phaseHook)) {
     const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
     const std::string problem = sizeProblem(device, settings, mesh.triangleCount(), limit);
     if (!problem.empty()) throw Error(problem);
     const bool rtrad = settings.solver.transport.rtrad;
     PhaseClock clock(phases_);
-    onPhase_("cit");
+    onPhase("cit");
     {
         const TextureGroup group = rasterizeTextureGroup(
             device, scene, mesh,
             {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
         clock.end("cit");
-        onPhase_("patches");
+        onPhase("patches");
         patches_ = buildPatches(scene, std::move(mesh), group,
                                 {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
     }
@@ -104,7 +105,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
         mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
                                                settings.conservative);
     makeTracers();
-    onPhase_("solver set-up");
+    onPhase("solver set-up");
     PhaseClock setUp(phases_);
     solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
     setUp.end("solver set-up");
@@ -128,56 +129,47 @@ void Baker::makeTracers() {
     }
     PhaseClock clock(phases_);
     if (!marches || !settings_.solver.transport.rtrad) {
-        onPhase_("tracer");
+        onPhase("tracer");
         const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
         tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
         clock.end("tracer");
     }
     if (!settings_.solver.transport.rtrad) findInvalid();
-    if (marches) clock.end("validity");
-    // A tracer on the CPU keeps the patches in a form of its own.
-    if (marches || (invalid_ > 0 && tracer_->onCpu())) {
-        onPhase_(marches ? "voxels" : "validity");
-        tracer_.reset();
-        tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
-    }
-    clock.end(marches ? "voxels" : "validity");
+    clock.end("validity");
+    if (!marches) return;
+    onPhase("voxels");
+    tracer_.reset();
+    tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
+    clock.end("voxels");
 }
 
-// Patches inside something are found once, before the first pass, by short batches of closest hits.
+// Patches inside something are found once, before the first pass.
 void Baker::findInvalid() {
-    // 131072 rays on a GPU, 16384 on the CPU: below 50 ms on every device that was measured.
-    const uint32_t chunksPerBatch = device_.info().software() ? 8 : 64;
-    const uint32_t chunks = patches_.chunkCount();
-    const uint64_t linkWords = uint64_t{chunksPerBatch} * kInsideSamples * shader::kChunk;
-    const vk::Buffer links(
-        device_, {.size = linkWords * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links"});
-    std::vector<uint32_t> all;
-    all.reserve(uint64_t{chunks} * kInsideSamples * shader::kChunk);
-    vk::Commands commands(device_);
-    for (uint32_t first = 0; first < chunks; first += chunksPerBatch) {
-        const uint32_t count = std::min(chunksPerBatch, chunks - first);
-        onPhase_("validity");
-        VkCommandBuffer cmd = commands.begin();
-        tracer_->closest(cmd, {.firstChunk = first,
-                               .chunkCount = count,
-                               .firstSample = 0,
-                               .sampleCount = kInsideSamples,
-                               .rotation = Rotation::Patch,
-                               .links = &links});
-        vk::hostBarrier(cmd);
-        commands.run();
-        const auto* values = static_cast<const uint32_t*>(links.mapped());
-        all.insert(all.end(), values, values + uint64_t{count} * kInsideSamples * shader::kChunk);
-    }
-    if (mover_) mover_->noteInside(all);
-    invalid_ = markInvalid(patches_, all, kInsideSamples);
+    InsideSearch search{.device = device_,
+                        .tracer = *tracer_,
+                        .patches = patches_,
+                        .samples = kInsideSamples,
+                        .onLinks = {},
+                        .onBatch = [this](double done) { onPhase("validity", done); }};
+    if (mover_)
+        search.onLinks = [this](uint32_t first, std::span<const uint32_t> links) {
+            mover_->noteInside(first, links);
+        };
+    const std::vector<uint32_t> inside = findInside(search);
+    invalid_ = static_cast<uint32_t>(inside.size());
     if (invalid_ == 0) return;
+    for (const uint32_t patch : inside)
+        patches_.scene.patches[patch].flags &= ~shader::kPatchSends;
     spdlog::info(
         "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
         invalid_, patches_.count);
     vk::upload(device_, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
+}
+
+void Baker::onPhase(const char* phase, double done) const {
+    tellWatch(phase, done);
+    if (phaseHook_) phaseHook_(phase);
 }
 
 void Baker::resetSolver(const SolverSettings& settings) {

@@ -41,11 +41,11 @@ public:
 
     /// Throws Error when the size does not fit the device's memory (before anything is allocated), no texel
     /// is covered or the tracer cannot run. Device and scene must outlive it.
-    /// onPhase hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends
-    /// the preparation.
+    /// phaseHook hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends
+    /// the preparation, as does what this thread's watch throws.
     using PhaseHook = std::function<void(const char* phase)>;
     Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
-          PhaseHook onPhase = {});
+          PhaseHook phaseHook = {});
     ~Baker();
 
     Solver& solver() { return *solver_; }
@@ -82,11 +82,12 @@ public:
 private:
     void makeTracers();
     void findInvalid();
+    void onPhase(const char* phase, double done = -1.0) const;
 
     const vk::Device& device_;
     const Scene& scene_;
     BakeSettings settings_;
-    PhaseHook onPhase_;
+    PhaseHook phaseHook_;
     PatchSet patches_;
     std::unique_ptr<LightBuffers> light_;
     std::unique_ptr<SurfaceColours> colours_;

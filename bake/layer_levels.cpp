@@ -1,6 +1,8 @@
 // Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
 #include "bake/host_resolve.h"
 #include "bake/layer_solver.h"
+
+#include "bake/finite_light.h"
 #include "bake/level_growth.h"
 
 #include <algorithm>
@@ -185,6 +187,7 @@ void LayerSolver::finishLevel(const Lane& lane) {
         at(smooths ? kFirstSigma : 0.0);
     if (index > 0) std::swap(buffers_.linkSums, bounces_->sums(index));
     const glm::dvec4 total = sums.result;
+    requireFiniteLight(total.x, total.y + sums.indirect.indirect + sums.indirect.raw);
     layer.level = lane.target;
     layer.light = total.x;
     layer.count = total.z;

@@ -12,8 +12,8 @@ constexpr uint32_t kMostGrowth = 8;
 
 // The least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least.
 uint32_t onLadder(double rounds) {
-    constexpr double kRounding = 1e-9;
-    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kRounding)));
+    constexpr double kAlmostWhole = 1e-9;
+    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
     const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
     return whole <= between ? between : above;
 }

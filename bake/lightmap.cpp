@@ -1,6 +1,8 @@
 #include "bake/lightmap.h"
 
 #include "assets/error.h"
+#include "assets/finite_image.h"
+#include "assets/watch.h"
 
 #include <array>
 
@@ -53,7 +55,8 @@ bool fromNeighbours(const Planes& image, uint32_t x, uint32_t y, bool darkest, g
 void sewSeams(Planes& image, uint32_t rings, bool darkest) {
     for (uint32_t ring = 0; ring < rings; ++ring) {
         std::vector<Fill> fills;
-        for (uint32_t y = 0; y < image.size; ++y) {
+        WatchedLoop loop("seams", image.size, 16);
+        for (uint32_t y = 0; y < image.size; ++y, loop.step()) {
             for (uint32_t x = 0; x < image.size; ++x) {
                 const size_t i = size_t{y} * image.size + x;
                 Fill fill{i, {}};
@@ -89,6 +92,7 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
         planes.set(texel, value, kPatchCoverage);
     }
     if (desc.sew) sewSeams(planes, desc.rtrad ? 1 : desc.dilate, desc.rtrad);
+    requireFinite(image, "the lightmap");
     return image;
 }
 

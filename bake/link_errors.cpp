@@ -1,6 +1,8 @@
 // Of LinkSolver: what is known of its error, and the result.
 #include "bake/link_solver.h"
 
+#include "bake/finite_light.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +47,7 @@ void LinkSolver::resolve() {
 
 // What sums over all patches say, and that there is a new result.
 void LinkSolver::learn(const shader::ResolveSums& sums) {
+    requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
     state_.directVariance = sums.direct;
     state_.indirectVariance = smoothedVariance(sums);
     state_.directAtCheck = state_.directRounds;

@@ -119,18 +119,19 @@ ObjectMover::ObjectMover(const On& on, bool conservative)
 
 ObjectMover::~ObjectMover() = default;
 
-void ObjectMover::noteInside(const std::vector<uint32_t>& links) {
+void ObjectMover::noteInside(uint32_t firstChunk, std::span<const uint32_t> links) {
     const std::vector<shader::Patch>& patches = on_.patches.scene.patches;
-    inside_.assign(patches.size(), glm::uvec2(0));
-    invalid_ = 0;
-    for (uint32_t i = 0; i < inside_.size(); ++i) {
+    inside_.resize(patches.size(), glm::uvec2(0));
+    const size_t first = size_t{firstChunk} * kChunk, count = links.size() / kInsideSamples;
+    for (size_t i = 0; i < count; ++i) {
+        glm::uvec2& bits = inside_[first + i];
         const size_t base = i / kChunk * kInsideSamples * kChunk + i % kChunk;
         for (uint32_t k = 0; k < kInsideSamples; ++k) {
             const uint32_t link = links[base + size_t{k} * kChunk];
-            inside_[i].x |= uint32_t{link == shader::kLinkBack} << k;
-            inside_[i].y |= uint32_t{link == shader::kLinkSky} << k;
+            bits.x |= uint32_t{link == shader::kLinkBack} << k;
+            bits.y |= uint32_t{link == shader::kLinkSky} << k;
         }
-        invalid_ += patches[i].area > 0.0f && liesInside(inside_[i]);
+        invalid_ += patches[first + i].area > 0.0f && liesInside(bits);
     }
 }
 

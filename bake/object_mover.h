@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "assets/lightmap_atlas.h"
@@ -30,8 +31,8 @@ public:
     ObjectMover(const On& on, bool conservative);
     ~ObjectMover();
 
-    /// What these directions meet: links as markInvalid has them.
-    void noteInside(const std::vector<uint32_t>& links);
+    /// What the directions of these chunks meet: links as findInside tells them. All chunks come once.
+    void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
     /// Objects stand as the scene has them now. Nothing: that cannot be followed (an object that was hidden
     /// from the beginning, triangles that have lost their area), and nothing has changed.
     std::optional<ObjectMove> follow(const LightmapAtlas& atlas, Tracer& tracer);

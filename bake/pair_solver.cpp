@@ -1,5 +1,7 @@
 #include "bake/pair_solver.h"
 
+#include "bake/finite_light.h"
+
 #include "assets/clock.h"
 #include "assets/log.h"
 
@@ -378,6 +380,7 @@ void PairSolver::measureChange() {
     }
     const double change = all.count > 0 ? std::sqrt(all.squares / static_cast<double>(all.count)) : 0.0;
     const double mean = all.count > 0 ? all.light / static_cast<double>(all.count) : 0.0;
+    requireFiniteLight(mean, change);
     if (change == 0.0 || mean <= 0.0) {
         progress_.error = 0.0;
     } else if (state_.lastChange > 0.0) {

@@ -2,6 +2,7 @@
 
 #include "assets/error.h"
 #include "assets/float_image.h"
+#include "assets/watch.h"
 #include "bake/surface_colours.h"
 
 #include <algorithm>
@@ -22,6 +23,10 @@ constexpr float kFloatError =
 // A chart's texels are scaled to the area of its triangles, but never up by more than this: a chart two
 // texels wide may catch one centre in each direction; where more is missing another chart was drawn over it.
 constexpr float kMaxAreaCorrection = 4.0f;
+
+// What is told of building patches, after so many triangles each.
+constexpr const char* kPatchesPhase = "patches";
+constexpr unsigned kPatchesOften = 4096;
 
 // The affine map from the lightmap to the world that a triangle defines.
 struct TriangleFrame {
@@ -71,7 +76,8 @@ public:
         set_.scene.rtrad = desc.rtrad;
         const WorldMesh& m = set_.scene.mesh;
         frames_.reserve(m.triangleCount());
-        for (uint32_t t = 0; t < m.triangleCount(); ++t)
+        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step())
             frames_.push_back(triangleFrame(m, t, group.size));
         surveyCharts();
     }
@@ -80,7 +86,8 @@ public:
         const TexelWindow& w = group_.window;
         ASSERT(w.column % kTileTexels == 0 && w.row % kTileTexels == 0);
         set_.scene.texelToPatch.assign(w.size(), kNoPatch);
-        for (uint32_t y = w.row; y < w.row + w.rows; y += kTileTexels)
+        WatchedLoop loop(kPatchesPhase, (w.rows + kTileTexels - 1) / kTileTexels);
+        for (uint32_t y = w.row; y < w.row + w.rows; y += kTileTexels, loop.step())
             for (uint32_t x = w.column; x < w.column + w.columns; x += kTileTexels)
                 addTile(x, y);
         set_.count = static_cast<uint32_t>(set_.scene.patches.size());
@@ -92,7 +99,9 @@ public:
         padding.instance = static_cast<uint32_t>(scene_.instances.size());
         while (set_.scene.patches.size() % kChunk != 0)
             add(padding);
+        tellWatch(kPatchesPhase);
         applyMaterials(set_, scene_.materials);
+        tellWatch(kPatchesPhase);
         addBounds();
         addHitTriangles();
         addAlpha(); // after the hit triangles
@@ -288,7 +297,8 @@ private:
 
     void addHitTriangles() {
         const WorldMesh& m = set_.scene.mesh;
-        for (uint32_t t = 0; t < m.triangleCount(); ++t) {
+        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step()) {
             const glm::vec2* uv = &m.lightmapUv[size_t{t} * 3];
             set_.scene.hitTriangles.push_back({uv[0], uv[1], uv[2], m.chart[t], representative(t),
                                                frames_[t].normal, materials_[m.material[t]].doubleSided});
@@ -402,23 +412,6 @@ bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount) {
     // Half of what a texel just below a floor looks at is the floor's back, the other half nothing at all.
     constexpr double kLeastBacks = 0.4;
     return backs >= kLeastBacks * sampleCount && 2 * backs + sky > sampleCount;
-}
-
-uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount) {
-    uint32_t marked = 0;
-    for (uint32_t i = 0; i < patches.count; ++i) {
-        uint32_t backs = 0, sky = 0;
-        const size_t base = size_t{i / kChunk} * sampleCount * kChunk + i % kChunk;
-        for (uint32_t k = 0; k < sampleCount; ++k) {
-            const uint32_t link = links[base + size_t{k} * kChunk];
-            backs += link == shader::kLinkBack;
-            sky += link == shader::kLinkSky;
-        }
-        if (!liesInside(backs, sky, sampleCount)) continue;
-        patches.scene.patches[i].flags &= ~shader::kPatchSends;
-        ++marked;
-    }
-    return marked;
 }
 
 } // namespace relume

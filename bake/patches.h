@@ -52,8 +52,5 @@ void applyMaterials(PatchSet& patches, const std::vector<Material>& materials);
 /// Whether a patch lies inside something, by what so many of its directions meet: two of five backs at least,
 /// and more of them than fronts.
 bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount);
-/// Marks patches as lying inside something (kPatchSends cleared): those whose links meet more backs than
-/// fronts, two of five links at least. links: [chunk][sample][64]. Returns how many.
-uint32_t markInvalid(PatchSet& patches, const std::vector<uint32_t>& links, uint32_t sampleCount);
 
 } // namespace relume

@@ -34,8 +34,8 @@ public:
         uint32_t rings = 4;        // of texels filled around charts
         float reflectivity = 1.0f; // of the bake, for unit()
     };
-    /// patches: with those inside something marked (markInvalid). In the RTRad preset one ring is filled with
-    /// the darkest neighbour. Throws Error.
+    /// patches: with those inside something marked (InsideSearch). In the RTRad preset one ring is filled
+    /// with the darkest neighbour. Throws Error.
     Publisher(const vk::Device& device, const PatchSet& patches, const Desc& desc);
 
     uint32_t size() const { return size_; } // [texels]

@@ -15,6 +15,7 @@
 
 #include <ctime>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -53,6 +54,7 @@ void bake(BakeOptions o) {
     if (!o.shaders.empty()) setShaderFolder(o.shaders);
     BakeCheckpoints checkpoints(o);
 
+    std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
     if (!o.sceneOut.empty()) checkGlb(prepared.scene, o.sceneOut);
     stopIfInterrupted();
@@ -66,7 +68,9 @@ void bake(BakeOptions o) {
     spdlog::info("{} patches", baker.patches().count);
     warnIfDark(prepared.scene, baker.patches());
     checkpoints.begin(baker, prepared.scene, request.bake, device.info());
+    phase.reset();
     solve(baker.solver(), request.bake.solver, checkpoints);
+    phase.emplace(false);
     const auto writeStart = Clock::now();
     FloatImage image = baker.lightmap(request.lightmap);
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;

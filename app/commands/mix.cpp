@@ -1,6 +1,7 @@
 #include "app/command.h"
 #include "app/command_files.h"
 #include "app/light_mix.h"
+#include "assets/finite_image.h"
 #include "assets/error.h"
 #include "assets/log.h"
 
@@ -76,6 +77,7 @@ void runMix(const MixOptions& options) {
         if (!stale.empty() && layer.weight != glm::vec3(0.0f))
             spdlog::warn("{}: stale: {}: bake it again", options.layers, stale);
     }
+    requireFinite(image.composite, options.output);
     const ExrType type = options.half ? ExrType::Half : ExrType::Float;
     if (options.layersOut)
         writeLayeredExr(options.output, image, type);

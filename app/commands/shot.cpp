@@ -11,6 +11,7 @@
 #include "shaders/shader_library.h"
 
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -58,6 +59,7 @@ void shoot(ShotOptions o) {
         image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.scene));
         request.prepare.size = image->width; // the gutters of a repacked atlas depend on it
     }
+    std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
     stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
@@ -67,6 +69,7 @@ void shoot(ShotOptions o) {
         bake = std::make_unique<PictureBake>(o.bake, request, prepared);
         image = std::make_unique<FloatImage>(bakeLightmap(o, request, *bake));
     }
+    phase.reset();
     std::unique_ptr<LightmapImage> lightmap;
     if (image)
         lightmap = std::make_unique<LightmapImage>(*image, o.lightmap.empty() ? "lightmap" : o.lightmap);

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -36,6 +37,7 @@ void makeTimelapse(const TimelapseOptions& o) {
                                          .hold = kHoldLast,
                                          .overwrite = o.overwrite});
     if (!options.shaders.empty()) setShaderFolder(options.shaders);
+    std::optional<PhaseProgress> phase(std::in_place, false); // there is a video on its way
     PreparedScene prepared = prepareScene(bakeRequest.prepare);
     stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
@@ -53,6 +55,7 @@ void makeTimelapse(const TimelapseOptions& o) {
          .title = fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.scene).stem().string(),
                               methodName(solver.method), options.size, options.size),
          .pairs = isPairMethod(solver.method)});
+    phase.reset();
     solve(bake->baker().solver(), solver, timelapse);
     bake->logEnd();
     timelapse.finish();

@@ -5,11 +5,13 @@
 #include "app/live/layer_remark.h"
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
+#include "assets/watch.h"
 #include "assets/log.h"
 #include "assets/sky_picture.h"
 #include "renderer/shader_types.h"
 #include "shaders/shader_library.h"
 
+#include <functional>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -33,6 +35,18 @@ constexpr size_t kMaxHistory = 4096;
 
 // Ends a preparation that nobody waits for any more.
 struct Cancelled {};
+
+/// Tells how a preparation stands to whom it may concern.
+class Hearer final : public Watch {
+public:
+    using Hear = std::function<void(const char* phase, double done)>;
+    explicit Hearer(Hear hear) : hear_(std::move(hear)), scope_(*this) {}
+    void hear(const char* phase, double done) override { hear_(phase, done); }
+
+private:
+    Hear hear_;
+    WatchScope scope_;
+};
 
 // In the order in which a baker tells them, for the progress bar.
 constexpr std::array<std::string_view, 6> kPhases = {"cit",      "patches", "tracer",
@@ -231,6 +245,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     status_.bake = start.number;
     status_.settings = settings_;
     begin();
+    const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
     if (solverOnly) {
         onPhase("solver set-up");
         restart(start.keepLight);
@@ -254,8 +269,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
 }
 
 void BakeLoop::makeBaker(WorldMesh mesh, bool keepLight) {
-    baker_ = std::make_unique<Baker>(*device_, scene_, std::move(mesh), settings_,
-                                     [this](const char* phase) { onPhase(phase); });
+    baker_ = std::make_unique<Baker>(*device_, scene_, std::move(mesh), settings_);
     spdlog::info("{} patches", baker_->patches().count);
     warnIfDark(scene_, baker_->patches());
     beginMaps(keepLight);
@@ -271,6 +285,7 @@ void BakeLoop::reloadShaders() {
         return;
     }
     begin();
+    const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
     WorldMesh mesh = baker_->patches().scene.mesh;
     maps_->end();
     baker_.reset();
@@ -319,17 +334,18 @@ void BakeLoop::ready() {
 }
 
 // Of a preparation; ends it where something newer is wanted.
-void BakeLoop::onPhase(const char* phase) {
+void BakeLoop::onPhase(const char* phase, double done) {
     {
         const std::lock_guard lock(desk_.mutex);
         if (desk_.orders.quit || desk_.orders.start) throw Cancelled();
     }
-    if (status_.doing == phase) return;
     const auto place = std::find(kPhases.begin(), kPhases.end(), phase);
+    if (place == kPhases.end()) return; // a part of one of them
+    const bool isNew = status_.doing != phase;
     status_.doing = phase;
-    status_.fraction =
-        std::max(status_.fraction, static_cast<double>(place - kPhases.begin()) / kPhases.size());
-    report(true);
+    const double now = static_cast<double>(place - kPhases.begin()) + std::clamp(done, 0.0, 1.0);
+    status_.fraction = std::max(status_.fraction, now / kPhases.size());
+    report(isNew);
 }
 
 // Pause, resume and so on.

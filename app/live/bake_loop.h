@@ -37,7 +37,7 @@ private:
     void beginMaps(bool keepLight);
     void begin();
     void ready();
-    void onPhase(const char* phase);
+    void onPhase(const char* phase, double done = -1.0);
     void steer(const BakeOrders& orders);
     void stepSolver();
     void logEnd();

@@ -1,5 +1,7 @@
 #include "app/live/session.h"
 
+#include "assets/watch.h"
+#include "assets/scene_limits.h"
 #include "assets/error.h"
 #include "assets/log.h"
 #include "renderer/good_view.h"
@@ -19,7 +21,24 @@ constexpr double kPollSeconds = 0.5;
 // Steps of undo that are kept.
 constexpr size_t kMaxSteps = 200;
 
-std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number) {
+struct LoadUnwanted {};
+
+/// Ends a load that nobody waits for any more.
+class LoadWatch final : public Watch {
+public:
+    explicit LoadWatch(const std::atomic<bool>& unwanted) : unwanted_(unwanted), scope_(*this) {}
+    void hear(const char*, double) override {
+        if (unwanted_) throw LoadUnwanted();
+    }
+
+private:
+    const std::atomic<bool>& unwanted_;
+    WatchScope scope_;
+};
+
+std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number,
+                                  const std::atomic<bool>& unwanted) {
+    const LoadWatch watch(unwanted);
     auto scene = std::make_unique<LoadedScene>();
     scene->prepared = prepareScene(desc);
     const Scene& file = scene->prepared.scene;
@@ -58,11 +77,13 @@ Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prep
 }
 
 Session::~Session() {
+    unwanted_ = true;
     if (loading_.valid()) loading_.wait();
 }
 
 void Session::open(const std::string& path, bool keep) {
-    if (loading_.valid()) { // one at a time: the newest wish is looked at when the present one is done
+    if (loading_.valid()) { // one at a time: the newest wish is looked at when the present one has ended
+        if (path != loadingPath_) unwanted_ = true;
         nextPath_ = path;
         keepNext_ = keep;
         return;
@@ -76,7 +97,9 @@ void Session::open(const std::string& path, bool keep) {
     finishSaving(); // what is read is what is there then
     loadingTime_ = fileTime(path);
     sameFile_ = keep && path == prepare_.path && loadingTime_ && loadingTime_ == watched_;
-    loading_ = std::async(std::launch::async, [desc, number = ++loads_] { return load(desc, number); });
+    unwanted_ = false;
+    loading_ = std::async(std::launch::async,
+                          [this, desc, number = ++loads_] { return load(desc, number, unwanted_); });
 }
 
 bool Session::update() {
@@ -97,6 +120,7 @@ bool Session::finishLoading() {
     try {
         take(loading_.get());
         changed = true;
+    } catch (const LoadUnwanted&) { // another one comes below
     } catch (const std::bad_alloc&) {
         fail(loadingPath_ + ": does not fit in memory");
     } catch (const std::exception& error) {
@@ -237,6 +261,7 @@ void Session::startBake(bool keepLight) {
 void Session::edit(const std::string& name, const Document& wanted) {
     Document next = wanted;
     file_.number(next.edits.lights);
+    if (scene_) limitEdits(scene_->prepared.scene, document_.edits, next.edits);
     if (open_ && done_ == steps_.size() && done_ > 0 && steps_.back().name == name) {
         steps_.back().after = next;
     } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -118,6 +119,7 @@ private:
     std::unique_ptr<LoadedScene> scene_;
     std::vector<std::unique_ptr<LoadedScene>> former_; // that the bake thread may still read
     std::future<std::unique_ptr<LoadedScene>> loading_;
+    std::atomic<bool> unwanted_ = false; // what is loading, so that it ends early
     std::string loadingPath_, nextPath_, lastError_;
     bool keepLoading_ = false, keepNext_ = false, kept_ = false;
     SceneFile file_;

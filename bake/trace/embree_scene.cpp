@@ -124,10 +124,9 @@ EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads) : scene(
         throw Error("embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) +
                     "): pass --tracer bvh");
     build();
-    prepareBlocks();
 }
 
-// What only blocks need.
+// What only blocks need: made when they are asked for, by patches as they are marked by then.
 void EmbreeScene::Impl::prepareBlocks() {
     chunks = buildChunks(scene.patches, scene.rtrad);
     bvh = buildBvh(scene.mesh);

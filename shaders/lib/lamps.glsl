@@ -5,6 +5,10 @@
 // Rays end this share of their length before a lamp: one that is fixed to a surface must not be hidden by it.
 CONST float kLampGap = 1e-4f;
 
+// Squared [m^2]: a lamp without extent that is nearer than a micrometre counts as if it were as far away. What is at a surface
+// is there by rounding, and 1 / d^2 has no bound.
+CONST float kNearestLamp2 = 1e-12f;
+
 // Keeps the numbers of lamps apart from those of directions and of emitters.
 CONST uint kLampSalt = 0x85ebca6bu;
 
@@ -59,7 +63,7 @@ FUNCTION float lampWhole(Lamp l, Patch p) {
         return kInvPi * max(c, 0.0f);
     }
     vec3 d = l.position - p.position;
-    float height = dot(p.shading, d), d2 = dot(d, d);
+    float height = dot(p.shading, d), d2 = max(dot(d, d), kNearestLamp2);
     if (l.radius > 0.0f && abs(height) < l.radius) return -1.0f;
     if (!(height > 0.0f)) return 0.0f;
     return kInvPi * height / (d2 * sqrt(d2)) * lampFade(l, d);
@@ -105,7 +109,7 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
         float along = dot(w, d);
         float within = r2 - (d2 - along * along);
         s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
-        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(d2, r2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, d);
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, d);
     }
     s.target += kLampGap * (p.position - s.target);
     return s;

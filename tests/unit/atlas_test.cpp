@@ -178,6 +178,44 @@ TEST(Atlas, OverlapAboveOnePercentIsRefused) {
     }
 }
 
+/// So many squares beside each other, each a mesh of its own whose UVs are those of all others.
+Scene squaresOfTheSameUvs(int count) {
+    Scene scene;
+    scene.path = "squares.glb";
+    for (int i = 0; i < count; ++i)
+        test::addInstance(scene, test::addMesh(scene, test::square()),
+                          glm::translate(glm::mat4(1), glm::vec3(2 * i, 0, 0)));
+    return scene;
+}
+
+TEST(Atlas, MeshesOfTheSameUvsCostNoWholeGridEach) {
+    const LightmapAtlas atlas = buildAtlas(squaresOfTheSameUvs(300), 256);
+    EXPECT_TRUE(atlas.repacked);
+    // Each mesh's own grid has 128 x 128 cells; that of the atlas, 2048 x 2048, is given up at the second
+    // square.
+    EXPECT_LT(atlas.visits, 300u * 128u * 128u + 3u * 2048u * 2048u);
+}
+
+TEST(Atlas, TrianglesOfTheSameUvsCostNoWholeGridEach) {
+    Primitive stacked;
+    for (int i = 0; i < 4000; ++i) {
+        const Primitive one = test::square();
+        for (uint32_t index : one.indices)
+            stacked.indices.push_back(index + static_cast<uint32_t>(stacked.positions.size()));
+        for (size_t v = 0; v < one.positions.size(); ++v) {
+            stacked.positions.push_back(one.positions[v] + glm::vec3(0, 0, i));
+            stacked.normals.push_back(one.normals[v]);
+            stacked.texCoord1.push_back(one.texCoord1[v]);
+        }
+    }
+    Scene scene = squaresOfTheSameUvs(1);
+    test::addInstance(scene, test::addMesh(scene, stacked));
+    const LightmapAtlas atlas = buildAtlas(scene, 256);
+    EXPECT_EQ(atlas.instances[1].texCoord, -1);
+    EXPECT_TRUE(warns(atlas, "overlapping itself by more than 1 %"));
+    EXPECT_LT(atlas.visits, 3u * 2048u * 2048u); // of 8000 times half of 512 x 512
+}
+
 TEST(Atlas, MeshesWithoutUsableUvsBlockLightOnly) {
     Scene scene = test::sceneOf(test::square({0, 0}, {.5f, .5f}));
     Primitive bare = test::square();

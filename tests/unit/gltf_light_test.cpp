@@ -1,6 +1,7 @@
 #include "assets/error.h"
 #include "assets/float_image.h"
 #include "assets/gltf.h"
+#include "assets/scene_limits.h"
 #include "assets/sky_picture.h"
 #include "tests/unit/glb_builder.h"
 
@@ -300,10 +301,10 @@ TEST(GltfSky, MendsNumbersAndSaysSo) {
     LightFile file;
     file.sky() = {{"color", {1, 1e30, -1}}, {"intensity", 1e30}, {"rotation", "round"}};
     const Scene scene = file.load();
-    EXPECT_EQ(scene.sky.radiance, glm::vec3(1e30f, std::numeric_limits<float>::max(), 0));
+    EXPECT_EQ(scene.sky.radiance, glm::vec3(kBrightest, kBrightest, 0));
     EXPECT_EQ(warningsOf(scene), "sky: its color is negative, 0 is used\n"
-                                 "sky: its color times its intensity is too large and is cut\n"
-                                 "sky: its rotation is not a finite number, 0 is used\n");
+                                 "sky: its rotation is not a finite number, 0 is used\n"
+                                 "sky: is brighter than 1e+12 cd/m^2 and is dimmed to that\n");
 }
 
 TEST(GltfSky, ReadsItsPictureFromTheZenithDown) {

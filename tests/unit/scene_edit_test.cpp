@@ -263,11 +263,12 @@ TEST_F(SceneEditTest, ObjectsAreHiddenAndShown) {
 
 TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
     const std::pair<const char*, const char*> wrong[] = {
-        {"Lamp.intensity=-1", "usage: intensity -1 is out of range: give a number of 0 or more"},
-        {"Lamp.intensity=nan", "usage: 'nan' is no intensity of finite numbers: give a number of 0 or more"},
+        {"Lamp.intensity=-1", "usage: intensity -1 is out of range: give a number from 0 to 1e12"},
+        {"Lamp.intensity=nan",
+         "usage: 'nan' is no intensity of finite numbers: give a number from 0 to 1e12"},
         {"Lamp.intensity=1e99",
-         "usage: '1e99' is no intensity of finite numbers: give a number of 0 or more"},
-        {"Lamp.intensity=", "usage: '' is no intensity of finite numbers: give a number of 0 or more"},
+         "usage: '1e99' is no intensity of finite numbers: give a number from 0 to 1e12"},
+        {"Lamp.intensity=", "usage: '' is no intensity of finite numbers: give a number from 0 to 1e12"},
         {"Lamp.color=#ff80",
          "usage: '#ff80' is no color of finite numbers: give #rrggbb or r,g,b from 0 to 1, "
          "and what is brighter by the intensity"},
@@ -280,7 +281,8 @@ TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
         {"spot.inner=60", "usage: the inner cone of 60 degrees is wider than the outer one of 45: make that "
                           "wider first"},
         {"disc.radius=0", "usage: a disc needs a radius: give metres above 0"},
-        {"rectangle.size=1,0", "usage: size 1,0 is out of range: give width,height in metres above 0"},
+        {"rectangle.size=1,0",
+         "usage: size 1,0 is out of range: give width,height in metres above 0, up to 1e8"},
         {"Lamp.size=1,1",
          "usage: a point light has no size: it has name, intensity, color, temperature, radius, range"},
         {"Glow.baseColor=1,2,3", "usage: baseColor 1,2,3 is out of range: give #rrggbb or r,g,b from 0 to 1"},
