@@ -12,7 +12,7 @@ namespace relume {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using LinksJson = nlohmann::json;
 
 constexpr int kMostLevels = 64; // as those who load it allow
 
@@ -40,7 +40,7 @@ std::string jsonOfFile(const std::string& path) {
     return stream ? text : "";
 }
 
-void addUris(const Json& value, int levels, std::vector<std::string>& uris) {
+void addUris(const LinksJson& value, int levels, std::vector<std::string>& uris) {
     if (levels == 0 || !value.is_structured()) return;
     for (auto member = value.begin(); member != value.end(); ++member) {
         if (value.is_object() && member.key() == "extras") continue; // known to their owner alone
@@ -56,7 +56,7 @@ void addUris(const Json& value, int levels, std::vector<std::string>& uris) {
 std::vector<std::string> linkedFiles(const std::string& path) {
     const std::string text = jsonOfFile(path);
     if (text.find("\"uri\"") == std::string::npos && text.find("\"relume\"") == std::string::npos) return {};
-    const Json json = Json::parse(text, nullptr, false);
+    const LinksJson json = LinksJson::parse(text, nullptr, false);
     if (!json.is_object()) return {};
     std::vector<std::string> uris, files;
     addUris(json, kMostLevels, uris);
@@ -67,8 +67,8 @@ std::vector<std::string> linkedFiles(const std::string& path) {
     }
     const auto scenes = json.find("scenes");
     if (scenes == json.end() || !scenes->is_array()) return files;
-    for (const Json& scene : *scenes) {
-        const Json* sky = gltf::ownExtra(scene, "sky");
+    for (const LinksJson& scene : *scenes) {
+        const LinksJson* sky = gltf::ownExtra(scene, "sky");
         if (!sky || !sky->is_object()) continue;
         const auto file = sky->find("file");
         if (file != sky->end() && file->is_string())

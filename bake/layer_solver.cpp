@@ -92,9 +92,8 @@ void LayerSolver::countSenders() {
             static_cast<uint32_t>(std::count_if(first, first + kChunk, [](const shader::Patch& p) {
                 return (p.flags & shader::kPatchSends) != 0;
             }));
-        fullChunks_[chunk] = std::all_of(first, first + kChunk, [](const shader::Patch& p) {
-            return shader::patchIsShown(p.flags);
-        });
+        fullChunks_[chunk] = std::all_of(
+            first, first + kChunk, [](const shader::Patch& p) { return shader::patchIsShown(p.flags); });
     }
 }
 
