@@ -11,6 +11,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace relume::gltf {
@@ -23,19 +24,58 @@ using Bytes = std::vector<unsigned char>;
 // all others PNG packs best: DEFLATE makes 1032 bytes of one, each of eight pixels.
 constexpr uint64_t kMostJpegPacking = 1024, kMostPacking = 8 * 1040;
 
-bool isJpeg(const Bytes& bytes) {
-    return bytes.size() > 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
+/// Where a JPEG's segments begin, behind its first marker, which may be filled up; 0: it is none.
+size_t jpegBegin(const Bytes& bytes) {
+    size_t at = 0;
+    while (at < bytes.size() && bytes[at] == 0xff)
+        ++at;
+    return at > 0 && at < bytes.size() && bytes[at] == 0xd8 ? at + 1 : 0;
+}
+
+/// Whether a table of Huffman codes begins at `at` (its class and number, then 16 counts) that has more codes
+/// than there are bytes; the next one's place goes there.
+bool hasTooManyCodes(const Bytes& bytes, size_t& at, size_t end) {
+    size_t codes = 0;
+    for (size_t i = at + 1; i < std::min(at + 17, end); ++i)
+        codes += bytes[i];
+    at += 17 + codes;
+    return codes > 256;
+}
+
+/// stb (2.27) writes codes beyond its table's end where a file has more than 256 of them. Tables that the
+/// file's segments hold are looked at, and behind the first pixels whatever may be one: there stb goes on at
+/// any byte.
+bool hasSafeTables(const Bytes& bytes, size_t begin) {
+    constexpr uint8_t kTables = 0xc4, kEnd = 0xd9, kPixels = 0xda;
+    bool segments = true;
+    for (size_t at = begin; at + 3 < bytes.size();) {
+        const uint8_t marker = bytes[at + 1];
+        if (bytes[at] != 0xff || marker == 0xff) {
+            ++at;
+            continue;
+        }
+        if (marker == kEnd) return true; // what follows is nobody's
+        const size_t end = at + 2 + (size_t{bytes[at + 2]} << 8 | bytes[at + 3]);
+        if (marker == kTables)
+            for (size_t table = at + 4; table < std::min(end, bytes.size());)
+                if (hasTooManyCodes(bytes, table, bytes.size())) return false;
+        if (marker == kPixels) segments = false;
+        at = segments ? std::max(end, at + 2) : at + 2;
+    }
+    return true;
 }
 
 /// Counts the pixels before a decoder takes memory for them; false where the bytes cannot be a picture of the
 /// size that they tell.
 bool countTexels(SizeLimit& limit, const Bytes& bytes) {
     if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return false;
+    const size_t jpeg = jpegBegin(bytes);
+    if (jpeg > 0 && !hasSafeTables(bytes, jpeg)) return false;
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
         return false;
     const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-    if (pixels / (isJpeg(bytes) ? kMostJpegPacking : kMostPacking) > bytes.size()) return false;
+    if (pixels / (jpeg > 0 ? kMostJpegPacking : kMostPacking) > bytes.size()) return false;
     limit.addTexels(4 * pixels);
     return true;
 }

@@ -25,11 +25,17 @@ int __sanitizer_install_malloc_and_free_hooks(void (*onMalloc)(const volatile vo
                                               void (*onFree)(const volatile void*));
 size_t __sanitizer_get_allocated_size(const volatile void* memory);
 const char* __asan_default_options();
+const char* __ubsan_default_options();
 }
 
 // Freed memory is kept to find uses of it; more than this would hide what inputs take.
 const char* __asan_default_options() {
     return "quarantine_size_mb=16:detect_stack_use_after_return=0:allocator_release_to_os_interval_ms=-1";
+}
+
+// GCC's runtime of this sanitizer is one of its own, which calls no one before it ends the process.
+const char* __ubsan_default_options() {
+    return "abort_on_error=1:print_stacktrace=1";
 }
 
 namespace relume::fuzz {

@@ -202,6 +202,16 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
         png.resize(40);
         useImage(b, {{"bufferView", b.view(png)}, {"mimeType", "image/png"}, {"name", "Wood"}});
     });
+    // stb would write 4080 codes into a table of 256: once before the pixels, once behind some.
+    for (const bool behind : {false, true})
+        expectSpoiled("codes", "image 0 'Wood' cannot be decoded", [behind](GlbBuilder& b) {
+            std::vector<uint8_t> jpeg = {0xff, 0xff, 0xd8}; // filled up, as it may be
+            if (behind) jpeg.insert(jpeg.end(), {0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 1, 2, 3});
+            jpeg.insert(jpeg.end(), {0xff, 0xc4, 0x10, 0x03, 0});
+            jpeg.insert(jpeg.end(), 16, 255);
+            jpeg.resize(5000);
+            useImage(b, {{"bufferView", b.view(jpeg)}, {"mimeType", "image/jpeg"}, {"name", "Wood"}});
+        });
     expectSpoiled("webp", "has no PNG or JPEG image", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
         b.json["textures"] = {json::object()};
