@@ -2,16 +2,15 @@
 
 #include "app/bake_settings.h"
 #include "app/layer_file.h"
+#include "app/live/hearer.h"
 #include "app/live/layer_remark.h"
 #include "app/lightmap_attributes.h"
 #include "app/solve.h"
-#include "assets/watch.h"
 #include "assets/log.h"
 #include "assets/sky_picture.h"
 #include "renderer/shader_types.h"
 #include "shaders/shader_library.h"
 
-#include <functional>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -35,18 +34,6 @@ constexpr size_t kMaxHistory = 4096;
 
 // Ends a preparation that nobody waits for any more.
 struct Cancelled {};
-
-/// Tells how a preparation stands to whom it may concern.
-class Hearer final : public Watch {
-public:
-    using Hear = std::function<void(const char* phase, double done)>;
-    explicit Hearer(Hear hear) : hear_(std::move(hear)), scope_(*this) {}
-    void hear(const char* phase, double done) override { hear_(phase, done); }
-
-private:
-    Hear hear_;
-    WatchScope scope_;
-};
 
 // In the order in which a baker tells them, for the progress bar.
 constexpr std::array<std::string_view, 6> kPhases = {"cit",      "patches", "tracer",

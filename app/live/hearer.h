@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "assets/watch.h"
+
+namespace relume {
+
+/// Tells how a preparation stands to whom it may concern.
+class Hearer final : public Watch {
+public:
+    using Hear = std::function<void(const char* phase, double done)>;
+    explicit Hearer(Hear hear) : hear_(std::move(hear)), scope_(*this) {}
+    void hear(const char* phase, double done) override { hear_(phase, done); }
+
+private:
+    Hear hear_;
+    WatchScope scope_;
+};
+
+} // namespace relume
