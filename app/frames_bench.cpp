@@ -42,8 +42,11 @@ public:
     void follow() {
         const BakeStatus status = bake_.status();
         if (status.phase == BakeStatus::Phase::Failed) throw Error(status.doing);
-        rays_.see(status.rays);
-        if (status.phase == BakeStatus::Phase::Done) bake_.reset();
+        rays_.see(status.beginnings, status.rays);
+        // Once for each bake: until the order is taken the status is that of before.
+        if (status.phase != BakeStatus::Phase::Done || ended_ == status.beginnings) return;
+        ended_ = status.beginnings;
+        bake_.reset();
     }
     bool complete() const { return bridge_.map() != nullptr && bridge_.map()->complete; }
 
@@ -107,9 +110,13 @@ public:
     }
 
 private:
+    void seeRays() {
+        const BakeStatus status = bake_.status();
+        rays_.see(status.beginnings, status.rays);
+    }
     FramesPart begin(const std::string& name) {
         start_ = Clock::now();
-        rays_.see(bake_.status().rays);
+        seeRays();
         raysBefore_ = rays_.total();
         FramesPart part;
         part.name = name;
@@ -117,7 +124,7 @@ private:
     }
     FramesPart end(FramesPart part) {
         part.seconds = secondsSince(start_);
-        rays_.see(bake_.status().rays);
+        seeRays();
         part.raysPerSecond = static_cast<double>(rays_.total() - raysBefore_) / part.seconds;
         return part;
     }
@@ -131,6 +138,7 @@ private:
     ViewCamera camera_;
     Clock::time_point start_{};
     RayCount rays_;
+    uint64_t ended_ = 0;      // the last bake that came to its end
     uint64_t raysBefore_ = 0; // this part
 };
 

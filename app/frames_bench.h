@@ -39,15 +39,16 @@ struct FramesReport {
 /// Adds up the rays of bakes that follow one another, from what each tells of itself now and then.
 class RayCount {
 public:
-    void see(uint64_t raysOfBake) {
-        total_ +=
-            raysOfBake >= last_ ? raysOfBake - last_ : raysOfBake; // fewer than before: of the next bake
+    void see(uint64_t bake, uint64_t raysOfBake) {
+        if (bake != bake_) last_ = 0;
+        total_ += raysOfBake - last_;
+        bake_ = bake;
         last_ = raysOfBake;
     }
     uint64_t total() const { return total_; }
 
 private:
-    uint64_t total_ = 0, last_ = 0;
+    uint64_t bake_ = 0, last_ = 0, total_ = 0;
 };
 
 /// A bake that comes to its end, as every one does, begins again: what is measured is always one that goes

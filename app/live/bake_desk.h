@@ -72,7 +72,8 @@ struct BakeStatus {
     std::string remark;             // why not though it was asked for, with the mend, one line; "": nothing
     std::vector<std::string> stale; // what of the edits its light does not show yet, one line each
     SolverProgress progress;
-    uint64_t rays = 0;        // of this bake, those of the pass under way too
+    uint64_t beginnings = 0;  // how often a bake began, by start() or by reset()
+    uint64_t rays = 0;        // since then, those of the pass under way too
     double raysPerSecond = 0; // over the last second or so
     double secondsLeft = -1;  // until the error that is asked for, by how it fell so far; negative: unknown
     std::vector<ConvergencePoint> history;

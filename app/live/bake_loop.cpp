@@ -300,6 +300,7 @@ void BakeLoop::begin() {
     status_.doing.clear();
     status_.fraction = 0;
     status_.progress = {};
+    ++status_.beginnings;
     status_.rays = 0;
     status_.history.clear();
     status_.raysPerSecond = 0;
@@ -450,6 +451,8 @@ void BakeLoop::measure() {
 
 void BakeLoop::follow() {
     if (!baker_) return;
+    if (status_.phase != Phase::Baking)
+        status_.rays = baker_->solver().raysSoFar(); // as nothing will be measured
     const SolverProgress& now = baker_->solver().progress();
     status_.progress = now;
     status_.rays = std::max(status_.rays, now.rays);

@@ -216,8 +216,8 @@ std::vector<std::string> walkedVerbs() {
     return verbs;
 }
 
-INSTANTIATE_TEST_SUITE_P(Verbs, OptionWalk, testing::ValuesIn(walkedVerbs()), [](const auto& info) {
-    std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Verbs, OptionWalk, testing::ValuesIn(walkedVerbs()), [](const auto& test) {
+    std::string name = test.param;
     std::replace(name.begin(), name.end(), ' ', '_');
     return name;
 });
