@@ -7,7 +7,11 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored                                                                               \
+    "-Wmaybe-uninitialized" // stb's PNG reader refuses a file before it would read that
 #include <stb_image.h>
+#pragma GCC diagnostic pop
 
 #include <spdlog/fmt/fmt.h>
 
