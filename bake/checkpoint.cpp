@@ -282,7 +282,10 @@ void Checkpoint::read(uint64_t offset, void* data, uint64_t size) {
     if (!file_) fail("cannot be read to its end: bake from the start");
 }
 
-void Checkpoint::fail(const std::string& why) const {
+// What the file says of itself may hold anything: messages stay on one line.
+void Checkpoint::fail(std::string why) const {
+    std::replace_if(
+        why.begin(), why.end(), [](unsigned char c) { return c < 0x20; }, ' ');
     throw Error(path_ + ": " + why);
 }
 

@@ -51,7 +51,7 @@ private:
     template<typename T>
     std::vector<T> values(const Section& section);
     void read(uint64_t offset, void* data, uint64_t size);
-    [[noreturn]] void fail(const std::string& why) const;
+    [[noreturn]] void fail(std::string why) const;
 
     std::string path_;
     std::ifstream file_;

@@ -123,6 +123,20 @@ TEST_F(CheckpointFile, WhatIsNoneIsCalledSo) {
     EXPECT_EQ(problem(key_), "is no regular file: name a file that --checkpoint wrote");
 }
 
+TEST_F(CheckpointFile, WhatItsTextsHoldIsToldOnOneLine) {
+    ParkedSolver solver({16, 5});
+    solver.fill();
+    CheckpointKey odd = key_;
+    odd.version = "1\n2\r";
+    odd.settings = "size=\n1";
+    saveCheckpoint(path_, odd, solver);
+    EXPECT_TRUE(contains(problem(key_), "was written by Relume 1 2 ")) << problem(key_);
+    odd.version = key_.version;
+    saveCheckpoint(path_, odd, solver);
+    EXPECT_TRUE(contains(problem(key_), "other settings")) << problem(key_);
+    EXPECT_EQ(problem(key_).find('\n'), std::string::npos);
+}
+
 TEST_F(CheckpointFile, ThatOfAnotherBakeIsRefusedByWhatDiffers) {
     ParkedSolver solver({16, 5});
     solver.fill();
