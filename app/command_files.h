@@ -33,7 +33,7 @@ public:
     /// The one may be the file that the other reads.
     CommandFiles& mayBe(const std::string& output, const std::string& input);
 
-    /// What is written twice, or read and overwritten: one line, "" when there is nothing.
+    /// Tells what is written twice, or read and overwritten: one line, "" when there is nothing.
     std::string clash() const;
     /// Throws UsageError when there is something.
     void check() const;

@@ -12,12 +12,12 @@ namespace relume {
 /// Adds all verbs, and makes of each error of the parser one line.
 void addCommands(CLI::App& app);
 
-/// What was typed, as `app` can parse it: with "view" in front of a scene that stands where a verb belongs,
-/// and with an empty value as a word of its own, which CLI11 would skip for the next one. Throws UsageError
-/// for a verb that there is not and for a value that a flag is given.
+/// Turns what was typed into what `app` can parse: with "view" in front of a scene that stands where a verb
+/// belongs, and with an empty value as a word of its own, which CLI11 would skip for the next one. Throws
+/// UsageError for a verb that there is not and for a value that a flag is given.
 std::vector<std::string> parserArguments(const std::vector<std::string>& typed, const CLI::App& app);
 
-/// What helps when memory runs out, by what the verb that was parsed makes.
+/// Tells what helps when memory runs out, by what the verb that was parsed makes.
 std::string outOfMemoryMessage(const CLI::App& app);
 
 } // namespace relume

@@ -31,7 +31,7 @@ protected:
     uint32_t count_ = 0;
 };
 
-/// Whether a series would have a file of this name: "frame_0001.png".
+/// Tells whether a series would have a file of this name: "frame_0001.png".
 bool isFrameName(const std::string& name);
 
 /// Whether frames for this path become a video.

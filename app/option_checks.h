@@ -8,8 +8,8 @@
 
 namespace relume {
 
-// What options take. These stand for the checks that come with CLI11, which let nan pass and do not always
-// say what is allowed. --help shows what each allows, and so does the message about any other text:
+// These tell what options take. They stand for the checks that come with CLI11, which let nan pass and do not
+// always say what is allowed. --help shows what each allows, and so does the message about any other text:
 // "--density: '-1' is not allowed: give a number above 0, at most 1000000".
 
 /// A finite number, bounds included.

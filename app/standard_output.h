@@ -10,7 +10,7 @@ void holdStandardStreams();
 /// a command that ended with `status`.
 int finishOutput(int status);
 
-/// Whether something that was printed is known to be lost.
+/// Tells whether something that was printed is known to be lost.
 bool outputFailed();
 
 } // namespace relume
