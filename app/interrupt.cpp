@@ -13,7 +13,7 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0, abandonable = 0;
 
-constexpr long kGraceMicroseconds = 400000; // [us], of the half second in which a job has to end
+constexpr long kGraceMicroseconds = 350000; // [us], of the half second in which a job has to end
 constexpr std::string_view kInterruptMessage = "interrupted: nothing was written";
 
 void startAlarm() {

@@ -17,7 +17,7 @@ public:
 void stopIfInterrupted();
 
 /// While one exists, beside an InterruptGuard, no file is being written and no work is worth being saved:
-/// what has not stopped by itself 0.4 s after Ctrl-C, because a library or a driver does not come back, is
+/// what has not stopped by itself 0.35 s after Ctrl-C, because a library or a driver does not come back, is
 /// ended as an interrupted job is, with the same message and exit status.
 class Abandonable {
 public:

@@ -229,9 +229,9 @@ Solid ball(int n, const std::function<glm::dvec3(const glm::dvec3& direction)>& 
         return std::abs(a) == 1.0 ? a : std::tan(a * glm::quarter_pi<double>());
     };
     Solid solid;
-    for (const auto& [normal, right, down] : faces)
+    for (const std::array<glm::dvec3, 3>& face : faces) // its normal, to the right, downwards
         solid.add(grid({.columns = n, .rows = n}, [&](double s, double t) {
-            return surface(glm::normalize(normal + warp(2 * s - 1) * right + warp(2 * t - 1) * down));
+            return surface(glm::normalize(face[0] + warp(2 * s - 1) * face[1] + warp(2 * t - 1) * face[2]));
         }));
     return solid;
 }

@@ -114,10 +114,11 @@ struct Leaving {
 };
 
 int moveToChild(FileEdit& edit, const NodeTree& tree, const Leaving& leaving, const Move& move) {
-    const auto [index, carried, place] = leaving;
+    const int index = leaving.node;
+    const Carried carried = leaving.carried;
     const glm::dmat4 world = tree.world(index);
     requireInvertible(edit, world, move);
-    const int child = addNode(edit, move.name, index, place);
+    const int child = addNode(edit, move.name, index, leaving.place);
     EditedJson& nodes = edit.json["nodes"];
     EditedJson &from = nodes[static_cast<size_t>(index)], &to = nodes[static_cast<size_t>(child)];
     // Coming from where the node is, as though the child had been there all along.
