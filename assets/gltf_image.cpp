@@ -3,9 +3,12 @@
 #include "assets/gltf_build.h"
 #include "assets/png_check.h"
 
-// Our own static copy, of which only the sizes of pictures are asked; the parser's decodes.
+// Our own static copy, of which only the sizes of pictures are asked; the parser's decodes. glTF knows PNG and
+// JPEG alone: what else stb would read is refused here, its other readers count beyond their numbers' ends.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored                                                                               \
@@ -24,9 +27,9 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-// Pixels per byte. JPEG has at least two bits for 64 pixels of one channel, or one in a progressive file. Of
-// all others PNG packs best: DEFLATE makes 1032 bytes of one, each of eight pixels.
-constexpr uint64_t kMostJpegPacking = 1024, kMostPacking = 8 * 1040;
+// Pixels per byte. JPEG has at least two bits for 64 pixels of one channel, or one in a progressive file. PNG's
+// DEFLATE makes 1032 bytes of one, each of eight pixels.
+constexpr uint64_t kMostJpegPacking = 1024, kMostPngPacking = 8 * 1040;
 
 /// Where a JPEG's segments begin, behind its first marker, which may be filled up; 0: it is none.
 size_t jpegBegin(const Bytes& bytes) {
@@ -79,7 +82,7 @@ bool countTexels(SizeLimit& limit, const Bytes& bytes) {
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
         return false;
     const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-    if (pixels / (jpeg > 0 ? kMostJpegPacking : kMostPacking) > bytes.size()) return false;
+    if (pixels / (jpeg > 0 ? kMostJpegPacking : kMostPngPacking) > bytes.size()) return false;
     limit.addTexels(4 * pixels);
     return true;
 }

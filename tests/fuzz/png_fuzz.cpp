@@ -34,6 +34,7 @@ std::vector<std::string> corpus() {
     std::string large = corpus.front();
     large.replace(16, 8, std::string("\0\0\x60\0\0\0\x60\0", 8)); // 24576 x 24576 pixels
     corpus.push_back(large);
+    corpus.emplace_back("P5 99999999999999999999 1 255 ."); // of a kind that no scene has
     return corpus;
 }
 

@@ -212,6 +212,12 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
             jpeg.resize(5000);
             useImage(b, {{"bufferView", b.view(jpeg)}, {"mimeType", "image/jpeg"}, {"name", "Wood"}});
         });
+    // stb reads these as well, and multiplies this width until it overflows.
+    for (const std::string other : {"P5 99999999999999999999 1 255 .", "P5 1 1 255 .", "GIF89a", "BM"})
+        expectSpoiled("other", "image 0 'Wood' cannot be decoded: export textures as PNG", [&](GlbBuilder& b) {
+            const std::vector<uint8_t> bytes(other.begin(), other.end());
+            useImage(b, {{"bufferView", b.view(bytes)}, {"mimeType", "image/png"}, {"name", "Wood"}});
+        });
     expectSpoiled("webp", "has no PNG or JPEG image", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
         b.json["textures"] = {json::object()};
