@@ -2,7 +2,7 @@
 # Installs by apt what Relume needs to be built, run and tested. Changes nothing where everything is there already.
 #
 #   ./setup.sh        what a build and the tests need
-#   ./setup.sh --ci   the format checker too
+#   ./setup.sh --ci   the format checker and git too, which lists what it checks
 #
 # Debian 12: Mesa comes from bookworm-backports (the stock Mesa 22.3 has no ray tracing); the suite is added to apt's
 # sources where it is missing. RELUME_KEEP_MESA=1 leaves an installed older Mesa alone. Debian 13 and Ubuntu 24.04: the
@@ -152,7 +152,7 @@ installAll() {
 setUp() {
     case "${1:-}" in
         "") ;;
-        --ci) packages+=(clang-format) ;;
+        --ci) packages+=(clang-format git) ;;
         *) usage; exit 2 ;;
     esac
     system=$(systemName)
