@@ -22,8 +22,9 @@ packages=(
     libgtest-dev libbenchmark-dev vulkan-validationlayers
     xvfb xdotool libx11-dev                   # the tests of the window, on a machine without a display
 )
-# The software devices of Vulkan and OpenGL. Both of one version: the viewer shares images between them.
-mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0)
+# The software devices of Vulkan and OpenGL, and what a window needs of Mesa (GLX). All of one version: the viewer shares
+# images between the devices, and an older GLX finds no picture format of a newer device.
+mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0 libglx-mesa0)
 testedMesa=25 # on Debian 12 an older one is brought up to date; elsewhere the stock one is taken
 backports=/etc/apt/sources.list.d/relume-backports.sources
 
