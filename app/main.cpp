@@ -1,7 +1,7 @@
-#include "app/command_line.h"
-#include "app/standard_output.h"
-#include "assets/error.h"
-#include "assets/log.h"
+#include "app/commands/command_line.h"
+#include "app/text/standard_output.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
 
 #include <algorithm>
 #include <cstdio>

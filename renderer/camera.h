@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/scene.h"
+#include "assets/model/scene.h"
 #include "renderer/box.h"
 
 namespace relume {

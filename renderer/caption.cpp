@@ -1,6 +1,6 @@
 #include "renderer/caption.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <array>

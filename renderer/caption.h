@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 
 namespace relume {
 

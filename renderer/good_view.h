@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assets/world_mesh.h"
+#include "assets/atlas/world_mesh.h"
 #include "renderer/camera.h"
 
 namespace relume {

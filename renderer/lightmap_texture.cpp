@@ -1,6 +1,6 @@
 #include "renderer/lightmap_texture.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <cmath>

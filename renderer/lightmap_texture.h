@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 #include "renderer/gl/texture.h"
 #include "renderer/version.h"
 

@@ -1,6 +1,6 @@
 #include "renderer/overlays.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 #include "renderer/gl/framebuffer.h"
 
 namespace relume {

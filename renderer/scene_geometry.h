@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/world_mesh.h"
+#include "assets/atlas/world_mesh.h"
 #include "renderer/box.h"
 #include "renderer/shader_types.h"
 

@@ -1,6 +1,6 @@
 #include "renderer/scene_gpu.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/shader_types.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "assets/scene_edits.h"
+#include "assets/model/scene_edits.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
 #include "renderer/gl/vertex_array.h"

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-// As bake/shader_types.h has it for the kernels, for what is drawn; a source may include both.
+// As bake/base/shader_types.h has it for the kernels, for what is drawn; a source may include both.
 #ifndef FUNCTION
 #define FUNCTION inline
 #endif

@@ -1,6 +1,6 @@
 #include "shaders/shader_compiler.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>

@@ -1,6 +1,6 @@
 #include "shaders/shader_library.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "shaders/embedded_shaders.h"
 #include "shaders/shader_compiler.h"
 

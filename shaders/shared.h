@@ -1,6 +1,6 @@
 // Structs and constants that C++ and GLSL share, scalar layout (GL_EXT_scalar_block_layout), no padding by
 // hand. C++ includes this inside namespace relume::shader with glm's types in scope (see
-// bake/shader_types.h).
+// bake/base/shader_types.h).
 #ifndef RELUME_SHARED_H
 #define RELUME_SHARED_H
 

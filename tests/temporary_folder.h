@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <cstdlib>

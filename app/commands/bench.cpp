@@ -1,11 +1,12 @@
-#include "app/bake_options.h"
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/option_checks.h"
-#include "app/prepare.h"
-#include "app/trace_bench.h"
-#include "assets/file_write.h"
-#include "assets/log.h"
+#include "app/bench/trace_bench.h"
+#include "app/commands/command.h"
+#include "app/edit/prepare.h"
+#include "app/offline/bake_options.h"
+#include "app/offline/command_files.h"
+#include "app/text/option_checks.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "bake/trace/make_tracer.h"
 
 #include <iostream>
 #include <memory>

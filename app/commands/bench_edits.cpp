@@ -1,12 +1,13 @@
-#include "app/bake_options.h"
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/edits_bench.h"
-#include "app/interrupt.h"
-#include "app/option_checks.h"
-#include "assets/file_write.h"
-#include "assets/log.h"
-#include "bake/link_solver.h"
+#include "app/bench/edits_bench.h"
+#include "app/commands/command.h"
+#include "app/offline/bake_options.h"
+#include "app/offline/command_files.h"
+#include "app/text/interrupt.h"
+#include "app/text/option_checks.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "bake/links/link_solver.h"
+#include "bake/trace/make_tracer.h"
 
 #include <algorithm>
 #include <iostream>

@@ -1,10 +1,10 @@
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/frames_bench.h"
-#include "app/option_checks.h"
-#include "app/viewer/view_options.h"
-#include "assets/file_write.h"
-#include "assets/log.h"
+#include "app/bench/frames_bench.h"
+#include "app/commands/command.h"
+#include "app/offline/command_files.h"
+#include "app/text/option_checks.h"
+#include "app/viewer/shell/view_options.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
 #include "shaders/shader_library.h"
 
 #include <iostream>

@@ -1,11 +1,12 @@
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/heat_map.h"
-#include "app/option_checks.h"
-#include "assets/error.h"
-#include "assets/log.h"
-#include "bake/flip.h"
-#include "bake/metrics.h"
+#include "app/commands/command.h"
+#include "app/offline/command_files.h"
+#include "app/text/heat_map.h"
+#include "app/text/option_checks.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/flip.h"
+#include "assets/images/image_file.h"
+#include "assets/images/metrics.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,6 @@
-#include "app/command.h"
-#include "assets/log.h"
+#include "app/commands/command.h"
+#include "assets/base/log.h"
+#include "bake/trace/make_tracer.h"
 #include "bake/trace/tracer.h"
 #include "bake/vk/device.h"
 

@@ -1,9 +1,9 @@
-#include "app/command.h"
-#include "app/option_checks.h"
-#include "app/scene_info.h"
-#include "app/light_names.h"
-#include "assets/gltf.h"
-#include "assets/warnings.h"
+#include "app/commands/command.h"
+#include "app/edit/scene_info.h"
+#include "app/text/light_names.h"
+#include "app/text/option_checks.h"
+#include "assets/base/warnings.h"
+#include "assets/gltf/gltf.h"
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>

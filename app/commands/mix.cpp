@@ -1,9 +1,10 @@
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/light_mix.h"
-#include "assets/finite_image.h"
-#include "assets/error.h"
-#include "assets/log.h"
+#include "app/commands/command.h"
+#include "app/offline/command_files.h"
+#include "app/offline/light_mix.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/finite_image.h"
+#include "assets/images/image_file.h"
 
 #include <cstdio>
 #include <memory>

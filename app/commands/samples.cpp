@@ -1,10 +1,10 @@
-#include "app/command.h"
-#include "app/option_checks.h"
-#include "assets/error.h"
-#include "assets/file_write.h"
-#include "assets/log.h"
-#include "bake/directions.h"
-#include "bake/shader_types.h"
+#include "app/commands/command.h"
+#include "app/text/option_checks.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "bake/base/shader_types.h"
+#include "bake/links/directions.h"
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>

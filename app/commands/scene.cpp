@@ -1,10 +1,10 @@
-#include "app/command.h"
+#include "app/commands/command.h"
 
-#include "assets/error.h"
-#include "assets/file_write.h"
-#include "assets/generate.h"
-#include "assets/gltf.h"
-#include "assets/log.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "assets/generate/generate.h"
+#include "assets/gltf/gltf.h"
 
 #include <iostream>
 #include <memory>

@@ -1,11 +1,11 @@
-#include "app/command.h"
-#include "app/command_files.h"
-#include "app/option_checks.h"
-#include "assets/error.h"
-#include "assets/file_write.h"
-#include "assets/gltf.h"
-#include "assets/log.h"
-#include "assets/unwrap.h"
+#include "app/commands/command.h"
+#include "app/offline/command_files.h"
+#include "app/text/option_checks.h"
+#include "assets/atlas/unwrap.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "assets/gltf/gltf.h"
 
 #include <cstdio>
 #include <filesystem>

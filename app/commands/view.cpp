@@ -1,6 +1,6 @@
-#include "app/command.h"
-#include "app/viewer/view_options.h"
-#include "app/viewer/viewer.h"
+#include "app/commands/command.h"
+#include "app/viewer/shell/view_options.h"
+#include "app/viewer/shell/viewer.h"
 #include "shaders/shader_library.h"
 
 #include <memory>

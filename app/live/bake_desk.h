@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "app/edit/prepare.h"
 #include "app/live/lightmap_exchange.h"
-#include "app/prepare.h"
-#include "assets/scene_edits.h"
-#include "bake/baker.h"
-#include "bake/light_groups.h"
+#include "assets/model/scene_edits.h"
+#include "bake/baker/baker.h"
+#include "bake/layers/light_groups.h"
 
 namespace relume {
 
@@ -23,6 +23,15 @@ enum class DisplayMode { Auto, Shared, Copied };
 struct DisplayHost {
     bool memoryObjects = false;                       // GL_EXT_memory_object_fd
     std::vector<std::array<uint8_t, 16>> deviceUuids; // GL_DEVICE_UUID_EXT
+};
+
+/// What a live bake runs on.
+struct BakeDeviceDesc {
+    std::string device = {}; // as vk::Device::Desc::select
+    bool validation = false;
+    DisplayMode display = DisplayMode::Auto;
+    DisplayHost host = {};
+    double batchMs = 8; // aim of one batch
 };
 
 /// What is to be seen beside light, and how. Plain: main thread to bake thread.

@@ -1,13 +1,14 @@
 #include "app/live/bake_loop.h"
 
-#include "app/bake_settings.h"
-#include "app/layer_file.h"
 #include "app/live/hearer.h"
 #include "app/live/layer_remark.h"
-#include "app/lightmap_attributes.h"
-#include "app/solve.h"
-#include "assets/log.h"
-#include "assets/sky_picture.h"
+#include "app/offline/bake_settings.h"
+#include "app/offline/layer_file.h"
+#include "app/offline/lightmap_attributes.h"
+#include "app/offline/solve.h"
+#include "assets/base/log.h"
+#include "assets/images/image_file.h"
+#include "assets/images/sky_picture.h"
 #include "renderer/shader_types.h"
 #include "shaders/shader_library.h"
 
@@ -80,7 +81,7 @@ void yieldToOthers() {
 
 } // namespace
 
-BakeLoop::BakeLoop(BakeDesk& desk, const LiveBake::Desc& desc) : desk_(desk), desc_(desc) {}
+BakeLoop::BakeLoop(BakeDesk& desk, const BakeDeviceDesc& desc) : desk_(desk), desc_(desc) {}
 
 BakeLoop::~BakeLoop() = default;
 

@@ -2,18 +2,18 @@
 
 #include <memory>
 
+#include "app/live/bake_desk.h"
 #include "app/live/bake_forecast.h"
-#include "app/live/live_bake.h"
 #include "app/live/map_publisher.h"
-#include "assets/clock.h"
-#include "bake/layer_solver.h"
+#include "assets/base/clock.h"
+#include "bake/layers/layer_solver.h"
 
 namespace relume {
 
 /// What the bake thread does: follows orders, steps the solver batch by batch and publishes its light.
 class BakeLoop {
 public:
-    BakeLoop(BakeDesk& desk, const LiveBake::Desc& desc);
+    BakeLoop(BakeDesk& desk, const BakeDeviceDesc& desc);
     ~BakeLoop(); // from any thread, once run() has returned
     BakeLoop(const BakeLoop&) = delete;
     BakeLoop& operator=(const BakeLoop&) = delete;
@@ -52,7 +52,7 @@ private:
     void wake();
 
     BakeDesk& desk_;
-    LiveBake::Desc desc_;
+    BakeDeviceDesc desc_;
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<MapPublisher> maps_;
     Scene scene_;                              // with its edited materials

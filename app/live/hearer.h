@@ -3,7 +3,7 @@
 #include <functional>
 #include <utility>
 
-#include "assets/watch.h"
+#include "assets/base/watch.h"
 
 namespace relume {
 

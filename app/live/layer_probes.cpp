@@ -1,6 +1,6 @@
 #include "app/live/layer_probes.h"
 
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 #include <cstring>
 #include <utility>

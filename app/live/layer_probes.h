@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/live/bake_desk.h"
-#include "bake/layer_solver.h"
+#include "bake/layers/layer_solver.h"
 
 namespace relume {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "bake/baker.h"
-#include "bake/layer_solver.h"
+#include "bake/baker/baker.h"
+#include "bake/layers/layer_solver.h"
 
 namespace relume {
 

@@ -1,6 +1,6 @@
 #include "app/live/lightmap_exchange.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 

@@ -9,7 +9,7 @@
 
 #include <glm/glm.hpp>
 
-#include "bake/light_source.h"
+#include "bake/lights/light_source.h"
 
 namespace relume {
 

@@ -14,13 +14,7 @@ class BakeLoop;
 /// with all its bounces.
 class LiveBake {
 public:
-    struct Desc {
-        std::string device = {}; // as vk::Device::Desc::select
-        bool validation = false;
-        DisplayMode display = DisplayMode::Auto;
-        DisplayHost host = {};
-        double batchMs = 8; // aim of one batch
-    };
+    using Desc = BakeDeviceDesc;
     /// Starts the thread. Where Vulkan is missing the status says so (Failed).
     explicit LiveBake(const Desc& desc);
     ~LiveBake(); // stops; the Vulkan device goes with it: after OpenGL's context (picture_studio.h)

@@ -1,8 +1,8 @@
 #include "app/live/map_publisher.h"
 
-#include "assets/error.h"
-#include "assets/log.h"
-#include "bake/layer_solver.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "bake/layers/layer_solver.h"
 #include "bake/vk/buffer.h"
 
 #include <algorithm>

@@ -7,9 +7,9 @@
 
 #include "app/live/bake_desk.h"
 #include "app/live/layer_probes.h"
-#include "assets/clock.h"
-#include "bake/patch_inspector.h"
-#include "bake/publisher.h"
+#include "assets/base/clock.h"
+#include "bake/show/patch_inspector.h"
+#include "bake/show/publisher.h"
 
 namespace relume {
 

@@ -1,6 +1,6 @@
 #include "app/live/scene_file.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <chrono>

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "assets/gltf_edit.h"
-#include "assets/scene_edits.h"
+#include "assets/gltf/gltf_edit.h"
+#include "assets/model/scene_edits.h"
 
 namespace relume {
 

@@ -1,9 +1,10 @@
 #include "app/live/session.h"
 
-#include "assets/watch.h"
-#include "assets/scene_limits.h"
-#include "assets/error.h"
-#include "assets/log.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/base/watch.h"
+#include "assets/model/scene_limits.h"
+#include "bake/trace/make_tracer.h"
 #include "renderer/good_view.h"
 
 #include <algorithm>

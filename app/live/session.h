@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "app/bake_options.h"
 #include "app/live/live_bake.h"
 #include "app/live/scene_file.h"
-#include "assets/clock.h"
+#include "app/offline/bake_options.h"
+#include "assets/base/clock.h"
 #include "renderer/camera.h"
 #include "renderer/scene_geometry.h"
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <span>
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 namespace relume {
 

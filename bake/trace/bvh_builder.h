@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "assets/world_mesh.h"
-#include "bake/shader_types.h"
+#include "assets/atlas/world_mesh.h"
+#include "bake/base/shader_types.h"
 
 namespace relume {
 

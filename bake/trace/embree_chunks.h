@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 namespace relume {
 

@@ -1,6 +1,6 @@
 #include "bake/trace/embree_rays.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 namespace relume {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 namespace relume {
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <type_traits>
 
-#include "assets/error.h"
+#include "assets/base/error.h"
+#include "bake/base/worker_pool.h"
 #include "bake/trace/embree_api.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
-#include "bake/worker_pool.h"
 #include "bake/trace/embree_rays.h"
 #include "bake/trace/embree_shaft.h"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "bake/trace/retrace_types.h"
-#include "bake/trace/trace_scene.h"
+#include "bake/base/retrace_types.h"
+#include "bake/surface/trace_scene.h"
 #include "bake/trace/tracer.h"
 
 namespace relume {

@@ -1,4 +1,5 @@
-#include "assets/error.h"
+#include "bake/trace/embree_tracer.h"
+#include "assets/base/error.h"
 #include "bake/trace/embree_scene.h"
 #include "bake/trace/tracer.h"
 

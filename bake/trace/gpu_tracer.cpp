@@ -1,7 +1,7 @@
 #include "bake/trace/gpu_tracer.h"
 
+#include "bake/base/retrace_types.h"
 #include "bake/trace/moving_bvh.h"
-#include "bake/trace/retrace_types.h"
 #include "bake/vk/accel.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"

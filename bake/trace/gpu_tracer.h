@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bake/trace/tracer.h"
+#include "bake/trace/voxel_map.h"
 
 namespace relume {
 
@@ -14,7 +15,7 @@ std::unique_ptr<Tracer> makeQueryTracer(const vk::Device& device, const TraceSce
                                         const vk::Buffer& patches);
 std::unique_ptr<Tracer> makeBvhTracer(const vk::Device& device, const TraceScene& scene,
                                       const vk::Buffer& patches);
-/// Marches through a voxel map; see bake/README.md, Voxels, for what that costs in accuracy. With a ratio
+/// Marches through a voxel map; see bake/trace/README.md, for what that costs in accuracy. With a ratio
 /// above 1 it leaves the bits and links of all other senders and samples as they are in the work's buffers.
 std::unique_ptr<Tracer> makeVoxelTracer(const vk::Device& device, const TraceScene& scene,
                                         const vk::Buffer& patches, const VoxelSettings& settings);

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 namespace relume {
 

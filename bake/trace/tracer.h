@@ -1,12 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <span>
-#include <string>
 
-#include "bake/trace/trace_scene.h"
+#include "bake/surface/trace_scene.h"
 #include "bake/vk/buffer.h"
-#include "bake/voxel_map.h"
 
 namespace relume {
 
@@ -128,23 +125,5 @@ public:
     virtual void update(const SceneChange& change);
     virtual void retrace(VkCommandBuffer cmd, const RetraceWork& work);
 };
-
-enum class TracerKind { Auto, Rtp, Query, Bvh, Embree, Voxel };
-
-/// Throws UsageError for an unknown name.
-TracerKind parseTracerKind(const std::string& name);
-/// The tracer Auto stands for on this device, with the reason in `why`: rtp or query where the GPU has RT
-/// cores, bvh on other GPUs, embree on a software device.
-TracerKind chooseTracer(const vk::DeviceInfo& info, std::string& why);
-/// What `kind` needs and the device lacks; "" when it can run there.
-std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info);
-const char* tracerName(TracerKind kind);
-
-/// Builds the acceleration structure. `patches` holds scene.patches on the device. Throws Error when the
-/// device cannot. `voxels` is for the voxel tracer; with a ratio of 1 that one is what comes, with a ratio
-/// above 1 it takes its share of the work of a tracer of another kind (mixed_tracer.h).
-std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
-                                   const vk::Buffer& patches, const VoxelSettings& voxels = {});
-std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene);
 
 } // namespace relume

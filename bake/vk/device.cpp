@@ -1,6 +1,6 @@
 #include "bake/vk/device.h"
 
-#include "assets/log.h"
+#include "assets/base/log.h"
 #include "bake/vk/device_info.h"
 #include "bake/vk/instance.h"
 #include "bake/vk/pipeline_cache.h"

@@ -11,7 +11,7 @@
 
 #include <volk.h>
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 namespace relume::vk {
 

@@ -1,7 +1,7 @@
 #include "renderer/gl/debug.h"
 
-#include "assets/error.h"
-#include "assets/log.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
 
 #include <atomic>
 #include <string_view>

@@ -1,6 +1,6 @@
 #include "renderer/gl/errors.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <epoxy/gl.h>
 #include <spdlog/fmt/fmt.h>

@@ -1,6 +1,6 @@
 #include "renderer/gl/glsl_source.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "shaders/shader_library.h"
 
 #include <algorithm>

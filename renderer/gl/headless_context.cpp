@@ -1,6 +1,6 @@
 #include "renderer/gl/headless_context.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/gl/debug.h"
 
 #include <array>

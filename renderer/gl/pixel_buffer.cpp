@@ -1,6 +1,6 @@
 #include "renderer/gl/pixel_buffer.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <string>
 

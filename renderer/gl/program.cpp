@@ -1,6 +1,6 @@
 #include "renderer/gl/program.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/gl/glsl_source.h"
 
 namespace relume::gl {

@@ -1,6 +1,6 @@
 #include "renderer/gl/readback.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "renderer/gl/shared_texture.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/gl/errors.h"
 
 #include <spdlog/fmt/fmt.h>

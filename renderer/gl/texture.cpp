@@ -1,6 +1,6 @@
 #include "renderer/gl/texture.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/gl/errors.h"
 
 #include <algorithm>

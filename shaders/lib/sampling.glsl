@@ -114,7 +114,7 @@ FUNCTION vec2 turnBy(uint bits) {
     return vec2(back ? -x : x, back ? -y : y);
 }
 
-// The point of a set of `count`, each in the middle of a ring of its own (bake/directions.h), as a direction around +z: the
+// The point of a set of `count`, each in the middle of a ring of its own (bake/links/directions.h), as a direction around +z: the
 // set turned by a random angle and all points moved by one random share of their rings. So each is distributed like the
 // cosine, whatever the set, and the set as a whole stays as even as it is.
 FUNCTION vec3 discDirection(vec2 point, uint count, uint seed) {

@@ -1,4 +1,4 @@
-// Where in a sky's equirectangular picture a direction lies, and back: assets/scene.h, Sky.
+// Where in a sky's equirectangular picture a direction lies, and back: assets/model/scene.h, Sky.
 
 CONST float kTurn = 6.28318531f;
 

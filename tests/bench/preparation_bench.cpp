@@ -1,7 +1,7 @@
-#include "assets/generate.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/world_mesh.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/generate/generate.h"
+#include "assets/gltf/gltf.h"
 #include "bake/trace/bvh_builder.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // As they come, and with the hash that fits: it keeps damage out, but not what somebody made.
-#include "assets/error.h"
-#include "bake/checkpoint.h"
+#include "assets/base/error.h"
+#include "bake/output/checkpoint.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/text.h"
 #include "tests/unit/parked_solver.h"

@@ -1,5 +1,6 @@
-#include "assets/error.h"
-#include "assets/float_image.h"
+#include "assets/base/error.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/fuzz/exr_corpus.h"
 
 namespace relume::fuzz {

@@ -1,9 +1,9 @@
 // A scene as every command begins with it: read, given lightmap UVs, flattened.
-#include "assets/error.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/unwrap.h"
-#include "assets/world_mesh.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/unwrap.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/gltf_corpus.h"
 

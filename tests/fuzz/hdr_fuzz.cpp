@@ -1,5 +1,5 @@
-#include "assets/error.h"
-#include "assets/sky_picture.h"
+#include "assets/base/error.h"
+#include "assets/images/sky_picture.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace relume::fuzz {

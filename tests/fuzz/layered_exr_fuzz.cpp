@@ -1,5 +1,5 @@
-#include "assets/error.h"
-#include "assets/layered_exr.h"
+#include "assets/base/error.h"
+#include "assets/images/layered_exr.h"
 #include "tests/fuzz/exr_corpus.h"
 
 namespace relume::fuzz {

@@ -1,7 +1,8 @@
 // A PNG as a lightmap or picture, and PNG and JPEG as an image of a scene.
-#include "assets/error.h"
-#include "assets/float_image.h"
-#include "assets/gltf_build.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf_build.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/unit/glb_builder.h"
 

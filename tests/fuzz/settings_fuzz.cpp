@@ -1,5 +1,5 @@
 // Whatever settings a file holds, those that are kept can be written and read again.
-#include "app/viewer/preferences.h"
+#include "app/viewer/state/preferences.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/text.h"
 

@@ -1,6 +1,7 @@
 // All tracers must see the same: the bits of every pair of patches, and where directions end.
-#include "assets/generate.h"
-#include "bake/directions.h"
+#include "assets/generate/generate.h"
+#include "bake/links/directions.h"
+#include "bake/trace/make_tracer.h"
 #include "bake/vk/commands.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"

@@ -1,6 +1,7 @@
 // `relume bake` as a user runs it: what it writes, what it refuses, and that a stop leaves nothing behind.
-#include "assets/float_image.h"
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"

@@ -1,5 +1,5 @@
 // Ctrl-C and SIGTERM before a bake has begun: it ends at once, and nothing is left.
-#include "assets/clock.h"
+#include "assets/base/clock.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"

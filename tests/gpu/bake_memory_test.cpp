@@ -1,5 +1,5 @@
 // What a bake takes of the device's memory.
-#include "bake/baker.h"
+#include "bake/baker/baker.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>

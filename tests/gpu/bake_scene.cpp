@@ -1,9 +1,10 @@
 #include "tests/gpu/bake_scene.h"
 
-#include "assets/error.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/world_mesh.h"
-#include "bake/metrics.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/base/error.h"
+#include "assets/images/metrics.h"
+#include "bake/trace/make_tracer.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "assets/float_image.h"
-#include "assets/scene.h"
-#include "bake/baker.h"
+#include "assets/images/float_image.h"
+#include "assets/model/scene.h"
+#include "bake/baker/baker.h"
+#include "bake/trace/make_tracer.h"
+#include "bake/trace/voxel_map.h"
 
 namespace relume {
 

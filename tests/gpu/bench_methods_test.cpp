@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
-#include "tests/unit/markup.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/markup.h"
 
 namespace relume {
 namespace {

@@ -1,6 +1,6 @@
 // More samples bring less error, what is told as well as what is true, however a scene is lit; and what they
 // go to is right.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
 

@@ -1,6 +1,7 @@
 // One scene, one tracer, one device: the same bytes, whatever the batches, the timing and the number of
 // threads.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
+#include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 

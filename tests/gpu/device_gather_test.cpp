@@ -1,5 +1,5 @@
 // A software device gathers on the host; its shaders, which other devices run, must come to the same.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 

@@ -1,5 +1,5 @@
 // Picks and form factors of emitters on the device are those of the host.
-#include "bake/emitters.h"
+#include "bake/lights/emitters.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 #include "shaders/shader_compiler.h"

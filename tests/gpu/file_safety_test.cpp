@@ -1,6 +1,7 @@
 // What a bake does to files: none is lost that was there, and a result is kept whatever happens to its place.
-#include "assets/float_image.h"
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"

@@ -1,5 +1,5 @@
 // Links that read the light filtered over what their direction stands for.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>

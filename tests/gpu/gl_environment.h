@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 #include "renderer/gl/headless_context.h"
 #include "renderer/scene_renderer.h"
 

@@ -1,6 +1,6 @@
 // Links from a coarser grid of patches, interpolated within charts.
-#include "assets/generate.h"
-#include "bake/coarse_patches.h"
+#include "assets/generate/generate.h"
+#include "bake/gather/coarse_patches.h"
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Patches that lie inside something: the same ones whether all directions are followed, as where objects may
 // move later, or as many as it takes.
-#include "bake/inside_search.h"
+#include "bake/baker/inside_search.h"
 
-#include "assets/watch.h"
+#include "assets/base/watch.h"
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>

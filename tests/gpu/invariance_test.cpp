@@ -1,5 +1,5 @@
 // What must not change a lightmap, and where there must be no light at all.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Lights without geometry: against closed forms and second integrations, in every method.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"

@@ -1,5 +1,5 @@
 // Lights that share layers, for there is no memory to tell all of them apart.
-#include "assets/lightmap_atlas.h"
+#include "assets/atlas/lightmap_atlas.h"
 #include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 // A bake of layers whose scene is edited, and the room that is baked.
-#include "bake/layer_solver.h"
+#include "bake/layers/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/light_at.h"
 

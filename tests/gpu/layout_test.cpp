@@ -1,6 +1,6 @@
 // Every struct of shaders/shared*.h lies in memory as C++ has it: a kernel made from the file's own text
 // reads element 1 of an array of each and writes its members out, word by word.
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 #include "shaders/shader_compiler.h"

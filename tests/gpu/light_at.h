@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "assets/scene.h"
+#include "assets/model/scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,6 +1,6 @@
 // Directional and hybrid: closed forms, the pure method, and what must not change a byte.
-#include "assets/generate.h"
-#include "bake/link_solver.h"
+#include "assets/generate/generate.h"
+#include "bake/links/link_solver.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"

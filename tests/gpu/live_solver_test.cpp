@@ -1,7 +1,7 @@
 // What a viewer does to a solver: looks on, moves its camera, changes the budget, aborts passes. None of it
 // changes what comes out.
-#include "assets/generate.h"
-#include "bake/checkpoint.h"
+#include "assets/generate/generate.h"
+#include "bake/output/checkpoint.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"

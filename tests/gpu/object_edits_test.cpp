@@ -1,7 +1,8 @@
 // Objects that are moved, hidden and shown again while layers are baked: against fresh bakes of what that
 // leads to.
-#include "assets/lightmap_atlas.h"
-#include "bake/layer_solver.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "bake/layers/layer_solver.h"
+#include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/layered.h"

@@ -1,5 +1,6 @@
 // Undersampling and adaptive subdivision against the pure method and closed forms; the visibility cache.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
+#include "bake/pairs/pair_passes.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"

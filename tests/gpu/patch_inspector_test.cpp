@@ -1,6 +1,7 @@
 // What the visualisations show, against what can be told about simple scenes or asked in another way.
-#include "assets/generate.h"
-#include "bake/patch_inspector.h"
+#include "assets/generate/generate.h"
+#include "bake/show/patch_inspector.h"
+#include "bake/trace/make_tracer.h"
 #include "bake/vk/commands.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"

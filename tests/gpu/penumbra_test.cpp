@@ -1,5 +1,5 @@
 // Direct light of layers, whose rays go where neighbours see a light unalike.
-#include "bake/tile_parts.h"
+#include "bake/surface/tile_parts.h"
 #include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>

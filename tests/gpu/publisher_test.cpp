@@ -1,7 +1,7 @@
 // What is published is what makeLightmap makes of the same patches, as halves; and only what changed is
 // copied.
-#include "assets/generate.h"
-#include "bake/publisher.h"
+#include "assets/generate/generate.h"
+#include "bake/show/publisher.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/read_image.h"

@@ -1,7 +1,10 @@
-#include "app/prepare.h"
-#include "assets/float_image.h"
-#include "bake/baker.h"
-#include "bake/metrics.h"
+#include "app/edit/prepare.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+#include "assets/images/metrics.h"
+#include "bake/baker/baker.h"
+#include "bake/trace/make_tracer.h"
+#include "bake/trace/voxel_map.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <algorithm>

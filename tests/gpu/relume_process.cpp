@@ -1,7 +1,7 @@
 #include "tests/gpu/relume_process.h"
 
-#include "assets/clock.h"
-#include "assets/error.h"
+#include "assets/base/clock.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <array>

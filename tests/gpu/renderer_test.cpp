@@ -1,6 +1,6 @@
 // Pictures whose pixels are known: what the renderer makes of light, materials and lightmaps.
-#include "assets/error.h"
-#include "bake/metrics.h"
+#include "assets/base/error.h"
+#include "assets/images/metrics.h"
 #include "renderer/picture.h"
 #include "shaders/shader_library.h"
 #include "tests/gpu/relume_process.h"

@@ -1,6 +1,6 @@
 // The RTRad preset's methods against its formulas written down once more, plainly: every receiver, every
 // sample, every triangle.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>

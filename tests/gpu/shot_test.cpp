@@ -1,9 +1,10 @@
 // `relume shot` as a user runs it: pictures of the scenes that ship against those kept in tests/golden, and
 // what it refuses.
-#include "app/heat_map.h"
-#include "assets/float_image.h"
-#include "assets/gltf.h"
-#include "bake/metrics.h"
+#include "app/text/heat_map.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+#include "assets/images/metrics.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"

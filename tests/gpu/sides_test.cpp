@@ -1,7 +1,8 @@
 // Which side of a surface sends, receives and blocks.
-#include "assets/log.h"
-#include "tests/log_capture.h"
+#include "assets/base/log.h"
+#include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/log_capture.h"
 #include "tests/unit/closed_forms.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Parts of a lightmap's texture group, against the whole.
-#include "assets/lightmap_atlas.h"
-#include "assets/world_mesh.h"
-#include "bake/cit_pass.h"
-#include "bake/patches.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/world_mesh.h"
+#include "bake/surface/cit_pass.h"
+#include "bake/surface/patches.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 

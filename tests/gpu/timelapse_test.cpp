@@ -1,6 +1,7 @@
 // `relume timelapse` as a user runs it: which frames there are, what they show, and what it refuses.
-#include "assets/float_image.h"
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"

@@ -1,6 +1,6 @@
 // What a viewer asks of the renderer beyond one picture: pictures that are kept, exposure without waiting,
 // other materials, samples and shaders at run time, lines and voxels.
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "renderer/gl/debug.h"
 #include "renderer/picture.h"
 #include "shaders/shader_library.h"

@@ -1,6 +1,6 @@
 // The CVM pass against a test of its own: every voxel that a triangle touches is set, no voxel that it leaves
 // aside by more than rounding.
-#include "bake/voxel_map.h"
+#include "bake/trace/voxel_map.h"
 #include "bake/vk/buffer.h"
 #include "tests/gpu/gpu_environment.h"
 

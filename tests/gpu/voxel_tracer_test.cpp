@@ -1,6 +1,9 @@
 // The voxel tracer against the bvh's, which sees triangles: how often they disagree, in which direction, and
 // whether what it calls a hit lies near the real one.
-#include "assets/generate.h"
+#include "assets/generate/generate.h"
+#include "bake/pairs/pair_passes.h"
+#include "bake/trace/make_tracer.h"
+#include "bake/trace/voxel_map.h"
 #include "bake/vk/commands.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"

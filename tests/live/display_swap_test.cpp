@@ -1,8 +1,8 @@
 // A thousand maps of one value each, from a thread that writes to one that draws: none is torn, none is an
 // older one.
-#include "app/viewer/lightmap_bridge.h"
-#include "assets/generate.h"
-#include "bake/publisher.h"
+#include "app/viewer/picture/lightmap_bridge.h"
+#include "assets/generate/generate.h"
+#include "bake/show/publisher.h"
 #include "renderer/gl/framebuffer.h"
 #include "renderer/gl/program.h"
 #include "renderer/gl/vertex_array.h"

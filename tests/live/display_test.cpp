@@ -1,8 +1,8 @@
 // What the bake thread publishes, seen through OpenGL as the viewer does: both displays, no window.
 #include "app/live/live_bake.h"
-#include "app/viewer/lightmap_bridge.h"
-#include "assets/generate.h"
-#include "bake/publisher.h"
+#include "app/viewer/picture/lightmap_bridge.h"
+#include "assets/generate/generate.h"
+#include "bake/show/publisher.h"
 #include "renderer/good_view.h"
 #include "renderer/picture.h"
 #include "tests/gpu/bake_scene.h"

@@ -1,9 +1,10 @@
 #include "app/live/live_bake.h"
 
 #include "app/live/layer_remark.h"
-#include "app/lightmap_attributes.h"
-#include "assets/float_image.h"
-#include "assets/generate.h"
+#include "app/offline/lightmap_attributes.h"
+#include "assets/generate/generate.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/live/quick_bake.h"

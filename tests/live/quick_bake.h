@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/bake_settings.h"
-#include "app/prepare.h"
+#include "app/edit/prepare.h"
+#include "app/offline/bake_settings.h"
 
 #include <string>
 

@@ -1,5 +1,6 @@
 // Lights in the viewer: added by keys, set in the mix board, dragged by the gizmo, undone, compared.
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/image_file.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>

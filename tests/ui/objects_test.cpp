@@ -1,5 +1,5 @@
 // Objects in the viewer: dragged by the gizmo, nudged, hidden, undone, saved.
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/temporary_folder.h"
 #include "tests/ui/viewer_process.h"
 #include "tests/ui/virtual_display.h"

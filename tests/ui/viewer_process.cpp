@@ -1,6 +1,6 @@
 #include "tests/ui/viewer_process.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "tests/gpu/relume_process.h"
 
 #include <array>

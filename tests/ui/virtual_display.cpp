@@ -1,6 +1,6 @@
 #include "tests/ui/virtual_display.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <array>
 #include <csignal>

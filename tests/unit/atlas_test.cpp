@@ -1,9 +1,9 @@
-#include "assets/lightmap_atlas.h"
+#include "assets/atlas/lightmap_atlas.h"
 
-#include "assets/error.h"
-#include "assets/gltf.h"
-#include "assets/rect_pack.h"
-#include "assets/uv_grid.h"
+#include "assets/atlas/rect_pack.h"
+#include "assets/atlas/uv_grid.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
 #include "tests/unit/shapes.h"
 
 #include <gtest/gtest.h>

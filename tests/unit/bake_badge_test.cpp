@@ -1,4 +1,4 @@
-#include "app/viewer/bake_badge.h"
+#include "app/viewer/state/bake_badge.h"
 
 #include <gtest/gtest.h>
 

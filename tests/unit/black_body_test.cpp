@@ -1,4 +1,4 @@
-#include "assets/black_body.h"
+#include "assets/model/black_body.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Checkpoint files: what is written is what is read, and nothing else is taken for it.
-#include "assets/error.h"
-#include "bake/checkpoint.h"
-#include "bake/patches.h"
+#include "assets/base/error.h"
+#include "bake/output/checkpoint.h"
+#include "bake/surface/patches.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 #include "tests/unit/parked_solver.h"

@@ -1,4 +1,4 @@
-#include "bake/chunk_order.h"
+#include "bake/base/chunk_order.h"
 
 #include <gtest/gtest.h>
 

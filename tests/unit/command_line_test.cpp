@@ -1,5 +1,5 @@
-#include "app/command_line.h"
-#include "assets/error.h"
+#include "app/commands/command_line.h"
+#include "assets/base/error.h"
 
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>

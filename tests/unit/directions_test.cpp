@@ -1,4 +1,4 @@
-#include "bake/directions.h"
+#include "bake/links/directions.h"
 
 #include <gtest/gtest.h>
 

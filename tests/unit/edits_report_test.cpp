@@ -1,11 +1,11 @@
-#include "app/edits_report.h"
+#include "app/bench/edits_report.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/light_difference.h"
+#include "app/bench/light_difference.h"
 #include "tests/unit/markup.h"
 
 namespace relume {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/directions.h"
+#include "bake/links/directions.h"
 #include "bake/trace/bvh_builder.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"

@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "assets/world_mesh.h"
-#include "bake/emitters.h"
+#include "assets/atlas/world_mesh.h"
+#include "bake/lights/emitters.h"
 #include "tests/unit/shapes.h"
 
 namespace relume::shader {

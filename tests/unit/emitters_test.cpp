@@ -1,8 +1,8 @@
-#include "bake/emitters.h"
+#include "bake/lights/emitters.h"
 
-#include "assets/float_image.h"
-#include "bake/emitter_pieces.h"
-#include "bake/light_tree.h"
+#include "assets/images/float_image.h"
+#include "bake/lights/emitter_pieces.h"
+#include "bake/lights/light_tree.h"
 #include "tests/unit/closed_forms.h"
 #include "tests/unit/emitter_scene.h"
 

@@ -1,8 +1,9 @@
 // What pictures claim and do not hold costs no memory.
-#include "assets/error.h"
-#include "assets/float_image.h"
-#include "assets/layered_exr.h"
-#include "assets/sky_picture.h"
+#include "assets/base/error.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+#include "assets/images/layered_exr.h"
+#include "assets/images/sky_picture.h"
 #include "tests/exr_claims.h"
 #include "tests/peak_memory.h"
 #include "tests/temporary_folder.h"

@@ -1,6 +1,6 @@
-#include "assets/file_write.h"
+#include "assets/base/file_write.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bake/flip.h"
+#include "assets/images/flip.h"
 
 #include <cmath>
 #include <functional>

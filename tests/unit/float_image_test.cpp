@@ -1,7 +1,8 @@
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 
-#include "assets/error.h"
-#include "assets/file_write.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/images/image_file.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 

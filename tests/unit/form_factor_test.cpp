@@ -1,4 +1,4 @@
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 #include "tests/unit/closed_forms.h"
 

@@ -1,4 +1,4 @@
-#include "app/frames_bench.h"
+#include "app/bench/frames_bench.h"
 
 #include <gtest/gtest.h>
 

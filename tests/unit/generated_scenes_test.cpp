@@ -1,7 +1,7 @@
-#include "assets/error.h"
-#include "assets/generate.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/base/error.h"
+#include "assets/generate/generate.h"
+#include "assets/gltf/gltf.h"
 #include "tests/text.h"
 #include "tests/unit/triangle_soup.h"
 

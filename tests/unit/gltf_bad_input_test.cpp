@@ -1,9 +1,9 @@
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
 
-#include "assets/error.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/unwrap.h"
-#include "assets/world_mesh.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/unwrap.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/base/error.h"
 #include "tests/unit/rich_scene.h"
 
 #include <gtest/gtest.h>
@@ -214,10 +214,11 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
         });
     // stb reads these as well, and multiplies this width until it overflows.
     for (const std::string other : {"P5 99999999999999999999 1 255 .", "P5 1 1 255 .", "GIF89a", "BM"})
-        expectSpoiled("other", "image 0 'Wood' cannot be decoded: export textures as PNG", [&](GlbBuilder& b) {
-            const std::vector<uint8_t> bytes(other.begin(), other.end());
-            useImage(b, {{"bufferView", b.view(bytes)}, {"mimeType", "image/png"}, {"name", "Wood"}});
-        });
+        expectSpoiled(
+            "other", "image 0 'Wood' cannot be decoded: export textures as PNG", [&](GlbBuilder& b) {
+                const std::vector<uint8_t> bytes(other.begin(), other.end());
+                useImage(b, {{"bufferView", b.view(bytes)}, {"mimeType", "image/png"}, {"name", "Wood"}});
+            });
     expectSpoiled("webp", "has no PNG or JPEG image", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
         b.json["textures"] = {json::object()};

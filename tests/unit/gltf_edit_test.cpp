@@ -1,7 +1,8 @@
-#include "assets/gltf_edit.h"
+#include "assets/gltf/gltf_edit.h"
 
-#include "assets/error.h"
-#include "assets/float_image.h"
+#include "assets/base/error.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/unit/edited_file.h"
 
 #include <gtest/gtest.h>

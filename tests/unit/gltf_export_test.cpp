@@ -1,5 +1,5 @@
-#include "assets/error.h"
-#include "assets/gltf.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 

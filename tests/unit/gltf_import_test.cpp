@@ -1,6 +1,6 @@
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "tests/unit/glb_builder.h"
 
 #include <gtest/gtest.h>

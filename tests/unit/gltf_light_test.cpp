@@ -1,8 +1,9 @@
-#include "assets/error.h"
-#include "assets/float_image.h"
-#include "assets/gltf.h"
-#include "assets/scene_limits.h"
-#include "assets/sky_picture.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+#include "assets/images/sky_picture.h"
+#include "assets/model/scene_limits.h"
 #include "tests/unit/glb_builder.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // What glTF files make of their bytes is bounded, and what their URIs name is looked at before it is opened.
-#include "assets/error.h"
-#include "assets/float_image.h"
-#include "assets/gltf.h"
-#include "assets/layered_exr.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+#include "assets/images/layered_exr.h"
 #include "tests/peak_memory.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/glb_builder.h"

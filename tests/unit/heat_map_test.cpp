@@ -1,4 +1,4 @@
-#include "app/heat_map.h"
+#include "app/text/heat_map.h"
 #include "renderer/shader_types.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-#include "bake/host_gather.h"
+#include "bake/gather/host_links.h"
+#include "bake/pairs/host_pairs.h"
 
 #include <gtest/gtest.h>
 

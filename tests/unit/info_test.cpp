@@ -1,9 +1,9 @@
-#include "app/scene_info.h"
+#include "app/edit/scene_info.h"
 
-#include "app/command.h"
-#include "assets/error.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
+#include "app/commands/command.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
 #include "tests/unit/glb_builder.h"
 #include "tests/unit/shapes.h"
 

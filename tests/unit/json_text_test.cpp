@@ -1,4 +1,4 @@
-#include "assets/json_text.h"
+#include "assets/base/json_text.h"
 
 #include <gtest/gtest.h>
 

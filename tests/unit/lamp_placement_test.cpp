@@ -1,8 +1,8 @@
-#include "app/lamp_placement.h"
+#include "app/bench/lamp_placement.h"
 
 #include <gtest/gtest.h>
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 #include "tests/unit/trace_world.h"
 
 namespace relume {

@@ -1,6 +1,7 @@
-#include "assets/layered_exr.h"
+#include "assets/images/layered_exr.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
+#include "assets/images/image_file.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 

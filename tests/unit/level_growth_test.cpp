@@ -1,4 +1,4 @@
-#include "bake/level_growth.h"
+#include "bake/layers/level_growth.h"
 
 #include <gtest/gtest.h>
 

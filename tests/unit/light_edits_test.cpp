@@ -1,5 +1,5 @@
-#include "app/viewer/light_edits.h"
-#include "app/viewer/light_overlay.h"
+#include "app/viewer/edits/light_edits.h"
+#include "app/viewer/picture/light_overlay.h"
 
 #include <gtest/gtest.h>
 

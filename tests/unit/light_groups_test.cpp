@@ -1,4 +1,4 @@
-#include "bake/light_groups.h"
+#include "bake/layers/light_groups.h"
 
 #include <gtest/gtest.h>
 

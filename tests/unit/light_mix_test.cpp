@@ -1,6 +1,6 @@
-#include "app/light_mix.h"
+#include "app/offline/light_mix.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <gtest/gtest.h>
 

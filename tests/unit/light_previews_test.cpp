@@ -1,4 +1,4 @@
-#include "app/viewer/light_previews.h"
+#include "app/viewer/picture/light_previews.h"
 
 #include "renderer/shader_types.h"
 

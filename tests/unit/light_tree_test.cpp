@@ -1,4 +1,4 @@
-#include "bake/light_tree.h"
+#include "bake/lights/light_tree.h"
 
 #include "tests/unit/emitter_scene.h"
 

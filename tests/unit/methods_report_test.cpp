@@ -1,4 +1,4 @@
-#include "app/methods_report.h"
+#include "app/bench/methods_report.h"
 
 #include <limits>
 

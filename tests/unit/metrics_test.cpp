@@ -1,6 +1,6 @@
-#include "bake/metrics.h"
+#include "assets/images/metrics.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "app/viewer/light_edits.h"
-#include "app/viewer/object_edits.h"
+#include "app/viewer/edits/light_edits.h"
+#include "app/viewer/edits/object_edits.h"
 
 #include <gtest/gtest.h>
 

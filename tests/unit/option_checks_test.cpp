@@ -1,7 +1,7 @@
 // What options take: the checks by themselves, and that no option has others.
-#include "app/command_line.h"
-#include "app/option_checks.h"
-#include "app/typed_numbers.h"
+#include "app/commands/command_line.h"
+#include "app/text/option_checks.h"
+#include "app/text/typed_numbers.h"
 
 #include <gtest/gtest.h>
 

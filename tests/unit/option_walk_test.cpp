@@ -1,7 +1,7 @@
 // Every option of every verb with values that are absurd: a refusal as wrong usage that names the option, or
 // what the tables below say. Nothing is done, as no file is there that a verb begins with.
-#include "app/command_line.h"
-#include "assets/error.h"
+#include "app/commands/command_line.h"
+#include "assets/base/error.h"
 #include "tests/temporary_folder.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 namespace relume {
 namespace {

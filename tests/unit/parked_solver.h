@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-#include "bake/solver.h"
+#include "bake/solver/solver.h"
 
 namespace relume::test {
 

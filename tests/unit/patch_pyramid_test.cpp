@@ -1,5 +1,5 @@
 // The groups of patches that links with a footprint read.
-#include "bake/patch_pyramid.h"
+#include "bake/links/patch_pyramid.h"
 
 #include <gtest/gtest.h>
 

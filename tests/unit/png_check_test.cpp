@@ -1,7 +1,8 @@
-#include "assets/png_check.h"
+#include "assets/images/png_check.h"
 
-#include "assets/float_image.h"
-#include "assets/gltf.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
 #include "tests/log_capture.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"

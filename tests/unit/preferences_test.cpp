@@ -1,6 +1,6 @@
-#include "app/viewer/path_completion.h"
-#include "app/viewer/preferences.h"
-#include "assets/error.h"
+#include "app/viewer/state/preferences.h"
+#include "app/viewer/window/path_completion.h"
+#include "assets/base/error.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 

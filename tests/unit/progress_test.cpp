@@ -1,6 +1,6 @@
-#include "app/progress.h"
+#include "app/offline/progress.h"
 
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <gtest/gtest.h>
 

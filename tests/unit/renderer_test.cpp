@@ -1,8 +1,8 @@
 // What the renderer does before OpenGL: geometry, the camera it chooses, includes and messages of shaders;
 // and the options of `relume shot`.
-#include "app/shot_options.h"
-#include "assets/error.h"
-#include "assets/generate.h"
+#include "app/pictures/shot_options.h"
+#include "assets/base/error.h"
+#include "assets/generate/generate.h"
 #include "renderer/gl/glsl_source.h"
 #include "renderer/good_view.h"
 #include "renderer/scene_geometry.h"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/directions.h"
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
+#include "bake/links/directions.h"
 
 namespace relume {
 namespace {

@@ -1,12 +1,12 @@
 // Edits as they are typed: what each does to a scene, and what is wrong with those that do nothing.
-#include "app/edit_options.h"
+#include "app/edit/edit_options.h"
 
-#include "app/light_names.h"
-#include "app/near_names.h"
-#include "app/scene_names.h"
-#include "assets/black_body.h"
-#include "assets/error.h"
-#include "assets/gltf_edit.h"
+#include "app/edit/scene_names.h"
+#include "app/text/light_names.h"
+#include "app/text/near_names.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf_edit.h"
+#include "assets/model/black_body.h"
 #include "tests/unit/edited_file.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,14 +1,14 @@
 // Scenes that are too large or too bright for floats: what is dropped, cut or dimmed, and that the rest
 // bakes.
-#include "assets/scene_limits.h"
+#include "assets/model/scene_limits.h"
 
-#include "assets/error.h"
-#include "assets/finite_image.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/world_mesh.h"
-#include "bake/finite_light.h"
-#include "bake/shader_types.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/finite_image.h"
+#include "bake/base/finite_light.h"
+#include "bake/base/shader_types.h"
 #include "bake/trace/bvh_builder.h"
 #include "tests/unit/glb_builder.h"
 #include "tests/unit/shapes.h"

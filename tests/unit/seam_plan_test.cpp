@@ -1,7 +1,7 @@
 // SewSeams cut into what each chunk of patches is responsible for, against makeLightmap, which fills whole
 // maps.
-#include "bake/lightmap.h"
-#include "bake/seam_plan.h"
+#include "bake/output/lightmap.h"
+#include "bake/surface/seam_plan.h"
 
 #include <gtest/gtest.h>
 

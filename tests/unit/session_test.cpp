@@ -1,10 +1,10 @@
 // The session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, none runs.
 #include "app/live/session.h"
 
-#include "app/viewer/light_edits.h"
-#include "assets/error.h"
-#include "assets/gltf.h"
-#include "assets/log.h"
+#include "app/viewer/edits/light_edits.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/gltf/gltf.h"
 #include "tests/unit/session_fixture.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bake/settling.h"
+#include "bake/base/settling.h"
 
 #include <gtest/gtest.h>
 

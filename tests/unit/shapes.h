@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "assets/scene.h"
+#include "assets/model/scene.h"
 
 namespace relume::test {
 

@@ -1,6 +1,6 @@
 // Names like "Obj 2" go by the order of what a file holds: saved and read again they mean the same things.
-#include "app/scene_edit.h"
-#include "app/scene_names.h"
+#include "app/edit/scene_edit.h"
+#include "app/edit/scene_names.h"
 #include "tests/unit/edited_file.h"
 
 #include <gtest/gtest.h>

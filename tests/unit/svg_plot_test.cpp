@@ -1,4 +1,4 @@
-#include "app/svg_plot.h"
+#include "app/text/svg_plot.h"
 
 #include <cmath>
 #include <limits>

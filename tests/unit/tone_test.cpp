@@ -1,4 +1,4 @@
-#include "assets/float_image.h"
+#include "assets/images/float_image.h"
 #include "renderer/exposure.h"
 #include "renderer/shader_types.h"
 

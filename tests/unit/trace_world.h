@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "bake/trace/trace_scene.h"
+#include "bake/surface/trace_scene.h"
 
 namespace relume {
 

@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/scene.h"
+#include "assets/model/scene.h"
 
 namespace relume {
 

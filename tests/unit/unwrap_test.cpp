@@ -1,10 +1,10 @@
-#include "assets/unwrap.h"
+#include "assets/atlas/unwrap.h"
 
-#include "assets/error.h"
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/planar_charts.h"
-#include "assets/world_mesh.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/planar_charts.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/base/error.h"
+#include "assets/gltf/gltf.h"
 #include "tests/unit/shapes.h"
 
 #include <gtest/gtest.h>

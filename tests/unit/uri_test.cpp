@@ -1,4 +1,4 @@
-#include "assets/uri.h"
+#include "assets/base/uri.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The walk through a voxel map and its rules, on the CPU: the same text as the kernels'.
-#include "bake/shader_types.h"
+#include "bake/base/shader_types.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // What long jobs tell while they work, and that each of them can be ended.
-#include "assets/watch.h"
+#include "assets/base/watch.h"
 
-#include "assets/gltf.h"
-#include "assets/lightmap_atlas.h"
-#include "assets/unwrap.h"
-#include "assets/world_mesh.h"
-#include "bake/patches.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/unwrap.h"
+#include "assets/atlas/world_mesh.h"
+#include "assets/gltf/gltf.h"
+#include "bake/surface/patches.h"
 #include "tests/unit/glb_builder.h"
 #include "tests/unit/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "bake/worker_pool.h"
+#include "bake/base/worker_pool.h"
 
 #include <atomic>
 

@@ -1,7 +1,7 @@
-#include "assets/world_mesh.h"
+#include "assets/atlas/world_mesh.h"
 
-#include "assets/error.h"
-#include "assets/uv_charts.h"
+#include "assets/atlas/uv_charts.h"
+#include "assets/base/error.h"
 #include "tests/unit/shapes.h"
 
 #include <gtest/gtest.h>

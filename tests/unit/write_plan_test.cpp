@@ -1,4 +1,4 @@
-#include "assets/write_plan.h"
+#include "assets/base/write_plan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
 #include "app/viewer/panels/bake_panel.h"
 
-#include "app/bake_options.h"
+#include "app/offline/bake_options.h"
 #include "app/viewer/panels/widgets.h"
+#include "bake/trace/make_tracer.h"
 
 #include <algorithm>
 #include <array>

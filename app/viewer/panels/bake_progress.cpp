@@ -1,4 +1,4 @@
-#include "app/progress.h"
+#include "app/offline/progress.h"
 #include "app/viewer/panels/bake_panel.h"
 #include "app/viewer/panels/convergence_plot.h"
 #include "app/viewer/panels/widgets.h"

@@ -1,9 +1,9 @@
 #include "app/viewer/panels/lights_panel.h"
 
 #include "app/live/layer_remark.h"
-#include "app/viewer/light_edits.h"
+#include "app/viewer/edits/light_edits.h"
 #include "app/viewer/panels/widgets.h"
-#include "assets/black_body.h"
+#include "assets/model/black_body.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "app/viewer/panels/object_panel.h"
 
-#include "app/viewer/object_edits.h"
+#include "app/viewer/edits/object_edits.h"
 #include "app/viewer/panels/widgets.h"
 
 #include <algorithm>

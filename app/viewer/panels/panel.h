@@ -3,15 +3,15 @@
 #include <functional>
 
 #include "app/live/session.h"
-#include "app/viewer/camera_control.h"
-#include "app/viewer/frame_figures.h"
-#include "app/viewer/light_edits.h"
-#include "app/viewer/light_previews.h"
-#include "app/viewer/log_buffer.h"
+#include "app/viewer/edits/light_edits.h"
 #include "app/viewer/panels/item_log.h"
-#include "app/viewer/preferences.h"
-#include "app/viewer/shortcuts.h"
-#include "app/viewer/view_state.h"
+#include "app/viewer/picture/light_previews.h"
+#include "app/viewer/state/camera_control.h"
+#include "app/viewer/state/log_buffer.h"
+#include "app/viewer/state/preferences.h"
+#include "app/viewer/state/shortcuts.h"
+#include "app/viewer/state/view_state.h"
+#include "app/viewer/window/frame_figures.h"
 
 namespace relume {
 

@@ -1,5 +1,6 @@
 #include "app/viewer/panels/scene_lists.h"
 
+#include "app/viewer/edits/object_edits.h"
 #include "app/viewer/panels/widgets.h"
 
 #include <filesystem>
@@ -9,9 +10,6 @@
 #include <imgui.h>
 
 namespace relume {
-std::string nameOf(const std::string& name, const char* kind, size_t index) {
-    return name.empty() ? fmt::format("{} {}", kind, index) : name;
-}
 
 void drawCameras(const PanelContext& context, const LoadedScene& scene) {
     const std::vector<Camera>& cameras = scene.prepared.scene.cameras;

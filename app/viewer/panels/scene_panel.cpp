@@ -1,8 +1,10 @@
 #include "app/viewer/panels/scene_panel.h"
 
+#include "app/viewer/edits/light_edits.h"
+#include "app/viewer/edits/object_edits.h"
 #include "app/viewer/panels/scene_lists.h"
 #include "app/viewer/panels/widgets.h"
-#include "assets/error.h"
+#include "assets/base/error.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,13 +14,6 @@
 #include <imgui.h>
 
 namespace relume {
-
-EmissionParts splitEmission(const glm::vec3& emission) {
-    EmissionParts parts;
-    parts.strength = std::max({emission.r, emission.g, emission.b, 0.0f});
-    if (parts.strength > 0) parts.colour = emission / parts.strength;
-    return parts;
-}
 
 // Beside us, on a copy without pictures, which outlives the scene if it must.
 void ScenePanel::measure(const LoadedScene& scene, uint32_t size) {

@@ -3,7 +3,7 @@
 #include <future>
 #include <optional>
 
-#include "app/scene_info.h"
+#include "app/edit/scene_info.h"
 #include "app/viewer/panels/object_panel.h"
 
 namespace relume {
@@ -26,12 +26,5 @@ private:
     std::future<SceneInfo> measuring_;
     std::optional<SceneInfo> info_;
 };
-
-/// Emission as a colour of full brightness and a strength [cd/m^2].
-struct EmissionParts {
-    glm::vec3 colour{1.0f};
-    float strength = 0;
-};
-EmissionParts splitEmission(const glm::vec3& emission);
 
 } // namespace relume

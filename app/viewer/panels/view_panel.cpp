@@ -1,7 +1,7 @@
 #include "app/viewer/panels/view_panel.h"
 
 #include "app/viewer/panels/widgets.h"
-#include "app/viewer/views.h"
+#include "app/viewer/state/views.h"
 
 #include <algorithm>
 #include <array>

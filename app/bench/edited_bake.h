@@ -1,0 +1,75 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/bench/edits_report.h"
+#include "app/bench/light_difference.h"
+#include "app/text/stopwatch.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "bake/baker/baker.h"
+#include "bake/layers/layer_solver.h"
+
+namespace relume {
+
+/// Steps the solver until it is done: one step at least, by which a solver that was done hears of an edit.
+/// Throws Error on Ctrl-C.
+void bakeToEnd(Solver& solver);
+
+/// What a moved lamp's picture is compared with, after the move.
+struct MoveReferences {
+    PatchLight lamp; // its own light
+    PatchLight all;
+};
+
+/// A bake in layers whose scene is edited, every edit timed: step(), edit() and liveLight() by the clock. The
+/// first of the scene's lights is the one that moves.
+class EditedBake {
+public:
+    /// The solver is made by restart(). Throws Error.
+    EditedBake(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
+
+    const Baker& baker() const { return *baker_; }
+    const Scene& scene() const { return scene_; }
+    const SolverProgress& progress() { return solver().progress(); }
+    /// Of the first light, for a unit of its weight.
+    PatchLight firstLamp();
+
+    /// From nothing to the end, with these lights. Returns how long it took [s]. Throws Error where some of
+    /// them would share a layer.
+    double restart(const std::vector<Light>& lights, const SolverSettings& settings);
+    /// To lights that differ in intensity and colour alone; how long until there is a picture [s].
+    double weigh(const std::vector<Light>& lights);
+    /// To lights of which the first one has moved; fills in what a move is told of, but for its undo.
+    MeasuredMove move(const std::vector<Light>& lights, const MoveReferences& references);
+    /// Back to the lights before. `first`: firstLamp() as it was then.
+    void undo(const std::vector<Light>& lights, const PatchLight& first, MeasuredMove& edit);
+    /// What became of an edit that all layers follow [s].
+    struct Seen {
+        double first = 0;                 // until there is a picture of it, all lights in one
+        double all = 0;                   // until all layers have it
+        double end = 0;                   // until they have the error that is asked for
+        std::optional<double> firstError; // relRMSE of that picture against the one of the layers
+    };
+    Seen repaint(uint32_t material, const glm::vec4& baseColor);
+
+    struct Replacement {
+        double follow = 0; // for patches, triangles and tracer [s], which counts in what follows
+        Seen seen;
+    };
+    /// Puts an object elsewhere. Nothing: that cannot be followed, and it stays where it is.
+    std::optional<Replacement> place(uint32_t instance, const glm::mat4& transform,
+                                     const LightmapAtlas& atlas);
+    PatchLight light() { return solver().light(); }
+
+private:
+    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    const Layer* movedLayer();
+    Seen seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch);
+
+    const vk::Device& device_;
+    Scene scene_;
+    std::unique_ptr<Baker> baker_;
+};
+
+} // namespace relume

@@ -1,0 +1,79 @@
+#include "app/bench/fresh_bakes.h"
+
+#include "app/bench/edited_bake.h"
+#include "app/offline/solve.h"
+#include "app/text/stopwatch.h"
+#include "assets/base/error.h"
+
+namespace relume {
+namespace {
+
+// A bake is looked at whenever it has taken this much longer than at the last look: finer than what is told
+// of the times, and few looks in all.
+constexpr double kLookEvery = 1.05;
+
+} // namespace
+
+FreshBakes::FreshBakes(const vk::Device& device, const Scene& scene, WorldMesh mesh,
+                       const BakeSettings& settings)
+    : scene_(scene), baker_(std::make_unique<Baker>(device, scene_, std::move(mesh), settings)) {}
+
+PatchLight FreshBakes::light(const std::vector<Light>& lights, const SolverSettings& settings) {
+    scene_.lights = lights;
+    baker_->resetSolver(settings);
+    bakeToEnd(baker_->solver());
+    return baker_->solver().light();
+}
+
+PatchLight FreshBakes::lightOfNothingElse(const std::vector<Light>& lights, const SolverSettings& settings) {
+    const std::vector<Material> materials = scene_.materials;
+    const glm::vec3 sky = scene_.sky.radiance;
+    for (Material& material : scene_.materials)
+        material.emission = glm::vec3(0.0f);
+    scene_.sky.radiance = glm::vec3(0.0f);
+    baker_->updateMaterials();
+    PatchLight result = light(lights, settings);
+    scene_.materials = materials;
+    scene_.sky.radiance = sky;
+    baker_->updateMaterials();
+    return result;
+}
+
+PatchLight FreshBakes::weighedLight(const std::vector<Light>& before, const std::vector<Light>& after,
+                                    const SolverSettings& settings) {
+    ASSERT(settings.layers.on);
+    light(before, settings);
+    scene_.lights = after;
+    auto& solver = dynamic_cast<LayerSolver&>(baker_->solver());
+    solver.edit({});
+    bakeToEnd(solver);
+    return solver.light();
+}
+
+FreshBake FreshBakes::measure(const std::vector<Light>& lights, const SolverSettings& settings,
+                              const PatchLight& reference) {
+    scene_.lights = lights;
+    baker_->resetSolver(settings);
+    Solver& solver = baker_->solver();
+    FreshBake bake;
+    Stopwatch watch;
+    double next = 0; // [s]
+    while (!solver.done()) {
+        watch([&] { solver.step(); });
+        stopIfInterrupted();
+        if (!solver.done() && (!solver.passBoundary() || watch.seconds < next)) continue;
+        next = kLookEvery * watch.seconds;
+        bake.curve.push_back({.seconds = watch.seconds,
+                              .layer = {},
+                              .composite = compareLight(patches(), solver.light(), reference).relRmse,
+                              .told = {}});
+    }
+    bake.seconds = watch.seconds;
+    bake.compositeError = bake.curve.empty() ? 0.0 : bake.curve.back().composite;
+    bake.seconds5 = secondsTo(bake.curve, 0.05, false);
+    bake.seconds2 = secondsTo(bake.curve, 0.02, false);
+    bake.rays = solver.progress().rays;
+    return bake;
+}
+
+} // namespace relume

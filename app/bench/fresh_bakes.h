@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/bench/edits_report.h"
+#include "app/bench/light_difference.h"
+#include "bake/baker/baker.h"
+
+namespace relume {
+
+/// Bakes of one scene from nothing, one after the other, under any lights.
+class FreshBakes {
+public:
+    /// Throws Error.
+    FreshBakes(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
+
+    const PatchSet& patches() const { return baker_->patches(); }
+    PatchLight light(const std::vector<Light>& lights, const SolverSettings& settings);
+    /// While neither materials nor sky shine.
+    PatchLight lightOfNothingElse(const std::vector<Light>& lights, const SolverSettings& settings);
+    /// Of a bake in layers, under `before`, then weighed like `after`, which differs in intensity and colour.
+    PatchLight weighedLight(const std::vector<Light>& before, const std::vector<Light>& after,
+                            const SolverSettings& settings);
+    /// Error over time, told by step() and the clock. Looking at it takes no time.
+    FreshBake measure(const std::vector<Light>& lights, const SolverSettings& settings,
+                      const PatchLight& reference);
+
+private:
+    Scene scene_;
+    std::unique_ptr<Baker> baker_;
+};
+
+} // namespace relume

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "app/offline/bake_options.h"
+#include "app/offline/solve_watcher.h"
+#include "assets/base/clock.h"
+#include "assets/base/file_write.h"
+#include "bake/output/checkpoint.h"
+
+namespace relume {
+
+/// What --checkpoint and --resume ask for; nothing if neither was given.
+class BakeCheckpoints final : public SolveWatcher {
+public:
+    /// Reads the one and sees whether the other can be written. Throws Error.
+    explicit BakeCheckpoints(const BakeOptions& options);
+
+    /// Before the first step: goes on from --resume's file. Throws Error when it belongs to another bake.
+    void begin(Baker& baker, const Scene& scene, const BakeSettings& settings, const vk::DeviceInfo& device);
+    /// Saves when it is time to. A failure is a warning: the bake itself is sound.
+    void afterStep(Solver& solver) override;
+    /// Saves, and throws the Error that ends an interrupted bake.
+    [[noreturn]] void interrupt(Solver& solver) override;
+
+private:
+    void save(Solver& solver, OnFailure onFailure);
+
+    std::string path_; // "": none is saved
+    std::string shaders_;
+    std::optional<Checkpoint> resumed_; // until begin()
+    CheckpointKey key_;
+    std::chrono::duration<double> every_;
+    Clock::time_point next_;
+};
+
+} // namespace relume

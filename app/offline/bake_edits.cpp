@@ -1,0 +1,47 @@
+#include "app/offline/bake_edits.h"
+
+#include "app/offline/bake_checkpoints.h"
+#include "app/offline/layer_file.h"
+#include "app/offline/lightmap_attributes.h"
+#include "app/offline/progress.h"
+#include "app/offline/solve.h"
+#include "app/text/interrupt.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/image_file.h"
+#include "assets/images/sky_picture.h"
+#include "bake/vk/device.h"
+
+#include <optional>
+
+namespace relume {
+
+void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
+    const InterruptGuard guard;
+    const BakeRequest request = resolveBakeOptions(options);
+    std::optional<PhaseProgress> phase(std::in_place, true);
+    PreparedScene prepared = prepareScene(request.prepare);
+    const bool moved = editsOf(prepared.scene).placements != edits.placements;
+    applyEdits(prepared.scene, edits);
+    readEditedPicture(prepared.scene.sky);
+    if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
+    const vk::Device device({.select = options.device, .validation = options.validate});
+    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
+    Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
+    warnIfDark(prepared.scene, baker.patches());
+    BakeCheckpoints none(options);
+    phase.reset();
+    solve(baker.solver(), request.bake.solver, none);
+    phase.emplace(false);
+    FloatImage image = baker.lightmap(request.lightmap);
+    addLightmapAttributes(image, options.scene, request.bake, request.lightmap, baker.solver().progress());
+    if (options.layers)
+        writeLayers(options.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
+                    ExrType::Float);
+    else
+        writeImage(options.output, image, ExrType::Float);
+    spdlog::info("wrote {}", options.output);
+    failOnValidation(device.validationMessages());
+}
+
+} // namespace relume

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/offline/bake_options.h"
+#include "assets/model/scene_edits.h"
+
+namespace relume {
+
+/// Bakes options.scene as edited into options.output: with options.layers light by light, in one .exr. The
+/// atlas is that of the scene as its file has it, as in the viewer. Throws Error.
+void bakeEdited(const BakeOptions& options, const SceneEdits& edits);
+
+} // namespace relume

@@ -1,0 +1,272 @@
+#include "app/offline/bake_options.h"
+
+#include "app/text/option_checks.h"
+#include "app/text/typed_numbers.h"
+#include "bake/links/link_solver.h"
+#include "bake/trace/make_tracer.h"
+#include "bake/trace/voxel_map.h"
+
+#include <CLI/CLI.hpp>
+
+namespace relume {
+namespace {
+
+constexpr double kDefaultError = 0.01;
+
+// Of the methods that follow directions.
+void addLinkOptions(CLI::App& command, BakeOptions& o) {
+    command
+        .add_option(
+            "--samples", o.samples,
+            "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples));
+    command
+        .add_option("--directions", o.directions,
+                    "directional, hybrid: sobol (default), or lec, the thesis' largest-empty-circle sets")
+        ->check(oneOf({"sobol", "lec"}));
+    command
+        .add_option(
+            "--rotate", o.rotate,
+            "directional, hybrid: directions differ from patch to patch (default), interleaved in 4x4 "
+            "patches, or from tile to tile")
+        ->check(oneOf({"patch", "interleaved", "tile"}));
+    command
+        .add_option("--indirect-scale", o.indirectScale,
+                    "directional, hybrid: follow directions from one patch of so many by so many texels and "
+                    "interpolate: 1 (default), 2 or 4")
+        ->check(oneOf({"1", "2", "4"}));
+    command.add_flag("--footprint", o.footprint,
+                     "directional, hybrid: read the mean light over what each direction stands for, within a "
+                     "chart: less noise from few directions, but biased, which --error does not tell");
+    command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
+}
+
+void addCheckpointOptions(CLI::App& command, BakeOptions& o) {
+    CLI::Option* checkpoint = command.add_option(
+        "--checkpoint", o.checkpoint, "Save to this file every so often, and on Ctrl-C, what --resume needs");
+    command.add_option("--checkpoint-every", o.checkpointEvery, "Seconds between two of these")
+        ->capture_default_str()
+        ->check(numberFrom(0.05, 86400.0))
+        ->needs(checkpoint);
+    command.add_option("--resume", o.resume,
+                       "Go on from a checkpoint of the same bake: the result will be the same");
+}
+
+void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
+    const bool links = !isPairMethod(solver.method);
+    if (o.samples > 0 && !links)
+        throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
+    if (!o.directions.empty() && !links)
+        throw UsageError("--directions: only with --method directional or hybrid, others have none");
+    if (!o.rotate.empty() && !links)
+        throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
+    if (o.noSmooth && solver.method != Method::Hybrid)
+        throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
+    if (o.indirectScale > 0 && !links)
+        throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
+                         "indirect light apart");
+    if (o.footprint && !links)
+        throw UsageError("--footprint: only with --method directional or hybrid, others have no directions");
+    if (links && solver.transport.rtrad) {
+        throw UsageError(std::string("--method ") + methodName(solver.method) +
+                         ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
+    }
+    if (o.layers && solver.method != Method::Hybrid)
+        throw UsageError("--layers: only with --method hybrid, others do not tell lights apart");
+    if (o.layers && (o.indirectScale > 1 || o.footprint || o.directions == "lec"))
+        throw UsageError("--layers: not with --indirect-scale, --footprint or --directions lec");
+    solver.layers.on = o.layers;
+    if (!o.layerMemory.empty()) solver.layers.bytes = typedMemory("--layer-memory", o.layerMemory);
+    solver.links.samples = o.samples;
+    solver.links.smooth = !o.noSmooth;
+    solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
+    solver.links.rotation = o.rotate == "interleaved" ? Rotation::Interleaved
+                            : o.rotate == "tile"      ? Rotation::Tile
+                                                      : Rotation::Patch;
+    solver.links.indirectScale = std::max(o.indirectScale, 1u);
+    solver.links.footprint = o.footprint;
+    // For these, passes are bounces: how many samples they need is another question.
+    if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
+}
+
+void addVoxelOptions(CLI::App& command, BakeOptions& o) {
+    command
+        .add_option("--voxels", o.voxels,
+                    "Voxels along each edge of the voxel map (default 128; --tracer voxel, --voxel-ratio)")
+        ->check(wholeFrom(kMinVoxels, kMaxVoxels));
+    command
+        .add_option("--voxel-ratio", o.voxelRatio,
+                    "One sender in this many marches through voxels; 0: none, 1: all")
+        ->capture_default_str()
+        ->check(wholeFrom(0, 256));
+}
+
+} // namespace
+
+std::vector<std::string> methodNames() {
+    std::vector<std::string> names;
+    for (const Method method : {Method::Pure, Method::Static, Method::MonteCarlo, Method::Mipmapped,
+                                Method::Adaptive, Method::Directional, Method::Hybrid})
+        names.emplace_back(methodName(method));
+    return names;
+}
+
+std::vector<std::string> tracerNames() {
+    std::vector<std::string> names;
+    for (const TracerKind kind : {TracerKind::Auto, TracerKind::Rtp, TracerKind::Query, TracerKind::Bvh,
+                                  TracerKind::Embree, TracerKind::Voxel})
+        names.emplace_back(tracerName(kind));
+    return names;
+}
+
+void addSolverOptions(CLI::App& command, BakeOptions& o) {
+    command
+        .add_option(
+            "--method", o.method,
+            "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
+            "adaptive")
+        ->check(oneOf(methodNames()));
+    addPairOptions(command, o.pairs);
+    command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
+        ->check(wholeFrom(1, Solver::kMaxPasses));
+    command
+        .add_option("--error", o.error,
+                    "Stop when the remaining error is below this (default 0.01 without --passes)")
+        ->check(numberFrom(1e-6, 1.0));
+    addLinkOptions(command, o);
+    addVoxelOptions(command, o);
+    addMachineOptions(command, o);
+}
+
+void addMachineOptions(CLI::App& command, BakeOptions& o) {
+    command.add_option("--tracer", o.tracer, "What traces rays")
+        ->capture_default_str()
+        ->check(oneOf(tracerNames()));
+    command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
+    command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
+        ->check(numberFrom(0.0, 10.0));
+    command.add_option("--dilate", o.dilate, "Rings of texels filled around charts")
+        ->capture_default_str()
+        ->check(wholeFrom(0, 64));
+    command.add_flag("--no-sew", o.noSew, "Leave the texels around charts empty");
+    command.add_flag("--conservative", o.conservative, "Every texel that a triangle touches becomes a patch");
+    command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
+    command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
+        ->check(numberAbove(0, 1e6));
+    command.add_flag("--device-gather", o.deviceGather,
+                     "Gather by the device's shaders also where it is the CPU, whose own loops are faster");
+    command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
+        ->capture_default_str()
+        ->check(numberFrom(0.1, 45.0));
+    command
+        .add_option("--shaders", o.shaders,
+                    "Compile the shaders from this folder instead of the built-in ones")
+        ->check(existingFolder());
+    command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
+}
+
+void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
+    command.add_option(name, o.size, "Lightmap edge in texels")
+        ->capture_default_str()
+        ->check(wholeFrom(8, Baker::kMaxSize));
+}
+
+CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
+    return command.add_option(
+        "--layer-memory", o.layerMemory,
+        "Layers take at most so much, as 512M or 2G (default: a third of the free device "
+        "memory); lights beyond share layers");
+}
+
+void addBakeOptions(CLI::App& command, BakeOptions& o) {
+    command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
+    command.add_option("--picture", o.picture, "Write the lightmap to this .png as well");
+    addSizeOption(command, "--size", o);
+    addSolverOptions(command, o);
+    command.add_option("--error-map", o.errorMap,
+                       "Write each texel's standard error as an image, .exr or .png");
+    command
+        .add_option("--quantity", o.quantity,
+                    "lighting: irradiance / pi; radiance: emission + albedo * lighting")
+        ->check(oneOf({"lighting", "radiance"}));
+    command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
+        ->check(oneOf({"rtrad"}));
+    command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
+        ->check(numberFrom(0.0, 2.0));
+    CLI::Option* layers = command.add_flag(
+        "--layers", o.layers,
+        "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
+        "that 'relume mix' weighs anew");
+    addLayerMemory(command, o)->needs(layers);
+    command.add_flag("--half", o.half, "Write 16-bit floats");
+    addCheckpointOptions(command, o);
+    command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
+    command.add_option("--scene-out", o.sceneOut,
+                       "Write the scene with the lightmap UVs that were used, .glb");
+}
+
+VoxelSettings resolveVoxels(const BakeOptions& o) {
+    const bool voxelTracer = parseTracerKind(o.tracer) == TracerKind::Voxel;
+    if (voxelTracer && o.voxelRatio > 1) {
+        throw UsageError("--voxel-ratio " + std::to_string(o.voxelRatio) +
+                         ": mixes voxels into another tracer; leave out --tracer voxel");
+    }
+    if (o.voxels > 0 && !voxelTracer && o.voxelRatio == 0)
+        throw UsageError("--voxels: only with --tracer voxel or --voxel-ratio");
+    VoxelSettings voxels{.ratio = voxelTracer ? 1 : o.voxelRatio};
+    if (o.voxels > 0) voxels.resolution = o.voxels;
+    return voxels;
+}
+
+BakeRequest resolveBakeOptions(const BakeOptions& o) {
+    const bool rtrad = o.preset == "rtrad";
+    if (rtrad && o.quantity == "lighting") {
+        throw UsageError("--quantity lighting: --preset rtrad computes RTRad's radiosity only; leave it "
+                         "out or use radiance");
+    }
+    if (!rtrad && o.distanceFactor >= 0) {
+        throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
+    }
+    if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
+    if (!o.picture.empty() && !o.picture.ends_with(".png"))
+        throw UsageError("--picture: '" + o.picture + "' does not end in .png");
+    if (!o.sceneOut.empty() && !o.sceneOut.ends_with(".glb"))
+        throw UsageError("--scene-out: '" + o.sceneOut +
+                         "' does not end in .glb: scenes are written as binary glTF");
+    if (o.layers && !o.output.ends_with(".exr"))
+        throw UsageError("--layers: layers are kept in OpenEXR only: give -o a name that ends in .exr");
+    if (o.layers && o.quantity == "radiance")
+        throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
+    BakeRequest request;
+    request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
+    request.bake.size = o.size;
+    request.bake.conservative = o.conservative;
+    request.bake.tracer = parseTracerKind(o.tracer);
+    request.bake.voxels = resolveVoxels(o);
+    SolverSettings& solver = request.bake.solver;
+    solver.transport.rtrad = rtrad;
+    solver.transport.deviceGather = o.deviceGather;
+    solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity
+                                                       : rtrad             ? double(kRtradReflectivity)
+                                                                           : 1.0);
+    solver.transport.distanceFactor = o.distanceFactor >= 0 ? static_cast<float>(o.distanceFactor) : 1.0f;
+    solver.passes = o.passes;
+    solver.error = o.error > 0 ? o.error : o.passes > 0 ? 0.0 : kDefaultError;
+    solver.batchMs = o.batchMs;
+    if (!o.method.empty())
+        solver.method = parseMethod(o.method);
+    else
+        solver.method = rtrad ? Method::Pure : Method::Hybrid;
+    resolvePairOptions(o.pairs, solver);
+    resolveLinkOptions(o, solver);
+    const bool radiance = rtrad || o.quantity == "radiance";
+    request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,
+                        .reflectivity = solver.transport.reflectivity,
+                        .sew = !o.noSew && o.dilate > 0,
+                        .dilate = o.dilate,
+                        .rtrad = rtrad};
+    return request;
+}
+
+} // namespace relume

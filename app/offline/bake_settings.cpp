@@ -1,0 +1,49 @@
+#include "app/offline/bake_settings.h"
+
+#include "bake/trace/make_tracer.h"
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+// Every struct is taken apart by name: one more setting does not compile until it was decided here whether it
+// changes a bake's bytes.
+
+std::string describe(const TransportSettings& settings) {
+    const auto& [reflectivity, distanceFactor, rtrad, allSend, deviceGather, reflectedOnly] = settings;
+    return fmt::format(" reflectivity={} distance-factor={} preset={} device-gather={}", reflectivity,
+                       distanceFactor, rtrad ? "rtrad" : "none", deviceGather ? 1 : 0);
+}
+
+std::string describe(Method method, const PairSettings& settings) {
+    const auto& [window, threshold, node, thresholdRamp] = settings;
+    if (method == Method::Adaptive)
+        return fmt::format(" threshold={} node={} threshold-ramp={}", threshold, node, thresholdRamp);
+    return method == Method::Pure ? "" : fmt::format(" window={}", window);
+}
+
+std::string describe(const LinkSettings& settings) {
+    const auto& [directions, rotation, samples, smooth, indirectScale, footprint] = settings;
+    return fmt::format(" samples={} indirect-scale={} smooth={} footprint={} directions={} rotate={}",
+                       samples, indirectScale, smooth ? 1 : 0, footprint ? 1 : 0,
+                       directions == DirectionSet::Lec ? "lec" : "sobol",
+                       rotation == Rotation::Interleaved ? "interleaved"
+                       : rotation == Rotation::Tile      ? "tile"
+                                                         : "patch");
+}
+
+} // namespace
+
+std::string describeSettings(const BakeSettings& settings) {
+    const auto& [size, conservative, tracer, voxels, solver] = settings;
+    const auto& [resolution, ratio] = voxels;
+    const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
+    const auto& [method, layers, pairs, links, cache, transport, passes, error, batchMs, live] = solver;
+    return fmt::format("size={} passes={} error={} method={}{} conservative={} voxels={} voxel-ratio={}{}{}",
+                       size, passes, error, methodName(method), layers.on ? " layers=1" : "",
+                       conservative ? 1 : 0, marches ? resolution : 0, ratio, describe(transport),
+                       isPairMethod(method) ? describe(method, pairs) : describe(links));
+}
+
+} // namespace relume

@@ -1,0 +1,80 @@
+#include "app/offline/bake_statistics.h"
+
+#include "assets/base/file_write.h"
+#include "bake/trace/voxel_map.h"
+
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+namespace relume {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json atlasJson(const PreparedScene& prepared) {
+    Json instances = Json::array();
+    for (size_t i = 0; i < prepared.atlas.instances.size(); ++i) {
+        const AtlasRect& rect = prepared.atlas.instances[i];
+        instances.push_back({{"instance", prepared.scene.instances[i].name},
+                             {"texcoord", rect.texCoord},
+                             {"scale", {rect.scale.x, rect.scale.y}},
+                             {"offset", {rect.offset.x, rect.offset.y}}});
+    }
+    return {{"repacked", prepared.atlas.repacked}, {"instances", instances}};
+}
+
+} // namespace
+
+void writeStatistics(const std::string& path, const BakeStatistics& s) {
+    const SolverProgress& p = s.baker.solver().progress();
+    Json seconds;
+    double total = 0;
+    for (const PhaseTime& phase : s.phases) {
+        seconds[phase.name] = phase.seconds;
+        total += phase.seconds;
+    }
+    seconds["total"] = total;
+    const VoxelSettings voxels = resolveVoxels(s.options);
+    const Json json = {{"version", RELUME_VERSION},
+                       {"scene", s.options.scene},
+                       {"output", s.options.output},
+                       {"method", s.options.method},
+                       {"size", s.options.size},
+                       {"device", s.device.name},
+                       {"driver", s.device.driver},
+                       {"tracer", s.baker.tracer().name()},
+                       {"voxels", voxels.ratio > 0 ? voxels.resolution : 0},
+                       {"voxelRatio", voxels.ratio},
+                       {"triangles", s.baker.patches().scene.mesh.triangleCount()},
+                       {"patches", s.baker.patches().count},
+                       {"invalidPatches", s.baker.invalidPatches()},
+                       {"passes", p.passes},
+                       {"samples", p.samples},
+                       {"indirectScale", std::max(s.options.indirectScale, 1u)},
+                       {"footprint", s.options.footprint},
+                       {"error", p.error},
+                       {"gridError", p.gridError},
+                       {"converged", p.converged},
+                       {"pairs", p.pairs},
+                       {"linksRead", p.linksRead},
+                       {"rays", p.rays},
+                       {"raysSaved", p.raysSaved},
+                       {"cacheBytes", p.cacheBytes},
+                       {"cachedShare", p.cachedShare},
+                       {"raysPerSecond", p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds : 0.0},
+                       {"traceSeconds", p.traceSeconds},
+                       {"gatherSeconds", p.gatherSeconds},
+                       {"passSeconds", p.passSeconds},
+                       {"seconds", seconds},
+                       {"bakeCpuSeconds", s.bakeCpuSeconds},
+                       {"atlas", atlasJson(s.prepared)}};
+    // Names of files, and those from the scene's file, need not be UTF-8.
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (path == "-")
+        std::cout << text << std::flush;
+    else
+        writeFileAtomically(path, text);
+}
+
+} // namespace relume

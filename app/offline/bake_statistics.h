@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/offline/bake_options.h"
+
+namespace relume {
+
+/// What a finished bake was and cost.
+struct BakeStatistics {
+    const BakeOptions& options;
+    const PreparedScene& prepared;
+    Baker& baker;
+    const vk::DeviceInfo& device;
+    const std::vector<PhaseTime>& phases;
+    double bakeCpuSeconds; // of all threads, from the lightmap's rasterization to the finished map
+};
+
+/// Writes them as JSON to `path`, or to standard output for "-". Temporary name, then rename. Throws Error.
+void writeStatistics(const std::string& path, const BakeStatistics& statistics);
+
+} // namespace relume

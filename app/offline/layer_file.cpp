@@ -1,0 +1,94 @@
+#include "app/offline/layer_file.h"
+
+#include "app/text/light_names.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+struct LightText {
+    std::string type, unit;
+    float intensity = 0.0f;
+    glm::vec3 color{1.0f};
+};
+
+LightText describe(const Scene& scene, const LightKey& key) {
+    if (key.kind == LightKey::Kind::Lamp) {
+        const Light& light = scene.lights[key.index];
+        return {lightTypeName(light.type), lightUnit(light.type), light.intensity, light.color};
+    }
+    if (key.kind == LightKey::Kind::Group) return {"group", "", 1.0f, glm::vec3(1.0f)};
+    const bool sky = key.kind == LightKey::Kind::Sky;
+    const glm::vec3 radiance = sky ? scene.sky.radiance : scene.materials[key.material].emission;
+    const float most = std::max({radiance.r, radiance.g, radiance.b});
+    return {sky ? "sky" : "emitter", "cd/m^2", most, most > 0.0f ? radiance / most : glm::vec3(1.0f)};
+}
+
+std::string namesOf(const std::vector<LightSource>& lights) {
+    std::string names;
+    for (const LightSource& light : lights)
+        names += (names.empty() ? "" : "\n") + light.name;
+    return names;
+}
+
+} // namespace
+
+LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& desc,
+                          const std::map<std::string, std::string>& attributes) {
+    ASSERT(desc.quantity == Quantity::Lighting);
+    const auto& solver = dynamic_cast<LayerSolver&>(baker.solver());
+    LayeredImage image;
+    image.composite = baker.lightmap(desc);
+    image.composite.attributes = attributes;
+    for (const std::unique_ptr<Layer>& layer : solver.layers()) {
+        const LightText light = describe(scene, layer->source.key);
+        LayeredImage::Layer part{layer->source.name, layer->source.weight, {}, {}};
+        part.attributes[layer_attribute::kType] = light.type;
+        part.attributes[layer_attribute::kUnit] = light.unit;
+        part.attributes[layer_attribute::kIntensity] = fmt::format("{}", light.intensity);
+        part.attributes[layer_attribute::kColor] =
+            fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
+        if (!layer->members.empty()) part.attributes[layer_attribute::kMembers] = namesOf(layer->members);
+        const std::string stale = staleReason(*layer);
+        if (!stale.empty()) part.attributes[layer_attribute::kStale] = stale;
+        const Layer* shown = layer->shown();
+        if (shown) {
+            part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",
+                                                          shown->level.directRounds, shown->level.linkRounds);
+            part.attributes["relume:error"] = fmt::format("{:.6g}", shown->error);
+        }
+        part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), desc);
+        image.layers.push_back(std::move(part));
+    }
+    return image;
+}
+
+void writeLayers(const std::string& path, const LayeredImage& image, ExrType type) {
+    writeLayeredExr(path, image, type);
+    for (const LayeredImage::Layer& layer : image.layers) {
+        const auto error = layer.attributes.find("relume:error");
+        spdlog::info("layer '{}': {}", layer.name,
+                     error == layer.attributes.end() ? "off, not baked" : "error " + error->second);
+    }
+}
+
+std::vector<std::string> staleReasons(const LayerSolver& solver) {
+    std::vector<std::string> reasons;
+    for (const std::unique_ptr<Layer>& layer : solver.layers())
+        if (std::string reason = staleReason(*layer); !reason.empty()) reasons.push_back(std::move(reason));
+    return reasons;
+}
+
+std::string staleLayers(const LayerSolver& solver) {
+    std::string text;
+    for (const std::string& reason : staleReasons(solver))
+        text += (text.empty() ? "" : "; ") + reason;
+    return text;
+}
+
+} // namespace relume

@@ -1,0 +1,86 @@
+#include "app/pictures/make_frame_writer.h"
+
+#include "app/pictures/video_writer.h"
+#include "app/text/frame_names.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/images/image_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// frame_0001.png and so on.
+class FolderWriter final : public FrameWriter {
+public:
+    explicit FolderWriter(const Desc& desc) : folder_(desc.path) {
+        while (folder_.size() > 1 && folder_.ends_with('/'))
+            folder_.pop_back();
+        std::error_code code;
+        if (!fs::exists(folder_, code)) {
+            if (fs::is_symlink(folder_, code))
+                throw Error(folder_ +
+                            ": is a link to a folder that does not exist: create that or name another");
+            checkFileWritable(folder_, 0);
+            return;
+        }
+        if (!fs::is_directory(folder_, code))
+            throw Error(folder_ + ": is a file: name a folder for the frames, or FILE.mp4");
+        old_ = oldFrames();
+        if (!old_.empty() && !desc.overwrite) {
+            throw Error(folder_ + ": holds frames (" + old_.front().filename().string() +
+                        "): name another folder, or pass --overwrite to lose them");
+        }
+        for (const fs::path& frame : old_)
+            checkFileWritable(frame.string(), 0);
+        checkFileWritable(folder_ + "/frame_0001.png", 0);
+    }
+
+    void write(const FloatImage& frame, uint32_t times) override {
+        if (count_ == 0) begin();
+        const std::string png = encodePng(frame, folder_);
+        for (uint32_t i = 0; i < times; ++i)
+            writeFileAtomically(fmt::format("{}/frame_{:04}.png", folder_, ++count_), png, OnFailure::Drop);
+    }
+    void finish() override {}
+    bool keepsFrames() const override { return true; }
+
+private:
+    std::vector<fs::path> oldFrames() const {
+        std::vector<fs::path> frames;
+        std::error_code code;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder_, code))
+            if (isFrameName(entry.path().filename().string())) frames.push_back(entry.path());
+        if (code) throw Error(folder_ + ": cannot be read: " + code.message() + ": name another folder");
+        std::sort(frames.begin(), frames.end());
+        return frames;
+    }
+    // A shorter series than the one before it must not end in that one's frames.
+    void begin() {
+        std::error_code code;
+        fs::create_directory(folder_, code);
+        if (code) throw Error(folder_ + ": cannot be made: " + code.message() + ": name another folder");
+        for (const fs::path& frame : old_)
+            fs::remove(frame, code); // what cannot be removed cannot be replaced either, which is told then
+    }
+
+    std::string folder_;
+    std::vector<fs::path> old_;
+};
+
+} // namespace
+
+std::unique_ptr<FrameWriter> makeFrameWriter(const FrameWriter::Desc& desc) {
+    if (isVideo(desc.path)) return std::make_unique<VideoWriter>(desc);
+    return std::make_unique<FolderWriter>(desc);
+}
+
+} // namespace relume

@@ -1,0 +1,151 @@
+#include "app/pictures/shot_options.h"
+
+#include "app/text/option_checks.h"
+#include "app/text/typed_numbers.h"
+#include "assets/base/error.h"
+#include "assets/base/warnings.h"
+#include "renderer/good_view.h"
+#include "renderer/scene_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kMinEdge = 16, kMaxEdge = 16384; // of a picture [pixels]
+constexpr float kMostMetres = 1e9f; // squares and products of such places are far from what floats can hold
+
+glm::vec3 parsePoint(const std::string& option, const std::string& text) {
+    const std::vector<float> numbers = typedNumbers(text, 3);
+    const auto isNear = [](float number) { return std::abs(number) <= kMostMetres; };
+    if (numbers.empty() || !std::all_of(numbers.begin(), numbers.end(), isNear))
+        throw UsageError(option + ": " + inQuotes(text) +
+                         " is no point: write x,y,z in metres, each from -1e9 to 1e9");
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+void parseSize(const std::string& text, ShotRequest& request) {
+    const size_t cross = text.find('x');
+    const auto edge = [&](std::string_view part) {
+        const std::optional<float> value = typedNumber(part);
+        const bool good = value && *value == std::floor(*value) && *value >= kMinEdge && *value <= kMaxEdge;
+        if (!good) {
+            throw UsageError("--size: '" + text + "' is no size: write WIDTHxHEIGHT in pixels, each from " +
+                             std::to_string(kMinEdge) + " to " + std::to_string(kMaxEdge));
+        }
+        return static_cast<uint32_t>(*value);
+    };
+    const std::string_view all = text;
+    request.width = edge(all.substr(0, std::min(cross, all.size())));
+    request.height = edge(cross == std::string::npos ? "" : all.substr(cross + 1));
+}
+
+uint32_t indexOf(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+std::string cameraNames(const Scene& scene) {
+    if (scene.cameras.empty()) return "it has none, use --eye and --target";
+    std::string names = "it has ";
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+        names += (i > 0 ? ", " : "") + inQuotes(scene.cameras[i].name);
+    return names;
+}
+
+} // namespace
+
+void addPictureOptions(CLI::App& command, ShotOptions& o) {
+    command.add_option("--size", o.size, "Of the picture in pixels")->capture_default_str()->type_name("WxH");
+    command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
+    command.add_option("--eye", o.eye, "Look from this point [m]; with --target")->type_name("X,Y,Z");
+    command.add_option("--target", o.target, "Look at this point [m]; with --eye")->type_name("X,Y,Z");
+    command.add_option("--fov", o.fov, "Angle of the picture's height in degrees")
+        ->check(numberFrom(1.0, 170.0));
+    command
+        .add_option(
+            "--view", o.view,
+            "lit, lighting, albedo, emission, normal, material, instance, checker (lightmap texels), density "
+            "(texels per metre) or coverage")
+        ->capture_default_str()
+        ->check(oneOf(viewNames()));
+    command.add_option("--exposure", o.exposure, "Of light, in EV, or auto")->capture_default_str();
+    command.add_option("--tone", o.tone, "Tone mapping: agx, aces or none")
+        ->capture_default_str()
+        ->check(oneOf(toneNames()));
+    command.add_option("--filter", o.filter, "Of the lightmap: bilinear, bicubic or nearest")
+        ->capture_default_str()
+        ->check(oneOf(filterNames()));
+}
+
+void addShotOptions(CLI::App& command, ShotOptions& o) {
+    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.bake.output, "Picture to write, .png")->required();
+    addPictureOptions(command, o);
+    command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
+    CLI::Option* lightmap = command.get_option("--lightmap");
+    addSizeOption(command, "--lightmap-size", o.bake);
+    const std::vector<CLI::Option*> before = command.get_options();
+    addSolverOptions(command, o.bake);
+    const std::vector<std::string> used = {"--unwrap", "--density", "--shaders"}; // by what is not baked, too
+    command.get_option("--lightmap-size")->excludes(lightmap);
+    for (CLI::Option* option : command.get_options()) {
+        const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();
+        if (ofSolver && std::find(used.begin(), used.end(), option->get_name()) == used.end())
+            option->excludes(lightmap);
+    }
+}
+
+ShotRequest resolveShotOptions(const ShotOptions& o) {
+    if (!o.bake.output.ends_with(".png"))
+        throw UsageError("--output: '" + o.bake.output + "' does not end in .png");
+    return resolvePictureOptions(o);
+}
+
+ShotRequest resolvePictureOptions(const ShotOptions& o) {
+    if (o.eye.empty() != o.target.empty())
+        throw UsageError("--eye and --target: one says nothing without the other");
+    if (!o.eye.empty() && !o.camera.empty())
+        throw UsageError("--camera: not with --eye and --target, which are a camera themselves");
+    if (!o.eye.empty() && parsePoint("--eye", o.eye) == parsePoint("--target", o.target))
+        throw UsageError("--eye and --target: are the same point, there is no direction to look in");
+    ShotRequest request;
+    parseSize(o.size, request);
+    request.draw.view = static_cast<View>(indexOf(viewNames(), o.view));
+    request.draw.filter = static_cast<LightmapFilter>(indexOf(filterNames(), o.filter));
+    request.draw.tone = static_cast<ToneMap>(indexOf(toneNames(), o.tone));
+    if (o.exposure != "auto") {
+        constexpr float kMaxExposure = 64; // EV: a factor that floats hold with room to spare
+        request.draw.exposure = typedNumber(o.exposure);
+        if (!request.draw.exposure || std::abs(*request.draw.exposure) > kMaxExposure)
+            throw UsageError("--exposure: '" + o.exposure + "' is neither auto nor a number from -64 to 64");
+    }
+    return request;
+}
+
+ViewCamera chooseCamera(const ShotOptions& o, const Scene& scene, const WorldMesh& mesh, float aspect) {
+    const Box bounds = boundsOf(mesh);
+    ViewCamera camera;
+    const auto named = std::find_if(scene.cameras.begin(), scene.cameras.end(),
+                                    [&](const Camera& candidate) { return candidate.name == o.camera; });
+    if (!o.eye.empty())
+        camera = cameraAt(parsePoint("--eye", o.eye), parsePoint("--target", o.target), bounds);
+    else if (!o.camera.empty() && named == scene.cameras.end())
+        throw Error(o.bake.scene + ": has no camera " + inQuotes(o.camera) + ": " + cameraNames(scene));
+    else if (!o.camera.empty())
+        camera = cameraOfFile(*named, bounds);
+    else if (!scene.cameras.empty())
+        camera = cameraOfFile(scene.cameras.front(), bounds);
+    else
+        camera = goodView(mesh, aspect);
+    if (o.fov > 0) {
+        camera.yfov = static_cast<float>(glm::radians(o.fov));
+        camera.halfHeight = 0.0f;
+    }
+    return camera;
+}
+
+} // namespace relume

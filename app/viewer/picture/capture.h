@@ -1,0 +1,80 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/pictures/frame_writer.h"
+
+namespace relume {
+
+/// Pixels as OpenGL gives them: RGBA of 8 bits, the lowest row first.
+struct Pixels {
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgba;
+    std::vector<std::string> caption = {}; // written into the picture; none: nothing
+};
+/// Reads what the window or a framebuffer (0: the window's back one) holds.
+Pixels readPixels(uint32_t framebuffer, uint32_t width, uint32_t height);
+
+/// "relume_2026-11-21_001.png": a name with today's date whose number no file or folder in the folder has, of
+/// this ending or another. ending: ".png", "" for a folder.
+std::string captureName(const std::string& folder, const std::string& ending);
+
+/// Writes screenshots and recordings on a thread of its own. Calls return at once; frames that come faster
+/// than they are written are left out.
+class Capture {
+public:
+    Capture();
+    ~Capture(); // writes what waits
+    Capture(const Capture&) = delete;
+    Capture& operator=(const Capture&) = delete;
+
+    /// The log tells where it went, or what went wrong.
+    void screenshot(Pixels pixels, const std::string& folder);
+    /// Records from the next frame on, an MP4 where there is ffmpeg, else PNG frames in a folder.
+    void start(const std::string& folder, double now);
+    void stop(double now);
+    bool recording() const { return recording_; }
+    /// Whether a frame that is shown from `now` on would be taken: ask before reading pixels.
+    bool wants(double now) const;
+    /// What is on screen from `now` [s] on. A frame of another size than the first ends the recording.
+    void frame(Pixels pixels, double now);
+
+private:
+    struct Job {
+        Pixels pixels = {};
+        std::string path = {}; // a folder
+        uint32_t times = 0;    // how often a recording shows it; 0: a screenshot
+        bool ends = false;     // the recording
+    };
+    void push(Job job);
+    void work();
+    void write(const Job& job);
+    void beginRecording(const Job& job);
+    uint32_t timesUntil(double now) const;
+
+    // The calling thread's.
+    bool recording_ = false;
+    double begun_ = 0, lastTime_ = 0;
+    uint64_t sent_ = 0;             // frames of the recording, repeated ones counted
+    std::optional<Pixels> waiting_; // the newest frame: how long it is shown is not known yet
+    std::string folder_;
+    // Both threads'.
+    mutable std::mutex mutex_;
+    std::condition_variable news_;
+    std::deque<Job> jobs_;
+    bool quit_ = false;
+    // The writing thread's.
+    std::unique_ptr<FrameWriter> writer_;
+    std::string recordingPath_;
+    bool failed_ = false;
+    std::thread thread_;
+};
+
+} // namespace relume

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <future>
+#include <optional>
+#include <string>
+
+#include "assets/model/scene.h"
+
+namespace relume {
+
+/// Reads pictures of the sky beside the main thread.
+class SkyPictures {
+public:
+    struct Result {
+        Sky sky;             // with its file and pixels ...
+        std::string error;   // ... unless this says why not, one line
+        bool chosen = false; // by the user, not by the document
+    };
+    ~SkyPictures();
+    /// The newest wish counts.
+    void read(const std::string& file, bool chosen);
+    /// What is read, or is to be; "": nothing.
+    const std::string& reading() const { return reading_; }
+    /// Once after each read(), as soon as it is there.
+    std::optional<Result> poll();
+
+private:
+    struct Wish {
+        std::string file;
+        bool chosen = false;
+    };
+    void begin(Wish wish);
+
+    std::future<Result> result_;
+    std::optional<Wish> next_; // instead of what is being read
+    std::string reading_;
+};
+
+} // namespace relume

@@ -1,0 +1,120 @@
+#include "app/viewer/shell/file_dialog.h"
+
+#include "app/viewer/panels/widgets.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isFolder(const std::string& path) {
+    std::error_code code;
+    return fs::is_directory(path, code);
+}
+
+// Tab, in the field: the text as far as it can only go on one way.
+int onCompletion(ImGuiInputTextCallbackData* data) {
+    const PathCompletion& completion = *static_cast<const PathCompletion*>(data->UserData);
+    if (completion.matches.empty()) return 0;
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, completion.text.c_str());
+    return 0;
+}
+
+} // namespace
+
+void FileDialog::open(Desc desc) {
+    desc_ = std::move(desc);
+    typed_ = desc_.path;
+    listed_.clear();
+    open_ = focus_ = true;
+    asks_ = false;
+    complete();
+}
+
+void FileDialog::complete() {
+    listed_ = typed_;
+    completion_ = completePath(typed_, desc_.endings);
+}
+
+void FileDialog::list(const std::vector<std::string>& paths, const char* id) {
+    constexpr size_t kLines = 10;
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const float height = line * (0.6f + static_cast<float>(std::clamp<size_t>(paths.size(), 1, kLines)));
+    ImGui::BeginChild(id, {0, height}, true);
+    for (const std::string& path : paths) {
+        if (!ui::selectable(path.c_str())) continue;
+        typed_ = path;
+        focus_ = true;
+        asks_ = false;
+        if (!desc_.saves && !isFolder(path)) finish();
+    }
+    ImGui::EndChild();
+}
+
+void FileDialog::finish() {
+    const std::string path = expandHome(typed_);
+    if (path.empty()) return;
+    if (isFolder(path)) { // goes on inside
+        typed_ = path.ends_with('/') ? path : path + "/";
+        focus_ = true;
+        return;
+    }
+    if (desc_.saves && !asks_ && freePath(path) != path) {
+        asks_ = true;
+        return;
+    }
+    open_ = false;
+    if (desc_.done) desc_.done(path);
+}
+
+void FileDialog::draw() {
+    if (!open_) return;
+    const ImGuiViewport* viewport = ImGui::GetMainViewport();
+    const ImVec2 centre = viewport->GetCenter();
+    ImGui::SetNextWindowPos({centre.x, viewport->WorkPos.y + 0.15f * viewport->WorkSize.y},
+                            ImGuiCond_Appearing, {0.5f, 0.0f});
+    ImGui::SetNextWindowSize({std::min(40.0f * ImGui::GetFontSize(), viewport->WorkSize.x), 0});
+    bool stays = true;
+    ImGui::Begin((desc_.title + "###file").c_str(), &stays,
+                 ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+    if (focus_) ImGui::SetKeyboardFocusHere();
+    focus_ = false;
+    ImGui::SetNextItemWidth(-1);
+    const bool entered = ImGui::InputText(
+        "##path", &typed_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion,
+        onCompletion, &completion_);
+    if (typed_ != listed_) {
+        complete();
+        asks_ = false;
+    }
+    ImGui::TextDisabled("Tab completes, Enter takes it, Esc closes.");
+    if (asks_) {
+        ImGui::TextWrapped("This file exists.");
+        if (ui::button("Replace it")) finish();
+        ImGui::SameLine();
+        if (ui::button("Take a free name")) {
+            typed_ = freePath(expandHome(typed_));
+            asks_ = false;
+            finish();
+        }
+    } else if (entered || ui::button(desc_.saves ? "Write" : "Open")) {
+        finish();
+    }
+    if (open_ && !completion_.matches.empty()) list(completion_.matches, "matches");
+    if (open_ && !desc_.recent.empty()) {
+        ImGui::TextUnformatted("Recent");
+        list(desc_.recent, "recent");
+    }
+    ImGui::End();
+    if (!stays) open_ = false;
+}
+
+} // namespace relume

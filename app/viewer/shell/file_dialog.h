@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/window/path_completion.h"
+
+namespace relume {
+
+/// Asks for a path, typed with completion. One at a time.
+class FileDialog {
+public:
+    struct Desc {
+        std::string title, path;          // path: what is there already
+        std::vector<std::string> endings; // of files that count
+        std::vector<std::string> recent;  // to choose from
+        bool saves = false;               // a file that exists is not taken at once
+        std::function<void(const std::string& path)> done;
+    };
+    void open(Desc desc);
+    void close() { open_ = false; }
+    bool isOpen() const { return open_; }
+    void draw();
+
+private:
+    void complete();
+    void list(const std::vector<std::string>& paths, const char* id);
+    void finish();
+
+    Desc desc_;
+    bool open_ = false, focus_ = false, asks_ = false;
+    std::string typed_, listed_; // listed_: the text that `completion_` is about
+    PathCompletion completion_;
+};
+
+} // namespace relume

@@ -1,0 +1,101 @@
+#include "app/viewer/shell/view_options.h"
+
+#include "app/text/option_checks.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+namespace relume {
+namespace {
+
+uint32_t parseEdge(const std::string& all, std::string_view part) {
+    uint32_t value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error == std::errc() && end == part.data() + part.size() && value >= kLeastWindowEdge &&
+        value <= kMostWindowEdge)
+        return value;
+    throw UsageError("--window-size: '" + all + "' is no size: write WIDTHxHEIGHT, each from " +
+                     std::to_string(kLeastWindowEdge) + " to " + std::to_string(kMostWindowEdge));
+}
+
+bool isScene(std::string name) {
+    std::error_code code;
+    if (std::filesystem::is_regular_file(name, code)) return true;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name.ends_with(".glb") || name.ends_with(".gltf");
+}
+
+} // namespace
+
+void addDisplayOption(CLI::App& command, std::string& display) {
+    command
+        .add_option("--display", display,
+                    "How the lightmap comes to OpenGL: shared (no copy), copied, or auto")
+        ->capture_default_str()
+        ->check(oneOf({"auto", "shared", "copied"}));
+}
+
+DisplayMode displayModeOf(const std::string& display) {
+    if (display == "shared") return DisplayMode::Shared;
+    return display == "copied" ? DisplayMode::Copied : DisplayMode::Auto;
+}
+
+void addViewOptions(CLI::App& command, ViewOptions& o) {
+    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb (default: none yet)");
+    addSizeOption(command, "--size", o.bake);
+    addSolverOptions(command, o.bake);
+    command.add_option("--preset", o.bake.preset, "rtrad: the reference implementation to the letter")
+        ->check(oneOf({"rtrad"}));
+    command.add_option("--budget", o.budget, "Aim of one batch in milliseconds while the camera is still")
+        ->capture_default_str()
+        ->check(numberFrom(1.0, 45.0));
+    addDisplayOption(command, o.display);
+    command.add_flag("--no-layers", o.noLayers,
+                     "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
+    addLayerMemory(command, o.bake);
+    command.add_flag("--watch", o.watch, "Load the scene again whenever its file changes");
+    command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
+        ->type_name("WxH");
+    command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
+    command.add_flag("--log-actions", o.logActions,
+                     "Print each action on the standard error as it is done, for bug reports");
+}
+
+ViewerDesc resolveViewOptions(const ViewOptions& o) {
+    ViewerDesc desc{.scene = o.bake.scene,
+                    .request = resolveBakeOptions(o.bake),
+                    .device = o.bake.device,
+                    .validation = o.bake.validate,
+                    .display = displayModeOf(o.display),
+                    .budgetMs = o.budget,
+                    .watch = o.watch,
+                    .camera = o.camera,
+                    .logActions = o.logActions};
+    desc.request.bake.solver.layers.on = !o.noLayers;
+    if (!o.window.empty()) {
+        const size_t cross = o.window.find('x');
+        const std::string_view all = o.window;
+        desc.width = parseEdge(o.window, all.substr(0, cross));
+        desc.height = parseEdge(o.window, cross == std::string::npos ? "" : all.substr(cross + 1));
+    }
+    return desc;
+}
+
+std::vector<std::string> withViewVerb(std::vector<std::string> arguments,
+                                      const std::vector<std::string>& verbs) {
+    const auto first = std::find_if(arguments.begin(), arguments.end(), [](const std::string& argument) {
+        return argument.empty() || argument.front() != '-';
+    });
+    if (first == arguments.end() || std::find(verbs.begin(), verbs.end(), *first) != verbs.end())
+        return arguments;
+    if (isScene(*first)) arguments.insert(first, "view");
+    return arguments;
+}
+
+} // namespace relume

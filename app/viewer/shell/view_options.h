@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "app/offline/bake_options.h"
+#include "app/viewer/shell/viewer.h"
+
+namespace relume {
+
+/// What the user typed after `relume view`.
+struct ViewOptions {
+    BakeOptions bake; // scene, and how its lightmap is made
+    std::string display = "auto", window, camera;
+    double budget = 8; // [ms]
+    bool watch = false, logActions = false, noLayers = false;
+};
+
+void addViewOptions(CLI::App& command, ViewOptions& options);
+/// --display, and what its text means.
+void addDisplayOption(CLI::App& command, std::string& display);
+DisplayMode displayModeOf(const std::string& display);
+
+/// What the options ask for. Throws UsageError when they are wrong or contradict each other.
+ViewerDesc resolveViewOptions(const ViewOptions& options);
+
+/// The arguments with "view" in front of a scene that stands where a verb belongs: `relume room.glb`.
+/// `verbs`: those that there are.
+std::vector<std::string> withViewVerb(std::vector<std::string> arguments,
+                                      const std::vector<std::string>& verbs);
+
+} // namespace relume

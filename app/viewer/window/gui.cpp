@@ -1,0 +1,167 @@
+#include "app/viewer/window/gui.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+namespace relume {
+namespace {
+
+constexpr float kFontPixels = 15, kBuiltInPixels = 13; // at scale 1; ImGui's own is a bitmap of 13
+
+// Outlines that most systems have; ImGui's own letters are a bitmap, coarse when enlarged.
+constexpr std::array kFonts = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+    "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
+    "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+};
+
+void loadFont(float scale) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
+    std::error_code code;
+    for (const char* path : kFonts) {
+        if (!std::filesystem::exists(path, code)) continue;
+        if (io.Fonts->AddFontFromFileTTF(path, std::round(kFontPixels * scale)) != nullptr) return;
+    }
+    ImFontConfig config;
+    config.SizePixels = std::round(kBuiltInPixels * scale);
+    io.Fonts->AddFontDefault(&config);
+}
+
+void setColours(ImGuiStyle& style) {
+    ImGui::StyleColorsDark(&style);
+    const ImVec4 accent(0.85f, 0.55f, 0.20f, 1.0f), quiet(0.20f, 0.21f, 0.23f, 1.0f);
+    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.10f, 0.105f, 0.115f, 1.0f);
+    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.10f, 0.105f, 0.115f, 0.98f);
+    style.Colors[ImGuiCol_MenuBarBg] = ImVec4(0.13f, 0.135f, 0.15f, 1.0f);
+    style.Colors[ImGuiCol_FrameBg] = quiet;
+    style.Colors[ImGuiCol_Button] = ImVec4(0.26f, 0.27f, 0.30f, 1.0f);
+    style.Colors[ImGuiCol_Header] = ImVec4(0.24f, 0.25f, 0.28f, 1.0f);
+    style.Colors[ImGuiCol_Tab] = quiet;
+    style.Colors[ImGuiCol_TitleBgActive] = style.Colors[ImGuiCol_Header];
+    style.Colors[ImGuiCol_ResizeGrip] = quiet;
+    for (const int colour :
+         {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered, ImGuiCol_TabHovered})
+        style.Colors[colour] = ImVec4(0.45f, 0.33f, 0.20f, 1.0f);
+    for (const int colour :
+         {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_HeaderActive, ImGuiCol_TabActive})
+        style.Colors[colour] = ImVec4(0.60f, 0.40f, 0.18f, 1.0f);
+    for (const int colour : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
+                             ImGuiCol_PlotLines, ImGuiCol_PlotHistogram})
+        style.Colors[colour] = accent;
+}
+
+} // namespace
+
+Gui::Gui(Window& window) : window_(window) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;              // preferences.h keeps what is to be kept
+    ImGui::GetIO().ConfigInputTextCursorBlink = false; // nothing is to be drawn for a blinking cursor alone
+    ImGui_ImplGlfw_InitForOpenGL(window.handle(), false); // feed() calls what it would install
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+}
+
+Gui::~Gui() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Gui::setScale(float scale) {
+    if (scale == scale_) return;
+    const bool again = scale_ > 0;
+    scale_ = scale;
+    ImGuiStyle style;
+    setColours(style);
+    style.WindowRounding = 0;
+    style.FrameRounding = 3;
+    style.GrabRounding = 3;
+    style.WindowBorderSize = 0;
+    style.ScaleAllSizes(scale);
+    ImGui::GetStyle() = style;
+    loadFont(scale);
+    if (again) ImGui_ImplOpenGL3_DestroyFontsTexture();
+    if (again) ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Gui::feed(const WindowEvent& event) {
+    GLFWwindow* window = window_.handle();
+    const int state = event.repeated ? GLFW_REPEAT : event.pressed ? GLFW_PRESS : GLFW_RELEASE;
+    switch (event.kind) {
+    case WindowEvent::Kind::Key:
+        feedSeen();
+        // A key that goes down and up between two frames would never have been down.
+        if (!event.pressed && std::find(pressed_.begin(), pressed_.end(), event.place) != pressed_.end()) {
+            releases_.push_back(event);
+            break;
+        }
+        if (event.pressed) pressed_.push_back(event.place);
+        ImGui_ImplGlfw_KeyCallback(window, event.place, event.scancode, state, event.mods);
+        break;
+    case WindowEvent::Kind::Letter:
+        ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code));
+        break;
+    case WindowEvent::Kind::Button:
+        ImGui_ImplGlfw_MouseButtonCallback(window, event.code, state, event.mods);
+        break;
+    case WindowEvent::Kind::Scroll:
+        ImGui_ImplGlfw_ScrollCallback(window, event.at.x, event.at.y);
+        break;
+    case WindowEvent::Kind::Focus:
+        ImGui_ImplGlfw_WindowFocusCallback(window, event.pressed ? GLFW_TRUE : GLFW_FALSE);
+        break;
+    case WindowEvent::Kind::Enter:
+        ImGui_ImplGlfw_CursorEnterCallback(window, event.pressed ? GLFW_TRUE : GLFW_FALSE);
+        break;
+    default:
+        break; // where the cursor is it asks for itself
+    }
+}
+
+// Never within a frame: what widgets see of modifiers must not change under them.
+void Gui::feedSeen() {
+    for (const WindowEvent& event : std::exchange(seen_, {}))
+        ImGui_ImplGlfw_KeyCallback(window_.handle(), event.place, event.scancode, GLFW_RELEASE, event.mods);
+}
+
+void Gui::begin(float scale) {
+    setScale(scale);
+    feedSeen();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    pressed_.clear();
+    seen_ = std::exchange(releases_, {});
+}
+
+void Gui::end() {
+    ImGui::Render();
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE); // the scene sets another one
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Gui::wantsMouse() const {
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool Gui::wantsKeyboard() const {
+    return ImGui::GetIO().WantTextInput;
+}
+
+bool Gui::animates() const {
+    return ImGui::IsAnyItemActive() && !ImGui::GetIO().WantTextInput;
+}
+
+} // namespace relume

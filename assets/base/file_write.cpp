@@ -1,0 +1,243 @@
+#include "assets/base/file_write.h"
+
+#include "assets/base/error.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isLackOfSpace(int error) {
+    return error == ENOSPC || error == EDQUOT || error == EFBIG;
+}
+
+std::string systemFolder() {
+    std::error_code code;
+    const fs::path folder = fs::temp_directory_path(code);
+    return code ? "/tmp" : folder.string();
+}
+
+// Where content waits: the folder of what it replaces, else wherever there is room.
+Spool spoolFor(const WriteTarget& target, WriteWay way) {
+    const bool exists = target.kind != WriteTarget::Kind::Missing;
+    const uint32_t mode = exists ? 0600 : 0666; // nobody else reads a private file's content meanwhile
+    if (way != WriteWay::Stream) {
+        Spool beside(target.folder, mode);
+        if (beside.error() == 0 || way == WriteWay::Replace) return beside;
+    }
+    Spool elsewhere(systemFolder(), 0600);
+    return elsewhere.error() == 0 ? std::move(elsewhere) : Spool::inMemory();
+}
+
+// A reader of a FIFO that goes away is an error like others: SIGPIPE would take a viewer's edits along.
+class PipeSignalBlock {
+public:
+    PipeSignalBlock() {
+        sigemptyset(&pipe_);
+        sigaddset(&pipe_, SIGPIPE);
+        pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+    }
+    ~PipeSignalBlock() {
+        const timespec now{};
+        while (sigtimedwait(&pipe_, nullptr, &now) > 0) {
+        }
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+    PipeSignalBlock(const PipeSignalBlock&) = delete;
+    PipeSignalBlock& operator=(const PipeSignalBlock&) = delete;
+
+private:
+    sigset_t pipe_{}, before_{};
+};
+
+// Rights beyond those of owner, group and others. False where there are some that cannot be handed down.
+bool copyAccessList(const std::string& from, int to) {
+    constexpr const char* kName = "system.posix_acl_access";
+    const ssize_t size = getxattr(from.c_str(), kName, nullptr, 0);
+    if (size <= 0) return true;
+    std::vector<char> list(static_cast<size_t>(size));
+    const ssize_t read = getxattr(from.c_str(), kName, list.data(), list.size());
+    return read > 0 && fsetxattr(to, kName, list.data(), static_cast<size_t>(read), 0) == 0;
+}
+
+// The name of a result that is kept, "" where none could be given.
+std::string giveSavedName(Spool& spool, const std::string& path) {
+    constexpr uint32_t kMostNames = 1000;
+    for (uint32_t number = 1; number <= kMostNames; ++number) {
+        const std::string name = savedName(spool.folder(), path, number);
+        const int error = spool.take(name);
+        if (error == 0) return name;
+        if (error != EEXIST) break;
+    }
+    return "";
+}
+
+} // namespace
+
+AtomicFile::AtomicFile(const std::string& path, OnFailure onFailure)
+    : target_(lookAtTarget(path)), onFailure_(onFailure) {
+    const WritePlan plan = planWrite(target_);
+    // What could be written when it was checked may have changed since: the content has a place all the same.
+    if (plan.way == WriteWay::Refuse && onFailure == OnFailure::Drop) throw Error(path + ": " + plan.problem);
+    way_ = plan.way;
+    problem_ = plan.problem;
+    spool_ = spoolFor(target_, way_ == WriteWay::Refuse ? WriteWay::Stream : way_);
+    if (spool_.error() != 0) fail(spool_.error());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+    struct stat before {};
+    fstat(spool_.descriptor(), &before);
+    const int error = spool_.write(bytes);
+    if (error == 0) return;
+    struct stat after {};
+    fstat(spool_.descriptor(), &after);
+    const auto written = static_cast<size_t>(after.st_size - before.st_size);
+    if (noRoom_ == 0 && isLackOfSpace(error) && onFailure_ == OnFailure::Keep &&
+        takeRefuge(bytes.substr(std::min(written, bytes.size())))) {
+        noRoom_ = error;
+        return;
+    }
+    spool_ = Spool(); // half of it is of no use
+    fail(noRoom_ != 0 ? noRoom_ : error);
+}
+
+// Goes on in the system's temporary folder, which may be on another disk.
+bool AtomicFile::takeRefuge(std::string_view rest) {
+    Spool refuge(systemFolder(), 0600);
+    if (refuge.error() != 0 || spool_.copyTo(refuge.descriptor()) != 0 || refuge.write(rest) != 0)
+        return false;
+    spool_ = std::move(refuge);
+    return true;
+}
+
+// Rights that its group had are not for another group.
+void AtomicFile::keepRights() const {
+    if (target_.kind != WriteTarget::Kind::Regular) return;
+    const int file = spool_.descriptor();
+    const bool grouped = fchown(file, target_.owner, target_.group) == 0 ||
+                         fchown(file, static_cast<uid_t>(-1), target_.group) == 0;
+    const uint32_t others = target_.mode & 07, rights = target_.mode & 0777;
+    const uint32_t narrow = (rights & 0707) | ((rights >> 3 & 07 & others) << 3);
+    if (fchmod(file, grouped ? rights : narrow) != 0) return; // it stays private
+    if (!copyAccessList(target_.real, file)) fchmod(file, narrow);
+}
+
+// In place of a file that is there. Room is asked for first, while all of it is still there.
+int AtomicFile::overwrite() const {
+    const int file = open(target_.real.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (file < 0) return errno;
+    struct stat whole {};
+    int error = fstat(spool_.descriptor(), &whole) != 0 ? errno : 0;
+    if (error == 0 && whole.st_size > 0 && fallocate(file, FALLOC_FL_KEEP_SIZE, 0, whole.st_size) != 0 &&
+        isLackOfSpace(errno))
+        error = errno;
+    if (error == 0) error = spool_.copyTo(file);
+    if (error == 0 && ftruncate(file, whole.st_size) != 0) error = errno;
+    if (error == 0 && fsync(file) != 0 && errno != EINVAL) error = errno;
+    if (close(file) != 0 && errno != EINTR && error == 0) error = errno;
+    return error;
+}
+
+int AtomicFile::pour() const {
+    const PipeSignalBlock block;
+    // What a shell has open may have content before ours.
+    const int flags = O_WRONLY | O_CLOEXEC | O_NOCTTY | (target_.alreadyOpen ? O_APPEND : 0);
+    int file = -1;
+    do
+        file = open(target_.real.c_str(), flags);
+    while (file < 0 && errno == EINTR);
+    if (file < 0) return errno;
+    const int error = spool_.copyTo(file);
+    return close(file) != 0 && errno != EINTR && error == 0 ? errno : error;
+}
+
+int AtomicFile::takeName() {
+    if (const int error = spool_.flush()) return error;
+    keepRights();
+    const int error = spool_.replace(target_.real);
+    // Something that was not to be seen before keeps the name; the content may still be another.
+    if (error != 0 && target_.kind == WriteTarget::Kind::Regular && overwrite() == 0) return 0;
+    if (error != 0) return error;
+    // Makes the new name last; the data is safe already, so a folder that cannot be flushed is no error.
+    const int folder = open(target_.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder >= 0) {
+        fsync(folder);
+        close(folder);
+    }
+    return 0;
+}
+
+void AtomicFile::commit() {
+    int error = 0;
+    if (way_ == WriteWay::Replace) error = noRoom_ != 0 ? noRoom_ : takeName();
+    if (way_ == WriteWay::InPlace) error = overwrite();
+    if (way_ == WriteWay::Stream) error = pour();
+    if (error != 0 || way_ == WriteWay::Refuse) fail(error);
+    spool_ = Spool();
+}
+
+// Beside what could not be written, or where the system keeps such files; "" where neither goes.
+std::string AtomicFile::saveElsewhere() {
+    std::string name = giveSavedName(spool_, target_.path);
+    if (!name.empty()) return name;
+    Spool other(systemFolder(), 0600);
+    if (other.error() != 0 || spool_.copyTo(other.descriptor()) != 0) return "";
+    return giveSavedName(other, target_.path);
+}
+
+void AtomicFile::fail(int error) {
+    const bool whole = spool_.descriptor() >= 0 && onFailure_ == OnFailure::Keep;
+    const std::string saved = whole ? saveElsewhere() : "";
+    spool_ = Spool(); // leaves nothing else behind
+    const std::string mend =
+        isLackOfSpace(error) ? "free some space or choose another folder" : "choose another folder";
+    const std::string problem =
+        problem_.empty() ? "cannot write: " + std::generic_category().message(error) + ": " + mend : problem_;
+    throw Error(target_.path + ": " + problem +
+                (saved.empty() ? "" : ": it was saved as '" + saved + "', move it where it belongs"));
+}
+
+void writeFileAtomically(const std::string& path, std::string_view bytes, OnFailure onFailure) {
+    AtomicFile file(path, onFailure);
+    file.write(bytes);
+    file.commit();
+}
+
+void checkFileWritable(const std::string& path, uint64_t bytes) {
+    const WriteTarget target = lookAtTarget(path);
+    const WritePlan plan = planWrite(target);
+    if (plan.way == WriteWay::Refuse) throw Error(path + ": " + plan.problem);
+    if (plan.way == WriteWay::Stream) return;
+    std::error_code code;
+    const fs::space_info space = fs::space(target.folder, code);
+    if (!code && space.available < bytes)
+        throw Error(path + ": " + lackOfSpace(bytes, space.available) +
+                    ": free some space or choose another folder");
+}
+
+std::string savedName(const std::string& folder, const std::string& path, uint32_t number) {
+    constexpr size_t kMostLetters = 100; // a name that was too long may be why
+    const fs::path name = fs::path(path).filename();
+    const std::string count = number > 1 ? fmt::format("-{}", number) : "";
+    return fmt::format("{}/{}.saved{}{}", folder, name.stem().string().substr(0, kMostLetters), count,
+                       name.extension().string().substr(0, kMostLetters));
+}
+
+} // namespace relume

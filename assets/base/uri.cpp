@@ -1,0 +1,81 @@
+#include "assets/base/uri.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+
+namespace relume {
+namespace {
+
+int hexDigit(char c) {
+    const char* const digits = "0123456789abcdef";
+    const char* const found =
+        std::find(digits, digits + 16, static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+    return found == digits + 16 ? -1 : static_cast<int>(found - digits);
+}
+
+// Bytes that follow the first one of a letter, -1 where it begins none.
+int followersOf(unsigned char first) {
+    if (first < 0x80) return 0;
+    if (first >= 0xc2 && first < 0xe0) return 1;
+    if (first >= 0xe0 && first < 0xf0) return 2;
+    return first >= 0xf0 && first < 0xf5 ? 3 : -1;
+}
+
+} // namespace
+
+bool isUtf8(std::string_view text) {
+    for (size_t i = 0; i < text.size();) {
+        const auto first = static_cast<unsigned char>(text[i++]);
+        const int followers = followersOf(first);
+        if (followers < 0) return false;
+        uint32_t letter = followers == 0 ? first : first & (0x3fu >> followers);
+        for (int k = 0; k < followers; ++k, ++i) {
+            if (i == text.size()) return false;
+            const auto next = static_cast<unsigned char>(text[i]);
+            if ((next & 0xc0) != 0x80) return false;
+            letter = letter << 6 | (next & 0x3fu);
+        }
+        // Shorter spellings, halves of UTF-16 pairs and what lies beyond Unicode are none.
+        const bool tooLong = (followers == 2 && letter < 0x800) || (followers == 3 && letter < 0x10000);
+        if (tooLong || (letter >= 0xd800 && letter < 0xe000) || letter > 0x10ffff) return false;
+    }
+    return true;
+}
+
+std::string decodedUri(std::string_view uri) {
+    std::string out;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        const bool escape = uri[i] == '%' && i + 2 < uri.size();
+        const int high = escape ? hexDigit(uri[i + 1]) : -1, low = escape ? hexDigit(uri[i + 2]) : -1;
+        if (high < 0 || low < 0) {
+            out += uri[i];
+        } else {
+            out += static_cast<char>(high * 16 + low);
+            i += 2;
+        }
+    }
+    return out;
+}
+
+std::string encodedUri(std::string_view path) {
+    const bool letters = isUtf8(path);
+    std::string out;
+    for (const char c : path) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool plain = byte >= 0x80 ? letters
+                                        : std::isalnum(byte) != 0 ||
+                                              std::string_view("-._~/").find(c) != std::string_view::npos;
+        out += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+    }
+    return out;
+}
+
+bool isRelativeUri(std::string_view uri) {
+    return !uri.empty() && uri[0] != '/' && uri[0] != '#' &&
+           uri.find(':') > std::min(uri.find('/'), uri.size() - 1);
+}
+
+} // namespace relume

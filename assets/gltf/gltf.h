@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "assets/model/scene.h"
+
+namespace relume {
+
+/// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming file, thing
+/// and mend.
+Scene loadGltf(const std::string& path);
+
+/// Writes a scene as one binary .glb: meshes shared by instances, one node per instance, materials, textures
+/// (PNG), cameras, lights (KHR_lights_punctual; extents, area lights and the sky as extras, see README.md),
+/// emission above 1 by KHR_materials_emissive_strength. The sky's picture stays where Sky::file is; one
+/// without a file is written beside the .glb as NAME_sky.exr. Temporary name, then rename. Loading the result
+/// gives the same scene. Throws Error.
+void saveGlb(const Scene& scene, const std::string& path);
+
+/// Throws the Error of a saveGlb() that is sure to fail for what the scene is. Changes nothing.
+void checkGlb(const Scene& scene, const std::string& path);
+
+} // namespace relume

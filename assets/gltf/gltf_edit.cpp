@@ -1,0 +1,130 @@
+#include "assets/gltf/gltf_edit.h"
+
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/json_text.h"
+#include "assets/base/warnings.h"
+#include "assets/gltf/gltf_check.h"
+#include "assets/gltf/gltf_edit_light.h"
+#include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/gltf_edit_parts.h"
+#include "assets/gltf/gltf_light_json.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+namespace relume {
+
+namespace gltf {
+
+namespace {
+
+std::string endingOf(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
+
+void requireSameKind(const File& file, const std::string& target) {
+    const std::string kind = file.binary ? ".glb" : ".gltf", ending = endingOf(target);
+    const bool other = ending == (file.binary ? ".gltf" : ".glb");
+    if (ending == kind || (ending == endingOf(file.path) && !other)) return;
+    throw Error(fmt::format("{}: {} is saved back as the kind of file it is: name a file that ends in {}",
+                            target, file.path, kind));
+}
+
+/// Adds what has to move; returns the node of each instance of `after`.
+std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const Scene& after,
+                               const std::string& target, Moves& moves) {
+    std::vector<int> nodes;
+    std::map<int, const Instance*> known;
+    for (const Instance& instance : before.instances)
+        known[instance.node] = &instance;
+    for (const Instance& instance : after.instances) {
+        const auto found = known.find(instance.node);
+        if (instance.node < 0 || found == known.end() || static_cast<size_t>(instance.node) >= tree.size() ||
+            !tree.node(instance.node).contains("mesh"))
+            throw Error(fmt::format("{}: object {} is not in {}: objects cannot be added, remove it or load "
+                                    "the file again",
+                                    target, inQuotes(instance.name), before.path));
+        nodes.push_back(instance.node);
+        const glm::mat4 &from = found->second->transform, &to = instance.transform;
+        if (from == to) continue;
+        for (int i = 0; i < 16; ++i)
+            if (!std::isfinite(to[i / 4][i % 4]))
+                throw Error(fmt::format("{}: object {} has a position that is not finite: place it again",
+                                        target, inQuotes(instance.name)));
+        moves[instance.node][Carried::Instance] = {instance.name, from, to};
+    }
+    return nodes;
+}
+
+/// Makes all changes in the JSON.
+EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const std::string& target) {
+    const NodeTree tree(edit.file);
+    EditedNodes nodes;
+    Moves moves;
+    editMaterials(edit, before.materials, after.materials, target);
+    editSky(edit, before.sky, after.sky, target);
+    LightEdit lights(edit, tree, target);
+    nodes.lights = lights.apply(before.lights, after.lights, moves);
+    nodes.instances = moveInstances(tree, before, after, target, moves);
+    const auto children = moveCarried(edit, tree, moves);
+    for (size_t i = 0; i < nodes.lights.size(); ++i) {
+        const bool area = isAreaLight(after.lights[i].type);
+        const auto child = children.find({nodes.lights[i], area ? Carried::AreaLight : Carried::Light});
+        if (child != children.end()) nodes.lights[i] = child->second;
+    }
+    for (int& node : nodes.instances)
+        if (const auto child = children.find({node, Carried::Instance}); child != children.end())
+            node = child->second;
+    lights.dropUnused();
+    dropEmptyNodes(edit, lights.emptied());
+    moveUris(edit, target);
+    return nodes;
+}
+
+} // namespace
+
+} // namespace gltf
+
+EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const Scene& after,
+                           const std::string& target) {
+    const gltf::File file = gltf::readFile(source);
+    gltf::check(file);
+    gltf::requireSameKind(file, target);
+    const std::string_view text = gltf::jsonText(file);
+    gltf::FileEdit edit(file);
+    const gltf::EditedJson was = edit.json;
+    EditedNodes nodes;
+    try {
+        nodes = gltf::apply(edit, before, after, target);
+    } catch (const nlohmann::json::exception& error) { // of another type than glTF has there
+        edit.fail("its JSON cannot be edited (" + inQuotes(error.what()) + ")");
+    }
+    std::string edited(text);
+    if (edit.json != was) {
+        edited = patchJsonText(text, was, edit.json);
+        // A GLB's padding, which is made anew.
+        if (file.binary) edited.erase(edited.find_last_of('}') + 1);
+    }
+    writeFileAtomically(target, gltf::withJsonText(file, edited));
+    return nodes;
+}
+
+Scene partsOfEdits(const Scene& scene) {
+    Scene parts;
+    parts.path = scene.path;
+    parts.materials = scene.materials;
+    parts.instances = scene.instances;
+    parts.lights = scene.lights;
+    static_cast<SkySettings&>(parts.sky) = scene.sky;
+    return parts;
+}
+
+} // namespace relume

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "assets/gltf/gltf_edit_node.h"
+#include "assets/model/scene.h"
+
+namespace relume::gltf {
+
+/// Edits a file's lights, except that those that stay are not moved yet.
+class LightEdit {
+public:
+    /// All must outlive it. `target` is named in messages.
+    LightEdit(FileEdit& edit, const NodeTree& tree, const std::string& target);
+
+    /// Writes what differs; what has to move is added to `moves`. Returns the node of each light of `after`.
+    std::vector<int> apply(const std::vector<Light>& before, const std::vector<Light>& after, Moves& moves);
+
+    /// Once all has moved: drops the entries of lights that no node uses any more.
+    void dropUnused();
+    /// Nodes whose light was deleted.
+    const std::vector<int>& emptied() const { return emptied_; }
+
+private:
+    int adopt(const Light& light, size_t rootPlace, Moves& moves);
+    size_t rootPlace(const std::vector<int>& nodes, size_t index) const;
+    void remove(const Light& light);
+    EditedJson& ownLight(int node);
+    void write(int node, const Light& light, const Light* before);
+    void writePunctual(EditedJson& entry, const Light& light, const Light* before) const;
+    void writeArea(int node, const Light& light, const Light* before) const;
+    void requireGood(const Light& light) const;
+    bool holds(int node, bool area) const;
+
+    FileEdit& edit_;
+    const NodeTree& tree_;
+    const std::string& target_;
+    std::vector<int> users_;            // nodes that use each light entry
+    std::vector<int> emptied_, unused_; // nodes; light entries that lost a user
+};
+
+} // namespace relume::gltf

@@ -1,0 +1,493 @@
+#include "assets/gltf/gltf.h"
+
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/uri.h"
+#include "assets/gltf/gltf_light_json.h"
+#include "assets/images/float_image.h"
+#include "assets/images/image_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
+
+// Private to this file: tinygltf and others may bring the same functions.
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb_image_write.h>
+
+namespace relume {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using gltf::jsonArray;
+
+static_assert(std::endian::native == std::endian::little,
+              "glTF buffers are little-endian and written by memcpy");
+
+// Values of the glTF 2.0 specification.
+constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
+constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
+constexpr int kNearest = 9728, kLinear = 9729, kLinearMipmapLinear = 9987;
+constexpr uint32_t kGlbMagic = 0x46546C67, kChunkJson = 0x4E4F534A, kChunkBin = 0x004E4942;
+// 0xffff is the primitive restart value and must not appear as an index.
+constexpr size_t kMaxShortIndexedVertices = 65535;
+
+// All arrays of one kind go into one buffer view; accessors differ by offset. Keeps the JSON of a scene with
+// hundreds of meshes small.
+struct Stream {
+    std::vector<uint8_t> bytes;
+    int stride = 0; // 0: tightly packed, no byteStride in the file
+    int target = 0;
+};
+
+enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIndices, kStreamCount };
+
+class GlbWriter {
+public:
+    /// skyFile: of the sky's picture, from the folder of the file to be written.
+    GlbWriter(const Scene& scene, std::string skyFile) : scene_(scene), skyFile_(std::move(skyFile)) {
+        const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
+        for (int i = 0; i < kStreamCount; ++i) {
+            streams_[i].stride = strides[i];
+            streams_[i].target = strides[i] ? kArrayBuffer : kElementArrayBuffer;
+        }
+    }
+
+    /// The whole file.
+    std::vector<uint8_t> write();
+
+private:
+    Json primitive(const Primitive& primitive);
+    Json material(const Material& material);
+    Json textureInfo(const TextureRef& ref, const std::string& materialName);
+    void addMeshes();
+    void addTextures();
+    void addNodes();
+    Json addCamera(const Camera& camera);
+    Json addLight(const Light& light);
+    void addBuffers();
+    int addAccessor(StreamId stream, const void* data, size_t count, int componentType, const char* type);
+    void use(const char* extension) { extensions_[extension] = true; }
+
+    const Scene& scene_;
+    std::string skyFile_;
+    Json json_ = Json::object();
+    Stream streams_[kStreamCount];
+    std::vector<std::vector<uint8_t>> pngs_;
+    std::vector<int> meshIndices_; // of the file by Scene::meshes, -1 for one without triangles
+    std::map<std::string, bool> extensions_;
+};
+
+int wrapCode(Wrap wrap) {
+    switch (wrap) {
+    case Wrap::MirroredRepeat:
+        return 33648;
+    case Wrap::ClampToEdge:
+        return 33071;
+    case Wrap::Repeat:
+        break;
+    }
+    return 10497;
+}
+
+Json nodeOf(const std::string& name, const glm::mat4& transform) {
+    Json node = Json::object();
+    if (!name.empty()) node["name"] = name;
+    if (transform != glm::mat4(1.0f)) {
+        const float* m = glm::value_ptr(transform);
+        node["matrix"] = std::vector<float>(m, m + 16);
+    }
+    return node;
+}
+
+int GlbWriter::addAccessor(StreamId id, const void* data, size_t count, int componentType, const char* type) {
+    Stream& stream = streams_[id];
+    const size_t indexSize = componentType == kUnsignedShort ? 2 : 4;
+    const size_t elementSize = stream.stride ? static_cast<size_t>(stream.stride) : indexSize;
+    Json accessor;
+    accessor["bufferView"] = static_cast<int>(id); // renumbered once it is known which streams are empty
+    accessor["byteOffset"] = stream.bytes.size();
+    accessor["componentType"] = componentType;
+    accessor["count"] = count;
+    accessor["type"] = type;
+    const auto* first = static_cast<const uint8_t*>(data);
+    stream.bytes.insert(stream.bytes.end(), first, first + count * elementSize);
+    json_["accessors"].push_back(std::move(accessor));
+    return static_cast<int>(json_["accessors"].size()) - 1;
+}
+
+Json GlbWriter::primitive(const Primitive& p) {
+    const size_t count = p.positions.size();
+    ASSERT(p.normals.empty() || p.normals.size() == count);
+    ASSERT(p.texCoord0.empty() || p.texCoord0.size() == count);
+    ASSERT(p.texCoord1.empty() || p.texCoord1.size() == count);
+    ASSERT(p.colors.empty() || p.colors.size() == count);
+
+    Json attributes;
+    attributes["POSITION"] = addAccessor(kPositions, p.positions.data(), count, kFloat, "VEC3");
+    glm::vec3 low = p.positions[0], high = low;
+    for (const glm::vec3& position : p.positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    json_["accessors"].back()["min"] = jsonArray(low);
+    json_["accessors"].back()["max"] = jsonArray(high);
+    if (!p.normals.empty())
+        attributes["NORMAL"] = addAccessor(kNormals, p.normals.data(), count, kFloat, "VEC3");
+    if (!p.texCoord0.empty())
+        attributes["TEXCOORD_0"] = addAccessor(kTexCoords, p.texCoord0.data(), count, kFloat, "VEC2");
+    if (!p.texCoord1.empty()) {
+        const int accessor = addAccessor(kTexCoords, p.texCoord1.data(), count, kFloat, "VEC2");
+        // Sets are numbered without gaps: a lone TEXCOORD_1 is offered as TEXCOORD_0 too, from the same
+        // bytes.
+        if (p.texCoord0.empty()) attributes["TEXCOORD_0"] = accessor;
+        attributes["TEXCOORD_1"] = accessor;
+    }
+    if (!p.colors.empty())
+        attributes["COLOR_0"] = addAccessor(kColors, p.colors.data(), count, kFloat, "VEC4");
+
+    Json out;
+    out["attributes"] = std::move(attributes);
+    if (count <= kMaxShortIndexedVertices) {
+        const std::vector<uint16_t> narrow(p.indices.begin(), p.indices.end());
+        out["indices"] = addAccessor(kShortIndices, narrow.data(), narrow.size(), kUnsignedShort, "SCALAR");
+    } else {
+        out["indices"] = addAccessor(kIntIndices, p.indices.data(), p.indices.size(), kUnsignedInt, "SCALAR");
+    }
+    if (p.material >= 0) out["material"] = p.material;
+    return out;
+}
+
+void GlbWriter::addMeshes() {
+    meshIndices_.assign(scene_.meshes.size(), -1);
+    for (size_t i = 0; i < scene_.meshes.size(); ++i) {
+        const Mesh& mesh = scene_.meshes[i];
+        Json primitives = Json::array();
+        for (const Primitive& p : mesh.primitives)
+            if (!p.indices.empty() && !p.positions.empty()) primitives.push_back(primitive(p));
+        if (primitives.empty()) continue; // glTF has no empty mesh
+        Json out;
+        if (!mesh.name.empty()) out["name"] = mesh.name;
+        out["primitives"] = std::move(primitives);
+        meshIndices_[i] = static_cast<int>(json_["meshes"].size());
+        json_["meshes"].push_back(std::move(out));
+    }
+}
+
+Json GlbWriter::textureInfo(const TextureRef& ref, const std::string& materialName) {
+    Json info;
+    info["index"] = ref.texture;
+    if (ref.texCoord != 0) info["texCoord"] = ref.texCoord;
+    if (ref.transform == glm::mat3(1.0f)) return info;
+
+    // transform = translation * rotation * scale with rotation columns (c, -s), (s, c): counter-clockwise in
+    // an image whose v points down.
+    const glm::vec2 columnU(ref.transform[0]), columnV(ref.transform[1]);
+    float scaleU = glm::length(columnU);
+    float scaleV = glm::length(columnV);
+    if (std::abs(glm::dot(columnU, columnV)) > 1e-4f * scaleU * scaleV)
+        throw Error("material '" + materialName +
+                    "': glTF cannot store a sheared texture transform: remove the shear");
+    if (columnU.x * columnV.y - columnU.y * columnV.x < 0.0f) scaleV = -scaleV;
+    const float rotation = scaleU > 0.0f ? std::atan2(-columnU.y, columnU.x) : 0.0f;
+    Json transform;
+    transform["offset"] = jsonArray(glm::vec2(ref.transform[2]));
+    if (rotation != 0.0f) transform["rotation"] = rotation;
+    transform["scale"] = jsonArray(glm::vec2(scaleU, scaleV));
+    info["extensions"]["KHR_texture_transform"] = std::move(transform);
+    use("KHR_texture_transform");
+    return info;
+}
+
+Json GlbWriter::material(const Material& m) {
+    Json out;
+    if (!m.name.empty()) out["name"] = m.name;
+    Json pbr = Json::object();
+    if (m.baseColor != glm::vec4(1.0f)) pbr["baseColorFactor"] = jsonArray(m.baseColor);
+    if (m.baseColorTexture.texture >= 0) pbr["baseColorTexture"] = textureInfo(m.baseColorTexture, m.name);
+    if (m.metallic != 1.0f) pbr["metallicFactor"] = m.metallic;
+    if (m.roughness != 1.0f) pbr["roughnessFactor"] = m.roughness;
+    if (m.metallicRoughnessTexture.texture >= 0)
+        pbr["metallicRoughnessTexture"] = textureInfo(m.metallicRoughnessTexture, m.name);
+    out["pbrMetallicRoughness"] = std::move(pbr);
+
+    const float brightest = std::max({m.emission.r, m.emission.g, m.emission.b});
+    if (brightest > 0.0f) {
+        // A power of two as strength: factor times strength is the emission again, to the last bit.
+        int exponent = 0;
+        std::frexp(brightest, &exponent);
+        const float strength = brightest > 1.0f ? std::ldexp(1.0f, exponent) : 1.0f;
+        out["emissiveFactor"] = jsonArray(m.emission / strength);
+        if (strength != 1.0f) {
+            out["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+            use("KHR_materials_emissive_strength");
+        }
+    }
+    if (m.emissionTexture.texture >= 0) out["emissiveTexture"] = textureInfo(m.emissionTexture, m.name);
+    if (m.alphaMode == AlphaMode::Mask) {
+        out["alphaMode"] = "MASK";
+        out["alphaCutoff"] = m.alphaCutoff;
+    } else if (m.alphaMode == AlphaMode::Blend) {
+        out["alphaMode"] = "BLEND";
+    }
+    if (m.doubleSided) out["doubleSided"] = true;
+    return out;
+}
+
+std::vector<uint8_t> encodePng(const Image& image) {
+    if (image.width == 0 || image.height == 0 || image.rgba.size() != size_t{4} * image.width * image.height)
+        throw Error("image '" + image.name + "' has no pixels: remove it or load its file");
+    bool opaque = true;
+    for (size_t i = 3; i < image.rgba.size(); i += 4)
+        opaque = opaque && image.rgba[i] == 255;
+    const int channels = opaque ? 3 : 4;
+    std::vector<uint8_t> pixels;
+    pixels.reserve(image.rgba.size());
+    for (size_t i = 0; i < image.rgba.size(); i += 4)
+        pixels.insert(pixels.end(), image.rgba.begin() + i, image.rgba.begin() + i + channels);
+    std::vector<uint8_t> png;
+    const auto append = [](void* context, void* data, int size) {
+        auto* out = static_cast<std::vector<uint8_t>*>(context);
+        out->insert(out->end(), static_cast<uint8_t*>(data), static_cast<uint8_t*>(data) + size);
+    };
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    if (!stbi_write_png_to_func(append, &png, width, height, channels, pixels.data(), width * channels))
+        throw Error("image '" + image.name + "' cannot be written as PNG: out of memory");
+    return png;
+}
+
+void GlbWriter::addTextures() {
+    for (const Image& image : scene_.images) {
+        pngs_.push_back(encodePng(image));
+        Json out; // its bufferView comes with the buffers
+        if (!image.name.empty()) out["name"] = image.name;
+        out["mimeType"] = "image/png";
+        json_["images"].push_back(std::move(out));
+    }
+    Json samplers = Json::array();
+    for (const Texture& texture : scene_.textures) {
+        Json sampler;
+        sampler["magFilter"] = texture.nearest ? kNearest : kLinear;
+        sampler["minFilter"] = texture.nearest ? kNearest : kLinearMipmapLinear;
+        sampler["wrapS"] = wrapCode(texture.wrapS);
+        sampler["wrapT"] = wrapCode(texture.wrapT);
+        size_t index = 0;
+        while (index < samplers.size() && samplers[index] != sampler)
+            ++index;
+        if (index == samplers.size()) samplers.push_back(std::move(sampler));
+        Json out;
+        out["sampler"] = index;
+        if (texture.image >= 0) out["source"] = texture.image;
+        json_["textures"].push_back(std::move(out));
+    }
+    if (!samplers.empty()) json_["samplers"] = std::move(samplers);
+}
+
+Json GlbWriter::addCamera(const Camera& camera) {
+    Json lens, out;
+    if (!camera.name.empty()) out["name"] = camera.name;
+    if (camera.perspective) {
+        out["type"] = "perspective";
+        if (camera.aspect > 0.0f) lens["aspectRatio"] = camera.aspect;
+        lens["yfov"] = camera.yfov;
+        if (camera.zfar > 0.0f) lens["zfar"] = camera.zfar;
+        lens["znear"] = camera.znear;
+        out["perspective"] = std::move(lens);
+    } else {
+        out["type"] = "orthographic";
+        lens["xmag"] = camera.ymag * (camera.aspect > 0.0f ? camera.aspect : 1.0f);
+        lens["ymag"] = camera.ymag;
+        // glTF wants a far plane here; without one, far enough for anything that stands on a planet.
+        lens["zfar"] = camera.zfar > camera.znear ? camera.zfar : camera.znear + 1e6f;
+        lens["znear"] = camera.znear;
+        out["orthographic"] = std::move(lens);
+    }
+    json_["cameras"].push_back(std::move(out));
+    Json node = nodeOf(camera.name, camera.transform);
+    node["camera"] = json_["cameras"].size() - 1;
+    return node;
+}
+
+Json GlbWriter::addLight(const Light& light) {
+    Json node = nodeOf(light.name, light.transform);
+    if (gltf::isAreaLight(light.type)) {
+        node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
+        return node;
+    }
+    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
+    lights.push_back(gltf::punctualLightJson(light));
+    use("KHR_lights_punctual");
+    node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+    return node;
+}
+
+void GlbWriter::addNodes() {
+    Json nodes = Json::array();
+    for (const Instance& instance : scene_.instances) {
+        Json node = nodeOf(instance.name, instance.transform);
+        if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
+            node["mesh"] = meshIndices_[instance.mesh];
+        nodes.push_back(std::move(node));
+    }
+    for (const Camera& camera : scene_.cameras)
+        nodes.push_back(addCamera(camera));
+    for (const Light& light : scene_.lights)
+        nodes.push_back(addLight(light));
+
+    json_["scene"] = 0;
+    Json roots = Json::array();
+    for (size_t i = 0; i < nodes.size(); ++i)
+        roots.push_back(i);
+    Json root = Json::object();
+    if (!nodes.empty()) root["nodes"] = std::move(roots);
+    if (scene_.sky.shines() || !skyFile_.empty())
+        root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
+    json_["scenes"].push_back(std::move(root));
+    if (!nodes.empty()) json_["nodes"] = std::move(nodes);
+}
+
+// Lays the streams and pictures behind each other, as the file's only buffer.
+void GlbWriter::addBuffers() {
+    int viewOf[kStreamCount];
+    size_t offset = 0;
+    Json views = Json::array();
+    const auto addView = [&](size_t size) -> Json& {
+        Json view;
+        view["buffer"] = 0;
+        view["byteOffset"] = offset;
+        view["byteLength"] = size;
+        offset += (size + 3) / 4 * 4;
+        views.push_back(std::move(view));
+        return views.back();
+    };
+    for (int i = 0; i < kStreamCount; ++i) {
+        if (streams_[i].bytes.empty()) continue;
+        viewOf[i] = static_cast<int>(views.size());
+        Json& view = addView(streams_[i].bytes.size());
+        if (streams_[i].stride) view["byteStride"] = streams_[i].stride;
+        view["target"] = streams_[i].target;
+    }
+    if (json_.contains("accessors"))
+        for (Json& accessor : json_["accessors"]) {
+            const int stream = accessor["bufferView"].get<int>();
+            accessor["bufferView"] = viewOf[stream];
+        }
+    for (size_t i = 0; i < pngs_.size(); ++i) {
+        json_["images"][i]["bufferView"] = views.size();
+        addView(pngs_[i].size());
+    }
+    if (views.empty()) return;
+    json_["bufferViews"] = std::move(views);
+    json_["buffers"].push_back(Json{{"byteLength", offset}});
+}
+
+std::vector<uint8_t> GlbWriter::write() {
+    // No version here: the same scene is the same file, whichever release wrote it.
+    json_["asset"]["version"] = "2.0";
+    json_["asset"]["generator"] = "Relume";
+    addMeshes();
+    addTextures();
+    for (const Material& m : scene_.materials)
+        json_["materials"].push_back(material(m));
+    addNodes();
+    addBuffers();
+    for (const auto& [extension, used] : extensions_)
+        json_["extensionsUsed"].push_back(extension);
+
+    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::vector<uint8_t> out;
+    const auto put = [&](const void* data, size_t size) {
+        const auto* first = static_cast<const uint8_t*>(data);
+        out.insert(out.end(), first, first + size);
+        out.resize((out.size() + 3) / 4 * 4, 0);
+    };
+    const auto word = [&](uint64_t value) {
+        if (value > 0xffffffffu) throw Error("the scene is larger than a GLB's 4 GiB: split it");
+        const auto narrow = static_cast<uint32_t>(value);
+        put(&narrow, 4);
+    };
+    const uint64_t binSize =
+        json_.contains("buffers") ? json_["buffers"][0]["byteLength"].get<uint64_t>() : 0;
+    out.reserve(28 + text.size() + binSize);
+    word(kGlbMagic);
+    word(2);
+    word(12 + 8 + text.size() + (binSize ? 8 + binSize : 0));
+    word(text.size());
+    word(kChunkJson);
+    put(text.data(), text.size());
+    if (binSize) {
+        word(binSize);
+        word(kChunkBin);
+        for (const Stream& stream : streams_)
+            put(stream.bytes.data(), stream.bytes.size());
+        for (const std::vector<uint8_t>& png : pngs_)
+            put(png.data(), png.size());
+    }
+    return out;
+}
+
+// Whether the picture is in memory alone, so that it needs a file.
+bool skyIsHomeless(const Sky& sky) {
+    std::error_code code;
+    return !sky.pixels.empty() && (sky.file.empty() || !std::filesystem::exists(sky.file, code));
+}
+
+// Where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to hold
+// it.
+std::string skyPathFrom(const Sky& sky, const std::string& path) {
+    namespace fs = std::filesystem;
+    std::string file;
+    if (skyIsHomeless(sky)) {
+        file = fs::path(path).stem().string() + "_sky.exr";
+    } else if (!sky.file.empty()) {
+        const fs::path folder = fs::path(path).parent_path();
+        std::error_code code;
+        const fs::path relative = fs::relative(sky.file, folder.empty() ? "." : folder, code);
+        file = (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
+    }
+    if (!isUtf8(file))
+        throw Error(path + ": the path of the sky's picture, '" + file +
+                    "', is no UTF-8, as which glTF would hold it: rename it");
+    return file;
+}
+
+void writeSkyPicture(const Sky& sky, const std::string& path) {
+    FloatImage image{sky.width, sky.height, {}, {}, {}};
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = sky.pixels[i][c];
+    }
+    writeImage(path, image);
+}
+
+} // namespace
+
+void checkGlb(const Scene& scene, const std::string& path) {
+    const std::string skyFile = skyPathFrom(scene.sky, path);
+    if (skyIsHomeless(scene.sky))
+        checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
+}
+
+void saveGlb(const Scene& scene, const std::string& path) {
+    const std::string skyFile = skyPathFrom(scene.sky, path);
+    if (skyIsHomeless(scene.sky))
+        writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
+    std::vector<uint8_t> bytes;
+    try {
+        bytes = GlbWriter(scene, skyFile).write();
+    } catch (const Error& error) {
+        throw Error(path + ": " + error.what());
+    }
+    writeFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+} // namespace relume

@@ -1,0 +1,277 @@
+#include "assets/gltf/gltf_build.h"
+
+#include "assets/base/error.h"
+#include "assets/base/watch.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace relume::gltf {
+
+namespace {
+
+/// Reads one primitive; mends what can be mended and warns about it.
+class PrimitiveBuilder {
+public:
+    PrimitiveBuilder(Build& build, std::string where, const tinygltf::Primitive& source)
+        : build_(build), where_(std::move(where)), source_(source) {}
+    bool run(Primitive& primitive); // false: nothing usable
+
+private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw Error(
+            fmt::format("{}: {} {}: the file is damaged, export it again", build_.path, where_, what));
+    }
+    void warn(const std::string& problem) const { build_.warnings.add(where_, problem); }
+    const tinygltf::Accessor* attribute(const char* name) const;
+    template<typename Vec>
+    std::vector<Vec> read(const char* name) const;
+    std::vector<glm::vec4> readColors() const;
+    void readIndices(Primitive& primitive) const;
+    void dropBadTriangles(Primitive& primitive) const;
+    void mendTexCoords(std::vector<glm::vec2>& uvs, const char* name) const;
+    void mendNormals(Primitive& primitive) const;
+    void warnUnused() const;
+
+    Build& build_;
+    std::string where_;
+    const tinygltf::Primitive& source_;
+};
+
+template<typename Vec>
+bool finite(const Vec& v) {
+    for (glm::length_t i = 0; i < v.length(); ++i)
+        if (!std::isfinite(v[i])) return false;
+    return true;
+}
+
+const glm::vec3 kAnyNormal(0.0f, 0.0f, 1.0f); // for triangles without area, which flatten() drops
+
+glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& fallback) {
+    const double length = glm::length(v);
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : fallback;
+}
+
+const tinygltf::Accessor* PrimitiveBuilder::attribute(const char* name) const {
+    const auto found = source_.attributes.find(name);
+    return found == source_.attributes.end() ? nullptr
+                                             : &build_.model.accessors[static_cast<size_t>(found->second)];
+}
+
+template<typename Vec>
+std::vector<Vec> PrimitiveBuilder::read(const char* name) const {
+    const tinygltf::Accessor* accessor = attribute(name);
+    if (!accessor) return {};
+    constexpr uint32_t kComponents = sizeof(Vec) / sizeof(float);
+    if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor->type)) != kComponents)
+        fail(fmt::format("has {} with a wrong number of components", name));
+    const tinygltf::Accessor* positions = attribute("POSITION");
+    if (accessor->count != positions->count)
+        fail(fmt::format("has {} positions but {} of {}", positions->count, accessor->count, name));
+    std::vector<Vec> out(accessor->count);
+    try {
+        const std::vector<float> values = readFloats(build_.model, *accessor, kComponents);
+        std::memcpy(out.data(), values.data(), values.size() * sizeof(float));
+    } catch (const Error& error) {
+        fail(fmt::format("{}: {}", name, error.what()));
+    }
+    return out;
+}
+
+std::vector<glm::vec4> PrimitiveBuilder::readColors() const {
+    const tinygltf::Accessor* accessor = attribute("COLOR_0");
+    if (!accessor) return {};
+    std::vector<glm::vec4> colors;
+    if (accessor->type == TINYGLTF_TYPE_VEC3) {
+        for (const glm::vec3& color : read<glm::vec3>("COLOR_0"))
+            colors.emplace_back(color, 1.0f);
+    } else {
+        colors = read<glm::vec4>("COLOR_0");
+    }
+    // Integer colours are normalized, whether or not the file says so.
+    const int type = accessor->componentType;
+    const float full = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE    ? 255.0f
+                       : type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 65535.0f
+                                                                        : 1.0f;
+    const bool scale = !accessor->normalized && full != 1.0f;
+    for (glm::vec4& color : colors) {
+        if (scale)
+            color = glm::vec4(glm::vec3(color) / full,
+                              accessor->type == TINYGLTF_TYPE_VEC3 ? 1.0f : color.a / full);
+        if (!finite(color)) color = glm::vec4(1.0f);
+        color = glm::max(color, glm::vec4(0.0f));
+    }
+    return colors;
+}
+
+void PrimitiveBuilder::readIndices(Primitive& primitive) const {
+    const uint32_t vertices = static_cast<uint32_t>(primitive.positions.size());
+    std::vector<uint32_t> order;
+    if (source_.indices >= 0) {
+        const tinygltf::Accessor& accessor = build_.model.accessors[static_cast<size_t>(source_.indices)];
+        const int type = accessor.componentType;
+        if (accessor.type != TINYGLTF_TYPE_SCALAR ||
+            (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+            fail("has indices that are no unsigned integers");
+        order = gltf::readIndices(build_.model, accessor);
+        for (uint32_t index : order)
+            if (index >= vertices) fail(fmt::format("has index {}, but {} vertices", index, vertices));
+    } else {
+        order.resize(vertices);
+        for (uint32_t i = 0; i < vertices; ++i)
+            order[i] = i;
+    }
+    std::vector<uint32_t>& out = primitive.indices;
+    if (source_.mode == TINYGLTF_MODE_TRIANGLES) {
+        if (order.size() % 3 != 0) warn("has an index count that is no multiple of 3, the rest is ignored");
+        order.resize(order.size() / 3 * 3);
+        out = std::move(order);
+        return;
+    }
+    // Strips repeat indices to jump: such triangles are no faults of the file.
+    for (size_t i = 0; i + 2 < order.size(); ++i) {
+        const uint32_t a = source_.mode == TINYGLTF_MODE_TRIANGLE_FAN ? order[0] : order[i];
+        uint32_t b = order[i + 1], c = order[i + 2];
+        if (source_.mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1) std::swap(b, c);
+        if (a != b && b != c && c != a) out.insert(out.end(), {a, b, c});
+    }
+}
+
+void PrimitiveBuilder::dropBadTriangles(Primitive& primitive) const {
+    std::vector<bool> bad(primitive.positions.size());
+    bool any = false;
+    for (size_t i = 0; i < bad.size(); ++i) {
+        if (finite(primitive.positions[i])) continue;
+        bad[i] = any = true;
+        primitive.positions[i] = glm::vec3(0.0f); // no triangle uses it from here on
+    }
+    if (!any) return;
+    std::vector<uint32_t> kept;
+    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+        const uint32_t* t = &primitive.indices[i];
+        if (!bad[t[0]] && !bad[t[1]] && !bad[t[2]]) kept.insert(kept.end(), t, t + 3);
+    }
+    if (kept.size() != primitive.indices.size())
+        warn("has positions that are not finite (NaN), their triangles are dropped: mend the mesh");
+    primitive.indices = std::move(kept);
+}
+
+void PrimitiveBuilder::mendTexCoords(std::vector<glm::vec2>& uvs, const char* name) const {
+    bool any = false;
+    for (glm::vec2& uv : uvs) {
+        if (finite(uv)) continue;
+        uv = glm::vec2(0.0f);
+        any = true;
+    }
+    if (any) warn(fmt::format("has {} that is not finite (NaN), set to 0", name));
+}
+
+template<typename T>
+void gather(std::vector<T>& values, const std::vector<uint32_t>& indices) {
+    if (values.empty()) return;
+    std::vector<T> out(indices.size());
+    for (size_t i = 0; i < indices.size(); ++i)
+        out[i] = values[indices[i]];
+    values = std::move(out);
+}
+
+/// glTF: without normals, each triangle is flat. That needs vertices of its own for each corner.
+void makeFlat(Primitive& primitive) {
+    gather(primitive.positions, primitive.indices);
+    gather(primitive.texCoord0, primitive.indices);
+    gather(primitive.texCoord1, primitive.indices);
+    gather(primitive.colors, primitive.indices);
+    primitive.normals.resize(primitive.positions.size());
+    for (uint32_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        const glm::vec3* p = &primitive.positions[i];
+        const glm::dvec3 a(p[0]), b(p[1]), c(p[2]);
+        const glm::vec3 normal = unitOr(glm::cross(b - a, c - a), kAnyNormal);
+        for (uint32_t k = 0; k < 3; ++k) {
+            primitive.normals[i + k] = normal;
+            primitive.indices[i + k] = i + k;
+        }
+    }
+}
+
+void PrimitiveBuilder::mendNormals(Primitive& primitive) const {
+    if (primitive.normals.empty()) {
+        makeFlat(primitive);
+        return;
+    }
+    std::vector<uint32_t> broken;
+    for (uint32_t i = 0; i < primitive.normals.size(); ++i) {
+        const glm::vec3 unit = unitOr(primitive.normals[i], glm::vec3(0.0f));
+        if (unit == glm::vec3(0.0f)) broken.push_back(i);
+        primitive.normals[i] = unit;
+    }
+    if (broken.empty()) return;
+    std::vector<glm::dvec3> sums(primitive.normals.size());
+    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+        const uint32_t* t = &primitive.indices[i];
+        const glm::dvec3 a(primitive.positions[t[0]]), b(primitive.positions[t[1]]),
+            c(primitive.positions[t[2]]);
+        for (int k = 0; k < 3; ++k)
+            sums[t[k]] += glm::cross(b - a, c - a);
+    }
+    for (uint32_t i : broken)
+        primitive.normals[i] = unitOr(sums[i], kAnyNormal);
+    warn("has normals without a direction, replaced by those of their triangles");
+}
+
+void PrimitiveBuilder::warnUnused() const {
+    if (!source_.targets.empty()) warn("morph targets are not supported, the base shape is used");
+    if (attribute("TEXCOORD_2")) warn("TEXCOORD_2 and higher are ignored");
+    if (attribute("COLOR_1")) warn("COLOR_1 and higher are ignored");
+    for (const auto& [name, unused] : source_.extensions)
+        if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression")
+            warn(fmt::format("{} is not supported, the uncompressed part is used", name));
+}
+
+bool PrimitiveBuilder::run(Primitive& primitive) {
+    if (source_.mode < TINYGLTF_MODE_TRIANGLES) {
+        warn("has points or lines, which are skipped");
+        return false;
+    }
+    warnUnused();
+    if (!attribute("POSITION")) {
+        warn("has no POSITION and is skipped");
+        return false;
+    }
+    primitive.material = source_.material;
+    primitive.positions = read<glm::vec3>("POSITION");
+    primitive.normals = read<glm::vec3>("NORMAL");
+    primitive.texCoord0 = read<glm::vec2>("TEXCOORD_0");
+    primitive.texCoord1 = read<glm::vec2>("TEXCOORD_1");
+    primitive.colors = readColors();
+    readIndices(primitive);
+    dropBadTriangles(primitive);
+    mendTexCoords(primitive.texCoord0, "TEXCOORD_0");
+    mendTexCoords(primitive.texCoord1, "TEXCOORD_1");
+    if (primitive.indices.empty()) return false;
+    mendNormals(primitive);
+    return true;
+}
+
+} // namespace
+
+void buildMeshes(Build& build) {
+    WatchedLoop loop("loading", static_cast<double>(build.model.meshes.size()));
+    for (size_t i = 0; i < build.model.meshes.size(); ++i, loop.step()) {
+        const tinygltf::Mesh& source = build.model.meshes[i];
+        const std::string where =
+            source.name.empty() ? fmt::format("mesh {}", i) : "mesh " + inQuotes(source.name);
+        Mesh mesh;
+        mesh.name = source.name;
+        for (const tinygltf::Primitive& part : source.primitives) {
+            Primitive primitive;
+            if (PrimitiveBuilder(build, where, part).run(primitive))
+                mesh.primitives.push_back(std::move(primitive));
+        }
+        build.scene.meshes.push_back(std::move(mesh));
+    }
+}
+
+} // namespace relume::gltf

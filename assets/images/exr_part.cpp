@@ -1,0 +1,102 @@
+#include "assets/images/exr_part.h"
+
+#include "assets/base/error.h"
+#include "assets/base/file_read.h"
+#include "assets/base/log.h"
+
+#include <ImfChannelList.h>
+#include <ImfStringAttribute.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+namespace relume::exr {
+
+bool MemoryInput::read(char c[], int n) {
+    if (n < 0 || uint64_t(n) > bytes_.size() - at_) throw std::runtime_error("the file ends too early");
+    std::memcpy(c, bytes_.data() + at_, size_t(n));
+    at_ += uint64_t(n);
+    return at_ < bytes_.size();
+}
+
+void MemoryInput::seekg(uint64_t position) {
+    if (position > bytes_.size()) throw std::runtime_error("the file ends too early");
+    at_ = position;
+}
+
+void MemoryOutput::write(const char c[], int n) {
+    if (at_ + uint64_t(n) > bytes.size()) bytes.resize(at_ + uint64_t(n));
+    std::memcpy(bytes.data() + at_, c, size_t(n));
+    at_ += uint64_t(n);
+}
+
+std::string readBytes(const std::string& path) {
+    std::error_code code;
+    if (!std::filesystem::exists(path, code)) throw Error(path + ": no such file: check the name");
+    RegularFile file(path, "name an image");
+    std::string bytes(file.size(), '\0');
+    file.read(bytes.data(), bytes.size());
+    return bytes;
+}
+
+void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels) {
+    if (width * height <= mostPixels) return;
+    throw Error(path + ": has " + std::to_string(width) + " x " + std::to_string(height) +
+                " pixels, more than " + std::to_string(mostPixels >> 20) + " Mpixel: scale it down");
+}
+
+FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t mostPixels) {
+    const Imath::Box2i window = header.dataWindow();
+    const auto width = uint32_t(window.max.x - window.min.x + 1);
+    const auto height = uint32_t(window.max.y - window.min.y + 1);
+    checkPixels(path, width, height, mostPixels);
+
+    FloatImage image;
+    image.width = width;
+    image.height = height;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        image.channels.emplace_back(c.name());
+    const auto rank = [](const std::string& name) { return std::string("RGBA").find(name); };
+    std::stable_sort(image.channels.begin(), image.channels.end(),
+                     [&](const std::string& a, const std::string& b) {
+                         return (a.size() == 1 ? rank(a) : std::string::npos) <
+                                (b.size() == 1 ? rank(b) : std::string::npos);
+                     });
+    for (auto a = header.begin(); a != header.end(); ++a) {
+        const std::string name = a.name();
+        if (name == "name" || name == "type") continue; // OpenEXR's own, of files of several parts
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+            image.attributes[name] = text->value();
+    }
+    return image;
+}
+
+Imf::Header headerOf(const FloatImage& image, ExrType type) {
+    Imf::Header header(int(image.width), int(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [name, value] : image.attributes)
+        header.insert(name, Imf::StringAttribute(value));
+    for (const std::string& channel : image.channels)
+        header.channels().insert(channel, Imf::Channel(type == ExrType::Half ? Imf::HALF : Imf::FLOAT));
+    return header;
+}
+
+std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut) {
+    std::vector<half> halves(plane.size());
+    for (size_t i = 0; i < plane.size(); ++i) {
+        const bool tooLarge = std::isfinite(plane[i]) && std::abs(plane[i]) > float(HALF_MAX);
+        cut += tooLarge;
+        halves[i] = half(tooLarge ? std::copysign(float(HALF_MAX), plane[i]) : plane[i]);
+    }
+    return halves;
+}
+
+void warnAboutCut(const std::string& path, size_t cut) {
+    if (cut > 0)
+        spdlog::warn("{}: {} values beyond 65504 were cut to fit half: write float instead", path, cut);
+}
+
+} // namespace relume::exr

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+
+#include "assets/base/watch.h"
+#include "assets/images/float_image.h"
+
+// What readers and writers of OpenEXR files have in common, be they of one part or of several. Whatever is
+// wrong with a file is thrown as std::exception.
+namespace relume::exr {
+
+class MemoryInput : public Imf::IStream {
+public:
+    MemoryInput(const char* name, const std::string& bytes) : IStream(name), bytes_(bytes) {}
+    bool read(char c[], int n) override;
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t position) override;
+
+private:
+    const std::string& bytes_;
+    uint64_t at_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+public:
+    explicit MemoryOutput(const char* name) : OStream(name) {}
+    void write(const char c[], int n) override;
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t position) override { at_ = position; }
+
+    std::string bytes;
+
+private:
+    uint64_t at_ = 0;
+};
+
+/// All of a file.
+std::string readBytes(const std::string& path);
+
+/// Throws Error, naming the file, where an image has more than `mostPixels`.
+void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels);
+
+/// The image that a header tells of, without its pixels; channels R, G, B, A first, then by name. Throws
+/// Error where it has more than `mostPixels`.
+FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t mostPixels);
+
+/// The header that an image is written with.
+Imf::Header headerOf(const FloatImage& image, ExrType type);
+
+/// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
+/// claims and the file does not have costs none.
+template<class Part>
+FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
+    constexpr int kLines = 256; // whole chunks of all codecs
+    FloatImage image = imageOf(part.header(), path, mostPixels);
+    const Imath::Box2i window = part.header().dataWindow();
+    Imf::FrameBuffer frame;
+    image.planes.resize(image.channels.size());
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        image.planes[c].reserve(size_t(image.width) * image.height);
+        frame.insert(image.channels[c], Imf::Slice::Make(Imf::FLOAT, image.planes[c].data(), window));
+    }
+    part.setFrameBuffer(frame);
+    for (int done = 0; done < int(image.height);) {
+        const int lines = std::min(kLines, int(image.height) - done);
+        for (std::vector<float>& plane : image.planes)
+            plane.resize(plane.size() + size_t(image.width) * size_t(lines));
+        part.readPixels(window.min.y + done, window.min.y + done + lines - 1);
+        done += lines;
+    }
+    return image;
+}
+
+/// Rounds to half, cutting what is beyond its range; `cut` counts that.
+std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
+
+/// Writes the pixels of an Imf::OutputFile or Imf::OutputPart.
+template<class Part>
+void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
+    const Imf::PixelType pixelType = type == ExrType::Half ? Imf::HALF : Imf::FLOAT;
+    Imf::FrameBuffer frame;
+    std::vector<std::vector<half>> halves;
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        const void* data = image.planes[c].data();
+        if (type == ExrType::Half) data = halves.emplace_back(toHalf(image.planes[c], cut)).data();
+        frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, part.header().dataWindow()));
+    }
+    part.setFrameBuffer(frame);
+    // In portions, between which a job can be told how far it is, and ended.
+    constexpr int kRows = 64;
+    for (int left = int(image.height); left > 0; left -= kRows) {
+        tellWatch("writing", 1.0 - double(left) / image.height);
+        part.writePixels(std::min(left, kRows));
+    }
+}
+
+void warnAboutCut(const std::string& path, size_t cut);
+
+} // namespace relume::exr

@@ -1,0 +1,186 @@
+#include "assets/images/image_file.h"
+
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/base/log.h"
+#include "assets/images/exr_check.h"
+#include "assets/images/exr_part.h"
+#include "assets/images/png_check.h"
+#include "assets/images/radiance_hdr.h"
+
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+
+// Our own static copies: other libraries carry theirs under the same names.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#include <stb_image.h>
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace relume {
+namespace {
+
+// Pixels per byte: DEFLATE makes 1032 bytes of one at best, each of eight pixels.
+constexpr uint64_t kMostPngPacking = 8 * 1040;
+
+enum class Format { Exr, Png, Hdr };
+enum class Access { Read, Write };
+
+Format formatOf(const std::string& path, Access access) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (ending == ".exr") return Format::Exr;
+    if (ending == ".png") return Format::Png;
+    if (ending == ".hdr" && access == Access::Read) return Format::Hdr;
+    throw Error(path + ": unknown image ending '" + ending + "': use .exr or .png" +
+                (access == Access::Read ? ", or .hdr" : ""));
+}
+
+FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
+    exr::checkHeaders(bytes);
+    exr::MemoryInput stream(path.c_str(), bytes);
+    Imf::InputFile file(stream); // of several parts the first one
+    return exr::readPart(file, path, mostPixels);
+}
+
+std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type) {
+    exr::MemoryOutput stream(path.c_str());
+    size_t cut = 0;
+    {
+        Imf::OutputFile file(stream, exr::headerOf(image, type));
+        exr::writePart(file, image, type, cut);
+    } // its destructor writes the table of lines
+    exr::warnAboutCut(path, cut);
+    return std::move(stream.bytes);
+}
+
+FloatImage readHdr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
+    const RadianceHeader header = readRadianceHeader(bytes);
+    exr::checkPixels(path, header.width, header.height, mostPixels);
+    return decodeRadiance(bytes, header);
+}
+
+/// What is missing of a PNG's end is given to it, for stb knows no picture without.
+std::string mendedPng(const std::string& path, std::string bytes) {
+    PngDamage damage = findPngDamage(bytes);
+    if (!damage.problem.empty())
+        spdlog::warn("{}: {}: it is damaged, make or copy it again", path, damage.problem);
+    return damage.mended.empty() ? std::move(bytes) : std::move(damage.mended);
+}
+
+FloatImage readPng(const std::string& path, std::string bytes, uint64_t mostPixels) {
+    if (bytes.size() > size_t(std::numeric_limits<int>::max())) throw std::runtime_error("too large");
+    bytes = mendedPng(path, std::move(bytes));
+    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+    const int size = int(bytes.size());
+    int width = 0, height = 0, channels = 0;
+    if (stbi_info_from_memory(data, size, &width, &height, &channels)) {
+        exr::checkPixels(path, uint64_t(width), uint64_t(height), mostPixels);
+        if (uint64_t(width) * uint64_t(height) / kMostPngPacking > bytes.size())
+            throw std::runtime_error(fmt::format("its header claims {} x {} pixels", width, height));
+    }
+    // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
+    const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
+        stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
+    if (!pixels) throw std::runtime_error(stbi_failure_reason());
+    FloatImage image;
+    image.width = uint32_t(width);
+    image.height = uint32_t(height);
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = float(linearFromSrgb(pixels.get()[3 * i + c] / 65535.0));
+    }
+    return image;
+}
+
+} // namespace
+
+FloatImage readImage(const std::string& path, uint64_t mostPixels) {
+    const Format format = formatOf(path, Access::Read);
+    std::string bytes = exr::readBytes(path);
+    try {
+        if (format == Format::Hdr) return readHdr(path, bytes, mostPixels);
+        return format == Format::Exr ? readExr(path, bytes, mostPixels)
+                                     : readPng(path, std::move(bytes), mostPixels);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw Error(path + ": does not fit into memory: use a smaller image");
+    } catch (const std::exception& error) {
+        std::string reason = error.what();
+        std::replace(reason.begin(), reason.end(), '\n', ' ');
+        throw Error(path + ": cannot be read as an image (" + reason + "): is it complete?");
+    }
+}
+
+std::string encodeSrgb(const FloatImage& image, const std::string& name) {
+    std::string pixels(size_t(image.width) * image.height * 3, '\0');
+    for (size_t c = 0; c < 3; ++c) {
+        const std::string channel(1, "RGB"[c]);
+        const std::vector<float>* plane = image.find(channel);
+        if (!plane) throw Error(name + ": the image has no channel " + channel + ": write .exr instead");
+        for (size_t i = 0; i < plane->size(); ++i) {
+            const float v = (*plane)[i];
+            const double clamped = v > 0.0f ? std::min(1.0, double(v)) : 0.0; // NaN becomes 0
+            pixels[3 * i + c] =
+                char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
+        }
+    }
+    return pixels;
+}
+
+std::string encodePng(const FloatImage& image, const std::string& name) {
+    const std::string pixels = encodeSrgb(image, name);
+    std::string bytes;
+    const auto append = [](void* context, void* data, int size) {
+        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
+    };
+    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), 3, pixels.data(), 0))
+        throw Error(name + ": cannot be encoded as PNG: write .exr instead");
+    return bytes;
+}
+
+void writeImage(const std::string& path, const FloatImage& image, ExrType type) {
+    ASSERT(image.width > 0 && image.height > 0 && image.channels.size() == image.planes.size());
+    for (const std::vector<float>& plane : image.planes)
+        ASSERT(plane.size() == size_t(image.width) * image.height);
+    std::string bytes;
+    if (formatOf(path, Access::Write) == Format::Png) {
+        bytes = encodePng(image, path);
+    } else {
+        try {
+            bytes = encodeExr(path, image, type);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const Error&) { // of who watches
+            throw;
+        } catch (const std::exception& error) {
+            throw Error(path + ": cannot be encoded as OpenEXR: " + error.what());
+        }
+    }
+    writeFileAtomically(path, bytes);
+}
+
+void checkWritable(const std::string& path, uint64_t bytes) {
+    formatOf(path, Access::Write);
+    checkFileWritable(path, bytes);
+}
+
+} // namespace relume

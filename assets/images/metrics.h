@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "assets/images/float_image.h"
+
+namespace relume {
+
+/// How far image a is from the reference b, over R, G and B of the texels that count.
+struct Metrics {
+    double relRmse = 0; // rmse / mean(b); 0 for equal images; infinite where only b is black
+    double rmse = 0;    // sqrt(mean((a - b)^2))
+    double dfpr = 0;    // mean euclidean RGB distance after clamp to [0, 1] and sRGB encoding, full scale 1
+    double maximum = 0; // max |a - b|
+    double bias = 0;    // mean(a - b)
+    double meanA = 0, meanB = 0;
+    uint64_t texels = 0;           // compared
+    uint64_t onlyA = 0, onlyB = 0; // covered in one image only, left out
+    uint64_t masked = 0;           // covered in both, left out by the mask
+};
+
+/// An image and what messages call it.
+struct NamedImage {
+    const FloatImage& image;
+    std::string name;
+};
+
+/// Two images of one size, checked, and the texels in which they can be compared: those covered in both, a
+/// texel being covered where `coverage` is 1, or everywhere in an image without that channel; with a mask
+/// only those where its `coverage` (else R, else its first channel) is above 0.5.
+class ImagePair {
+public:
+    /// Throws Error, naming the images, when sizes differ, R, G or B is missing, nothing is left to compare
+    /// or a value to be compared is not finite. The images must outlive this.
+    ImagePair(const NamedImage& a, const NamedImage& b, const NamedImage* mask = nullptr);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    const std::vector<bool>& covered() const { return covered_; }
+    float a(size_t texel, size_t channel) const { return planesA_[channel][texel]; }
+    float b(size_t texel, size_t channel) const { return planesB_[channel][texel]; }
+
+    /// Sums are doubles in texel order.
+    Metrics measure() const;
+
+    /// Difference of each texel, 0 where nothing is compared: root of the mean square over the channels; as
+    /// displayed (DFPR's summand); as somebody flipping between the pictures sees it (FLIP,
+    /// assets/images/flip.h).
+    std::vector<float> differences() const;
+    std::vector<float> displayedDifferences() const;
+    std::vector<float> flipDifferences(double pixelsPerDegree) const;
+    /// The mean of such a map over the texels compared.
+    double mean(const std::vector<float>& map) const;
+
+private:
+    using Planes = std::array<const float*, 3>;
+
+    static Planes planesOf(const NamedImage& named);
+    static void checkFinite(const NamedImage& named, const Planes& planes, const std::vector<bool>& covered);
+    double displayedDifference(size_t texel) const;
+
+    uint32_t width_ = 0, height_ = 0;
+    Planes planesA_ = {}, planesB_ = {};
+    std::vector<bool> covered_;
+    uint64_t texels_ = 0, onlyA_ = 0, onlyB_ = 0, masked_ = 0;
+};
+
+/// ImagePair's metrics of two images.
+Metrics compareImages(const FloatImage& a, const std::string& nameA, const FloatImage& b,
+                      const std::string& nameB);
+
+} // namespace relume

@@ -1,0 +1,211 @@
+#include "bake/baker/baker.h"
+
+#include "assets/base/log.h"
+#include "assets/base/watch.h"
+#include "bake/baker/inside_search.h"
+#include "bake/baker/make_solver.h"
+#include "bake/baker/object_mover.h"
+#include "bake/surface/cit_pass.h"
+#include "bake/surface/texture_group.h"
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
+// Share of the free memory that a bake may take: the driver needs some of its own.
+constexpr double kMemoryShare = 0.9;
+
+class PhaseClock {
+public:
+    explicit PhaseClock(std::vector<PhaseTime>& phases) : phases_(phases) {}
+    void end(const char* name) {
+        const auto now = std::chrono::steady_clock::now();
+        phases_.push_back({name, std::chrono::duration<double>(now - start_).count()});
+        start_ = now;
+    }
+
+private:
+    std::vector<PhaseTime>& phases_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool usesVoxels(const BakeSettings& settings) {
+    return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
+}
+
+} // namespace
+
+std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
+                               uint64_t limit) {
+    const uint32_t size = settings.size;
+    const auto bytes = [&](uint32_t edge) {
+        BakeSettings smaller = settings;
+        smaller.size = edge;
+        return deviceBytes(smaller, triangles, device.info().software());
+    };
+    const uint64_t needed = bytes(size);
+    const uint32_t imageLimit = std::min(kMaxSize, device.limits().maxImageDimension2D);
+    if (needed <= limit && size <= imageLimit) return "";
+    constexpr uint32_t kStep = 64;
+    uint32_t fits = std::min(size, imageLimit) / kStep * kStep;
+    while (fits > 0 && bytes(fits) > limit)
+        fits -= kStep;
+    return "--size " + std::to_string(size) + " needs " + std::to_string(needed >> 20) + " MiB on '" +
+           device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " +
+           (fits > 0 ? "--size " + std::to_string(fits) + " fits" : "no size fits, close other programs");
+}
+
+uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software) {
+    const uint64_t texels = uint64_t{settings.size} * settings.size;
+    // The CIT pass' images are gone before the solver's buffers come.
+    const uint64_t cit = texels * (4 * sizeof(glm::vec4) + sizeof(uint32_t)) + texels * sizeof(glm::vec4);
+    const uint64_t perPatch =
+        sizeof(shader::Patch) + sizeof(shader::PatchEdges) + 5 * sizeof(glm::vec4) + 2 * sizeof(uint32_t);
+    const auto chunks = static_cast<uint32_t>(texels / shader::kChunk + 1);
+    // A software device's memory is the host's, which holds the patches and the light once more.
+    constexpr uint64_t kHostBytes = 180;
+    const uint64_t solve =
+        texels * (perPatch + (software ? kHostBytes : 0)) + solverBytes(chunks, software, settings.solver);
+    constexpr uint64_t kBytesPerTriangle =
+        400; // corners, hit table, acceleration structure while it is built
+    const uint64_t voxels = usesVoxels(settings) ? VoxelMap::bytes(settings.voxels.resolution) : 0;
+    return std::max(cit, solve) + triangles * kBytesPerTriangle + voxels;
+}
+
+Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+             PhaseHook phaseHook)
+    : device_(device), scene_(scene), settings_(settings), phaseHook_(std::move(phaseHook)) {
+    const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
+    const std::string problem = sizeProblem(device, settings, mesh.triangleCount(), limit);
+    if (!problem.empty()) throw Error(problem);
+    const bool rtrad = settings.solver.transport.rtrad;
+    PhaseClock clock(phases_);
+    onPhase("cit");
+    {
+        const TextureGroup group = rasterizeTextureGroup(
+            device, scene, mesh,
+            {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
+        clock.end("cit");
+        onPhase("patches");
+        patches_ = buildPatches(scene, std::move(mesh), group,
+                                {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
+    }
+    if (patches_.clampedAlbedo > 0) {
+        spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
+                     "lower the base colour",
+                     patches_.clampedAlbedo);
+    }
+    light_ = std::make_unique<LightBuffers>(device, patches_);
+    colours_ = std::make_unique<SurfaceColours>(scene.materials);
+    clock.end("patches");
+
+    if (settings.solver.layers.on && !rtrad && !usesVoxels(settings))
+        mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
+                                               settings.conservative);
+    makeTracers();
+    onPhase("solver set-up");
+    PhaseClock setUp(phases_);
+    solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
+    setUp.end("solver set-up");
+}
+
+Baker::~Baker() = default;
+
+// Whether a patch lies inside something is told by triangles: a voxel knows no inside.
+void Baker::makeTracers() {
+    std::string why = "as asked for";
+    TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
+    if (kind == TracerKind::Auto) kind = chooseTracer(device_.info(), why);
+    const bool marches = usesVoxels(settings_);
+    tracerChoice_ = fmt::format("{} ({})", tracerName(kind), why);
+    spdlog::info("tracer: {}", tracerChoice_);
+    if (marches) {
+        spdlog::info("voxels: {} through {}^3 of them",
+                     settings_.voxels.ratio > 1 ? fmt::format("1 sender in {}", settings_.voxels.ratio)
+                                                : "all senders",
+                     settings_.voxels.resolution);
+    }
+    PhaseClock clock(phases_);
+    if (!marches || !settings_.solver.transport.rtrad) {
+        onPhase("tracer");
+        const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
+        tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
+        clock.end("tracer");
+    }
+    if (!settings_.solver.transport.rtrad) findInvalid();
+    clock.end("validity");
+    if (!marches) return;
+    onPhase("voxels");
+    tracer_.reset();
+    tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
+    clock.end("voxels");
+}
+
+// Patches inside something are found once, before the first pass.
+void Baker::findInvalid() {
+    InsideSearch search{.device = device_,
+                        .tracer = *tracer_,
+                        .patches = patches_,
+                        .samples = kInsideSamples,
+                        .onLinks = {},
+                        .onBatch = [this](double done) { onPhase("validity", done); }};
+    if (mover_)
+        search.onLinks = [this](uint32_t first, std::span<const uint32_t> links) {
+            mover_->noteInside(first, links);
+        };
+    const std::vector<uint32_t> inside = findInside(search);
+    invalid_ = static_cast<uint32_t>(inside.size());
+    if (invalid_ == 0) return;
+    for (const uint32_t patch : inside)
+        patches_.scene.patches[patch].flags &= ~shader::kPatchSends;
+    spdlog::info(
+        "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
+        invalid_, patches_.count);
+    vk::upload(device_, light_->patches, patches_.scene.patches.data(),
+               patches_.scene.patches.size() * sizeof(shader::Patch));
+}
+
+void Baker::onPhase(const char* phase, double done) const {
+    tellWatch(phase, done);
+    if (phaseHook_) phaseHook_(phase);
+}
+
+void Baker::resetSolver(const SolverSettings& settings) {
+    solver_.reset(); // before the new one takes its memory
+    settings_.solver = settings;
+    solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
+}
+
+void Baker::updateMaterials() {
+    colours_->update(device_, scene_.materials, patches_, *light_);
+}
+
+std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas& atlas) {
+    std::optional<ObjectMove> move = mover_ ? mover_->follow(atlas, *tracer_) : std::nullopt;
+    if (!move) return {};
+    invalid_ = mover_->invalidPatches();
+    if (mover_->repainted()) colours_->updateAll(device_, scene_.materials, patches_, *light_);
+    return move;
+}
+
+FloatImage Baker::lightmap(LightmapDesc desc) const {
+    desc.rtrad = settings_.solver.transport.rtrad;
+    desc.reflectivity = settings_.solver.transport.reflectivity;
+    return makeLightmap(patches_, solver_->light(), desc);
+}
+
+FloatImage Baker::errorMap() const {
+    const std::vector<float> errors = solver_->errors();
+    if (errors.empty())
+        throw Error("--error-map: one pass says nothing about its error: let the bake run for two or more");
+    std::vector<glm::vec4> grey;
+    for (float e : errors)
+        grey.emplace_back(e, e, e, 1.0f);
+    return makeLightmap(patches_, grey, {.quantity = Quantity::Lighting, .sew = false});
+}
+
+} // namespace relume

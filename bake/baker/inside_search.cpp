@@ -1,0 +1,134 @@
+#include "bake/baker/inside_search.h"
+
+#include <algorithm>
+
+#include "assets/base/clock.h"
+#include "bake/base/batch_rate.h"
+#include "bake/base/chunk_order.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+
+// Aim of one submit [ms]; a wish to stop waits for as long.
+constexpr double kInsideBatchMs = 20.0;
+// Chunks of a batch at most, whose links are 8 MiB. On a device that does a billion rays a second these are 2
+// ms.
+constexpr uint32_t kMostInsideChunks = 1024;
+// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters do.
+constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
+
+/// What the directions of one patch have met so far.
+struct Met {
+    uint16_t backs = 0, sky = 0;
+};
+
+/// One batch of chunks.
+class InsideBatch {
+public:
+    InsideBatch(const InsideSearch& search, uint32_t mostChunks)
+        : search_(search), commands_(search.device),
+          links_(search.device, {.size = uint64_t{mostChunks} * search.samples * kChunk * sizeof(uint32_t),
+                                 .memory = vk::Memory::Host,
+                                 .name = "links"}) {}
+
+    void run(uint32_t first, uint32_t count, std::vector<uint32_t>& inside) {
+        first_ = first;
+        met_.assign(size_t{count} * kChunk, Met{});
+        if (search_.onLinks) {
+            trace({{first, count}}, 0, search_.samples);
+            const uint64_t links = uint64_t{count} * search_.samples * kChunk;
+            search_.onLinks(first, {static_cast<const uint32_t*>(links_.mapped()), links});
+        } else {
+            std::vector<ChunkRange> left = {{first, count}};
+            for (uint32_t done = 0; done < search_.samples && !left.empty();) {
+                const uint32_t wanted = done == 0 ? kFirstSamples : kMoreSamples;
+                const uint32_t samples = std::min(wanted, search_.samples - done);
+                trace(left, done, samples);
+                done += samples;
+                left = undecided(left, done);
+            }
+        }
+        for (uint32_t i = 0; i < met_.size() && first * kChunk + i < search_.patches.count; ++i)
+            if (liesInside(met_[i].backs, met_[i].sky, search_.samples)) inside.push_back(first * kChunk + i);
+    }
+
+private:
+    void trace(const std::vector<ChunkRange>& ranges, uint32_t firstSample, uint32_t samples) {
+        const bool records = search_.tracer.records();
+        VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
+        uint64_t offset = 0;
+        for (const ChunkRange& range : ranges) {
+            search_.tracer.closest(cmd, {.firstChunk = range.first,
+                                         .chunkCount = range.count,
+                                         .firstSample = firstSample,
+                                         .sampleCount = samples,
+                                         .rotation = Rotation::Patch,
+                                         .links = &links_,
+                                         .linksOffset = offset});
+            offset += uint64_t{range.count} * samples * kChunk;
+        }
+        if (records) {
+            vk::hostBarrier(cmd);
+            commands_.run();
+        }
+        const auto* link = static_cast<const uint32_t*>(links_.mapped());
+        for (const ChunkRange& range : ranges)
+            for (uint32_t chunk = range.first - first_; chunk < range.first - first_ + range.count; ++chunk)
+                for (uint32_t k = 0; k < samples; ++k)
+                    for (uint32_t i = 0; i < kChunk; ++i, ++link) {
+                        Met& met = met_[size_t{chunk} * kChunk + i];
+                        met.backs = static_cast<uint16_t>(met.backs + (*link == shader::kLinkBack));
+                        met.sky = static_cast<uint16_t>(met.sky + (*link == shader::kLinkSky));
+                    }
+    }
+
+    /// Chunks of these of which a patch could still turn out to lie inside.
+    std::vector<ChunkRange> undecided(const std::vector<ChunkRange>& ranges, uint32_t traced) const {
+        std::vector<ChunkRange> left;
+        const uint32_t rest = search_.samples - traced;
+        for (const ChunkRange& range : ranges)
+            for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
+                const auto begin = met_.begin() + std::ptrdiff_t{chunk - first_} * kChunk;
+                const bool open = std::any_of(begin, begin + kChunk, [&](const Met& met) {
+                    return liesInside(met.backs + rest, met.sky, search_.samples);
+                });
+                if (!open) continue;
+                if (!left.empty() && left.back().first + left.back().count == chunk)
+                    ++left.back().count;
+                else
+                    left.push_back({chunk, 1});
+            }
+        return left;
+    }
+
+    const InsideSearch& search_;
+    vk::Commands commands_;
+    vk::Buffer links_;
+    uint32_t first_ = 0;
+    std::vector<Met> met_; // of the batch
+};
+
+} // namespace
+
+std::vector<uint32_t> findInside(const InsideSearch& search) {
+    const uint32_t chunks = search.patches.chunkCount();
+    const uint32_t most = std::min(chunks, kMostInsideChunks);
+    InsideBatch batch(search, most);
+    BatchRate rate;
+    std::vector<uint32_t> inside;
+    for (uint32_t first = 0; first < chunks;) {
+        if (search.onBatch) search.onBatch(static_cast<double>(first) / chunks);
+        const double wanted = std::clamp(rate.wanted(kInsideBatchMs), 1.0, static_cast<double>(most));
+        const uint32_t count = std::min(static_cast<uint32_t>(wanted), chunks - first);
+        const auto start = Clock::now();
+        batch.run(first, count, inside);
+        rate.note(count, kInsideBatchMs, secondsSince(start));
+        first += count;
+    }
+    return inside;
+}
+
+} // namespace relume

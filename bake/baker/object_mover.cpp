@@ -1,0 +1,408 @@
+#include "bake/baker/object_mover.h"
+
+#include "assets/base/error.h"
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kNoPatch;
+
+// Of a coordinate, what rays and boxes may round off together, with room.
+constexpr float kBoxRounding = 1e-5f;
+// Where objects were, or are: each is a test per ray. An object of many parts is one.
+constexpr size_t kMostMoveBoxes = 4;
+// A link that was not traced again, where none are listed.
+constexpr uint32_t kKept = 0xfffffff0u;
+static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
+
+// Of ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
+constexpr uint32_t kHome = 0x80000000u;
+static_assert(kHome > kMaxLightmapSize * kMaxLightmapSize);
+
+bool liesInside(const shader::Patch& patch) {
+    return patch.area > 0.0f && (patch.flags & shader::kPatchSends) == 0;
+}
+
+bool liesInside(const glm::uvec2& bits) {
+    return relume::liesInside(static_cast<uint32_t>(std::popcount(bits.x)),
+                              static_cast<uint32_t>(std::popcount(bits.y)), ObjectMover::kInsideSamples);
+}
+
+void change(ObjectMove& move, uint32_t patch) {
+    move.changed[patch / kChunk][static_cast<int>(patch % kChunk / 32)] |= 1u << patch % 32;
+}
+
+void sortUnique(std::vector<uint32_t>& list) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+std::vector<uint32_t> merged(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
+    std::vector<uint32_t> both;
+    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both;
+}
+
+} // namespace
+
+struct ObjectMover::Part {
+    PatchSet patches;
+    std::vector<uint32_t> slots, triangles;         // where they belong among all
+    std::vector<uint32_t> goneSlots, goneTriangles; // of what is hidden now
+};
+
+struct ObjectMover::Buffers {
+    uint32_t chunks; // in a batch
+    vk::Buffer links, list, listed, rays;
+    vk::Commands commands;
+
+    // As Baker::findInvalid has them, but that few rays are traced of each batch.
+    Buffers(const vk::Device& device, uint32_t chunkCount)
+        : chunks(std::min(device.info().software() ? 64u : 1024u, chunkCount)),
+          links(
+              device,
+              {.size = words() * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links from inside"}),
+          list(device, {.size = (words() + 1) * sizeof(uint32_t), .name = "links to trace"}),
+          listed(device,
+                 {.size = listedBytes(), .memory = vk::Memory::Host, .name = "links that were traced"}),
+          rays(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}), commands(device) {}
+
+    uint64_t words() const { return uint64_t{chunks} * kInsideSamples * kChunk; }
+    // What comes back with the batch of its list: more is seldom listed, and read afterwards.
+    VkDeviceSize listedBytes() const {
+        constexpr uint64_t kAtOnce = 16383; // with their number 64 KiB
+        return (1 + std::min(kAtOnce, words())) * sizeof(uint32_t);
+    }
+};
+
+ObjectMover::Members::Members(const std::vector<uint32_t>& instanceOf, size_t instances)
+    : first_(instances + 2, 0), members_(instanceOf.size()) {
+    for (const uint32_t instance : instanceOf) // padding is of one more
+        ++first_[instance + 1];
+    for (size_t i = 1; i < first_.size(); ++i)
+        first_[i] += first_[i - 1];
+    std::vector<uint32_t> next = first_;
+    for (uint32_t i = 0; i < instanceOf.size(); ++i)
+        members_[next[instanceOf[i]]++] = i;
+}
+
+std::vector<uint32_t> ObjectMover::Members::of(const std::vector<uint32_t>& instances) const {
+    std::vector<uint32_t> all;
+    for (const uint32_t instance : instances)
+        all.insert(all.end(), members_.begin() + first_[instance], members_.begin() + first_[instance + 1]);
+    if (instances.size() > 1) std::sort(all.begin(), all.end());
+    return all;
+}
+
+ObjectMover::ObjectMover(const On& on, bool conservative)
+    : on_(on), conservative_(conservative), placed_(editsOf(on.scene).placements),
+      triangles_(on.patches.scene.mesh.instance, placed_.size()),
+      slots_(on.patches.instance, placed_.size()) {
+    for (const Placement& placement : placed_)
+        known_.push_back(!placement.hidden);
+    const std::vector<shader::Patch>& patches = on.patches.scene.patches;
+    texels_.resize(patches.size());
+    for (uint32_t i = 0; i < patches.size(); ++i) {
+        const uint32_t texel = patches[i].flags >> 8;
+        texels_[i] = texel | (on.patches.scene.texelToPatch[texel] == i ? kHome : 0u);
+    }
+}
+
+ObjectMover::~ObjectMover() = default;
+
+void ObjectMover::noteInside(uint32_t firstChunk, std::span<const uint32_t> links) {
+    const std::vector<shader::Patch>& patches = on_.patches.scene.patches;
+    inside_.resize(patches.size(), glm::uvec2(0));
+    const size_t first = size_t{firstChunk} * kChunk, count = links.size() / kInsideSamples;
+    for (size_t i = 0; i < count; ++i) {
+        glm::uvec2& bits = inside_[first + i];
+        const size_t base = i / kChunk * kInsideSamples * kChunk + i % kChunk;
+        for (uint32_t k = 0; k < kInsideSamples; ++k) {
+            const uint32_t link = links[base + size_t{k} * kChunk];
+            bits.x |= uint32_t{link == shader::kLinkBack} << k;
+            bits.y |= uint32_t{link == shader::kLinkSky} << k;
+        }
+        invalid_ += patches[first + i].area > 0.0f && liesInside(bits);
+    }
+}
+
+// Nothing: some of them were hidden from the beginning.
+std::optional<ObjectMover::Moved> ObjectMover::moved() const {
+    Moved moved;
+    for (uint32_t i = 0; i < placed_.size(); ++i) {
+        const Instance& now = on_.scene.instances[i];
+        const Placement& then = placed_[i];
+        if (now.hidden && then.hidden) continue;
+        if (now.hidden == then.hidden && now.transform == then.transform) continue;
+        if (!known_[i]) return {};
+        (now.hidden ? moved.gone : moved.shown).push_back(i);
+    }
+    return moved;
+}
+
+// Tiles around their texels; one of what has none.
+TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
+    const uint32_t size = on_.patches.scene.size;
+    glm::uvec2 first(slots.empty() ? 0 : size), last(0);
+    for (const uint32_t slot : slots) {
+        const uint32_t texel = texels_[slot] & ~kHome;
+        const glm::uvec2 at(texel % size, texel / size);
+        first = glm::min(first, at);
+        last = glm::max(last, at);
+    }
+    first = first / kTileTexels * kTileTexels;
+    last = glm::min(last / kTileTexels * kTileTexels + kTileTexels, glm::uvec2(size));
+    return {first.x, first.y, last.x - first.x, last.y - first.y};
+}
+
+// An object that is dragged is drawn again and again: what that takes stays, but for large textures.
+TextureGroup ObjectMover::rasterize(const WorldMesh& mesh, const TexelWindow& window) {
+    constexpr uint64_t kMostKept = uint64_t{64} << 20; // [bytes]
+    if (!cit_ || !cit_->serves(mesh)) {
+        cit_.reset();
+        cit_ = std::make_unique<CitPass>(on_.device, on_.scene, mesh);
+    }
+    TextureGroup group = cit_->draw(
+        on_.scene, mesh, {.size = on_.patches.scene.size, .conservative = conservative_, .window = window});
+    if (cit_->bytes() > kMostKept) cit_.reset();
+    return group;
+}
+
+// Nothing: their triangles or patches are not those that were there.
+std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) {
+    const TraceScene& all = on_.patches.scene;
+    Part part;
+    part.goneSlots = slots_.of(moved.gone);
+    part.goneTriangles = triangles_.of(moved.gone);
+    WorldMesh mesh = flattenInstances(on_.scene, atlas, moved.shown);
+    part.triangles = triangles_.of(moved.shown);
+    if (part.triangles.size() != mesh.triangleCount()) return {};
+    for (uint32_t t = 0; t < mesh.triangleCount(); ++t)
+        if (all.mesh.instance[part.triangles[t]] != mesh.instance[t]) return {};
+    part.slots = slots_.of(moved.shown);
+    if (mesh.triangleCount() == 0) return part;
+    const TexelWindow window = windowOf(part.slots);
+    TextureGroup group = rasterize(mesh, window);
+    const auto place = [&](uint32_t texel) { return window.index(texel % all.size, texel / all.size); };
+    // Texels that charts share are whose they were.
+    std::vector<uint32_t> triangle(group.triangle.size(), 0);
+    for (const uint32_t slot : part.slots) {
+        const size_t at = place(texels_[slot] & ~kHome);
+        if ((texels_[slot] & kHome) != 0) triangle[at] = group.triangle[at];
+    }
+    group.triangle = std::move(triangle);
+    part.patches = buildPatches(on_.scene, std::move(mesh), group, {.part = true});
+    if (part.patches.count != part.slots.size()) return {};
+    for (uint32_t i = 0; i < part.patches.count; ++i) {
+        const uint32_t texel = part.patches.scene.patches[i].flags >> 8;
+        const bool home = part.patches.scene.texelToPatch[place(texel)] == i;
+        if (texels_[part.slots[i]] != (texel | (home ? kHome : 0u))) return {};
+    }
+    return part;
+}
+
+// Of each instance that is there, one box; of many one around all.
+std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
+    const std::vector<glm::vec3>& positions = on_.patches.scene.mesh.positions;
+    const shader::TraceBox none{glm::vec3(1e30f), glm::vec3(-1e30f)};
+    std::vector<shader::TraceBox> boxes;
+    for (const std::vector<uint32_t>* list : {&moved.shown, &moved.gone}) {
+        for (const uint32_t instance : *list) {
+            shader::TraceBox box = none;
+            for (const uint32_t t : triangles_.of({instance}))
+                for (size_t corner = size_t{t} * 3; corner < size_t{t} * 3 + 3; ++corner)
+                    box = {glm::min(box.lo, positions[corner]), glm::max(box.hi, positions[corner])};
+            if (placed_[instance].hidden || box.lo.x > box.hi.x) continue;
+            const glm::vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
+            const float grown = kBoxRounding * std::max({reach.x, reach.y, reach.z});
+            boxes.push_back({box.lo - grown, box.hi + grown});
+        }
+    }
+    if (boxes.size() <= kMostMoveBoxes) return boxes;
+    shader::TraceBox around = none;
+    for (const shader::TraceBox& box : boxes)
+        around = {glm::min(around.lo, box.lo), glm::max(around.hi, box.hi)};
+    return {around};
+}
+
+// Those of what is hidden go to where other triangles are: the scene's bounds are not theirs.
+void ObjectMover::putTriangles(const Part& part) {
+    TraceScene& all = on_.patches.scene;
+    const TraceScene& own = part.patches.scene;
+    for (uint32_t t = 0; t < part.triangles.size(); ++t) {
+        const size_t from = size_t{t} * 3, to = size_t{part.triangles[t]} * 3;
+        std::copy_n(own.mesh.positions.begin() + static_cast<std::ptrdiff_t>(from), 3,
+                    all.mesh.positions.begin() + static_cast<std::ptrdiff_t>(to));
+        std::copy_n(own.mesh.normals.begin() + static_cast<std::ptrdiff_t>(from), 3,
+                    all.mesh.normals.begin() + static_cast<std::ptrdiff_t>(to));
+        shader::HitTriangle& hit = all.hitTriangles[part.triangles[t]];
+        hit.normal = own.hitTriangles[t].normal;
+        if (own.hitTriangles[t].representative != kNoPatch)
+            hit.representative = part.slots[own.hitTriangles[t].representative];
+    }
+    if (part.goneTriangles.empty()) return;
+    glm::vec3 point(0.0f);
+    for (uint32_t t = 0; t < all.mesh.triangleCount(); ++t)
+        if (!on_.scene.instances[all.mesh.instance[t]].hidden) {
+            point = all.mesh.positions[size_t{t} * 3];
+            break;
+        }
+    for (const uint32_t t : part.goneTriangles)
+        std::fill_n(all.mesh.positions.begin() + std::ptrdiff_t{t} * 3, 3, point);
+}
+
+// As they would be before any was found to lie inside something. Returns the texels that have another patch.
+std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move) {
+    PatchSet& all = on_.patches;
+    std::vector<uint32_t> texels;
+    const auto put = [&](uint32_t slot, const shader::Patch& patch, uint32_t owner) {
+        invalid_ -= liesInside(all.scene.patches[slot]);
+        all.scene.patches[slot] = patch;
+        change(move, slot);
+        const uint32_t texel = texels_[slot] & ~kHome;
+        if ((texels_[slot] & kHome) == 0 || all.scene.texelToPatch[texel] == owner) return;
+        all.scene.texelToPatch[texel] = owner;
+        texels.push_back(texel);
+    };
+    for (uint32_t i = 0; i < part.slots.size(); ++i) {
+        const uint32_t slot = part.slots[i];
+        put(slot, part.patches.scene.patches[i], slot);
+        all.edges[slot] = part.patches.edges[i];
+        repainted_ = repainted_ || all.albedoPattern[slot] != part.patches.albedoPattern[i] ||
+                     all.emissionPattern[slot] != part.patches.emissionPattern[i];
+        all.albedoPattern[slot] = part.patches.albedoPattern[i];
+        all.emissionPattern[slot] = part.patches.emissionPattern[i];
+    }
+    for (const uint32_t slot : part.goneSlots)
+        put(slot, {}, kNoPatch);
+    for (uint32_t chunk = 0; chunk < all.chunkCount(); ++chunk)
+        if (move.changes(chunk)) all.bounds[chunk] = chunkBounds(all, chunk);
+    std::sort(texels.begin(), texels.end());
+    return texels;
+}
+
+void ObjectMover::upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const {
+    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, slots);
+    vk::uploadElements(on_.device, on_.light.edges, on_.patches.edges, slots);
+    std::vector<uint32_t> chunks;
+    for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
+        if (move.changes(chunk)) chunks.push_back(chunk);
+    vk::uploadElements(on_.device, on_.light.bounds, on_.patches.bounds, chunks);
+}
+
+void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others) {
+    const glm::uvec2 before = inside_[patch];
+    glm::uvec2& bits = inside_[patch];
+    bits.x = (bits.x & ~(1u << sample)) | uint32_t{link == shader::kLinkBack} << sample;
+    bits.y = (bits.y & ~(1u << sample)) | uint32_t{link == shader::kLinkSky} << sample;
+    if (bits != before) others.push_back(patch);
+}
+
+// Directions that may meet what has moved are followed again, those of patches inside something, too. Returns
+// whose meet something else now.
+std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
+    const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideSamples * kChunk;
+    if (!buffers_) buffers_ = std::make_unique<Buffers>(on_.device, chunks);
+    Buffers& b = *buffers_;
+    const vk::Buffer boxes = vk::makeBuffer(on_.device, move.boxes, "boxes");
+    const vk::Buffer changed = vk::makeBuffer(on_.device, move.changed, "changed patches");
+    const auto* links = b.links.as<uint32_t>();
+    const auto* listed = b.listed.as<uint32_t>();
+    std::vector<uint32_t> others;
+    for (uint32_t first = 0; first < chunks; first += b.chunks) {
+        const uint32_t count = std::min(b.chunks, chunks - first);
+        const auto note = [&](uint32_t at) {
+            noteLink((first + at / perChunk) * kChunk + at % kChunk, at / kChunk % kInsideSamples, links[at],
+                     others);
+        };
+        if (tracer.onCpu()) std::fill_n(b.links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
+        VkCommandBuffer cmd = b.commands.begin();
+        tracer.retrace(cmd, {.closest = {.firstChunk = first,
+                                         .chunkCount = count,
+                                         .firstSample = 0,
+                                         .sampleCount = kInsideSamples,
+                                         .rotation = Rotation::Patch,
+                                         .links = &b.links},
+                             .boxes = &boxes,
+                             .boxCount = static_cast<uint32_t>(move.boxes.size()),
+                             .changed = &changed,
+                             .list = &b.list,
+                             .rays = &b.rays,
+                             .silent = true});
+        if (!tracer.onCpu()) {
+            const VkBufferCopy region{0, 0, b.listed.size()};
+            vkCmdCopyBuffer(cmd, b.list.handle(), b.listed.handle(), 1, &region);
+        }
+        vk::hostBarrier(cmd);
+        b.commands.run();
+        if (tracer.onCpu()) {
+            for (uint32_t at = 0; at < count * perChunk; ++at)
+                if (links[at] != kKept) note(at);
+            continue;
+        }
+        const uint32_t found = listed[0],
+                       here = static_cast<uint32_t>(b.listed.size() / sizeof(uint32_t)) - 1;
+        std::for_each(listed + 1, listed + 1 + std::min(found, here), note);
+        if (found <= here) continue;
+        const auto rest = vk::readBuffer<uint32_t>(on_.device, b.list, found - here, 1 + here);
+        std::for_each(rest.begin(), rest.end(), note);
+    }
+    sortUnique(others);
+    return others;
+}
+
+// Of these patches. Returns those that were not and are, or the other way round.
+std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patches, ObjectMove& move) {
+    std::vector<uint32_t> others;
+    for (const uint32_t i : patches) {
+        shader::Patch& patch = on_.patches.scene.patches[i];
+        if (patch.area <= 0.0f) continue;
+        const bool before = liesInside(patch), now = liesInside(inside_[i]);
+        if (before == now) continue;
+        patch.flags ^= shader::kPatchSends;
+        now ? ++invalid_ : --invalid_;
+        move.texels = true;
+        change(move, i);
+        others.push_back(i);
+    }
+    return others;
+}
+
+std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {
+    repainted_ = false;
+    ObjectMove move;
+    move.changed.assign(on_.patches.chunkCount(), glm::uvec2(0));
+    const std::optional<Moved> instances = moved();
+    if (!instances || inside_.empty() || !tracer.follows()) return {};
+    if (instances->shown.empty() && instances->gone.empty()) return move;
+    const std::optional<Part> part = makePart(*instances, atlas);
+    if (!part) return {};
+    move.boxes = boxesOf(*instances);
+    for (const std::vector<uint32_t>* list : {&instances->shown, &instances->gone})
+        move.instances.insert(move.instances.end(), list->begin(), list->end());
+    putTriangles(*part);
+    const std::vector<uint32_t> texels = putPatches(*part, move);
+    move.texels = !texels.empty();
+    for (const uint32_t i : move.instances)
+        placed_[i] = {on_.scene.instances[i].transform, on_.scene.instances[i].hidden};
+    for (const shader::TraceBox& box : boxesOf(*instances))
+        move.boxes.push_back(box);
+    const std::vector<uint32_t> slots = merged(part->slots, part->goneSlots);
+    upload(slots, move);
+    tracer.update({.triangles = merged(part->triangles, part->goneTriangles), .texels = texels});
+    const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
+    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
+    ObjectMove result;
+    result.add(move); // many boxes become one
+    return result;
+}
+
+} // namespace relume

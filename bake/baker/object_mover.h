@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/model/scene_edits.h"
+#include "bake/layers/object_move.h"
+#include "bake/surface/cit_pass.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+/// Keeps patches, triangles and tracer with objects that are moved, hidden and shown again, without making
+/// all of them anew: patches keep their indices. What it leaves is what a fresh bake would have made, but
+/// that hidden objects keep their places among patches, as padding, and among triangles, shrunk to a point.
+class ObjectMover {
+public:
+    /// What it works on; all must outlive it.
+    struct On {
+        const vk::Device& device;
+        const Scene& scene;
+        PatchSet& patches;
+        LightBuffers& light;
+    };
+    /// Of how many directions each patch was told whether it lies inside something.
+    static constexpr uint32_t kInsideSamples = 32;
+    ObjectMover(const On& on, bool conservative);
+    ~ObjectMover();
+
+    /// What the directions of these chunks meet: links as findInside tells them. All chunks come once.
+    void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
+    /// Objects stand as the scene has them now. Nothing: that cannot be followed (an object that was hidden
+    /// from the beginning, triangles that have lost their area), and nothing has changed.
+    std::optional<ObjectMove> follow(const LightmapAtlas& atlas, Tracer& tracer);
+    /// Whether albedo or emission patterns of patches have changed in the last move.
+    bool repainted() const { return repainted_; }
+    /// Patches that lie inside something.
+    uint32_t invalidPatches() const { return invalid_; }
+
+private:
+    /// Of each instance its triangles, or its patches.
+    class Members {
+    public:
+        Members(const std::vector<uint32_t>& instanceOf, size_t instances);
+        std::vector<uint32_t> of(const std::vector<uint32_t>& instances) const; // ascending
+
+    private:
+        std::vector<uint32_t> first_, members_;
+    };
+    struct Moved {
+        std::vector<uint32_t> shown, gone; // instances
+    };
+    struct Part;    // of the scene, as new patches and triangles have it
+    struct Buffers; // to ask whether patches lie inside something
+    std::optional<Moved> moved() const;
+    std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas);
+    TextureGroup rasterize(const WorldMesh& mesh, const TexelWindow& window);
+    TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
+    std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
+    void putTriangles(const Part& part);
+    std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);
+    std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
+    void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
+    std::vector<uint32_t> findInside(const std::vector<uint32_t>& patches, ObjectMove& move);
+    void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;
+
+    On on_;
+    bool conservative_;
+    bool repainted_ = false;
+    uint32_t invalid_ = 0;
+    std::vector<Placement> placed_;    // that patches are of
+    std::vector<uint8_t> known_;       // per instance: it was there from the beginning
+    Members triangles_, slots_;        // slots: places among patches
+    std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown
+    std::vector<glm::uvec2> inside_;   // per patch: a bit for each direction that meets a back, the sky
+    std::unique_ptr<Buffers> buffers_; // once something moves
+    std::unique_ptr<CitPass> cit_;     // of what moved last
+};
+
+} // namespace relume

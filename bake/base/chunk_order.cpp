@@ -1,0 +1,94 @@
+#include "bake/base/chunk_order.h"
+
+#include "assets/base/error.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace relume {
+namespace {
+
+constexpr uint8_t kLeft = 1, kPreferred = 2;
+
+} // namespace
+
+std::vector<ChunkRange> merged(std::vector<ChunkRange> ranges) {
+    std::sort(ranges.begin(), ranges.end(),
+              [](const ChunkRange& a, const ChunkRange& b) { return a.first < b.first; });
+    std::vector<ChunkRange> result;
+    for (const ChunkRange& range : ranges) {
+        if (result.empty() || range.first > result.back().first + result.back().count) {
+            result.push_back(range);
+            continue;
+        }
+        ChunkRange& last = result.back();
+        last.count = std::max(last.count, range.first + range.count - last.first);
+    }
+    return result;
+}
+
+std::vector<ChunkRange> rangesOf(const std::vector<uint8_t>& marks, bool marked) {
+    std::vector<ChunkRange> ranges;
+    for (uint32_t chunk = 0; chunk < marks.size(); ++chunk)
+        if ((marks[chunk] != 0) == marked) ranges.push_back({chunk, 1});
+    return merged(std::move(ranges));
+}
+
+void closeGaps(std::vector<uint8_t>& marks, uint32_t most) {
+    uint32_t end = 0; // of the run before; 0: there is none
+    for (uint32_t i = 0; i < marks.size(); ++i) {
+        if (marks[i] == 0) continue;
+        if (end > 0 && i - end <= most) std::fill(marks.begin() + end, marks.begin() + i, uint8_t{1});
+        end = i + 1;
+    }
+}
+
+void ChunkOrder::begin(uint32_t count, const std::vector<uint8_t>& seen) {
+    ASSERT(count <= marks_.size());
+    std::fill_n(marks_.begin(), count, kLeft);
+    std::fill(marks_.begin() + count, marks_.end(), uint8_t{0});
+    restore(count, seen);
+}
+
+void ChunkOrder::restore(uint32_t count, const std::vector<uint8_t>& seen) {
+    count_ = count;
+    left_ = static_cast<uint32_t>(count - std::count(marks_.begin(), marks_.begin() + count, 0));
+    prefer(seen);
+}
+
+void ChunkOrder::prefer(const std::vector<uint8_t>& seen) {
+    ASSERT(seen.empty() || seen.size() == count_);
+    preferred_ = 0;
+    for (uint32_t chunk = 0; chunk < count_; ++chunk) {
+        if (marks_[chunk] == 0) continue;
+        const bool first = !seen.empty() && seen[chunk] != 0;
+        marks_[chunk] = first ? kPreferred : kLeft;
+        preferred_ += first;
+    }
+}
+
+ChunkRange ChunkOrder::next(uint32_t most, uint32_t gap) const {
+    if (left_ == 0) return {};
+    const void* found = std::memchr(marks_.data(), preferred_ > 0 ? kPreferred : kLeft, count_);
+    const auto first = static_cast<uint32_t>(static_cast<const uint8_t*>(found) - marks_.data());
+    const uint32_t limit = first + std::min(most, count_ - first);
+    uint32_t end = first + 1;
+    if (preferred_ == 0) {
+        while (end < limit && marks_[end] != 0)
+            ++end;
+        return {first, end - first};
+    }
+    for (uint32_t chunk = end; chunk < limit && marks_[chunk] != 0 && chunk - end <= gap; ++chunk)
+        if (marks_[chunk] == kPreferred) end = chunk + 1;
+    return {first, end - first};
+}
+
+void ChunkOrder::finish(ChunkRange range) {
+    for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
+        left_ -= marks_[chunk] != 0;
+        preferred_ -= marks_[chunk] == kPreferred;
+        marks_[chunk] = 0;
+    }
+}
+
+} // namespace relume

@@ -1,0 +1,109 @@
+#include "bake/direct/emitter_light.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// So few emitters are all sampled by every patch; of more, each patch picks some in every round.
+constexpr uint32_t kAllEmitters = 4;
+constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
+constexpr uint32_t kLeastLinks = 16;   // of a round
+// Chunks of one batch: their targets are 16 KiB each for 16 points.
+constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
+
+uint32_t mostChunks(uint32_t chunkCount, bool software) {
+    return std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks);
+}
+
+} // namespace
+
+EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links)
+    : device_(device), links_(links),
+      batchChunks_(mostChunks(patches.chunkCount(), device.info().software())),
+      samples_(device, "emitter_samples"), gather_(device, "direct") {}
+
+void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
+    groups_.clear();
+    uint32_t picks = 0, targets = 0;
+    for (const EmitterSet& set : groups) {
+        const auto emitters = static_cast<uint32_t>(set.polygons.size());
+        const bool all = emitters <= kAllEmitters;
+        groups_.push_back({.polygons = vk::makeBuffer(device_, set.polygons, "emitters"),
+                           .nodes = vk::makeBuffer(device_, set.nodes, "light tree"),
+                           .picks = all ? emitters : std::max(links_ / kPointsPerPick, kReplicates),
+                           .points = all ? links_ : kPointsPerPick,
+                           .all = all});
+        picks = std::max(picks, groups_.back().picks);
+        targets = std::max(targets, groups_.back().targets());
+    }
+    const uint64_t places = uint64_t{batchChunks_} * kChunk;
+    if (picks > picksRoom_) {
+        picksRoom_ = picks;
+        picks_ = vk::Buffer(device_, {.size = places * picks * sizeof(glm::vec4), .name = "picked emitters"});
+    }
+    if (targets <= targetsRoom_) return;
+    targetsRoom_ = targets;
+    const uint64_t words = (targets + kTargetsPerWord - 1) / kTargetsPerWord;
+    targets_ =
+        vk::Buffer(device_, {.size = places * targets * sizeof(glm::vec4), .name = "points on emitters"});
+    bits_ = vk::Buffer(device_, {.size = places * words * sizeof(uint32_t), .name = "seen points"});
+}
+
+// Of the largest round where few links are made: what a small scene takes does not matter.
+uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software) {
+    constexpr uint64_t kPickBytes = 128; // and bits
+    return uint64_t{mostChunks(chunkCount, software)} * kChunk *
+           (kAllEmitters * kLeastLinks * sizeof(glm::vec4) + kPickBytes);
+}
+
+void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
+    const Group& group = groups_[work.group];
+    const shader::EmitterSamplesPush push{.patches = light.patches.address(),
+                                          .polygons = group.polygons.address(),
+                                          .nodes = group.nodes.address(),
+                                          .targets = targets_.address(),
+                                          .picks = picks_.address(),
+                                          .parts = work.penumbra ? work.penumbra->parts.address() : 0,
+                                          .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+                                          .firstChunk = work.range.first,
+                                          .round = work.round,
+                                          .pickCount = group.picks,
+                                          .pointCount = group.points,
+                                          .all = group.all ? 1u : 0u};
+    samples_.dispatch(cmd, push, work.range.count, group.picks);
+}
+
+SegmentWork EmitterLight::segments(const Work& work, const vk::Buffer& rays) const {
+    return {.firstChunk = work.range.first,
+            .chunkCount = work.range.count,
+            .targetCount = groups_[work.group].targets(),
+            .targets = &targets_,
+            .bits = &bits_,
+            .rays = &rays};
+}
+
+void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
+                                const vk::Buffer& sums, const vk::Buffer& direct) const {
+    const Group& group = groups_[work.group];
+    const shader::DirectPush push{.targets = targets_.address(),
+                                  .picks = picks_.address(),
+                                  .bits = bits_.address(),
+                                  .sums = sums.address(),
+                                  .direct = direct.address(),
+                                  .parts = work.penumbra ? work.penumbra->parts.address() : 0,
+                                  .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+                                  .firstChunk = work.range.first,
+                                  .round = work.round,
+                                  .pickCount = group.picks,
+                                  .pointCount = group.points,
+                                  .all = group.all ? 1u : 0u,
+                                  .patchCount = light.chunkCount * kChunk,
+                                  .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+    gather_.dispatch(cmd, push, work.range.count);
+}
+
+} // namespace relume

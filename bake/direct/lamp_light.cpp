@@ -1,0 +1,188 @@
+#include "bake/direct/lamp_light.h"
+
+#include "assets/base/error.h"
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// Rays of one group, per patch: two words of bits. A lamp with more is a group by itself.
+constexpr uint32_t kGroupRays = 64;
+// Chunks of one batch of such groups, whose targets are 64 KiB each; of smaller groups more.
+constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
+constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
+
+uint32_t wordsOf(uint32_t targets) {
+    return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
+}
+
+uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
+    const uint32_t smaller = kGroupRays / std::clamp(rays, 1u, kGroupRays);
+    return std::min({chunkCount, kMostChunks, (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller});
+}
+
+} // namespace
+
+LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
+    : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
+      set_(buildLamps(scene, patches.scene.mesh, {.samples = desc.samples, .unit = desc.chosen})),
+      skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
+      skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
+    if (!desc.chosen) group(std::vector<uint32_t>(set_.lamps.size(), 0));
+}
+
+void LampLight::update(const Scene& scene, std::span<const LampChoice> choices) {
+    ASSERT(desc_.chosen);
+    const bool skyShines = scene.sky.shines() && (set_.skyRows.empty() || set_.skyRows.back() > 0.0f);
+    set_.skyRotation = scene.sky.rotation;
+    const std::vector<shader::Lamp> lamps =
+        lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = true});
+    set_.lamps.clear();
+    std::vector<uint32_t> sets;
+    for (const LampChoice& choice : choices) {
+        if (choice.lamp >= lamps.size()) continue; // a sky whose picture is black
+        set_.lamps.push_back(lamps[choice.lamp]);
+        set_.lamps.back().color = choice.color;
+        sets.push_back(choice.set);
+    }
+    group(sets);
+}
+
+std::vector<uint32_t> LampLight::groupsOf(uint32_t set) const {
+    std::vector<uint32_t> found;
+    for (uint32_t i = 0; i < groups_.size(); ++i)
+        if (groups_[i].set == set) found.push_back(i);
+    return found;
+}
+
+bool LampLight::updateReach(const WorldMesh& mesh) {
+    const float before = std::exchange(set_.reach, reachOf(mesh));
+    return set_.reach != before;
+}
+
+void LampLight::group(const std::vector<uint32_t>& sets) {
+    groups_.clear();
+    rays_ = 0;
+    if (set_.empty()) return;
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < set_.lamps.size(); ++i) {
+        shader::Lamp& lamp = set_.lamps[i];
+        if (groups_.empty() || groups_.back().set != sets[i] ||
+            groups_.back().targets + lamp.samples > kGroupRays)
+            groups_.push_back({.first = i, .set = sets[i]});
+        Group& group = groups_.back();
+        lamp.firstTarget = group.targets;
+        group.targets += lamp.samples;
+        ++group.count;
+        rays_ += lamp.samples;
+        most = std::max(most, group.targets);
+    }
+    // A light that is dragged changes what is in it many times a second.
+    const std::span<const shader::Lamp> lamps(set_.lamps);
+    if (lamps_ && lamps_.size() >= lamps.size_bytes())
+        vk::upload(device_, lamps_, lamps.data(), lamps.size_bytes());
+    else
+        lamps_ = vk::makeBuffer(device_, lamps, "lamps");
+    if (room_ == 0) {
+        samples_ = vk::ComputeProgram(device_, "lamp_samples");
+        gather_ = vk::ComputeProgram(device_, "lamp_gather");
+    }
+    if (most <= room_) return;
+    room_ = most;
+    batchChunks_ = mostChunks(chunkCount_, device_.info().software(), most);
+    const uint64_t places = uint64_t{batchChunks_} * kChunk;
+    targets_ = vk::Buffer(device_, {.size = places * most * sizeof(glm::vec4), .name = "points on lamps"});
+    bits_ = vk::Buffer(device_, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
+}
+
+uint64_t LampLight::bytes(uint32_t chunkCount, bool software) {
+    const uint64_t places = uint64_t{mostChunks(chunkCount, software, kGroupRays)} * kChunk;
+    return places * (kGroupRays * sizeof(glm::vec4) + wordsOf(kGroupRays) * sizeof(uint32_t));
+}
+
+shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) const {
+    const Group& group = groups_[work.group];
+    return {.patches = light.patches.address(),
+            .lamps = lamps_.address(),
+            .targets = targets_.address(),
+            .bits = bits_.address(),
+            .skyPixels = skyPixels_.address(),
+            .skyRows = skyRows_.address(),
+            .parts = work.penumbra ? work.penumbra->parts.address() : 0,
+            .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+            .skySize = set_.skySize,
+            .skyRotation = set_.skyRotation,
+            .reach = set_.reach,
+            .firstChunk = work.range.first,
+            .firstLamp = group.first,
+            .lampCount = group.count,
+            .targetCount = group.targets,
+            .round = work.round,
+            .patchCount = light.chunkCount * kChunk,
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+}
+
+bool LampLight::onCpu(uint32_t group) const {
+    const auto first = set_.lamps.begin() + groups_[group].first;
+    return std::none_of(first, first + groups_[group].count,
+                        [](const shader::Lamp& lamp) { return lamp.type == shader::kLampSky; });
+}
+
+HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
+    const Group& group = groups_[work.group];
+    return {.patches = light.patches.as<shader::Patch>(),
+            .lamps = std::span(set_.lamps).subspan(group.first, group.count),
+            .targets = targets_.as<glm::vec4>(),
+            .bits = bits_.as<uint32_t>(),
+            .parts = work.penumbra ? work.penumbra->parts.as<uint32_t>() : nullptr,
+            .penumbra = work.penumbra ? work.penumbra->lights.as<glm::uvec2>() : nullptr,
+            .firstChunk = work.range.first,
+            .chunkCount = work.range.count,
+            .targetCount = group.targets,
+            .round = work.round,
+            .patchCount = light.chunkCount * kChunk,
+            .reach = set_.reach,
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+}
+
+void LampLight::sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const {
+    sampleLamps(pool, host(light, work));
+}
+
+void LampLight::gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
+                            const vk::Buffer& sums, const vk::Buffer& direct) const {
+    HostLamps gather = host(light, work);
+    gather.newSums = newSums;
+    gather.sums = sums.as<glm::vec4>();
+    gather.direct = direct.as<glm::vec4>();
+    gatherLamps(pool, gather);
+}
+
+void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
+    samples_.dispatch(cmd, push(light, work), work.range.count, groups_[work.group].count);
+}
+
+SegmentWork LampLight::segments(const Work& work, const vk::Buffer& rays) const {
+    return {.firstChunk = work.range.first,
+            .chunkCount = work.range.count,
+            .targetCount = groups_[work.group].targets,
+            .targets = &targets_,
+            .bits = &bits_,
+            .rays = &rays};
+}
+
+void LampLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
+                             const vk::Buffer& sums, const vk::Buffer& direct) const {
+    shader::LampPush p = push(light, work);
+    p.sums = sums.address();
+    p.direct = direct.address();
+    gather_.dispatch(cmd, p, work.range.count);
+}
+
+} // namespace relume

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "bake/base/chunk_order.h"
+#include "bake/vk/buffer.h"
+
+namespace relume {
+
+/// Links of all rounds, as long as there is memory: what light is gathered over again without a ray (the
+/// transport cache). Knows where links are, not how they are traced.
+class LinkCache {
+public:
+    struct Desc {
+        uint32_t chunkCount = 0;
+        uint32_t links = 16; // per patch and round
+        uint32_t batch = 1;  // chunks of a batch of links that are not kept, at most
+        uint64_t bytes = 0;  // at most; whole rounds are kept, the first ones
+    };
+    LinkCache(const vk::Device& device, const Desc& desc);
+
+    struct Place {
+        const vk::Buffer* links = nullptr; // uint[chunk][links][64]
+        uint64_t offset = 0;               // [links], of the first chunk that was asked for
+        bool known = false;                // they are there; else to be traced
+        uint32_t count = 0;                // of chunks from that one on that are alike
+    };
+    /// Of up to `most` chunks from `first` on.
+    Place find(uint32_t round, uint32_t first, uint32_t most);
+    /// The links of these chunks were traced to where find() said.
+    void note(uint32_t round, ChunkRange range);
+
+    uint64_t bytes() const { return kept_.size() * roundBytes_; } // in use
+    uint32_t rounds() const { return static_cast<uint32_t>(kept_.size()); }
+
+private:
+    struct Round {
+        vk::Buffer links;
+        std::vector<uint8_t> known; // per chunk
+    };
+
+    const vk::Device& device_;
+    Desc desc_;
+    uint64_t roundBytes_;
+    std::deque<Round> kept_; // where a Place points, while more are added
+    vk::Buffer staging_;     // of a batch beyond these
+};
+
+} // namespace relume

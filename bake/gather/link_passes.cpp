@@ -1,0 +1,295 @@
+#include "bake/gather/link_passes.h"
+
+#include "bake/base/chunk_dispatch.h"
+#include "bake/direct/emitter_light.h"
+#include "bake/direct/lamp_light.h"
+#include "bake/gather/host_links.h"
+#include "bake/vk/commands.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+
+// A round's rays should fill a GPU: 4M are a few milliseconds there.
+constexpr uint32_t kGpuRays = 4u << 20;
+constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and round
+// Chunks of one submit at most.
+constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
+
+uint64_t vec4s(uint64_t count) {
+    return count * sizeof(glm::vec4);
+}
+
+} // namespace
+
+uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software) {
+    const uint32_t filling = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
+    const uint32_t wanted = samples > 0 ? std::min(filling, samples) : filling;
+    return std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
+}
+
+LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc)
+    : patchChart(vk::makeBuffer(device, patches.scene.patchChart, "chart of patch")),
+      texelToPatch(vk::makeBuffer(device, patches.scene.texelToPatch, "texel to patch")) {
+    const uint32_t chunks = patches.chunkCount();
+    const uint64_t count = patches.scene.patches.size();
+    if (desc.coarse) {
+        receiverCount = static_cast<uint32_t>(desc.coarse->receivers.size());
+        receivers = vk::makeBuffer(device, desc.coarse->receivers, "receivers");
+        taps = vk::makeBuffer(device, desc.coarse->taps, "coarse taps");
+        neighbours = vk::makeBuffer(device, desc.coarse->neighbours, "coarse neighbours");
+        coarseSums = vk::Buffer(device, {.size = vec4s(kReplicates * receiverCount), .name = "coarse sums"});
+    }
+    batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
+    if (desc.direct)
+        directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
+    const uint64_t chunkBytes = uint64_t{desc.linksOfRound} * kChunk * sizeof(uint32_t);
+    const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
+    keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, desc.linkBytes / chunkBytes));
+    links = vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
+    linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
+    linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
+    direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
+    if (desc.smooth) {
+        rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
+        distances = vk::Buffer(device, {.size = count * sizeof(float), .name = "link distances"});
+        if (desc.coarse)
+            coarseDistances =
+                vk::Buffer(device, {.size = receiverCount * sizeof(float), .name = "coarse distances"});
+    }
+    result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
+    constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
+    chunkSums = vk::Buffer(device, {.size = chunks * kSums, .name = "sums per chunk"});
+    sums = vk::Buffer(device, {.size = kSums, .name = "sums over chunks"});
+    rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
+}
+
+uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
+    const uint64_t count = uint64_t{chunkCount} * kChunk;
+    const bool hybrid = settings.method == Method::Hybrid;
+    const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with lamps
+    const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
+    // Charts a texel wide have so many receivers; those of compact ones are fewer.
+    const uint64_t scale = settings.links.indirectScale, receivers = count / scale;
+    const uint64_t coarse =
+        scale > 1
+            ? count * sizeof(shader::CoarseTaps) +
+                  receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
+            : 0;
+    const uint64_t packed = software ? 0 : (settings.layers.on ? 2 : 1) * sizeof(glm::uvec2);
+    const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
+    return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
+           EmitterLight::bytes(chunkCount, software) + LampLight::bytes(chunkCount, software);
+}
+
+uint32_t smoothingReach(float sigma) {
+    constexpr float kReachInSigmas = 2.0f;
+    constexpr uint32_t kMaxReach = 8;   // lib/smoothing.glsl
+    constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
+    if (sigma < kLeastSigma) return 0;
+    return std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
+}
+
+shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks) {
+    std::array<double, 6> total{};
+    for (const shader::ResolveSums& s : chunks) {
+        const std::array<float, 6> terms = {s.light, s.direct, s.indirect, s.raw, s.bias, s.count};
+        for (size_t k = 0; k < total.size(); ++k)
+            total[k] += terms[k];
+    }
+    const auto f = [&](size_t k) { return static_cast<float>(total[k]); };
+    return {f(0), f(1), f(2), f(3), f(4), f(5)};
+}
+
+glm::dvec4 sumsOf(std::span<const glm::vec4> chunks) {
+    glm::dvec4 total(0.0);
+    for (const glm::vec4& sum : chunks)
+        total += glm::dvec4(sum);
+    return total;
+}
+
+void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers,
+                                 const Work& work) const {
+    const bool coarse = buffers.receiverCount > 0;
+    glm::vec4* sums = coarse            ? buffers.coarseSums.as<glm::vec4>()
+                      : work.accumulate ? buffers.linkSums.as<glm::vec4>()
+                                        : nullptr;
+    gatherLinks(*pool_, {.links = work.links->as<uint32_t>() + work.linksOffset,
+                         .radiance = light.radiance.as<glm::vec4>(),
+                         .direct = work.direct && !coarse ? work.direct->as<glm::vec4>() : nullptr,
+                         .ligOut = coarse || !work.output ? nullptr : light.ligOut.as<glm::vec4>(),
+                         .sums = sums,
+                         .newSums = work.newSums,
+                         .firstChunk = work.range.first,
+                         .chunkCount = work.range.count,
+                         .samples = work.samples,
+                         .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk});
+}
+
+void LinkGatherPass::sendOnCpu(const LightBuffers& light, float reflectivity,
+                               const std::vector<uint8_t>& full, glm::vec4* changes) const {
+    sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
+                       .albedo = light.albedo.as<glm::vec4>(),
+                       .before = light.ligIn.as<glm::vec4>(),
+                       .light = light.ligOut.as<glm::vec4>(),
+                       .radiance = light.radiance.as<glm::vec4>(),
+                       .changes = changes,
+                       .full = full.data(),
+                       .reflectivity = reflectivity,
+                       .chunkCount = light.chunkCount});
+}
+
+void LinkGatherPass::startOnCpu(const LightBuffers& light, float reflectivity,
+                                const std::vector<uint8_t>& full, const vk::Buffer& first) const {
+    std::memcpy(light.ligIn.as<glm::vec4>(), first.as<glm::vec4>(), light.ligIn.size());
+    sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
+                       .albedo = light.albedo.as<glm::vec4>(),
+                       .light = light.ligIn.as<glm::vec4>(),
+                       .radiance = light.radiance.as<glm::vec4>(),
+                       .full = full.data(),
+                       .reflectivity = reflectivity,
+                       .chunkCount = light.chunkCount});
+}
+
+void LinkGatherPass::recordPack(VkCommandBuffer cmd, const LightBuffers& light,
+                                const LinkBuffers& buffers) const {
+    if (pool_) return;
+    const auto count = static_cast<uint32_t>(buffers.packed.size() / sizeof(glm::uvec2));
+    const shader::PackPush push{
+        .radiance = light.radiance.address(), .packed = buffers.packed.address(), .count = count};
+    dispatchChunks(pack_, cmd, push, (count + kChunk - 1) / kChunk);
+}
+
+void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                            const Work& work) const {
+    if (pool_) return gatherOnCpu(light, buffers, work);
+    const bool coarse = buffers.receiverCount > 0;
+    const VkDeviceAddress sums = coarse            ? buffers.coarseSums.address()
+                                 : work.accumulate ? buffers.linkSums.address()
+                                                   : 0;
+    const shader::LinkPush push{.links = work.address(),
+                                .packed = buffers.packed.address(),
+                                .direct = work.direct && !coarse ? work.direct->address() : 0,
+                                .ligOut = coarse || !work.output ? 0 : light.ligOut.address(),
+                                .sums = sums,
+                                .firstChunk = work.range.first,
+                                .chunkCount = work.range.count,
+                                .sampleCount = work.samples,
+                                .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk};
+    dispatchChunks(gather_, cmd, push, work.range.count);
+}
+
+void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& light,
+                                     const LinkBuffers& buffers, const Work& work) const {
+    const bool coarse = buffers.receiverCount > 0;
+    const shader::LinkDistancePush push{
+        .patches = light.patches.address(),
+        .links = work.address(),
+        .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
+        .nodes = work.nodes,
+        .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
+        .firstChunk = work.range.first,
+        .chunkCount = work.range.count,
+        .sampleCount = work.samples,
+        .patchCount = light.chunkCount * kChunk};
+    dispatchChunks(distance_, cmd, push, work.range.count);
+}
+
+void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light,
+                                       const LinkBuffers& buffers, const Work& work) const {
+    const shader::InterpolatePush push{.taps = buffers.taps.address(),
+                                       .coarse = buffers.coarseSums.address(),
+                                       .direct = work.direct ? work.direct->address() : 0,
+                                       .ligOut = light.ligOut.address(),
+                                       .sums = work.accumulate ? buffers.linkSums.address() : 0,
+                                       .coarseDistances =
+                                           work.distances ? buffers.coarseDistances.address() : 0,
+                                       .distances = work.distances ? buffers.distances.address() : 0,
+                                       .firstChunk = work.range.first,
+                                       .chunkCount = work.range.count,
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .receiverCount = buffers.receiverCount,
+                                       .scale = 1.0f / static_cast<float>(work.samples)};
+    dispatchChunks(interpolate_, cmd, push, work.range.count);
+}
+
+void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                                   const vk::Buffer* direct, uint32_t samples) const {
+    const shader::ComposePush push{.sums = buffers.linkSums.address(),
+                                   .direct = direct ? direct->address() : 0,
+                                   .light = light.ligIn.address(),
+                                   .patchCount = light.chunkCount * kChunk,
+                                   .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
+    dispatchChunks(compose_, cmd, push, light.chunkCount);
+}
+
+void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,
+                                      const LinkBuffers& buffers, uint32_t rounds) const {
+    const shader::ComposePush push{.sums = buffers.directSums.address(),
+                                   .light = buffers.direct.address(),
+                                   .patchCount = light.chunkCount * kChunk,
+                                   .scale =
+                                       rounds > 0 ? 1.0f / static_cast<float>(kReplicates * rounds) : 0.0f};
+    dispatchChunks(compose_, cmd, push, light.chunkCount);
+}
+
+void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light,
+                               const LinkBuffers& buffers) const {
+    const shader::ChangePush push{.patches = light.patches.address(),
+                                  .ligIn = light.ligIn.address(),
+                                  .ligOut = light.ligOut.address(),
+                                  .sums = buffers.chunkSums.address(),
+                                  .chunkCount = light.chunkCount};
+    dispatchChunks(change_, cmd, push, light.chunkCount);
+}
+
+void ResolvePass::recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                               uint32_t samples) const {
+    const uint32_t chunks = buffers.receiverCount / kChunk;
+    const shader::CoarseErrorPush push{.neighbours = buffers.neighbours.address(),
+                                       .sums = buffers.linkSums.address(),
+                                       .chunkSums = buffers.chunkSums.address(),
+                                       .chunkCount = chunks,
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .scale =
+                                           static_cast<float>(kReplicates) / static_cast<float>(samples)};
+    dispatchChunks(coarse_, cmd, push, chunks);
+}
+
+void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                         const Work& work) const {
+    const uint32_t reach = buffers.rows ? smoothingReach(work.sigma) : 0;
+    const float perReplicate = static_cast<float>(work.samples) / static_cast<float>(kReplicates);
+    const shader::SmoothPush push{
+        .patches = light.patches.address(),
+        .patchChart = buffers.patchChart.address(),
+        .texelToPatch = buffers.texelToPatch.address(),
+        .sums = buffers.linkSums.address(),
+        .rows = buffers.rows ? buffers.rows.address() : 0,
+        .directSums = work.directRounds > 0 && buffers.directSums ? buffers.directSums.address() : 0,
+        .result = buffers.result.address(),
+        .chunkSums = buffers.chunkSums.address(),
+        .distances = buffers.distances ? buffers.distances.address() : 0,
+        .chunkCount = light.chunkCount,
+        .patchCount = light.chunkCount * kChunk,
+        .size = work.size,
+        .reach = reach,
+        .sigma = work.sigma,
+        .scale = work.samples > 0 ? 1.0f / perReplicate : 0.0f,
+        .directScale = work.directRounds > 0 ? 1.0f / static_cast<float>(work.directRounds) : 0.0f};
+    if (reach > 0) {
+        dispatchChunks(smooth_, cmd, push, light.chunkCount);
+        vk::barrier(cmd);
+    }
+    dispatchChunks(resolve_, cmd, push, light.chunkCount);
+}
+
+} // namespace relume

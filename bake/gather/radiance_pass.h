@@ -1,0 +1,19 @@
+#pragma once
+
+#include "bake/solver/transport.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/vk/program.h"
+
+namespace relume {
+
+/// Forms what each patch sends and notes which chunks send at all. Reads ligIn.
+class RadiancePass {
+public:
+    explicit RadiancePass(const vk::Device& device) : program_(device, "radiance") {}
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const TransportSettings& settings) const;
+
+private:
+    vk::ComputeProgram program_;
+};
+
+} // namespace relume

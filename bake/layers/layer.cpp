@@ -1,0 +1,100 @@
+#include "bake/layers/layer.h"
+
+#include "bake/base/shader_types.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+LightPattern patternOf(const Scene& scene, const LightKey& key) {
+    LightPattern pattern{.kind = key.kind};
+    switch (key.kind) {
+    case LightKey::Kind::Emitter:
+        pattern.instance = key.index;
+        pattern.material = key.material;
+        break;
+    case LightKey::Kind::Lamp:
+        pattern.light = scene.lights[key.index];
+        pattern.light.name.clear();
+        pattern.light.color = glm::vec3(1.0f);
+        pattern.light.intensity = 1.0f;
+        pattern.light.node = -1;
+        break;
+    case LightKey::Kind::Sky:
+        pattern.rotation = scene.sky.rotation;
+        pattern.file = scene.sky.file;
+        break;
+    case LightKey::Kind::Group:
+        break;
+    }
+    return pattern;
+}
+
+bool alike(const LightPattern& group, size_t i, const LightPattern& other, size_t k) {
+    return group.members[i] == other.members[k] && group.weights[i] == other.weights[k];
+}
+
+// How many of a group's members are alike from the start on.
+size_t alikeFromTheStart(const LightPattern& a, const LightPattern& b) {
+    size_t i = 0;
+    while (i < std::min(a.members.size(), b.members.size()) && alike(a, i, b, i))
+        ++i;
+    return i;
+}
+
+// One name stands for what changed: a member that is lit otherwise, or one that is off or gone.
+std::string groupReason(const Layer& layer, const Layer& shown) {
+    const LightPattern &now = layer.pattern, &then = shown.pattern;
+    if (now.members == then.members && now.weights == then.weights) return "";
+    const size_t first = alikeFromTheStart(now, then);
+    const bool fewer = now.members.size() < then.members.size();
+    const std::vector<LightSource>& members = fewer ? shown.members : layer.members;
+    size_t lit = 0;
+    for (const LightSource& member : members) {
+        if (member.weight == glm::vec3(0.0f)) continue;
+        if (lit++ == first)
+            return "light '" + member.name + "' in '" + layer.source.name + "' " +
+                   (fewer ? "is off" : "changed");
+    }
+    return "lights in '" + layer.source.name + "' changed";
+}
+
+} // namespace
+
+LightPattern patternOf(const Scene& scene, const LightGroup& group) {
+    LightPattern pattern = patternOf(scene, group.source.key);
+    for (const LightSource& member : group.members) {
+        if (member.weight == glm::vec3(0.0f)) continue;
+        pattern.members.push_back(patternOf(scene, member.key));
+        pattern.weights.push_back(member.weight);
+    }
+    return pattern;
+}
+
+double Layer::directShare() const {
+    if (penumbra.empty()) return 1.0;
+    const auto within = static_cast<double>(std::count(penumbra.begin(), penumbra.end(), 1));
+    const double share = within / static_cast<double>(penumbra.size());
+    return share + (1.0 - share) / shader::kPenumbraRounds;
+}
+
+std::string staleReason(const Layer& layer) {
+    if (layer.has() || layer.source.weight == glm::vec3(0.0f)) return "";
+    const bool group = layer.source.key.kind == LightKey::Kind::Group;
+    const std::string light = (group ? "group '" : "light '") + layer.source.name + "' ";
+    const Layer* shown = layer.shown();
+    if (!shown) return light + "is not baked yet";
+    const LightPattern &now = layer.pattern, &then = shown->pattern;
+    if (group)
+        if (std::string reason = groupReason(layer, *shown); !reason.empty()) return reason;
+    if (now.light.transform != then.light.transform) return light + "moved";
+    if (now.rotation != then.rotation) return light + "turned";
+    LightPattern recoloured = then;
+    recoloured.surfaces = now.surfaces;
+    if (recoloured == now) return light + "meets surfaces of other colours";
+    recoloured.objects = now.objects;
+    return light + (recoloured == now ? "shines on objects that moved" : "has another form");
+}
+
+} // namespace relume

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/base/retrace_types.h"
+#include "bake/base/worker_pool.h"
+#include "bake/surface/patches.h"
+
+namespace relume {
+
+/// What objects that were moved, hidden or shown again leave to be traced again.
+struct ObjectMove {
+    std::vector<shader::TraceBox> boxes; // where they were and are, grown by what floats round off
+    std::vector<glm::uvec2> changed;     // per chunk, a bit for each patch that is another one than before
+    std::vector<uint32_t> instances;     // that moved
+    bool texels = false;                 // others show what is baked: hidden, or inside something
+
+    /// As if both had been one.
+    void add(const ObjectMove& later);
+    bool changes(uint32_t chunk) const { return (changed[chunk].x | changed[chunk].y) != 0; }
+};
+
+/// Where a light shines from, to tell which segments may meet a box.
+struct LightPlace {
+    enum class Kind : uint8_t {
+        Box,        // within lo..hi [m]
+        Directions, // from so far away: lo..hi is added to the receiver's position [m]
+        Everywhere
+    };
+    Kind kind = Kind::Everywhere;
+    glm::vec3 lo{0.0f}, hi{0.0f};
+};
+
+/// Per chunk 1 where direct light from there may be another one after the move, for what segments to it meet
+/// or for its patches.
+std::vector<uint8_t> chunksReached(WorkerPool& pool, const PatchSet& patches, const LightPlace& light,
+                                   const ObjectMove& move);
+
+} // namespace relume

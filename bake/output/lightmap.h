@@ -1,0 +1,27 @@
+#pragma once
+
+#include "assets/images/float_image.h"
+#include "bake/surface/patches.h"
+
+namespace relume {
+
+enum class Quantity {
+    Lighting, // irradiance / pi, no albedo [cd/m^2]: what an engine multiplies with the albedo
+    Radiance, // emission + reflectivity * albedo * lighting [cd/m^2]: RTRad's lig_out
+};
+
+struct LightmapDesc {
+    Quantity quantity = Quantity::Lighting;
+    float reflectivity = 1.0f;
+    bool sew = true;
+    uint32_t dilate = 4; // rings of texels filled around charts
+    bool rtrad = false;  // `light` holds RTRad's radiosity; one ring of the darkest neighbour
+};
+
+/// Scatters the patches' light [one vec4 each] to their texels and fills seams (SewSeams): texels beside a
+/// chart, and those inside something, take the mean of their filled neighbours, ring by ring. Channels R, G,
+/// B and coverage: 1 a patch, 0.5 filled, 0 empty.
+FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& light,
+                        const LightmapDesc& desc);
+
+} // namespace relume

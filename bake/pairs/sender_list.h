@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/surface/patches.h"
+
+namespace relume {
+
+/// Senders that stand for several patches each, in chunks of 64, padded. A sender is a run of members (patch
+/// indices), the one that stands for all first, and looks to the gather like a patch of its own.
+struct SenderList {
+    std::vector<shader::Sender> senders; // count: of members
+    std::vector<uint32_t> members;
+    std::vector<shader::Patch> patches;    // area: of all members; RTRad's: the first member
+    std::vector<shader::PatchEdges> edges; // a parallelogram of that area
+    std::vector<shader::ChunkBounds> bounds;
+    std::vector<float> weights; // RTRad's only: texels that a sender counts for
+    uint32_t count = 0;         // without padding
+
+    uint32_t chunkCount() const { return static_cast<uint32_t>(bounds.size()); }
+};
+
+/// One sender per window of edge x edge texels, aligned, chart and side: only patches that send are members,
+/// the first is the one nearest to the middle of them. In order of tiles of 8 x 8 windows. edge: a power of
+/// two [texels].
+SenderList windowSenders(const PatchSet& patches, uint32_t edge);
+
+/// RTRad's: one patch per window whose corner texel is one. jittered: its Monte-Carlo choice; else the
+/// corner. Weight: the window's texels.
+SenderList rtradSenders(const PatchSet& patches, uint32_t edge, bool jittered);
+
+/// What builds a list, sender by sender.
+class SenderListBuilder {
+public:
+    explicit SenderListBuilder(const PatchSet& patches) : patches_(patches) {}
+    /// members: at least one, in tile order. `first`: the index in members of the one that stands for all.
+    /// key: of its random numbers.
+    void add(const std::vector<uint32_t>& members, size_t first, uint32_t key);
+    /// RTRad's: a patch as it is that counts for so many texels.
+    void addWeighted(uint32_t patch, float weight);
+    /// Padded to whole chunks; at least one. Bounds hold all members.
+    SenderList finish();
+
+private:
+    void addShape(const shader::Patch& patch, const shader::PatchEdges& edges);
+
+    const PatchSet& patches_;
+    SenderList list_;
+};
+
+/// The member nearest to the middle of all, in texels; of equals the first.
+size_t nearestToMiddle(const PatchSet& patches, const std::vector<uint32_t>& members);
+
+/// Number of a chart's side: patches of one number may be merged.
+std::vector<uint32_t> mergeableParts(const PatchSet& patches);
+
+} // namespace relume

@@ -1,0 +1,228 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "bake/base/chunk_order.h"
+#include "bake/solver/transport.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+/// How the senders of light are chosen.
+enum class Method {
+    Pure,        // every patch sends to every other one
+    Static,      // one patch of every window stands for it
+    MonteCarlo,  // the same, drawn for each receiving chunk and window
+    Mipmapped,   // one sender with the mean of every window
+    Adaptive,    // leaves of a quad-tree over ligIn
+    Directional, // what cosine-distributed directions hit
+    Hybrid,      // points on emitters for direct light, directions for the rest
+};
+
+/// Throws UsageError for an unknown name.
+Method parseMethod(const std::string& name);
+const char* methodName(Method method);
+/// Pair methods ask about pairs of patches, the others about directions.
+inline bool isPairMethod(Method method) {
+    return method != Method::Directional && method != Method::Hybrid;
+}
+
+/// Of the pair methods.
+struct PairSettings {
+    uint32_t window = 1;     // static, Monte-Carlo, mipmapped: edge of a window [texels], a power of two
+    double threshold = 0.05; // adaptive: difference up to which nodes are merged, relative to the mean light
+    uint32_t node = 8;       // adaptive: edge of the largest node [texels], a power of two
+    double thresholdRamp = 1.0; // adaptive: factor on the threshold from pass to pass
+};
+
+/// Where link methods take their directions from.
+enum class DirectionSet {
+    Sobol, // the Owen-scrambled Sobol sequence
+    Lec    // the thesis' insertion into the largest empty circle (bake/links/directions.h)
+};
+
+/// Of directional and hybrid.
+struct LinkSettings {
+    DirectionSet directions = DirectionSet::Sobol;
+    Rotation rotation = Rotation::Patch;
+    uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
+    bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
+    // 2, 4: links are followed from one patch of every so many by so many texels of a chart, and their light
+    // is interpolated between these.
+    uint32_t indirectScale = 1;
+    // Links read the mean light over the part of a chart that their direction stands for
+    // (bake/links/footprint.h).
+    bool footprint = false;
+};
+
+/// Memory that bits and links may take for later passes. Without a cache they trace the same rays again.
+struct CacheSettings {
+    enum class Kind { Auto, None, Bits, Links };
+    Kind kind = Kind::Auto; // Auto: bits or links, as the method has them
+    uint64_t bytes = 0;     // at most; 0: a third of the free device memory
+
+    bool keepsBits() const { return kind == Kind::Auto || kind == Kind::Bits; }
+    bool keepsLinks() const { return kind == Kind::Auto || kind == Kind::Links; }
+};
+
+/// Of hybrid: one layer per light (bake/layers/layer_solver.h).
+struct LayerSettings {
+    bool on = false;
+    uint64_t bytes = 0;    // of layers, at most; 0: a third of the free device memory
+    bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
+};
+
+struct SolverSettings {
+    Method method = Method::Pure;
+    LayerSettings layers;
+    PairSettings pairs;
+    LinkSettings links;
+    CacheSettings cache;
+    TransportSettings transport;
+    uint32_t passes = 0; // pair methods: stop after this many; link methods: bounces of each round; 0: by
+                         // error alone
+    double error =
+        0.01; // stop when the remaining error (relRMSE) is below this; 0: by passes and samples alone
+    double batchMs = 20.0; // aim of one submit
+    bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
+};
+
+/// Where a bake stands, and what it has cost.
+struct SolverCounters {
+    uint32_t passes = 0;     // finished; link methods: bounces of all rounds
+    uint32_t samples = 0;    // link methods: directions per patch (with a coarser grid: of that) so far
+    double passFraction = 0; // of the current pass
+    double error = 1.0;      // remaining error, relRMSE; 1 until it can be told
+    double gridError = 0;    // share of it that a coarser grid of directions leaves, however many samples
+    uint64_t rays = 0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both
+                       // ends), or directions and segments traced
+    uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered
+    uint64_t linksRead = 0;                     // of layers: a link is read once for all that bounce together
+    double traceSeconds = 0, gatherSeconds = 0; // GPU timestamps; on the CPU tracer wall time for the first
+    double seconds = 0;                         // inside step()
+    bool converged = false;  // error below the aim (else the number of passes or samples ended it)
+    uint64_t cacheBytes = 0; // memory that bits or links are kept in
+    double cachedShare = 0;  // of the pairs or links of a pass
+    uint64_t raysSaved = 0;  // that a later pass found in the cache
+};
+struct SolverProgress : SolverCounters {
+    std::vector<double> passSeconds; // inside step(), of each finished pass
+};
+
+/// Where a solver stands between two steps, as plain data. With what stateParts() hold it is all that a
+/// solver needs to go on as if it had never stopped. Bits and links are not among it: they are traced again.
+struct SolverState {
+    SolverCounters counters;
+    std::vector<double> passSeconds;
+    std::vector<uint8_t> own; // the solver's own struct, byte by byte
+};
+
+/// One of the arrays that belong to a state. They may take gigabytes, so they are read and written piece by
+/// piece, where they are.
+struct StatePart {
+    uint64_t bytes = 0;
+    std::function<void(void* to, uint64_t offset, uint64_t size)> read;
+    std::function<void(const void* from, uint64_t offset, uint64_t size)> write;
+};
+
+/// What can be shown between two steps.
+struct LiveLight {
+    const vk::Buffer* light = nullptr; // vec4 per patch, on the device: lighting, w means nothing
+    uint64_t version = 0;              // changes when the light does
+    // The light has all bounces, so that it is at most some percent dimmer than the result will be. Before,
+    // it is what there is: direct light as it arrives, then bounce by bounce. Stays true.
+    bool complete = false;
+    std::vector<ChunkRange> changed; // since the call before, merged()
+};
+
+/// Progressive radiosity, resumable: each step() does one batch. Neither batch sizes nor timing change a byte
+/// of the result.
+class Solver {
+public:
+    static constexpr uint32_t kMaxPasses = 256;
+
+    virtual ~Solver() = default;
+    bool done() const { return done_; }
+    /// One batch, waited for. Call until done(). Throws Error on device loss.
+    virtual void step() = 0;
+    const SolverProgress& progress() const { return progress_; }
+    /// progress().rays and those of the current pass; may ask the device.
+    virtual uint64_t raysSoFar() { return progress_.rays; }
+    /// From the next step on.
+    void setBatchMs(double ms) { batchMs_ = ms; }
+    /// Patches in chunks that are not 0 (one per chunk; empty: none) come first wherever the order is free:
+    /// within a bounce of link methods, which changes no byte, and in rows of super-blocks of pair methods
+    /// that have not begun, where sums then agree to 1e-5.
+    virtual void setPriority(std::vector<uint8_t> chunkSeen) = 0;
+    /// Whether the next step() begins a pass (link methods: a round), or nothing is left.
+    virtual bool passBoundary() const = 0;
+    /// Forgets the pass that has begun: what follows has the bytes of an undisturbed bake. counters keep what
+    /// it has cost. Right after a restore() within a pass that adds to sums, that pass is done to its end
+    /// instead.
+    virtual void abortPass() = 0;
+    /// Needs SolverSettings::live. Its buffer holds until the next step(), restore() or abortPass(). Asking
+    /// changes no byte of the result.
+    virtual LiveLight liveLight() = 0;
+    /// Light of the last finished pass (link methods: round) for display and output, one vec4 per patch.
+    /// Looking at it in between changes no byte of the result.
+    virtual const std::vector<glm::vec4>& light() = 0;
+    /// How far each patch's light may still be off, one number per patch in light()'s unit; empty when that
+    /// cannot be told yet.
+    virtual std::vector<float> errors() = 0;
+
+    /// Not once it is done().
+    virtual SolverState state() = 0;
+    /// In the solver's own order; as long as no step() is made.
+    virtual std::vector<StatePart> stateParts() = 0;
+    /// Goes on from a state of a solver with the same input and settings; batches and caches may differ. The
+    /// parts are to be written before. Throws Error when the state is not this kind of solver's.
+    virtual void restore(const SolverState& state) = 0;
+
+protected:
+    /// What may be missing of the mean light of what is called complete, as Settling tells it: ratios of the
+    /// first bounces are too small, so that it is up to twice as much, which one does not see come.
+    static constexpr double kMostDimmer = 0.01;
+
+    /// The state with a solver's own plain struct, and back.
+    template<typename Own>
+    SolverState makeState(const Own& own) const {
+        static_assert(std::is_trivially_copyable_v<Own>);
+        const auto* bytes = reinterpret_cast<const uint8_t*>(&own);
+        return {progress_, progress_.passSeconds, {bytes, bytes + sizeof(own)}};
+    }
+    template<typename Own>
+    Own takeState(const SolverState& state) {
+        Own own;
+        takeState(state, &own, sizeof(own));
+        return own;
+    }
+    static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
+    static StatePart part(ChunkOrder& order);
+    /// Of vec4 per patch.
+    static void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
+                           const std::vector<ChunkRange>& ranges);
+
+    bool done_ = false;
+    double batchMs_ = 20.0; // aim of one submit
+    SolverProgress progress_;
+
+private:
+    void takeState(const SolverState& state, void* own, size_t size);
+};
+
+/// What a solver works on; all must outlive it.
+struct SolverInput {
+    const vk::Device& device;
+    const Scene& scene;
+    const PatchSet& patches;
+    LightBuffers& light; // ligIn and ligOut are set to the starting light
+    Tracer& tracer;
+};
+
+} // namespace relume

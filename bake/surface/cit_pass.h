@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "assets/atlas/world_mesh.h"
+#include "bake/surface/texture_group.h"
+#include "bake/vk/device.h"
+
+namespace relume {
+
+/// The CIT pass of meshes that share materials: program and textures stay from one drawing to the next.
+class CitPass {
+public:
+    /// Of the materials that the mesh has. The device must outlive it. Throws Error.
+    CitPass(const vk::Device& device, const Scene& scene, const WorldMesh& mesh);
+    ~CitPass();
+
+    /// Whether this mesh has just these materials.
+    bool serves(const WorldMesh& mesh) const;
+    /// As rasterizeTextureGroup(). Factors of materials may be others than before, their textures not.
+    TextureGroup draw(const Scene& scene, const WorldMesh& mesh, const CitDesc& desc);
+    /// On the device, of textures.
+    uint64_t bytes() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Draws the mesh into its lightmap; the triangle drawn last wins. A window's texels are those of the whole
+/// lightmap. Throws Error.
+TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
+                                   const CitDesc& desc);
+
+} // namespace relume

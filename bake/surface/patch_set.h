@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/base/shader_types.h"
+#include "bake/surface/trace_scene.h"
+
+namespace relume {
+
+constexpr uint32_t kTileTexels = 8; // along an edge
+/// The largest edge of a lightmap [texels]: texels are numbered by 24 bits in Patch::flags.
+constexpr uint32_t kMaxLightmapSize = 4096;
+
+/// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
+/// one entry per patch, padding included. Patches of
+/// objects that were hidden later are as padding. Besides one patch per covered texel there is one for each
+/// chart that covers no texel centre, and one for the back of every texel of a double-sided emitter (flag
+/// kPatchBackSide); neither is in scene.texelToPatch.
+struct PatchSet {
+    TraceScene scene;
+    std::vector<shader::PatchEdges> edges;
+    std::vector<shader::ChunkBounds> bounds;               // per chunk
+    std::vector<glm::vec4> albedo;                         // a unused
+    std::vector<glm::vec4> emission;                       // [cd/m^2], a unused
+    std::vector<glm::vec4> albedoPattern, emissionPattern; // the same for factors of 1
+    std::vector<uint32_t> material; // into Scene::materials; materials.size(): the default one
+    std::vector<uint32_t> instance; // into Scene::instances; of padding instances.size()
+    float maxAlbedo = 1.0f;         // that albedo is clamped to
+    uint32_t count = 0;             // patches without padding
+    uint32_t clampedAlbedo = 0;     // patches whose albedo times reflectivity was above 0.98
+
+    uint32_t chunkCount() const { return scene.chunkCount(); }
+};
+
+} // namespace relume

@@ -1,0 +1,404 @@
+#include "bake/surface/patches.h"
+
+#include "assets/base/error.h"
+#include "assets/base/watch.h"
+#include "assets/images/float_image.h"
+#include "bake/surface/patch_material.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kNoPatch;
+
+constexpr float kMaxAlbedo = 0.98f; // times the reflectivity: above, the iteration hardly ends
+constexpr float kOffset = 1e-4f;    // of a texel's size, along the normal
+constexpr float kFloatError =
+    8.0f * 0.5f * std::numeric_limits<float>::epsilon(); // of a coordinate after interpolation
+// A chart's texels are scaled to the area of its triangles, but never up by more than this: a chart two
+// texels wide may catch one centre in each direction; where more is missing another chart was drawn over it.
+constexpr float kMaxAreaCorrection = 4.0f;
+
+// What is told of building patches, after so many triangles each.
+constexpr const char* kPatchesPhase = "patches";
+constexpr unsigned kPatchesOften = 4096;
+
+// The affine map from the lightmap to the world that a triangle defines.
+struct TriangleFrame {
+    glm::vec3 normal{0.0f};       // geometric, unit
+    glm::vec3 du{0.0f}, dv{0.0f}; // [m] per texel; zero where the UVs are degenerate
+    float area = 0.0f;            // [m^2]
+};
+
+TriangleFrame triangleFrame(const WorldMesh& mesh, uint32_t triangle, uint32_t size) {
+    const glm::vec3* p = &mesh.positions[size_t{triangle} * 3];
+    const glm::vec2* t = &mesh.lightmapUv[size_t{triangle} * 3];
+    const glm::dvec3 e1(glm::dvec3(p[1]) - glm::dvec3(p[0])), e2(glm::dvec3(p[2]) - glm::dvec3(p[0]));
+    const glm::dvec2 f1(glm::dvec2(t[1]) - glm::dvec2(t[0])), f2(glm::dvec2(t[2]) - glm::dvec2(t[0]));
+    const glm::dvec3 n = glm::cross(e1, e2);
+    TriangleFrame frame;
+    frame.area = static_cast<float>(0.5 * glm::length(n));
+    frame.normal = glm::vec3(glm::normalize(n));
+    const double det = (f1.x * f2.y - f1.y * f2.x) * size;
+    if (std::abs(det) > 0.0) {
+        frame.du = glm::vec3((e1 * f2.y - e2 * f1.y) / det);
+        frame.dv = glm::vec3((e2 * f1.x - e1 * f2.x) / det);
+    }
+    return frame;
+}
+
+// Everything about one patch, before it is put into its place.
+struct NewPatch {
+    shader::Patch patch{};
+    shader::PatchEdges edges{};
+    glm::vec4 albedo{0.0f}, emission{0.0f}; // for factors of 1
+    uint32_t chart = kNoChart, material = 0, instance = 0;
+};
+
+struct ThinChart {
+    uint32_t triangle = 0; // its largest one
+    float area = 0.0f;     // [m^2], of the whole chart
+};
+
+class PatchBuilder {
+public:
+    PatchBuilder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part) {
+        if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
+        materials_.emplace_back(); // glTF's default material
+        set_.scene.mesh = std::move(mesh);
+        set_.scene.size = group.size;
+        set_.scene.rtrad = desc.rtrad;
+        const WorldMesh& m = set_.scene.mesh;
+        frames_.reserve(m.triangleCount());
+        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step())
+            frames_.push_back(triangleFrame(m, t, group.size));
+        surveyCharts();
+    }
+
+    PatchSet build() {
+        const TexelWindow& w = group_.window;
+        ASSERT(w.column % kTileTexels == 0 && w.row % kTileTexels == 0);
+        set_.scene.texelToPatch.assign(w.size(), kNoPatch);
+        WatchedLoop loop(kPatchesPhase, (w.rows + kTileTexels - 1) / kTileTexels);
+        for (uint32_t y = w.row; y < w.row + w.rows; y += kTileTexels, loop.step())
+            for (uint32_t x = w.column; x < w.column + w.columns; x += kTileTexels)
+                addTile(x, y);
+        set_.count = static_cast<uint32_t>(set_.scene.patches.size());
+        if (set_.count == 0 && !part_) {
+            throw Error(
+                "the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or pass --unwrap");
+        }
+        NewPatch padding;
+        padding.instance = static_cast<uint32_t>(scene_.instances.size());
+        while (set_.scene.patches.size() % kChunk != 0)
+            add(padding);
+        tellWatch(kPatchesPhase);
+        applyMaterials(set_, scene_.materials);
+        tellWatch(kPatchesPhase);
+        addBounds();
+        addHitTriangles();
+        addAlpha(); // after the hit triangles
+        return std::move(set_);
+    }
+
+private:
+    // How much each chart's texels must be scaled to have its area, and which charts no texel centre hits.
+    void surveyCharts() {
+        const WorldMesh& m = set_.scene.mesh;
+        std::vector<double> area(m.chartCount, 0.0), texels(m.chartCount, 0.0);
+        std::vector<uint32_t> largest(m.chartCount, kNoPatch);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t) {
+            const uint32_t chart = m.chart[t];
+            // Of a masked chart the holes are no patches, and how much is hole only its texels tell.
+            if (chart == kNoChart || (!rtrad_ && t >= m.opaqueCount)) continue;
+            area[chart] += frames_[t].area;
+            if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
+                largest[chart] = t;
+        }
+        for (uint32_t id : group_.triangle) {
+            if (id == 0 || m.chart[id - 1] == kNoChart) continue;
+            texels[m.chart[id - 1]] += glm::length(glm::cross(frames_[id - 1].du, frames_[id - 1].dv));
+        }
+        areaScale_.assign(m.chartCount, 1.0f);
+        thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
+        for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
+            if (texels[chart] > 0.0 && area[chart] > 0.0) {
+                const auto scale = static_cast<float>(area[chart] / texels[chart]);
+                if (!rtrad_) areaScale_[chart] = std::min(scale, kMaxAreaCorrection);
+            } else if (!rtrad_ && largest[chart] != kNoPatch) {
+                const glm::uvec2 texel = texelOf(centroidUv(largest[chart]));
+                if (group_.window.has(texel.x, texel.y))
+                    thin_[tileOf(texel.x, texel.y)].push_back(
+                        {largest[chart], static_cast<float>(area[chart])});
+            }
+        }
+        chartPatches_.resize(m.chartCount);
+    }
+
+    // Among the window's.
+    uint32_t tileColumns() const { return (group_.window.columns + kTileTexels - 1) / kTileTexels; }
+    size_t tileOf(uint32_t x, uint32_t y) const {
+        const TexelWindow& w = group_.window;
+        return size_t{(y - w.row) / kTileTexels} * tileColumns() + (x - w.column) / kTileTexels;
+    }
+
+    glm::vec2 centroidUv(uint32_t triangle) const {
+        const glm::vec2* t = &set_.scene.mesh.lightmapUv[size_t{triangle} * 3];
+        return (t[0] + t[1] + t[2]) / 3.0f;
+    }
+    glm::uvec2 texelOf(glm::vec2 uv) const {
+        const glm::vec2 p = glm::clamp(glm::floor(uv * static_cast<float>(group_.size)), glm::vec2(0.0f),
+                                       glm::vec2(static_cast<float>(group_.size - 1)));
+        return glm::uvec2(p);
+    }
+
+    void add(const NewPatch& p) {
+        set_.scene.patches.push_back(p.patch);
+        set_.scene.patchChart.push_back(p.chart);
+        set_.edges.push_back(p.edges);
+        set_.albedoPattern.push_back(p.albedo);
+        set_.emissionPattern.push_back(p.emission);
+        set_.material.push_back(p.material);
+        set_.instance.push_back(p.instance);
+    }
+
+    // The tile that begins there.
+    void addTile(uint32_t firstX, uint32_t firstY) {
+        const TexelWindow& w = group_.window;
+        std::vector<NewPatch> backs;
+        for (uint32_t y = firstY; y < std::min(w.row + w.rows, firstY + kTileTexels); ++y) {
+            for (uint32_t x = firstX; x < std::min(w.column + w.columns, firstX + kTileTexels); ++x) {
+                const uint32_t id = group_.triangle[w.index(x, y)];
+                if (id == 0 || set_.scene.mesh.chart[id - 1] == kNoChart) continue;
+                const NewPatch p = texelPatch({x, y}, id - 1);
+                const auto index = static_cast<uint32_t>(set_.scene.patches.size());
+                set_.scene.texelToPatch[w.index(x, y)] = index;
+                chartPatches_[p.chart].push_back(index);
+                add(p);
+                addBack(p, id - 1, backs);
+            }
+        }
+        for (const ThinChart& thin : thin_[tileOf(firstX, firstY)]) {
+            const NewPatch p = thinPatch(thin);
+            chartPatches_[p.chart].push_back(static_cast<uint32_t>(set_.scene.patches.size()));
+            add(p);
+            addBack(p, thin.triangle, backs);
+        }
+        for (const NewPatch& back : backs)
+            add(back);
+    }
+
+    NewPatch texelPatch(glm::uvec2 texel, uint32_t triangle) {
+        const size_t at = group_.window.index(texel.x, texel.y);
+        const TriangleFrame& frame = frames_[triangle];
+        NewPatch p;
+        p.chart = set_.scene.mesh.chart[triangle];
+        const float scale = areaScale_[p.chart];
+        p.edges = {frame.du * std::sqrt(scale), frame.dv * std::sqrt(scale)};
+        fill(p, glm::vec3(group_.pos[at]), glm::vec3(group_.nrm[at]), frame.normal,
+             glm::length(glm::cross(frame.du, frame.dv)) * scale, texel.y * group_.size + texel.x);
+        p.albedo = group_.mat[at];
+        p.emission = group_.emission[at];
+        p.material = set_.scene.mesh.material[triangle];
+        p.instance = set_.scene.mesh.instance[triangle];
+        return p;
+    }
+
+    // A chart that covers no texel centre: one patch at the centroid of its largest triangle with the whole
+    // chart's area and the colour in its middle.
+    NewPatch thinPatch(const ThinChart& thin) {
+        const WorldMesh& m = set_.scene.mesh;
+        const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
+        const glm::vec3* n = &m.normals[size_t{thin.triangle} * 3];
+        const glm::vec3 normal = frames_[thin.triangle].normal;
+        const glm::vec3 side = glm::normalize(p[1] - p[0]) * std::sqrt(thin.area);
+        const glm::uvec2 texel = texelOf(centroidUv(thin.triangle));
+        NewPatch result;
+        result.chart = m.chart[thin.triangle];
+        result.edges = {side, glm::cross(normal, side)};
+        fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
+             texel.y * group_.size + texel.x);
+        result.patch.flags |= shader::kPatchThin;
+        result.material = m.material[thin.triangle];
+        result.instance = m.instance[thin.triangle];
+        const Material& material = materials_[result.material];
+        const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
+        const glm::vec4 surface =
+            textureAt(material.metallicRoughnessTexture, m.metallicUv, thin.triangle, false);
+        const float metallic = material.metallic * surface.b, roughness = material.roughness * surface.g;
+        const float diffuse = 1.0f - metallic + 0.5f * metallic * roughness * roughness;
+        const glm::vec4 base = textureAt(material.baseColorTexture, m.baseUv, thin.triangle, true);
+        result.albedo = color * base * diffuse;
+        result.emission = textureAt(material.emissionTexture, m.emissionUv, thin.triangle, true);
+        return result;
+    }
+
+    // The texel in the middle of a triangle, repeated beyond the edges; white without a texture.
+    glm::vec4 textureAt(const TextureRef& ref, const std::vector<glm::vec2>& uvs, uint32_t triangle,
+                        bool srgb) const {
+        if (ref.texture < 0) return glm::vec4(1.0f);
+        const int index = scene_.textures[static_cast<size_t>(ref.texture)].image;
+        const Image& image = scene_.images[static_cast<size_t>(index)];
+        const glm::vec2* corner = &uvs[size_t{triangle} * 3];
+        const glm::vec2 uv = glm::fract((corner[0] + corner[1] + corner[2]) / 3.0f);
+        const auto x =
+            std::min(image.width - 1, static_cast<uint32_t>(uv.x * static_cast<float>(image.width)));
+        const auto y =
+            std::min(image.height - 1, static_cast<uint32_t>(uv.y * static_cast<float>(image.height)));
+        glm::vec4 value;
+        for (int k = 0; k < 4; ++k) {
+            const float v =
+                static_cast<float>(image.rgba[(size_t{y} * image.width + x) * 4 + static_cast<size_t>(k)]) /
+                255.0f;
+            value[k] = srgb && k < 3 ? static_cast<float>(linearFromSrgb(v)) : v;
+        }
+        return value;
+    }
+
+    void fill(NewPatch& p, glm::vec3 position, glm::vec3 shading, glm::vec3 normal, float area,
+              uint32_t texel) const {
+        // Shading normals may be missing or point behind the surface; then the geometric one serves.
+        const float length = glm::length(shading);
+        shading = length > 0.0f ? shading / length : normal;
+        if (!rtrad_ && glm::dot(shading, normal) <= 0.0f) shading = normal;
+        const float reach = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+        p.patch.position = position;
+        p.patch.normal = rtrad_ ? shading : normal;
+        p.patch.shading = shading;
+        p.patch.area = area;
+        p.patch.offset = rtrad_ ? 0.0f : kOffset * std::sqrt(area) + kFloatError * reach;
+        p.patch.flags = shader::kPatchSends | texel << 8;
+    }
+
+    void addBack(const NewPatch& front, uint32_t triangle, std::vector<NewPatch>& backs) const {
+        const Material& material = materials_[set_.scene.mesh.material[triangle]];
+        const glm::vec3 emission = material.emission * glm::vec3(front.emission);
+        const bool emits = emission.r > 0.0f || emission.g > 0.0f || emission.b > 0.0f;
+        if (rtrad_ || !material.doubleSided || !emits) return;
+        NewPatch back = front;
+        back.patch.normal = back.patch.shading = -front.patch.normal;
+        back.patch.flags |= shader::kPatchBackSide;
+        back.albedo = glm::vec4(0.0f);
+        back.chart = kNoChart;
+        backs.push_back(back);
+    }
+
+    void addBounds() {
+        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk)
+            set_.bounds.push_back(chunkBounds(set_, chunk));
+    }
+
+    void addHitTriangles() {
+        const WorldMesh& m = set_.scene.mesh;
+        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
+        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step()) {
+            const glm::vec2* uv = &m.lightmapUv[size_t{t} * 3];
+            set_.scene.hitTriangles.push_back({uv[0], uv[1], uv[2], m.chart[t], representative(t),
+                                               frames_[t].normal, materials_[m.material[t]].doubleSided});
+        }
+    }
+
+    // The patch of the triangle's chart nearest to its centre, among those within a few texels, else any of
+    // the chart.
+    uint32_t representative(uint32_t triangle) const {
+        constexpr int kReach = 4; // texels
+        const uint32_t chart = set_.scene.mesh.chart[triangle];
+        if (chart == kNoChart || chartPatches_[chart].empty()) return kNoPatch;
+        const glm::vec2 uv = centroidUv(triangle);
+        const glm::vec2 centre = uv * static_cast<float>(group_.size);
+        const auto texel = glm::ivec2(texelOf(uv));
+        const glm::ivec2 first(group_.window.column, group_.window.row);
+        const glm::ivec2 last = first + glm::ivec2(group_.window.columns, group_.window.rows) - 1;
+        const glm::ivec2 from = glm::max(first, texel - kReach), to = glm::min(last, texel + kReach);
+        uint32_t best = kNoPatch;
+        float bestDistance = std::numeric_limits<float>::max();
+        for (int y = from.y; y <= to.y; ++y) {
+            for (int x = from.x; x <= to.x; ++x) {
+                const uint32_t p = set_.scene.texelToPatch[group_.window.index(static_cast<uint32_t>(x),
+                                                                               static_cast<uint32_t>(y))];
+                if (p == kNoPatch || set_.scene.patchChart[p] != chart) continue;
+                const glm::vec2 d = glm::vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f - centre;
+                if (glm::dot(d, d) < bestDistance) {
+                    bestDistance = glm::dot(d, d);
+                    best = p;
+                }
+            }
+        }
+        return best != kNoPatch ? best : chartPatches_[chart][chartPatches_[chart].size() / 2];
+    }
+
+    void addAlpha() {
+        const WorldMesh& m = set_.scene.mesh;
+        constexpr uint32_t kUnused = 0xffffffffu;
+        std::vector<uint32_t> index(materials_.size(), kUnused);
+        for (uint32_t t = m.opaqueCount; t < m.triangleCount(); ++t) {
+            const uint32_t material = m.material[t];
+            if (index[material] == kUnused) {
+                index[material] = static_cast<uint32_t>(set_.scene.alphaMaterials.size());
+                set_.scene.alphaMaterials.push_back(alphaMaterial(materials_[material]));
+            }
+            const glm::vec2* uv = &m.baseUv[size_t{t} * 3];
+            const glm::vec4* c = &m.colors[size_t{t} * 3];
+            set_.scene.alphaTriangles.push_back(
+                {uv[0], uv[1], uv[2], c[0].a, c[1].a, c[2].a, index[material]});
+        }
+    }
+    shader::AlphaMaterial alphaMaterial(const Material& material) {
+        shader::AlphaMaterial result{material.baseColor.a, material.alphaCutoff, 0xffffffffu, 0, 0, 0, 0};
+        if (material.baseColorTexture.texture < 0) return result;
+        const Texture& texture = scene_.textures[static_cast<size_t>(material.baseColorTexture.texture)];
+        const Image& image = scene_.images[static_cast<size_t>(texture.image)];
+        result.texels = static_cast<uint32_t>(set_.scene.alphaTexels.size());
+        result.width = image.width;
+        result.height = image.height;
+        result.wrapS = static_cast<uint32_t>(texture.wrapS);
+        result.wrapT = static_cast<uint32_t>(texture.wrapT);
+        for (size_t i = 3; i < image.rgba.size(); i += 4)
+            set_.scene.alphaTexels.push_back(image.rgba[i]);
+        return result;
+    }
+
+    const Scene& scene_;
+    std::vector<Material> materials_;
+    const TextureGroup& group_;
+    const bool rtrad_, part_;
+    PatchSet set_;
+    std::vector<TriangleFrame> frames_;               // per triangle
+    std::vector<float> areaScale_;                    // per chart
+    std::vector<std::vector<ThinChart>> thin_;        // per tile
+    std::vector<std::vector<uint32_t>> chartPatches_; // per chart
+};
+
+} // namespace
+
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc) {
+    PatchBuilder builder(scene, std::move(mesh), group, desc);
+    return builder.build();
+}
+
+shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk) {
+    shader::ChunkBounds b{glm::vec3(std::numeric_limits<float>::max()),
+                          glm::vec3(std::numeric_limits<float>::lowest()), 0.0f};
+    for (uint32_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, patches.count); ++i) {
+        const shader::Patch& p = patches.scene.patches[i];
+        if (p.flags == 0 && p.area == 0.0f) continue;
+        b.lo = glm::min(b.lo, p.position);
+        b.hi = glm::max(b.hi, p.position);
+        b.size = std::max(b.size, std::sqrt(p.area));
+    }
+    return b;
+}
+
+bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount) {
+    // Half of what a texel just below a floor looks at is the floor's back, the other half nothing at all.
+    constexpr double kLeastBacks = 0.4;
+    return backs >= kLeastBacks * sampleCount && 2 * backs + sky > sampleCount;
+}
+
+} // namespace relume

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bake/base/worker_pool.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/surface/patch_material.h"
+#include "bake/vk/commands.h"
+#include "bake/vk/program.h"
+
+namespace relume {
+
+/// Follows colours and strengths of materials: patches of those that changed are others, and so is the
+/// device's copy. That of the albedo is made there, of 20 bytes per patch: a large material's would take
+/// longer to send.
+class SurfaceColours {
+public:
+    /// materials: those that the patches were made with.
+    explicit SurfaceColours(std::vector<Material> materials);
+    void update(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
+                LightBuffers& light);
+    /// The same of all patches, whose patterns may be others.
+    void updateAll(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
+                   LightBuffers& light);
+
+private:
+    struct Changed {
+        bool albedo = false, emission = false;
+    };
+    std::vector<Changed> changesTo(const std::vector<Material>& materials) const;
+    bool updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
+                     PatchSet& patches, size_t block, int64_t& clamped) const;
+
+    /// What the device needs to follow base colours, from the first update on.
+    struct OnDevice {
+        vk::Buffer materials, pattern, baseColors; // as RecolourPush has them
+        vk::ComputeProgram recolour;
+        vk::Commands commands;
+
+        OnDevice(const vk::Device& device, const PatchSet& patches, size_t materialCount);
+    };
+    void recolour(const vk::Device& device, const std::vector<Material>& materials,
+                  const std::vector<Changed>& changed, const PatchSet& patches, const LightBuffers& light);
+
+    std::vector<Material> applied_;    // and glTF's default material
+    std::unique_ptr<WorkerPool> pool_; // from the first update on
+    std::unique_ptr<OnDevice> onDevice_;
+};
+
+} // namespace relume

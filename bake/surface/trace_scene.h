@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "assets/atlas/world_mesh.h"
+#include "bake/base/shader_types.h"
+
+namespace relume {
+
+/// What every tracer is built from, on the CPU: triangles, patches in tile order and the tables that turn a
+/// hit into a patch. Immutable once built; outlives its tracers.
+struct TraceScene {
+    WorldMesh mesh;
+    uint32_t size = 0;                  // lightmap edge [texels]
+    bool rtrad = false;                 // RTRad's ray intervals (--preset rtrad)
+    std::vector<shader::Patch> patches; // tile order, padded with patches that send nothing to whole chunks
+    std::vector<uint32_t> patchChart;   // per patch; kNoChart for padding and back sides
+    std::vector<uint32_t> texelToPatch; // [size * size], kNoPatch where empty
+    std::vector<shader::HitTriangle> hitTriangles; // per triangle of mesh
+    // Of the masked triangles, in order: triangle t has entry t - mesh.opaqueCount.
+    std::vector<shader::AlphaTriangle> alphaTriangles;
+    std::vector<shader::AlphaMaterial> alphaMaterials;
+    std::vector<uint8_t> alphaTexels; // 8-bit alpha of all masked textures
+
+    uint32_t chunkCount() const { return static_cast<uint32_t>(patches.size() / shader::kChunk); }
+};
+
+} // namespace relume
