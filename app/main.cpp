@@ -27,7 +27,7 @@ int run(int argc, char** argv) {
 
     try {
         std::vector<std::string> arguments = relume::parserArguments({argv + 1, argv + argc}, app);
-        std::reverse(arguments.begin(), arguments.end()); // as this overload takes them
+        std::reverse(arguments.begin(), arguments.end()); // this overload takes them so
         app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
@@ -41,7 +41,7 @@ int run(int argc, char** argv) {
         spdlog::error("{}", relume::outOfMemoryMessage(app));
         return 1;
     } catch (const std::exception& error) {
-        // A library's own word for output that is lost, of which finishOutput() tells.
+        // It may be a library's own message about lost output, of which finishOutput() tells.
         if (!relume::outputFailed()) spdlog::error("unexpected: {}", error.what());
         return 1;
     }

@@ -45,7 +45,7 @@ double EditedBake::restart(const std::vector<Light>& lights, const SolverSetting
     return watch.seconds;
 }
 
-// The layer of the first lamp as it stands now, once the solver has a result for it.
+// Returns the layer of the first lamp as it stands now, or nullptr until the solver has a result for it.
 const Layer* EditedBake::movedLayer() {
     for (const std::unique_ptr<Layer>& layer : solver().layers())
         if (layer->source.key == kMoved && layer->has() &&
@@ -86,7 +86,7 @@ MeasuredMove EditedBake::move(const std::vector<Light>& lights, const MoveRefere
         if (!layer || layer->level == seen) continue;
         seen = layer->level;
         const LiveLight live = watch([&] { return solver().liveLight(); });
-        const PatchLight own = solver().layerLight(*layer); // for a unit of its weight, unlike the reference
+        const PatchLight own = solver().layerLight(*layer); // for a unit of weight, unlike the reference
         const auto all = vk::readBuffer<glm::vec4>(device_, *live.light, patches.scene.patches.size());
         edit.curve.push_back({.seconds = watch.seconds,
                               .layer = compareLight(patches, own, references.lamp, weight).relRmse,
@@ -123,7 +123,7 @@ void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first,
                          std::memcmp(again.data(), first.data(), first.size() * sizeof(first[0])) == 0;
 }
 
-// To the end of an edit by which this member of all patterns is no more what it was.
+// Bakes to the end of an edit after which this member of all cache keys is no more what it was.
 EditedBake::Seen EditedBake::seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch) {
     const auto ready = [&](const std::unique_ptr<Layer>& layer) {
         return layer->pattern.*changed != before && layer->has();

@@ -12,39 +12,42 @@
 
 namespace relume {
 
-/// Steps the solver until it is done: one step at least, by which a solver that was done hears of an edit.
-/// Throws Error on Ctrl-C.
+/// Steps the solver until it is done. It makes at least one step, by which a solver that was done hears of an
+/// edit. Throws Error on Ctrl-C.
 void bakeToEnd(Solver& solver);
 
-/// What a moved lamp's picture is compared with, after the move.
+/// The light that a moved lamp's picture is compared with, after the move.
 struct MoveReferences {
     PatchLight lamp; // its own light
     PatchLight all;
 };
 
-/// A bake in layers whose scene is edited, every edit timed: step(), edit() and liveLight() by the clock. The
-/// first of the scene's lights is the one that moves.
+/// A bake in layers whose scene is edited. Every edit is timed: step(), edit() and liveLight() by the clock.
+/// The first of the scene's lights is the one that moves.
 class EditedBake {
 public:
-    /// The solver is made by restart(). Throws Error.
+    /// Makes the baker, but restart() makes the solver. Throws Error.
     EditedBake(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
 
     const Baker& baker() const { return *baker_; }
     const Scene& scene() const { return scene_; }
     const SolverProgress& progress() { return solver().progress(); }
-    /// Of the first light, for a unit of its weight.
+    /// Returns the first light's layer, for a unit of its weight.
     PatchLight firstLamp();
 
-    /// From nothing to the end, with these lights. Returns how long it took [s]. Throws Error where some of
-    /// them would share a layer.
+    /// Bakes from nothing to the end, with these lights. Returns how long it took [s]. Throws Error where
+    /// some of them would share a layer.
     double restart(const std::vector<Light>& lights, const SolverSettings& settings);
-    /// To lights that differ in intensity and colour alone; how long until there is a picture [s].
+    /// Edits to lights that differ in intensity and colour alone. Returns how long it takes until there is a
+    /// picture [s].
     double weigh(const std::vector<Light>& lights);
-    /// To lights of which the first one has moved; fills in what a move is told of, but for its undo.
+    /// Edits to lights of which the first one has moved. Returns all figures of the move but those of its
+    /// undo.
     MeasuredMove move(const std::vector<Light>& lights, const MoveReferences& references);
-    /// Back to the lights before. `first`: firstLamp() as it was then.
+    /// Goes back to the lights before, and fills in the figures of the undo. `first` is firstLamp() as it was
+    /// then.
     void undo(const std::vector<Light>& lights, const PatchLight& first, MeasuredMove& edit);
-    /// What became of an edit that all layers follow [s].
+    /// The times of an edit that all layers follow [s].
     struct Seen {
         double first = 0;                 // until there is a picture of it, all lights in one
         double all = 0;                   // until all layers have it
@@ -54,10 +57,11 @@ public:
     Seen repaint(uint32_t material, const glm::vec4& baseColor);
 
     struct Replacement {
-        double follow = 0; // for patches, triangles and tracer [s], which counts in what follows
+        double follow = 0; // for patches, triangles and tracer [s]; `seen` has it in its times
         Seen seen;
     };
-    /// Puts an object elsewhere. Nothing: that cannot be followed, and it stays where it is.
+    /// Puts an object elsewhere. Returns nothing where that cannot be followed, and the object stays where it
+    /// is.
     std::optional<Replacement> place(uint32_t instance, const glm::mat4& transform,
                                      const LightmapAtlas& atlas);
     PatchLight light() { return solver().light(); }

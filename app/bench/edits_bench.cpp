@@ -19,16 +19,16 @@
 namespace relume {
 namespace {
 
-// Of the diagonal: what the moved lamp's place differs by from run to run, or its layer of the run before
-// would serve. Far below what an error could show.
+// The moved lamp's place differs by this share of the diagonal from run to run, or its layer of the run
+// before would serve. That is far below what an error could show.
 constexpr float kRunNudge = 1e-5f;
-// Of the memory that is free before anything is baked, for links: up to three bakes are on the device at
-// once.
+// Links get one part in so many of the memory that is free before anything is baked: up to three bakes are on
+// the device at once.
 constexpr uint64_t kCacheShare = 4;
-// Of the diagonal: how far an object is moved.
+// An object is moved by this share of the diagonal.
 constexpr float kObjectWay = 0.05f;
 
-/// The same numbers on every machine, in [0, 1) [O'Neill 2014, PCG].
+/// Makes the same random numbers on every machine, in [0, 1) [O'Neill 2014, PCG].
 class Random {
 public:
     explicit Random(uint64_t seed) : state_(2 * seed + 1) {}
@@ -44,7 +44,7 @@ private:
     uint64_t state_;
 };
 
-// Intensities from a tenth of what they are to twice that, of any colour.
+// Returns the lights with any colour and with intensities from a tenth of theirs to twice theirs.
 std::vector<Light> weighedAtRandom(std::vector<Light> lights, uint32_t seed) {
     Random random(seed);
     random.next(); // which is close to 0 for small seeds
@@ -56,8 +56,8 @@ std::vector<Light> weighedAtRandom(std::vector<Light> lights, uint32_t seed) {
     return lights;
 }
 
-// The material of which there is most; black ones would stay black. Nothing: there is none but glTF's default
-// one.
+// Returns the material with the largest area that is not black, which would stay black, or nothing where
+// there is none but glTF's default one.
 std::optional<uint32_t> largestMaterial(const WorldMesh& mesh, const Scene& scene) {
     std::vector<double> areas(scene.materials.size() + 1, 0.0);
     for (uint32_t t = 0; t < mesh.triangleCount(); ++t) {
@@ -73,8 +73,8 @@ std::optional<uint32_t> largestMaterial(const WorldMesh& mesh, const Scene& scen
     return most;
 }
 
-// The object whose number of triangles is nearest to a hundredth of all, and its share. Nothing: there is but
-// one object.
+// Returns the object whose number of triangles is nearest to a hundredth of all, and its share, or nothing
+// where there is only one object.
 std::optional<std::pair<uint32_t, double>> smallObject(const WorldMesh& mesh, const Scene& scene) {
     constexpr double kWanted = 0.01, kMost = 0.5;
     std::vector<double> triangles(scene.instances.size(), 0.0);
@@ -96,7 +96,7 @@ T medianOf(const std::vector<Run>& runs, T Run::*member) {
     return median(std::move(values));
 }
 
-// The run in the middle by its time to the end: errors and curve are its own.
+// Returns the run in the middle by its time to the end, whose errors and curve are its own.
 template<typename Run>
 Run middleOf(const std::vector<Run>& runs) {
     const double seconds = medianOf(runs, &Run::seconds);
@@ -107,7 +107,7 @@ Run middleOf(const std::vector<Run>& runs) {
     return middle;
 }
 
-/// Links gathered per second of what gathers them.
+/// Measures the links gathered per second of gathering, over the edits that are added.
 class GatherRate {
 public:
     void add(const SolverCounters& before, const SolverCounters& after) {
@@ -120,7 +120,7 @@ private:
     double links_ = 0, seconds_ = 0;
 };
 
-// Lamps alone, unless the scene's own light is wanted; lights of the file come later.
+// Prepares the scene, with lamps alone unless the scene's own light is wanted; lights of the file come later.
 PreparedScene prepare(const EditsBenchDesc& desc) {
     PreparedScene prepared = prepareScene({.path = desc.scene, .size = desc.size});
     if (!desc.onlyLamps) return prepared;
@@ -203,7 +203,7 @@ private:
         return settings;
     }
 
-    // For other programs to bake.
+    // Writes the scene, for other programs to bake.
     void writeScene() const {
         const Scene before = loadGltf(desc_.scene);
         Scene after = edited_.scene();
@@ -212,7 +212,7 @@ private:
         spdlog::info("wrote {}", desc_.sceneOutput);
     }
 
-    // The first one is always the same.
+    // Returns so many lights, of which the first one is always the same.
     std::vector<Light> lightsOf(uint32_t lamps) const {
         const size_t own = std::min<size_t>(fileLights_.size(), lamps - 1);
         std::vector<Light> lights;
@@ -303,7 +303,7 @@ private:
         std::vector<double> first, all;
         GatherRate rate;
         for (uint32_t run = 0; run < desc_.runs; ++run) {
-            // Another colour in each run, or the layers of the run before would serve.
+            // Each run has another colour, or the layers of the run before would serve.
             const float factor = 0.8f - 0.4f * static_cast<float>(run) / static_cast<float>(desc_.runs);
             const SolverCounters before = edited_.progress();
             const EditedBake::Seen times =
@@ -321,7 +321,7 @@ private:
         return edit;
     }
 
-    // There and back again; places differ from run to run as those of a moved lamp do.
+    // Moves an object there and back again. Places differ from run to run as those of a moved lamp do.
     std::optional<MeasuredObject> measureObject(const std::vector<Light>& lights) {
         const Scene& scene = edited_.scene();
         const auto object = smallObject(edited_.baker().patches().scene.mesh, scene);
@@ -352,7 +352,7 @@ private:
         return edit;
     }
 
-    // The scene as it is edited now, from nothing.
+    // Bakes the scene as it is edited now, from nothing.
     void measureFreshObject(const std::vector<Light>& lights, MeasuredObject& edit) {
         Stopwatch watch;
         EditedBake fresh = watch([&] {

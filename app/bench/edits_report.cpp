@@ -19,7 +19,7 @@ Json number(const Optional& value) {
     return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
-// How many times faster; nothing where either is missing.
+// Returns how many times faster it is, or nothing where either is missing.
 Optional ratio(const Optional& slow, const Optional& fast) {
     if (!slow || !fast || *fast <= 0) return {};
     return *slow / *fast;
@@ -199,7 +199,7 @@ std::vector<ReportRow> rows() {
     return all;
 }
 
-// Over the points that have one.
+// Returns the error over time, from the points that have one.
 PlotSeries seriesOf(const char* name, int colour, const std::vector<EditErrorPoint>& curve, bool ofLayer) {
     PlotSeries series{.name = name, .colour = colour, .dash = ofLayer ? 1 : 0};
     for (const EditErrorPoint& p : curve) {

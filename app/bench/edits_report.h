@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// How far a bake was off after so much time. Errors are relRMSE against references.
+/// How far a bake was off after some time. Errors are relRMSE against references.
 struct EditErrorPoint {
     double seconds = 0;
     std::optional<double> layer; // of the moved lamp's own light
@@ -19,16 +19,16 @@ struct EditErrorPoint {
     std::optional<double> told;  // what the solver says of the layer
 };
 
-/// Of all lamps: intensity and colour.
+/// The figures of an edit of all lamps' intensity and colour.
 struct MeasuredWeights {
     double seconds = 0;           // until there is a picture
     uint64_t rays = 0, links = 0; // traced, gathered
-    // The sum of layers against fresh bakes with these weights and as many samples: the largest difference,
-    // relative to the mean light.
+    // These compare the sum of layers with fresh bakes with these weights and as many samples: the largest
+    // difference, relative to the mean light.
     double maximumOfLayers = 0, maximumOfHybrid = 0;
 };
 
-/// Of the first lamp.
+/// The figures of a move of the first lamp.
 struct MeasuredMove {
     double firstSeconds = 0; // until there is a picture with its new layer
     double firstLayerError = 0, firstCompositeError = 0;
@@ -41,7 +41,7 @@ struct MeasuredMove {
     std::vector<EditErrorPoint> curve;
 };
 
-/// A bake of the edited scene that starts from nothing.
+/// The figures of a bake of the edited scene that starts from nothing.
 struct FreshBake {
     std::optional<double> seconds5, seconds2; // until the composite's error is below 5, 2 %
     double seconds = 0;                       // until the solver says that the error is reached
@@ -50,7 +50,7 @@ struct FreshBake {
     std::vector<EditErrorPoint> curve;
 };
 
-/// Of the base colour of the material with the largest area.
+/// The figures of an edit of the base colour of the material with the largest area.
 struct MeasuredAlbedo {
     std::string material;
     double firstSeconds = 0;          // until there is a picture of it, all lights in one
@@ -59,11 +59,12 @@ struct MeasuredAlbedo {
     uint64_t rays = 0;
 };
 
-/// Of an object with about a hundredth of the triangles, by a twentieth of the diagonal.
+/// The figures of a move of an object with about a hundredth of the triangles, by a twentieth of the
+/// diagonal.
 struct MeasuredObject {
     std::string object;
     double share = 0;                 // of the triangles
-    double followSeconds = 0;         // for patches, triangles and tracer, which counts in what follows
+    double followSeconds = 0;         // for patches, triangles and tracer; the times below include it
     double firstSeconds = 0;          // until there is a picture of it, all lights in one
     std::optional<double> firstError; // its relRMSE against the picture of all layers
     double seconds = 0;               // until all layers have the error that they had
@@ -81,7 +82,7 @@ struct LinkFigures {
     double perSecondAlbedo = 0;
 };
 
-/// Medians over runs, with so many lamps.
+/// The medians over runs, with so many lamps.
 struct EditsRun {
     uint32_t lamps = 0;
     double firstBakeSeconds = 0;
@@ -103,19 +104,20 @@ struct EditsReport {
 };
 
 double median(std::vector<double> values); // of the middle two the lower one; 0 for none
-/// Of all, or nothing where one is missing.
+/// Returns the median of all, or nothing where one is missing.
 std::optional<double> median(const std::vector<std::optional<double>>& values);
-/// When the error first was below `aim`; by the layer's own error, or by the composite's.
+/// Returns when the error first was below `aim`: the layer's own error, or the composite's.
 std::optional<double> secondsTo(const std::vector<EditErrorPoint>& curve, double aim, bool ofLayer);
 
-/// The largest of the counts' times to the first picture after a move over the smallest; 1 for one count.
+/// Returns the largest of the counts' times to the first picture after a move over the smallest; 1 for one
+/// count.
 double flatness(const EditsReport& report);
 
-/// What is missing is null.
+/// Returns the report as JSON. What is missing is null.
 nlohmann::ordered_json editsJson(const EditsReport& report);
-/// For a terminal: a line per figure, a column per number of lamps.
+/// Returns a table for a terminal, with a line per figure and a column per number of lamps.
 std::string editsTable(const EditsReport& report);
-/// Error over time after the move with the most lamps, ours and both fresh bakes.
+/// Returns a plot of error over time after the move with the most lamps, for our bake and both fresh ones.
 PlotDesc editsPlot(const EditsReport& report);
 
 } // namespace relume

@@ -20,10 +20,10 @@ namespace relume {
 namespace {
 
 constexpr float kTurn = 0.01f; // [rad] of the camera per frame
-// Until the bake has drawn its first solution.
+// The bake's first solution must be there after so long.
 constexpr double kPatience = 300; // [s]
 
-/// A viewer's loop without its window.
+/// The loop of a viewer without its window.
 class Loop {
 public:
     Loop(const FramesBenchDesc& desc, const PreparedScene& scene, LiveBake& bake)
@@ -43,14 +43,14 @@ public:
         const BakeStatus status = bake_.status();
         if (status.phase == BakeStatus::Phase::Failed) throw Error(status.doing);
         rays_.see(status.beginnings, status.rays);
-        // Once for each bake: until the order is taken the status is that of before.
+        // Once for each bake: until the command is taken, the status is that of before.
         if (status.phase != BakeStatus::Phase::Done || ended_ == status.beginnings) return;
         ended_ = status.beginnings;
         bake_.reset();
     }
     bool complete() const { return bridge_.map() != nullptr && bridge_.map()->complete; }
 
-    /// One frame with the camera moved on; how long it took [ms].
+    /// Draws one frame, for which the camera moves on if asked to. Returns how long it took [ms].
     double frame(bool moves) {
         if (moves) camera_ = look(camera_, kTurn, 0.0f);
         const auto start = Clock::now();
@@ -165,7 +165,7 @@ double percentile(std::vector<double> values, double share) {
 
 FramesReport measureFrames(const FramesBenchDesc& desc) {
     BakeRequest request = resolveBakeOptions(desc.bake);
-    // It goes on for as long as it can, as in a viewer that was asked for an error that no one reaches.
+    // The bake goes on for as long as it can, as in a viewer that was asked for an error that no one reaches.
     constexpr double kNoOnesError = 1e-9;
     const bool pairs = isPairMethod(request.bake.solver.method);
     request.bake.solver.error = pairs ? 0.0 : kNoOnesError;

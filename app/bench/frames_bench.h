@@ -9,19 +9,19 @@
 
 namespace relume {
 
-/// What `relume bench frames` measures: how a bake and the drawing of its scene get on with each other.
+/// Says what `relume bench frames` measures: how a bake and the drawing of its scene get on with each other.
 struct FramesBenchDesc {
-    BakeOptions bake; // its error and samples are unused: the bake is to go on
+    BakeOptions bake; // its error and samples are unused, because the bake goes on
     DisplayMode display = DisplayMode::Auto;
     uint32_t width = 1920, height = 1080; // of the pictures
     double seconds = 8;                   // of each part
     double rate = 60;                     // frames per second at most, as a display would have it; 0: as many
                                           // as there can be
-    double budget = 8;                    // aim of one batch [ms]
+    double budget = 8;                    // how long one batch should take [ms]
     uint32_t samples = 4;                 // of each pixel
 };
 
-/// One part of it.
+/// One part of the measurement.
 struct FramesPart {
     std::string name;
     std::vector<double> frames; // [ms], each until the device has drawn it
@@ -31,8 +31,8 @@ struct FramesPart {
 
 struct FramesReport {
     std::string device, display, opengl;
-    // Frames without a bake, the bake without frames, both while the camera moves, both while it stands
-    // still.
+    // The parts are frames without a bake, the bake without frames, both while the camera moves, and both
+    // while it stands still.
     FramesPart alone, bakeAlone, moving, still;
 };
 
@@ -51,11 +51,11 @@ private:
     uint64_t bake_ = 0, last_ = 0, total_ = 0;
 };
 
-/// A bake that comes to its end, as every one does, begins again: what is measured is always one that goes
-/// on. Needs no display. Throws Error.
+/// Measures all parts. A bake that comes to its end, as every one does, begins again, so what is measured is
+/// always one that goes on. Needs no display. Throws Error.
 FramesReport measureFrames(const FramesBenchDesc& desc);
 
-/// Of a list of times, the one that `share` of them do not exceed; 0 for none.
+/// Returns the one of a list of times that `share` of them do not exceed; 0 for none.
 double percentile(std::vector<double> values, double share);
 
 } // namespace relume

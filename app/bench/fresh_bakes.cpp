@@ -8,8 +8,8 @@
 namespace relume {
 namespace {
 
-// A bake is looked at whenever it has taken this much longer than at the last look: finer than what is told
-// of the times, and few looks in all.
+// A bake is looked at whenever it has taken this much longer than at the last look: that is finer than the
+// times that are told, and makes few looks in all.
 constexpr double kLookEvery = 1.05;
 
 } // namespace

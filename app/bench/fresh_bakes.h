@@ -9,20 +9,21 @@
 
 namespace relume {
 
-/// Bakes of one scene from nothing, one after the other, under any lights.
+/// Bakes one scene from nothing, one bake after the other, under any lights.
 class FreshBakes {
 public:
-    /// Throws Error.
+    /// Makes the baker. Throws Error.
     FreshBakes(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings);
 
     const PatchSet& patches() const { return baker_->patches(); }
     PatchLight light(const std::vector<Light>& lights, const SolverSettings& settings);
-    /// While neither materials nor sky shine.
+    /// Returns the light while neither materials nor sky shine.
     PatchLight lightOfNothingElse(const std::vector<Light>& lights, const SolverSettings& settings);
-    /// Of a bake in layers, under `before`, then weighed like `after`, which differs in intensity and colour.
+    /// Returns the light of a bake in layers under `before`, then weighed like `after`, which differs in
+    /// intensity and colour.
     PatchLight weighedLight(const std::vector<Light>& before, const std::vector<Light>& after,
                             const SolverSettings& settings);
-    /// Error over time, told by step() and the clock. Looking at it takes no time.
+    /// Measures error over time, where only step() counts as time and looking at the light does not.
     FreshBake measure(const std::vector<Light>& lights, const SolverSettings& settings,
                       const PatchLight& reference);
 

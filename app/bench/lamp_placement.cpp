@@ -19,16 +19,17 @@ constexpr std::array<uint32_t, 3> kBases = {2, 3, 5}; // of the Halton sequence,
 constexpr uint32_t kMostPoints = 8192;                // of it, after which no place is left
 constexpr uint32_t kRays = 32;                        // of each hemisphere of a place, upper and lower
 constexpr uint32_t kPlacesAtOnce = kChunk / 2;        // a receiver for each hemisphere
-// Of all rays: enough must meet fronts, be it only the floor of an open scene; backs mean that the place is
-// inside something, but for a few seen through gaps.
+// These are shares of all rays: enough must meet fronts, be it only the floor of an open scene; backs mean
+// that the place is inside something, but for a few seen through gaps.
 constexpr float kLeastFronts = 0.25f, kMostBacks = 0.1f;
-// Of the diagonal: nearer lamps would light one spot and nothing else.
+// Lamps are at least this share of the diagonal from surfaces: nearer ones would light one spot and nothing
+// else.
 constexpr float kClearance = 0.02f;
 constexpr float kMove = 0.1f;        // of the diagonal
 constexpr float kRadius = 0.005f;    // of the diagonal: soft shadows, but of small lamps
 constexpr float kLightReach = 0.25f; // of the diagonal: where a lamp's light is 1
 
-// [0, 1): the digits of index mirrored at the point [Halton 1964].
+// Returns the digits of index mirrored at the point, in [0, 1) [Halton 1964].
 float radicalInverse(uint32_t base, uint32_t index) {
     double result = 0, digit = 1.0 / base;
     for (; index > 0; index /= base, digit /= base)
@@ -49,7 +50,7 @@ public:
     Lookout(const TraceScene& scene, const Box& bounds)
         : scene_(scene), embree_(scene), diagonal_(bounds.diagonal()) {}
 
-    /// At most kPlacesAtOnce.
+    /// Tells which of the positions, at most kPlacesAtOnce, see surfaces.
     std::vector<bool> seeSurfaces(const std::vector<glm::vec3>& places) {
         std::vector<shader::Patch> eyes(kChunk, shader::Patch{});
         for (size_t i = 0; i < places.size(); ++i) {

@@ -14,7 +14,7 @@ struct LightDifference {
     double relRmse = 0; // rmse / mean of the reference
     double maximum = 0; // of the differences, relative to that mean
 };
-/// Of scale * light.
+/// Compares scale * light with the reference.
 LightDifference compareLight(const PatchSet& patches, const PatchLight& light, const PatchLight& reference,
                              const glm::vec3& scale = glm::vec3(1.0f));
 

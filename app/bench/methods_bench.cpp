@@ -17,7 +17,7 @@
 namespace relume {
 namespace {
 
-// Programs are compiled when they first run: a small bake of each method goes before what is measured.
+// Programs are compiled when they first run, so a small bake of each method goes before what is measured.
 constexpr uint32_t kWarmUpSize = 32;
 // Pictures in the report are not larger [texels].
 constexpr uint32_t kPictureEdge = 512;
@@ -76,7 +76,7 @@ std::vector<Variant> variantsOf(const MethodsBenchDesc& desc, Method method) {
     return variants;
 }
 
-// Mean of the texels that fall together, so that the longer edge is at most `most`.
+// Returns the image with its longer edge at most `most`: each texel is the mean of those that fall together.
 FloatImage shrunk(const FloatImage& image, uint32_t most) {
     const uint32_t factor = (std::max(image.width, image.height) + most - 1) / most;
     if (factor <= 1) return image;
@@ -150,7 +150,7 @@ private:
         }
     }
 
-    // Throws Error where the bake cannot be made or takes too long.
+    // Bakes, and throws Error where the bake cannot be made or takes too long.
     Baked bake(const SolverSettings& solver, uint32_t size) {
         const auto start = Clock::now();
         BakeSettings settings;
@@ -237,7 +237,7 @@ private:
         differences_.push_back(std::move(difference));
     }
 
-    // One scale for all, which the middle one fills: otherwise the worst would leave the others black.
+    // Draws all with one scale, which the middle one fills: otherwise the worst would leave the others black.
     void drawDifferences() {
         if (differences_.empty()) return;
         std::vector<size_t> order(differences_.size());

@@ -72,7 +72,7 @@ std::string base64(const std::string& bytes) {
     return out;
 }
 
-// A line per method and setting: how its time grows with the lightmap.
+// Returns a plot with a line per method and setting, which shows how its time grows with the lightmap.
 PlotDesc timeOverSize(const MethodsReport& report) {
     PlotDesc desc{.title = "Time of a pass over the lightmap's edge",
                   .xLabel = "lightmap edge [texels]",
@@ -102,7 +102,7 @@ PlotDesc timeOverSize(const MethodsReport& report) {
     return desc;
 }
 
-// A line per method, a point for each setting: what error it reaches in what time.
+// Returns a plot with a line per method and a point for each setting: what error it reaches in what time.
 PlotDesc errorOverTime(const MethodsReport& report, uint32_t size) {
     PlotDesc desc{.title = fmt::format("Error over time at {}²", size),
                   .xLabel = "solver time [s]",

@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// One bake of one method with one setting at one size.
+/// The figures of one bake of one method with one setting at one size.
 struct MethodRun {
     std::string method;  // as --method takes it
     std::string setting; // "window 4", "1024 samples"; empty where there is none to choose
@@ -35,13 +35,14 @@ struct MethodsReport {
     std::vector<MethodRun> runs;
 };
 
-/// One page without any other file: plots, tables, pictures. Readable on light and dark screens.
+/// Returns one page that needs no other file, with plots, tables and pictures. It can be read on light and
+/// dark screens.
 std::string methodsHtml(const MethodsReport& report);
 
-/// The same figures; no pictures. Missing ones are null.
+/// Returns the same figures, without pictures. Missing ones are null.
 nlohmann::ordered_json methodsJson(const MethodsReport& report);
 
-/// Lines of a table for a terminal.
+/// Return the lines of a table for a terminal.
 std::string methodsTableHead();
 std::string methodsTableRow(const MethodRun& run);
 

@@ -91,7 +91,7 @@ private:
         return static_cast<uint32_t>(std::clamp(batch * std::min(factor, 4.0), 1.0, 1e6));
     }
 
-    // Only these have rays.
+    // Counts the patches that send, because only these have rays.
     uint64_t sendingPatches(uint32_t firstChunk, uint32_t count) const {
         const auto first = patches_.scene.patches.begin() + firstChunk * kChunk;
         return static_cast<uint64_t>(std::count_if(first, first + count * kChunk, [](const shader::Patch& p) {
@@ -105,7 +105,8 @@ private:
         return (s.row == s.column ? 1 : 2) * patchesOf(s.row) * patchesOf(s.column);
     }
 
-    // All super-blocks in an order that visits every part of the scene early: a stride by the golden ratio.
+    // Puts all super-blocks in an order that visits every part of the scene early: a stride by the golden
+    // ratio.
     void allocatePairs() {
         const uint32_t rows = (patches_.chunkCount() + kSuper - 1) / kSuper;
         std::vector<SuperBlock> ordered;
@@ -131,7 +132,7 @@ private:
         commands_.run();
     }
 
-    // Seconds of tracing and of gathering.
+    // Returns the seconds of tracing and of gathering.
     std::pair<double, double> pairBatch(uint32_t first, uint32_t count) {
         const std::span<SuperBlock> supers(&supers_[first], count);
         std::vector<uint32_t*> bits;

@@ -5,7 +5,7 @@
 
 namespace relume {
 
-/// Rates of one tracer's real kernels on one scene and lightmap size.
+/// The rates of one tracer's real kernels on one scene and lightmap size.
 struct TraceRates {
     std::string tracer;
     uint32_t size = 0, patches = 0, triangles = 0;
@@ -18,7 +18,7 @@ struct TraceRates {
 
 struct TraceBenchDesc {
     double seconds = 2.0;  // about, for each of occlusion and both kinds of closest
-    double batchMs = 20.0; // aim of one submit
+    double batchMs = 20.0; // how long one submit should take
 };
 
 /// Runs the kernels over an even sample of the baker's super-blocks and chunks, everything sending. GPU

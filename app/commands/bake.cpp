@@ -21,7 +21,7 @@
 namespace relume {
 namespace {
 
-// Of all threads, the drivers' too [s].
+// Returns the CPU time of all threads, the drivers' too [s].
 double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }

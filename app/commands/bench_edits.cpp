@@ -23,7 +23,7 @@ struct BenchEditsOptions {
     std::string device, tracer = "auto", json, plot;
 };
 
-// What somebody types to get this report again.
+// Returns what somebody types to get this report again.
 std::string commandOf(const BenchEditsOptions& o) {
     const EditsBenchDesc& b = o.bench;
     std::string text = fmt::format("relume bench edits {} --lights {} --size {} --error {:g} --samples {} "

@@ -49,7 +49,7 @@ MethodsBenchDesc resolve(const BenchMethodsOptions& o) {
     sortUnique(desc.thresholds);
     for (const std::string& name : o.methods)
         desc.methods.push_back(parseMethod(name));
-    // Pure goes first: the others are compared with it.
+    // Pure goes first, because the others are compared with it.
     sortUnique(desc.methods);
     desc.tracer = parseTracerKind(o.tracer);
     desc.cache.kind = parseCache(o.cache);
@@ -65,7 +65,7 @@ std::string joined(const std::vector<T>& values) {
     return fmt::format("{}", fmt::join(values, ","));
 }
 
-// What somebody types to get this report again.
+// Returns what somebody types to get this report again.
 std::string commandOf(const BenchMethodsOptions& o, const MethodsBenchDesc& desc) {
     std::string text =
         fmt::format("relume bench methods {} --sizes {} --methods {} --windows {} --nodes {} --thresholds {} "
@@ -93,7 +93,7 @@ void runBench(const BenchMethodsOptions& o) {
     loadGltf(desc.scene); // a bad file leaves one line, its error
     const vk::Device device({.select = o.device});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
-    // What a bake tells of itself is the same for each of them.
+    // The log is quieter, because what a bake tells of itself is the same for each of them.
     const auto level = spdlog::get_level();
     spdlog::set_level(std::max(level, spdlog::level::warn));
     bool headed = false;

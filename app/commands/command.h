@@ -4,8 +4,8 @@
 
 namespace relume {
 
-// One function per verb, in app/commands/<verb>.cpp. Each adds its subcommand with its options to `app`; its
-// callback does the work and throws Error (exit status 1) or UsageError (2).
+// There is one function per verb, in app/commands/<verb>.cpp. Each adds its subcommand with its options to
+// `app`; its callback does the work and throws Error (exit status 1) or UsageError (2).
 void addViewCommand(CLI::App& app);
 void addBakeCommand(CLI::App& app);
 void addShotCommand(CLI::App& app);
@@ -19,7 +19,7 @@ void addCompareCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addMixCommand(CLI::App& app);
 void addSamplesCommand(CLI::App& app);
-// Of `relume bench`.
+// These add the subcommands of `relume bench`.
 void addBenchMethodsCommand(CLI::App& bench);
 void addBenchFramesCommand(CLI::App& bench);
 void addBenchEditsCommand(CLI::App& bench);

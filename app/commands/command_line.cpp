@@ -37,7 +37,7 @@ void requireVerb(const std::vector<std::string>& arguments, const CLI::App& app)
                                  nearNamesHint(*first, verbsOf(app))));
 }
 
-/// The verb that was parsed last: `bench frames` is one below another.
+/// Returns the verb that was parsed last: `bench frames` is one below another.
 const CLI::App& parsedVerb(const CLI::App& app) {
     const CLI::App* verb = &app;
     while (!verb->get_subcommands().empty())
@@ -49,7 +49,7 @@ std::string typedName(const CLI::App& verb) {
     return verb.get_parent() ? typedName(*verb.get_parent()) + " " + verb.get_name() : verb.get_name();
 }
 
-// A check of ours says itself what is allowed.
+// Returns the one line for an error of the parser. A check of ours says itself what is allowed.
 std::string parserMessage(const CLI::App* app, const CLI::Error& error) {
     std::string text = fmt::format("error: {}", error.what());
     std::replace(text.begin(), text.end(), '\n', ' ');

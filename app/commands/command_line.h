@@ -9,12 +9,12 @@ class App;
 
 namespace relume {
 
-/// Adds all verbs, and makes of each error of the parser one line.
+/// Adds all verbs, and makes one line of each error of the parser.
 void addCommands(CLI::App& app);
 
 /// Turns what was typed into what `app` can parse: with "view" in front of a scene that stands where a verb
 /// belongs, and with an empty value as a word of its own, which CLI11 would skip for the next one. Throws
-/// UsageError for a verb that there is not and for a value that a flag is given.
+/// UsageError for an unknown verb and for a value that is given to a flag.
 std::vector<std::string> parserArguments(const std::vector<std::string>& typed, const CLI::App& app);
 
 /// Tells what helps when memory runs out, by what the verb that was parsed makes.

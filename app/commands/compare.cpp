@@ -29,7 +29,7 @@ struct CompareOptions {
     bool json = false;
 };
 
-/// What is printed of a comparison.
+/// A value of a comparison, as it is printed.
 struct Value {
     const char* option; // as --metric takes it
     const char* name;
@@ -57,7 +57,7 @@ struct Difference {
     double scale = 1;
 };
 
-// The picture shows what the first --metric measures.
+// Writes the picture, which shows what the first --metric measures.
 Difference writeDifference(const CompareOptions& options, const ImagePair& pair, const Metrics& m,
                            const std::vector<float>& flipMap) {
     const std::string first = options.metrics.empty() ? "relrmse" : options.metrics.front();

@@ -52,7 +52,8 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
     return text;
 }
 
-// A device that lacks what Relume needs runs nothing, whatever its tracers ask for.
+// Returns the tracers that a device can run. One that lacks what Relume needs runs nothing, whatever the
+// tracers ask for.
 std::vector<std::string> allowedTracers(const vk::DeviceInfo& info) {
     std::vector<std::string> names;
     if (!info.missing.empty()) return names;

@@ -26,7 +26,8 @@ struct EditOptions {
     BakeOptions bake; // output "": none
 };
 
-// Layers, where the file can hold them. Contradictions are told before anything is written.
+// Returns the options of the bake, with layers where the file can hold them. Contradictions are told before
+// anything is written.
 BakeOptions bakeOptionsOf(const EditOptions& options) {
     BakeOptions bake = options.bake;
     bake.scene = options.scene;
@@ -37,7 +38,7 @@ BakeOptions bakeOptionsOf(const EditOptions& options) {
     return bake;
 }
 
-// Options of the baked lightmap alone.
+// Adds the options of the baked lightmap alone.
 void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
     CLI::Option* output =
         command
@@ -64,7 +65,7 @@ std::vector<Setting> settingsOf(const SceneEdit& edit) {
     return {};
 }
 
-// Pictures that edits give the sky are read by --bake.
+// Checks the files. Pictures that edits give the sky are read by --bake.
 void checkFiles(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     CommandFiles files;
     files.readsScene("SCENE", options.scene).writes("--output", options.output).mayBe("--output", "SCENE");
@@ -85,7 +86,7 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     if (typed.empty())
         throw UsageError("edit: no edit is given: add --set, --move, --add, --delete or another one");
     checkFiles(options, typed);
-    std::error_code code; // a missing scene is told by who reads it
+    std::error_code code; // the reader tells of a missing scene
     const auto bytes = std::filesystem::file_size(options.scene, code);
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
     if (bakes) checkWritable(bake.output);

@@ -117,7 +117,7 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                          {"textured", info.texturedEmitters}}},
                        {"lightmap", atlasJson(scene, info, size)},
                        {"warnings", info.warnings}};
-    // Names from the file need not be UTF-8.
+    // The names in the file need not be UTF-8.
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 

@@ -29,7 +29,7 @@ std::string attribute(const FloatImage& image, const std::string& name) {
     return found != image.attributes.end() ? found->second : "";
 }
 
-// A lightmap that the user made before. Throws Error when it is none of lighting.
+// Reads a lightmap that the user made before. Throws Error when it does not hold lighting.
 FloatImage readLightmap(const std::string& path, const std::string& scene) {
     FloatImage image = readImage(path);
     if (attribute(image, "relume:quantity") == "radiance") {

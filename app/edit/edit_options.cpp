@@ -55,7 +55,7 @@ std::string requireName(OptionText name, const char* form) {
     return std::string(name);
 }
 
-// "NAME=VALUE"; a name may hold a '=', a value none.
+// Splits "NAME=VALUE"; a name may hold a '=', a value none.
 std::pair<OptionText, OptionText> splitLast(OptionText text, const char* form) {
     const size_t equals = text.rfind('=');
     if (equals == OptionText::npos || equals == 0) throw UsageError(fmt::format("write {}", form));
@@ -68,7 +68,8 @@ Property requireProperty(OptionText name) {
         fmt::format("{} is no property: there is {}", inQuotes(std::string(name)), propertyNames()));
 }
 
-// The name goes up to the last '.' before the first '=' that a property stands before.
+// Reads "NAME.PROPERTY=VALUE". The name goes up to the last '.' before the first '=' that a property stands
+// before.
 SetEdit setOf(OptionText text, const char* form) {
     size_t first = OptionText::npos;
     for (size_t equals = text.find('='); equals != OptionText::npos; equals = text.find('=', equals + 1)) {
@@ -91,7 +92,7 @@ MoveEdit moveOf(OptionText text, const char* form) {
     return {requireName(name, form), pointOf(point), relative};
 }
 
-// "KEY=VALUE,..." where values may hold commas: what has no '=' belongs to the value before.
+// Splits "KEY=VALUE,...". Values may hold commas: what has no '=' belongs to the value before.
 std::vector<std::pair<std::string, std::string>> keysOf(OptionText text) {
     std::vector<std::pair<std::string, std::string>> keys;
     while (!text.empty()) {
@@ -157,7 +158,7 @@ auto naming(const TypedEdit& typed, Action action) {
 } // namespace
 
 void addEditOptions(CLI::App& command) {
-    // Each takes one text and may come again; in which order all came, the command knows.
+    // Each takes one text and may come again; the command knows the order in which all came.
     for (const OptionRow& row : kOptions)
         command.add_option(row.option, row.help)
             ->type_name(row.form)

@@ -12,7 +12,7 @@ class App;
 
 namespace relume {
 
-/// An edit as it was typed.
+/// An edit, with the text that was typed for it.
 struct TypedEdit {
     std::string option, text; // "--set", "Lamp.intensity=40"
     SceneEdit edit;
@@ -21,13 +21,13 @@ struct TypedEdit {
 /// Adds --set, --move, --rotate, --aim, --add, --duplicate, --delete, --hide and --show.
 void addEditOptions(CLI::App& command);
 
-/// What was typed of them, in that order. Throws UsageError, naming option, text and mend.
+/// Returns what was typed of them, in that order. Throws UsageError, which names option, text and remedy.
 std::vector<TypedEdit> typedEdits(CLI::App& command);
 
-/// The edit that an option of these and its text mean. Throws UsageError.
+/// Returns the edit that one of these options and its text mean. Throws UsageError.
 SceneEdit sceneEditOf(std::string_view option, std::string_view text);
 
-/// Makes the edits one after the other; returns what each did. Throws Error, naming option and text.
+/// Makes the edits one after the other; returns what each did. Throws Error, which names option and text.
 std::vector<std::string> applyEdits(const Scene& scene, const std::vector<TypedEdit>& typed,
                                     SceneEdits& edits);
 

@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// A scene read, given an atlas and flattened: what a bake starts from.
+/// A scene that was read, given an atlas and flattened, from which a bake starts.
 struct PreparedScene {
     Scene scene;
     LightmapAtlas atlas;
@@ -22,7 +22,7 @@ struct PrepareDesc {
     double density = 0;  // of the unwrap [texels/m], 0: fitted to the size
 };
 
-/// Logs the warnings of each step. Throws Error.
+/// Prepares a scene and logs the warnings of each step. Throws Error.
 PreparedScene prepareScene(const PrepareDesc& desc);
 
 } // namespace relume

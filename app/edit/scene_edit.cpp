@@ -27,8 +27,8 @@ float largest(const glm::vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// Colour and strength of a radiance are parts of it: its brightest channel is the strength, so that neither
-/// changes the other.
+/// Returns the radiance with another strength. Colour and strength are parts of it: its brightest channel is
+/// the strength, so that neither changes the other.
 glm::vec3 withStrength(const glm::vec3& radiance, float strength) {
     const float brightest = largest(radiance);
     return brightest > 0.0f ? radiance / brightest * strength : glm::vec3(strength);
@@ -43,7 +43,7 @@ glm::vec3 withColor(const glm::vec3& radiance, const glm::vec3& color, const std
     return color / largest(color) * largest(radiance);
 }
 
-/// A temperature is a way to say a colour.
+/// Returns the colour that a setting gives; a temperature is a way to say one.
 std::optional<glm::vec3> colorOf(const Setting& setting) {
     if (setting.property == Property::Color) return std::get<glm::vec3>(setting.value);
     if (setting.property == Property::Temperature) return blackBody(std::get<float>(setting.value));
@@ -116,7 +116,7 @@ void setLamp(Light& light, const Setting& setting) {
     if (setting.property == Property::Outer) light.outerConeAngle = glm::radians(number());
 }
 
-/// What several settings together must be.
+/// Throws UsageError where several settings do not go together.
 void requireGood(const Light& light) {
     Light limited = light;
     if (const std::vector<std::string> problems = limitLight(limited); !problems.empty())
@@ -149,7 +149,7 @@ void setSky(SkySettings& sky, const Setting& setting) {
     if (setting.property != Property::File) return;
     sky.file = std::get<std::string>(setting.value);
     if (sky.file.empty()) return;
-    Sky picture; // read for what is wrong with it: it would be found at the next load only
+    Sky picture; // read to find now what is wrong with it, not only at the next load
     picture.file = sky.file;
     readSkyPicture(picture);
     limitSky(picture);
@@ -168,7 +168,7 @@ size_t usersOf(const Scene& scene, uint32_t material) {
         }));
 }
 
-/// Makes one kind of edit each, and tells what it did.
+/// Makes the edits: each function makes one kind and tells what it did.
 struct Editor {
     const Scene& scene;
     SceneEdits& edits;
@@ -176,7 +176,7 @@ struct Editor {
     NamedThing find(const std::string& name, const ThingKinds& kinds) const {
         return findThing(namedThings(scene, edits), name, kinds);
     }
-    /// Throws UsageError where it would reach too far.
+    /// Places a thing. Throws UsageError where it would reach too far.
     void place(const NamedThing& thing, const glm::mat4& transform) const {
         requirePlace(glm::vec3(transform[3]));
         const bool isLamp = thing.kind == ThingKind::Lamp;

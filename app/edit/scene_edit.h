@@ -10,10 +10,10 @@
 
 namespace relume {
 
-// Edits as values: the same for whoever makes them, a command line or a viewer. Things go by name, see
-// scene_names.h.
+// These are edits as values, which are the same for a command line and a viewer. They refer to things by
+// name, see scene_names.h.
 
-/// Sets one property of a light, an emitter (its material's emission), a material or the sky.
+/// Sets one property of a light, a mesh light (its material's emission), a material or the sky.
 struct SetEdit {
     std::string name;
     Setting setting;
@@ -39,22 +39,22 @@ struct AimEdit {
     glm::vec3 target{0.0f};
 };
 
-/// A new light: white, of intensity 1, at the origin, shining along -Z; a rectangle of 1 m by 1 m, a disc of
-/// radius 0.5 m, a spot of 45 degrees from the axis. Then `settings`, as SetEdit has them.
+/// Adds a light that is white, has intensity 1 and shines from the origin along -Z: a rectangle of 1 m by 1
+/// m, a disc of radius 0.5 m, a spot of 45 degrees from the axis. Then it gets the `settings`, as by SetEdit.
 struct AddLightEdit {
     LightType type = LightType::Point;
     std::vector<Setting> settings;
     glm::vec3 position{0.0f}; // [m]
-    glm::vec3 rotation{0.0f}; // as in RotateEdit
+    glm::vec3 rotation{0.0f}; // see RotateEdit
     std::optional<glm::vec3> aim;
 };
 
-/// A sky for a scene that has none: white, of 1 cd/m^2.
+/// Gives a scene that has no sky a white one of 1 cd/m^2.
 struct AddSkyEdit {
     std::vector<Setting> settings;
 };
 
-/// A second light like the first, of the name `copy`, "": "NAME 2" or the next that is free.
+/// Adds a second light like the first, with the name `copy`; "": "NAME 2" or the next that is free.
 struct DuplicateEdit {
     std::string name, copy;
 };
@@ -78,7 +78,7 @@ using SceneEdit = std::variant<SetEdit, MoveEdit, RotateEdit, AimEdit, AddLightE
 /// out of range; `edits` are as they were then.
 std::string applyEdit(const Scene& scene, const SceneEdit& edit, SceneEdits& edits);
 
-/// What a glTF file cannot hold of the edits, one line; "": it holds all.
+/// Tells in one line what a glTF file cannot hold of the edits; "": it holds all.
 std::string unsavedPart(const SceneEdits& edits);
 
 } // namespace relume

@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// What `relume info` tells about a scene.
+/// The facts that `relume info` tells about a scene.
 struct SceneInfo {
     uint32_t triangles = 0, maskedTriangles = 0, droppedTriangles = 0;
     glm::vec3 low{0.0f}, high{0.0f}; // bounds [m]
@@ -23,7 +23,7 @@ struct SceneInfo {
     LightmapAtlas atlas;
     AtlasStatistics statistics;
     uint32_t charts = 0;
-    std::vector<std::string> warnings; // the file's, the atlas', and what a bake would do that surprises
+    std::vector<std::string> warnings; // of file and atlas, and about what in a bake would surprise
 };
 
 /// Measures a scene for a lightmap of size x size texels. Throws Error when it has no triangle at all.

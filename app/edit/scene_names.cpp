@@ -14,8 +14,8 @@ namespace {
 
 using ThingKind = NamedThing::Kind;
 
-// What lightSources looks at, edited; without geometry, so that it is quickly made. Its sky shines, to have a
-// name.
+// Returns what lightSources looks at, edited. It has no geometry, so that it is quickly made, and its sky
+// shines, to have a name.
 Scene skeletonOf(const Scene& scene, const SceneEdits& edits) {
     Scene skeleton;
     skeleton.materials = scene.materials;
@@ -30,7 +30,7 @@ Scene skeletonOf(const Scene& scene, const SceneEdits& edits) {
     return skeleton;
 }
 
-// "light", "object" or "material", with which a name can begin.
+// Returns "light", "object" or "material", with which a name can begin.
 const char* wordOf(ThingKind kind) {
     if (kind == ThingKind::Object) return "object";
     return kind == ThingKind::Material ? "material" : "light";
@@ -55,7 +55,8 @@ private:
     std::set<std::string> taken_;
 };
 
-// An emitter's emission is that of its material: whichever is meant, it is the same edit.
+// Tells whether both have the same emission: a mesh light has its material's, so whichever is meant, it is
+// the same edit.
 bool sameEmission(const NamedThing& a, const NamedThing& b) {
     return a.kind == ThingKind::Emitter && b.kind == ThingKind::Material && a.material == b.index;
 }

@@ -11,11 +11,11 @@
 namespace relume {
 namespace {
 
-// Below it [sine of the angle] two directions are one.
+// Two directions are one below this sine of the angle between them.
 constexpr double kParallel = 1e-6;
 
-/// The rotation in a transform's axes: X keeps its direction, Y its half plane. Identity where they tell
-/// none.
+/// Returns the rotation in a transform's axes: X keeps its direction, Y its half plane. It is the identity
+/// where the axes tell none.
 glm::dmat3 rotationIn(const glm::dmat3& axes) {
     const double lengthX = glm::length(axes[0]);
     if (!(lengthX > 0.0)) return glm::dmat3(1.0);
@@ -26,7 +26,8 @@ glm::dmat3 rotationIn(const glm::dmat3& axes) {
     return {x, up, glm::cross(x, up)};
 }
 
-// Whole quarters exactly, so that 90 degrees leave no dust in the other axes.
+// Returns sine and cosine, which are exact for quarter turns, so that 90 degrees leave no rounding errors in
+// the other axes.
 std::array<double, 2> sineAndCosine(double degrees) {
     const double turn = std::remainder(degrees, 360.0);
     if (turn == 0.0) return {0.0, 1.0};
@@ -77,7 +78,7 @@ glm::mat4 aimed(const Light& light, const glm::vec3& target) {
         throw Error("the light is at the point it is aimed at: name another point");
     const glm::dvec3 z = glm::normalize(way);
     glm::dvec3 x = glm::cross(glm::dvec3(0, 1, 0), z);
-    // Straight up or down any turn is as good: X stays X.
+    // Straight up or down, any turn is as good: X stays X.
     x = glm::length(x) > kParallel ? glm::normalize(x) : glm::dvec3(1, 0, 0);
     glm::mat4 result(glm::mat3(glm::dmat3(x, glm::cross(z, x), z)));
     result[3] = light.transform[3];

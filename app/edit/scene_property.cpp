@@ -19,7 +19,7 @@ namespace relume {
 namespace {
 
 constexpr float kMostNumber = std::numeric_limits<float>::max();
-// A cone of 0 lights nothing; this one [degrees], that of the importer, a metre at 1 km.
+// A cone of 0 lights nothing; this one [degrees], which is the importer's, lights a metre at 1 km.
 constexpr float kNarrowestCone = 0.0573f;
 
 enum class ValueKind { Number, Pair, Color, Radiance, Text };
@@ -29,7 +29,7 @@ struct PropertyRow {
     Property property;
     ValueKind kind;
     float least, most;
-    const char* mend; // which values there are
+    const char* mend; // the remedy: which values there are
 };
 
 constexpr std::array kRows = {

@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// What edits set of lights, emitters, materials and the sky.
+/// The properties of analytic lights, mesh lights, materials and the sky that edits can set.
 enum class Property {
     Name,
     Intensity,   // [cd, lux, cd/m^2]
@@ -35,21 +35,21 @@ struct Setting {
     PropertyValue value; // of the type that the property has, see settingOf
 };
 
-/// As users type it: "intensity", "baseColor".
+/// Returns the name as users type it: "intensity", "baseColor".
 const char* propertyName(Property property);
 std::optional<Property> propertyOf(std::string_view name);
-/// All of them, "name, intensity, ...".
+/// Returns the names of all, "name, intensity, ...".
 std::string propertyNames();
 
-/// The setting that `text` means: a number; "w,h"; for colours "r,g,b" (linear) or "#rrggbb" (sRGB, as
-/// editors show colours); for names and files the text itself. Throws UsageError, "'x' is no number: ...".
+/// Returns the setting that `text` means: a number; "w,h"; for colours "r,g,b" (linear) or "#rrggbb" (sRGB,
+/// as editors show colours); for names and files the text itself. Throws UsageError, "'x' is no number: ...".
 Setting settingOf(Property property, std::string_view text);
 
-/// Throws UsageError where a value is not finite or out of the property's range, saying which values there
+/// Throws UsageError where a value is not finite or out of the property's range; it says which values there
 /// are.
 void requireGood(const Setting& setting);
 
-/// As it is typed.
+/// Returns the setting as it is typed.
 std::string describe(const Setting& setting);
 
 } // namespace relume

@@ -19,22 +19,23 @@ namespace relume {
 
 enum class DisplayMode { Auto, Shared, Copied };
 
-/// What an OpenGL context can import: told to the bake thread, which decides.
+/// The ways in which an OpenGL context can import images. The bake thread is told, and decides by it.
 struct DisplayHost {
     bool memoryObjects = false;                       // GL_EXT_memory_object_fd
     std::vector<std::array<uint8_t, 16>> deviceUuids; // GL_DEVICE_UUID_EXT
 };
 
-/// What a live bake runs on.
+/// The device that a live bake runs on, and how its maps reach the display.
 struct BakeDeviceDesc {
-    std::string device = {}; // as vk::Device::Desc::select
+    std::string device = {}; // the same as vk::Device::Desc::select
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
     DisplayHost host = {};
-    double batchMs = 8; // aim of one batch
+    double batchMs = 8; // how long one batch should take [ms]
 };
 
-/// What is to be seen beside light, and how. Plain: main thread to bake thread.
+/// The request of the viewer for what to see beside light, and how. It is plain data that the main thread
+/// hands to the bake thread.
 struct InspectRequest {
     MapContent content = MapContent::Light;
     uint32_t mip = 0;          // of ligIn and ligOut, 0..4: means over 2^mip texels squared
@@ -45,14 +46,14 @@ struct InspectRequest {
     bool operator==(const InspectRequest& other) const;
 };
 
-/// Texels at which each light's layer is to be told, through the exchange, now and whenever it is another
-/// one.
+/// Texels at which the bake thread reads each light's layer. It tells the values through the exchange, now
+/// and whenever the layer changes.
 struct ProbeRequest {
-    uint64_t number = 0;          // that the answers bear
+    uint64_t number = 0;          // the answers bear it
     std::vector<uint32_t> texels; // v * size + u, shader::kNoPatch: nothing; empty: no more
 };
 
-/// Light paths from a chosen patch, and voxels: what no map can hold.
+/// The light paths from a chosen patch. No map can hold these, nor the voxels below.
 struct InspectPaths {
     glm::vec3 from{0.0f};
     std::vector<glm::vec3> ends; // of the patch's links
@@ -67,24 +68,24 @@ struct ConvergencePoint {
     double error = 1;   // remaining, relRMSE
 };
 
-/// Where the bake thread stands: a copy, taken once per frame.
+/// Where the bake thread stands. The main thread takes a copy once per frame.
 struct BakeStatus {
     enum class Phase { Idle, Preparing, Baking, Paused, Done, Failed };
     Phase phase = Phase::Idle;
     std::string doing;     // Preparing: "tracer", ...; Failed: the error's one line
     double fraction = 0;   // of preparing
-    uint64_t bake = 0;     // number of the one that this tells of, see LiveBake::start()
-    BakeSettings settings; // of it
+    uint64_t bake = 0;     // number of the bake that this tells of, see LiveBake::start()
+    BakeSettings settings; // of that bake
     uint32_t patches = 0;
     bool layered = false;           // each light has a layer ...
-    std::vector<LightGroup> groups; // ... but these, which share one
-    std::string remark;             // why not though it was asked for, with the mend, one line; "": nothing
-    std::vector<std::string> stale; // what of the edits its light does not show yet, one line each
+    std::vector<LightGroup> groups; // ... but the members of each of these groups share one
+    std::string remark;             // why there are no layers though asked for, and the remedy; "": nothing
+    std::vector<std::string> stale; // the edits that the light does not show yet, one line each
     SolverProgress progress;
     uint64_t beginnings = 0;  // how often a bake began, by start() or by reset()
-    uint64_t rays = 0;        // since then, those of the pass under way too
+    uint64_t rays = 0;        // since then, with those of the pass under way
     double raysPerSecond = 0; // over the last second or so
-    double secondsLeft = -1;  // until the error that is asked for, by how it fell so far; negative: unknown
+    double secondsLeft = -1;  // until the error asked for, judged by how it fell so far; negative: unknown
     std::vector<ConvergencePoint> history;
     std::string device, tracer, display; // what was chosen, with the reason
     uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
@@ -93,11 +94,12 @@ struct BakeStatus {
 
 const char* phaseName(BakeStatus::Phase phase); // "baking"
 
-/// What a user asked for since the bake thread looked last. Of each kind the newest counts.
+/// The commands that a user gave since the bake thread looked last. The newest of each kind counts; all
+/// exports do.
 struct BakeOrders {
     enum class Run { Keep, Resume, Pause, Pass, Step };
     struct Start {
-        const PreparedScene* scene = nullptr; // read by the thread until it holds it no more
+        const PreparedScene* scene = nullptr; // the thread reads it as long as LiveBake::holds() says
         SceneEdits edits;                     // of the scene
         LightMix mix = {};
         BakeSettings settings;
@@ -122,16 +124,16 @@ struct BakeOrders {
     bool quit = false;
 };
 
-/// What both threads hold on to.
+/// The state that both threads share.
 struct BakeDesk {
-    mutable std::mutex mutex; // of all below but the exchange, which has its own
+    mutable std::mutex mutex; // guards all below but the exchange, which has its own
     std::condition_variable news;
     BakeOrders orders;
     BakeStatus status;
     std::optional<InspectPaths> paths;
     std::optional<InspectVoxels> voxels;
     std::function<void()> wake;
-    const PreparedScene* held = nullptr; // by the bake thread
+    const PreparedScene* held = nullptr; // the bake thread may still read it
     LightmapExchange exchange;
 };
 

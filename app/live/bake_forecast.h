@@ -6,15 +6,15 @@
 
 namespace relume {
 
-/// Seconds until the error falls to `aim`, by the power law through the newest point and one from about half
-/// its time: sampling errors fall as a power of the time that was spent. Negative: it does not fall, or there
-/// are too few points to tell.
+/// Returns the seconds until the error falls to `aim`, by the power law through the newest point and one from
+/// about half its time: sampling errors fall as a power of the time that was spent. The result is negative
+/// when the error does not fall, or when there are too few points to tell.
 double secondsUntil(std::span<const ConvergencePoint> history, double aim);
 
-/// Rays per second over the last while.
+/// Measures rays per second over the last window of time.
 class RayMeter {
 public:
-    /// seconds: of any clock; rays: so far.
+    /// Adds a measurement: the seconds of any clock, and the rays that were traced so far.
     void add(double seconds, uint64_t rays);
     void clear() { count_ = 0; }
     double perSecond() const; // 0: not known yet

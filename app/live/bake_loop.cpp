@@ -24,23 +24,24 @@
 namespace relume {
 namespace {
 
-// Of the status while baking: no eye follows more.
+// The status is reported so often while baking: no eye follows more.
 constexpr double kReportSeconds = 0.05;
-// Rays are asked of the device, memory of the driver.
+// Measuring is slower, because it asks the device about rays and the driver about memory.
 constexpr double kMeasureSeconds = 0.25;
-// How long a map waits for a slot before the exchange is asked again.
+// A map waits so long for a slot before the exchange is asked again.
 constexpr auto kSlotWait = std::chrono::milliseconds(5);
-// Points of the convergence curve that are kept; then every other one goes.
+// The convergence curve keeps so many points; then every other one is dropped.
 constexpr size_t kMaxHistory = 4096;
 
-// Ends a preparation that nobody waits for any more.
+// This exception ends a preparation that nobody waits for any more.
 struct Cancelled {};
 
-// In the order in which a baker tells them, for the progress bar.
+// The phases stand in the order in which a baker tells them, for the progress bar.
 constexpr std::array<std::string_view, 6> kPhases = {"cit",      "patches", "tracer",
                                                      "validity", "voxels",  "solver set-up"};
 
-// What a baker is made of beside its solver: without a change there the solver alone is made anew.
+// Returns the settings that a baker is made of beside its solver. While they stay the same, only the solver
+// is made anew.
 auto preparation(const BakeSettings& s) {
     const TransportSettings& t = s.solver.transport;
     return std::tuple(s.size, s.conservative, s.tracer, s.voxels.resolution, s.voxels.ratio, t.rtrad,
@@ -53,7 +54,7 @@ bool sameSurfaces(const std::vector<Material>& a, const std::vector<Material>& b
     });
 }
 
-// Whether what differs between the materials is followed without making patches anew.
+// Tells whether the difference between the materials can be followed without making patches anew.
 bool sameForPatches(const std::vector<Material>& a, const std::vector<Material>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Material& x, const Material& y) {
         const bool shines = x.emission != glm::vec3(0.0f), shone = y.emission != glm::vec3(0.0f);
@@ -61,7 +62,7 @@ bool sameForPatches(const std::vector<Material>& a, const std::vector<Material>&
     });
 }
 
-// What a layer for each light can be made of.
+// Tells whether a bake with these settings can have a layer for each light.
 bool canHaveLayers(const SolverSettings& s) {
     return s.method == Method::Hybrid && !s.transport.rtrad && s.links.indirectScale == 1 &&
            !s.links.footprint && s.links.directions == DirectionSet::Sobol;
@@ -72,7 +73,8 @@ bool sameEdits(const SceneEdits& a, const SceneEdits& b) {
            a.placements == b.placements;
 }
 
-// Where the CPU bakes, pictures come first: its threads get what time is left. They inherit it from this one.
+// Lets pictures come first where the CPU bakes: its threads get the time that is left. They inherit the
+// priority from this one.
 void yieldToOthers() {
     const sched_param none{};
     if (sched_setscheduler(0, SCHED_IDLE, &none) != 0)
@@ -90,7 +92,7 @@ void BakeLoop::run() {
         openDevice();
     } catch (const std::exception& error) {
         fail(error.what());
-        report(true); // no order need ever come
+        report(true); // there may never be a command
     }
     BakeOrders orders;
     while (takeOrders(orders)) {
@@ -100,7 +102,7 @@ void BakeLoop::run() {
             if (status_.phase == Phase::Baking) stepSolver();
             publish();
         } catch (const Cancelled&) {
-            continue; // the newer order is there
+            continue; // the newer command is there
         } catch (const std::bad_alloc&) {
             fail("out of memory: use a smaller lightmap or close other programs");
         } catch (const std::exception& error) {
@@ -127,7 +129,7 @@ void BakeLoop::openDevice() {
     report(true);
 }
 
-// Waits where there is nothing to do. False: to quit.
+// Waits where there is nothing to do. Returns false when the thread is to quit.
 bool BakeLoop::takeOrders(BakeOrders& orders) {
     std::unique_lock lock(desk_.mutex);
     const auto something = [&] {
@@ -147,7 +149,7 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
 }
 
 void BakeLoop::obey(BakeOrders& orders) {
-    if (!maps_) return; // Failed, and it stays so
+    if (!maps_) return; // the phase is Failed and stays so
     if (orders.batchMs) desc_.batchMs = *orders.batchMs;
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
     if (orders.inspect) inspect_ = *orders.inspect;
@@ -171,7 +173,7 @@ LayerSolver* BakeLoop::layered() const {
     return baker_ ? dynamic_cast<LayerSolver*>(&baker_->solver()) : nullptr;
 }
 
-// Whether layers may go on with what they have.
+// Tells whether layers can follow the new start with what they have.
 bool BakeLoop::onlyEdits(const BakeOrders::Start& start) const {
     BakeSettings wanted = start.settings;
     wanted.solver.layers = settings_.solver.layers;
@@ -183,8 +185,9 @@ bool BakeLoop::onlyEdits(const BakeOrders::Start& start) const {
            layered()->holds(start.edits.lights.size());
 }
 
-// The solver keeps what is still right. A pass under way reads colours of surfaces and links: they change
-// between two. False: objects cannot be followed, and the bake is to begin anew.
+// Edits the bake; the solver keeps what is still right. A bounce under way reads the colours of surfaces and
+// the links, so these change between two bounces. Returns false where the objects cannot be followed, and the
+// bake must begin anew.
 bool BakeLoop::followEdit(const BakeOrders::Start& start) {
     const bool recoloured = !sameSurfaces(start.edits.materials, scene_.materials);
     const bool moved = editsOf(scene_).placements != start.edits.placements;
@@ -217,7 +220,8 @@ bool BakeLoop::followObjects(const BakeOrders::Start& start) {
     return true;
 }
 
-// Light of another scene is of no use, light of the same one stays until there is better.
+// Follows a start. Light of another scene is of no use, but light of the same one stays until there is
+// better.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
     waiting_.reset();
     if (onlyEdits(start) && followEdit(start)) return;
@@ -263,7 +267,7 @@ void BakeLoop::makeBaker(WorldMesh mesh, bool keepLight) {
     beginMaps(keepLight);
 }
 
-// All of them are compiled before anything is given up.
+// Compiles all shaders before it gives up anything.
 void BakeLoop::reloadShaders() {
     try {
         for (const std::string& name : shaderNames())
@@ -281,7 +285,7 @@ void BakeLoop::reloadShaders() {
     ready();
 }
 
-// The same patches, from no light.
+// Begins again from no light, with the same patches.
 void BakeLoop::restart(bool keepLight) {
     maps_->end();
     baker_->resetSolver(settings_.solver);
@@ -322,7 +326,7 @@ void BakeLoop::ready() {
     report(true);
 }
 
-// Of a preparation; ends it where something newer is wanted.
+// Follows the phases of a preparation, and ends it where something newer is wanted.
 void BakeLoop::onPhase(const char* phase, double done) {
     {
         const std::lock_guard lock(desk_.mutex);
@@ -337,7 +341,7 @@ void BakeLoop::onPhase(const char* phase, double done) {
     report(isNew);
 }
 
-// Pause, resume and so on.
+// Follows the commands to pause, to resume and so on.
 void BakeLoop::steer(const BakeOrders& orders) {
     using Run = BakeOrders::Run;
     Solver& solver = baker_->solver();
@@ -368,7 +372,7 @@ void BakeLoop::logEnd() {
                  p.seconds, p.error);
 }
 
-// From tiles of texels to chunks of patches.
+// Turns the seen tiles of texels into chunks of patches, and gives these priority.
 void BakeLoop::applySeen() {
     if (!baker_ || seenTiles_.empty()) return;
     const TraceScene& scene = baker_->patches().scene;
@@ -386,7 +390,7 @@ void BakeLoop::applySeen() {
     baker_->solver().setPriority(std::move(seen));
 }
 
-// What maps cannot hold: light paths and voxels.
+// Answers with light paths and voxels, which maps cannot hold.
 void BakeLoop::inspectMore(const BakeOrders& orders) {
     std::optional<InspectPaths> paths;
     std::optional<InspectVoxels> voxels;
@@ -404,7 +408,7 @@ void BakeLoop::exportAll(const BakeOrders& orders) {
             desc.rtrad = settings_.solver.transport.rtrad;
             desc.reflectivity = settings_.solver.transport.reflectivity;
             if (desc.rtrad) desc.quantity = Quantity::Radiance;
-            // At the end the bytes of a bake without a window, before what is on screen.
+            // At the end the file has the bytes of a bake without a window; before, it has what is on screen.
             const bool done = baker_->solver().done();
             FloatImage image =
                 done ? baker_->lightmap(desc) : makeLightmap(baker_->patches(), maps_->lightNow(), desc);
@@ -426,7 +430,7 @@ void BakeLoop::publish() {
     status_.display = maps_->choice();
 }
 
-// A bake that cannot go on; what is shown stays.
+// Gives up a bake that cannot go on; what is shown stays.
 void BakeLoop::fail(const std::string& message) {
     spdlog::error("{}", message);
     status_.phase = Phase::Failed;
@@ -453,7 +457,7 @@ void BakeLoop::measure() {
 void BakeLoop::follow() {
     if (!baker_) return;
     if (status_.phase != Phase::Baking)
-        status_.rays = baker_->solver().raysSoFar(); // as nothing will be measured
+        status_.rays = baker_->solver().raysSoFar(); // because nothing more will be measured
     const SolverProgress& now = baker_->solver().progress();
     status_.progress = now;
     status_.rays = std::max(status_.rays, now.rays);

@@ -10,7 +10,7 @@
 
 namespace relume {
 
-/// What the bake thread does: follows orders, steps the solver batch by batch and publishes its light.
+/// The work of the bake thread: it follows commands, steps the solver batch by batch and publishes its light.
 class BakeLoop {
 public:
     BakeLoop(BakeDesk& desk, const BakeDeviceDesc& desc);
@@ -18,7 +18,7 @@ public:
     BakeLoop(const BakeLoop&) = delete;
     BakeLoop& operator=(const BakeLoop&) = delete;
 
-    /// Until it is ordered to quit. Never throws: what goes wrong is told in the status.
+    /// Runs until it is told to quit. Never throws: the status tells what goes wrong.
     void run();
 
 private:
@@ -55,14 +55,14 @@ private:
     BakeDeviceDesc desc_;
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<MapPublisher> maps_;
-    Scene scene_;                              // with its edited materials
-    const PreparedScene* prepared_ = nullptr;  // that it came from; only its address counts
+    Scene scene_;                              // with the edits
+    const PreparedScene* prepared_ = nullptr;  // scene_ was made from it; only its address counts
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
     BakeSettings settings_;
-    bool wantsLayers_ = true;      // whatever settings_ can have
+    bool wantsLayers_ = true;      // layers are asked for, even if settings_ cannot have them
     uint32_t rings_ = 4;           // of texels filled around charts, on screen
     std::unique_ptr<Baker> baker_; // of scene_
-    BakeStatus status_;            // the desk's, as it will be
+    BakeStatus status_;            // report() copies it to the desk
     BakeOrders::Run run_ = BakeOrders::Run::Resume;
     std::vector<uint32_t> seenTiles_;
     InspectRequest inspect_;

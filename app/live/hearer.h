@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// Tells how a preparation stands to whom it may concern.
+/// Passes on to a function how a preparation stands.
 class Hearer final : public Watch {
 public:
     using Hear = std::function<void(const char* phase, double done)>;

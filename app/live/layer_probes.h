@@ -10,23 +10,24 @@
 
 namespace relume {
 
-/// Reads what the layers of lights hold at some texels, each again when it is another one: as much as a small
-/// picture needs, never a whole layer. For the bake thread.
+/// Reads what the layers of lights hold at some texels, and reads a layer again when it has changed. That is
+/// as much as a small picture needs, never a whole layer. Only the bake thread uses it.
 class LayerProbes {
 public:
     explicit LayerProbes(const vk::Device& device) : device_(device), commands_(device) {}
 
     /// Replaces what was asked for before.
     void ask(ProbeRequest request);
-    /// The patches are others now: all are to be told again.
+    /// Forgets what was told, because the patches are others now: all layers are told again.
     void forget();
 
     using PatchAt = std::function<uint32_t(uint32_t texel)>; // shader::kNoPatch: beside all charts
-    /// The next layer that was not told as it is now. none: nothing is asked for, or all were told.
+    /// Returns the next layer that was not told as it is now, or nothing when nothing is asked for or all
+    /// were told.
     std::optional<LayerProbe> next(const LayerSolver& solver, const PatchAt& patchAt);
 
 private:
-    /// What decides a layer's bytes.
+    /// The cache key and level, which decide a layer's bytes.
     struct Told {
         LightPattern pattern;
         LayerLevel level;

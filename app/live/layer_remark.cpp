@@ -18,7 +18,7 @@ std::string layerRemark(bool wanted, const SolverSettings& settings, const Baker
             settings.transport.rtrad ? "RTRad's preset" : methodName(settings.method));
     constexpr double kMiB = 1024.0 * 1024.0;
     const size_t lights = lightSources(scene).size();
-    // Each has its direct light and its result (bake/layers/layer.h).
+    // Each layer has its direct light and its result (bake/layers/layer.h).
     const double each = 2.0 * static_cast<double>(LightBuffers::lightBytes(baker.patches()));
     return fmt::format(
         "{} lights are baked as one, {:.0f} MiB for their layers are not free: use fewer lights or a "

@@ -7,13 +7,13 @@
 
 namespace relume {
 
-/// Why a bake has no layer for each light, with the mend, one line; "" where none was wanted. settings: of
-/// the bake, which is not layered.
+/// Tells in one line why a bake has no layer for each light, with the remedy; "" where layers were not
+/// wanted. The settings are those of the bake, which is not layered.
 std::string layerRemark(bool wanted, const SolverSettings& settings, const Baker& baker, const Scene& scene);
 
-/// The lights that share layers.
+/// Returns the lights that share layers.
 std::vector<LightGroup> groupsOf(const LayerSolver& solver);
-/// What that means for who edits them, with the mend, one line; "": none do.
+/// Tells in one line what shared layers mean for an edit, with the remedy; "" when no lights share one.
 std::string groupRemark(const std::vector<LightGroup>& groups);
 
 } // namespace relume

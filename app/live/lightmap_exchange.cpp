@@ -18,7 +18,7 @@ LightmapExchange::~LightmapExchange() {
     closeOffer();
 }
 
-// Of images that nobody took.
+// Closes the file descriptors of images that nobody took.
 void LightmapExchange::closeOffer() {
     if (!offered_) return;
     for (int& fd : offer_.fds) {
@@ -87,7 +87,7 @@ std::optional<MapOffer> LightmapExchange::takeOffer() {
 
 void LightmapExchange::accept(uint32_t set, const std::array<std::span<std::byte>, kSlots>& memory) {
     const std::lock_guard lock(mutex_);
-    if (set != offer_.set) return; // another one is wanted by now
+    if (set != offer_.set) return; // another set was offered since
     memory_ = memory;
     accepted_ = true;
 }

@@ -13,7 +13,7 @@
 
 namespace relume {
 
-/// What the texels of a published map hold; beside lighting the texture group and other things one looks at.
+/// The content of a published map's texels. Beside lighting this is the texture group and other quantities.
 enum class MapContent : uint32_t {
     Light,    // lighting, irradiance / pi, smoothed as for output
     LigIn,    // lighting as the last bounce read it
@@ -25,40 +25,40 @@ enum class MapContent : uint32_t {
     Leaves,   // quad-tree: r log2 of a leaf's edge [texels], g 1 along its border, b in [0, 1) tells leaves
               // apart
     Error,    // r: how far the light may still be off, in lighting's unit
-    Layer,    // as Light, of one of the lights alone
-    Seen, // from the chosen patch: r 1 where it sees, g that one's form factor over the largest, b 1 itself
+    Layer,    // the same as Light, but of a single light
+    Seen,     // from the chosen patch: r 1 where it sees, g form factor over the largest one, b 1 at itself
 };
 
-/// Rows of blocks of a map that changed [texels]; first == end: none.
+/// The rows of a map in which blocks changed [texels]. There are none when first == end.
 struct RowRange {
     uint32_t first = 0, end = 0;
     bool empty() const { return first >= end; }
     void add(const RowRange& other);
 };
 
-/// A map that was written to a slot.
+/// Describes a map that was written to a slot.
 struct PublishedMap {
     uint32_t slot = 0;
-    uint32_t set = 0; // of slots, as MapOffer has it
+    uint32_t set = 0; // of slots, see MapOffer::set
     MapContent content = MapContent::Light;
     uint64_t bake = 0;       // number of the bake that it comes from, see LiveBake::start()
     bool complete = false;   // a solution with all bounces
     float unit = 1;          // [cd/m^2], [m], ...: a texel's 1.0
     glm::vec3 ambient{0.0f}; // mean of the patches, in the same unit as what a texel stands for
     float low = 0, high = 0; // range of the content's first channel, of all patches
-    bool filled = true;      // all around charts so far that no filter meets an empty texel
+    bool filled = true;      // so far around all charts that no filter meets an empty texel
     bool radiance = false;   // Light holds RTRad's radiosity: albedo and emission are in it
     RowRange changed = {};   // since the map before
 };
 
-/// What a light's layer holds at the texels of a ProbeRequest.
+/// The values of a light's layer at the texels of a ProbeRequest.
 struct LayerProbe {
     uint64_t request = 0; // its number
     LightKey key;
     std::vector<glm::vec3> light; // lighting for a unit of its weight, 0 where no patch is
 };
 
-/// Three slots of one size that the bake thread wants: images of its own to be imported, or plain memory.
+/// Offers three slots of one size: images of the bake thread that OpenGL imports, or plain memory.
 struct MapOffer {
     uint32_t set = 0;  // counts from 1
     uint32_t size = 0; // edge [texels]; a texel is four 16-bit floats
@@ -67,48 +67,49 @@ struct MapOffer {
     uint64_t memorySize = 0;               // shared: [bytes] of each image's memory
 };
 
-/// Hands finished maps from the thread that bakes to the one that draws, without either waiting for the
-/// other: of three slots one is shown, one may wait to be shown, and one is written. Knows neither Vulkan nor
-/// OpenGL: a slot is written once its claim was granted, and read between take() and release().
+/// A triple buffer that hands finished maps from the thread that bakes to the one that draws, without either
+/// waiting for the other: one slot is shown, one may wait to be shown, and one is written. It knows neither
+/// Vulkan nor OpenGL: a slot is written once its claim was granted, and read between take() and release().
 class LightmapExchange {
 public:
     static constexpr uint32_t kSlots = 3;
 
     ~LightmapExchange(); // closes what nobody took
 
-    // The bake thread's side.
+    // The bake thread calls these functions.
     /// Replaces the set of slots; maps of the former one that were not taken are forgotten.
     void offer(const MapOffer& offer);
-    /// A slot to write; none as long as the set was not accepted, a map still waits to be taken, or the
-    /// drawing thread holds all the others.
+    /// Returns a slot to write, or nothing as long as the set was not accepted, a map still waits to be
+    /// taken, or the drawing thread holds all the others.
     std::optional<uint32_t> claim();
-    /// Memory of a slot, where the set is not shared: size * size * 8 bytes.
+    /// Returns the memory of a slot, where the set is not shared: size * size * 8 bytes.
     std::span<std::byte> memory(uint32_t slot);
-    /// The claimed slot is finished.
+    /// Says that the claimed slot is finished.
     void publish(const PublishedMap& map);
-    /// Replaces what was not taken of the same light.
+    /// Publishes a probe. It replaces one of the same light that was not taken.
     void publish(LayerProbe probe);
-    /// The claimed slot was not written after all.
+    /// Says that the claimed slot was not written after all.
     void giveUp(uint32_t slot);
-    /// Whether the drawing thread has let go of all sets before this one.
+    /// Tells whether the drawing thread has let go of all sets before this one.
     bool retiredBefore(uint32_t set) const;
 
-    // The drawing thread's side.
-    /// A set that is wanted; to be answered by accept() or refuse().
+    // The drawing thread calls these functions.
+    /// Returns the newest offer, once. It is answered by accept() or refuse().
     std::optional<MapOffer> takeOffer();
-    /// memory: of each slot, where the set is not shared; it must live until the set is retired.
+    /// Accepts a set. Where it is not shared, `memory` has the memory of each slot, which must live until the
+    /// set is retired.
     void accept(uint32_t set, const std::array<std::span<std::byte>, kSlots>& memory);
-    /// The images cannot be imported: the bake thread is to offer plain memory.
+    /// Says that the images cannot be imported: the bake thread then offers plain memory.
     void refuse(uint32_t set);
-    bool refused() const; // the bake thread's question
-    /// The newest map, once; it stays readable until it is released.
+    bool refused() const; // the bake thread asks this
+    /// Returns the newest map, once. It stays readable until it is released.
     std::optional<PublishedMap> take();
-    /// The oldest probe, each once.
+    /// Returns the oldest probe that was not taken yet.
     std::optional<LayerProbe> takeProbe();
     bool hasProbe() const;
-    /// The drawing thread reads this slot no more.
+    /// Says that the drawing thread reads this slot no more.
     void release(uint32_t set, uint32_t slot);
-    /// The drawing thread has let go of all that belonged to the set.
+    /// Says that the drawing thread has let go of all that belonged to the set.
     void retire(uint32_t set);
 
 private:

@@ -32,7 +32,7 @@ void LiveBake::order(Change change) {
 uint64_t LiveBake::start(Start start) {
     start.number = ++bakes_;
     order([&](BakeOrders& orders) {
-        // A start that was not taken up yet: light that was not to be kept then is not kept now.
+        // Where the last start was not taken up yet and did not keep the light, this one does not either.
         if (orders.start && !orders.start->keepLight) start.keepLight = false;
         orders.start = std::move(start);
         orders.reset = orders.abort = orders.reload = false;

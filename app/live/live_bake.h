@@ -9,15 +9,15 @@ namespace relume {
 
 class BakeLoop;
 
-/// One bake after the other on a thread and a device of its own. All calls return at once; they are for one
-/// thread (the main one). The light of a former bake stays published until a new one has a first solution
-/// with all its bounces.
+/// Runs one bake after the other on a thread and a device of its own. All calls but stop() return at once;
+/// one thread (the main one) makes them. The light of a former bake stays published until a new one has a
+/// first solution with all its bounces.
 class LiveBake {
 public:
     using Desc = BakeDeviceDesc;
-    /// Starts the thread. Where Vulkan is missing the status says so (Failed).
+    /// Starts the thread. Where Vulkan is missing, the status says so (Failed).
     explicit LiveBake(const Desc& desc);
-    ~LiveBake(); // stops; the Vulkan device goes with it: after OpenGL's context (picture_studio.h)
+    ~LiveBake(); // stops and destroys the Vulkan device: only after OpenGL's context (picture_studio.h)
     LiveBake(const LiveBake&) = delete;
     LiveBake& operator=(const LiveBake&) = delete;
 
@@ -25,28 +25,28 @@ public:
     void stop();
 
     using Start = BakeOrders::Start;
-    /// Bakes this from now on, in place of what was asked for before. Returns the bake's number, which status
-    /// and maps bear.
+    /// Bakes `start` from now on, in place of what was asked for before. Returns the bake's number, which
+    /// status and maps bear.
     uint64_t start(Start start);
-    /// Whether the thread may still read a scene.
+    /// Tells whether the thread may still read a scene.
     bool holds(const PreparedScene& scene) const;
     void setBatchMs(double ms);
     void pause() { run(BakeOrders::Run::Pause); }
     void resume() { run(BakeOrders::Run::Resume); }
-    /// Goes on until the pass (link methods: round) under way ends, then pauses.
+    /// Goes on until the bounce (in link methods the sample pass) under way ends, then pauses.
     void makePass() { run(BakeOrders::Run::Pass); }
     void step() { run(BakeOrders::Run::Step); } // one batch, then pauses
     void abortPass();                           // forgets the pass under way and pauses
     void reset();                               // begins the same bake again from no light
-    /// Begins again with the kernels as --shaders' folder has them now; where one does not compile the log
+    /// Begins again with the kernels as --shaders' folder has them now. Where one does not compile, the log
     /// says so and all goes on as it was.
     void reloadShaders();
-    /// Tiles (8 x 8 texels, row by row) that the camera sees: they come first.
+    /// Sets the tiles (8 x 8 texels, row by row) that the camera sees: they come first.
     void setSeenTiles(std::vector<uint32_t> tiles);
     void inspect(const InspectRequest& request);
-    /// Voxels of this resolution; answered by takeVoxels().
+    /// Asks for the voxels of this resolution; takeVoxels() answers.
     void askVoxels(uint32_t resolution);
-    /// Answered by exchange().takeProbe(), where each light has a layer.
+    /// Asks for layers at texels; exchange().takeProbe() answers, where each light has a layer.
     void askProbes(ProbeRequest request);
     /// Writes the lightmap as it stands; the log tells how it went.
     void exportLightmap(BakeOrders::Export wanted);
@@ -55,7 +55,8 @@ public:
     LightmapExchange& exchange() { return desk_->exchange; }
     std::optional<InspectPaths> takePaths();
     std::optional<InspectVoxels> takeVoxels();
-    /// Called from the bake thread whenever there is something new to see; must be harmless at any time.
+    /// Sets what the bake thread calls whenever there is something new to see. It must be harmless at any
+    /// time.
     void setWake(std::function<void()> wake);
 
 private:

@@ -12,20 +12,20 @@
 namespace relume {
 namespace {
 
-// Inspected quantities are gone through on the CPU: often enough to follow, seldom enough not to brake.
+// The CPU goes through inspected quantities: often enough to follow, seldom enough not to slow the bake.
 constexpr double kInspectSeconds = 0.2;
-// Rings that the widest filter reaches beyond a chart [texels].
+// The widest filter reaches so many rings beyond a chart [texels].
 constexpr uint32_t kFilterReach = 2;
-// Directions whose ends are shown as paths.
+// The ends of so many directions are shown as paths.
 constexpr uint32_t kPaths = 64;
 
-// What changes while a bake goes on.
+// Tells whether the content changes while a bake goes on.
 bool follows(MapContent content) {
     return content == MapContent::LigIn || content == MapContent::LigOut || content == MapContent::Leaves ||
            content == MapContent::Error || content == MapContent::Layer;
 }
 
-// What is drawn as it is: colours, directions, marks.
+// Tells whether the content is drawn as it is, without a unit: colours, directions and marks.
 bool isPlain(MapContent content) {
     return content == MapContent::Normal || content == MapContent::Material ||
            content == MapContent::Leaves || content == MapContent::Seen;
@@ -117,7 +117,7 @@ void MapPublisher::edited(uint64_t number) {
     }
 }
 
-// Texels that were drawn stay; what they were made of goes.
+// Ends the bake. Texels that were drawn stay; what they were made of goes.
 void MapPublisher::end() {
     next_ = {};
     inspected_ = {};
@@ -189,7 +189,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     const bool moved = follows(request.content) && live.version != inspectedVersion_;
     if (!asked && !moved) return false;
     if (!asked && secondsSince(inspectedAt_) < kInspectSeconds) {
-        owes_ = true; // the last one of a bake must come, too
+        owes_ = true; // the last map of a bake must come, too
         return false;
     }
     if (!inspected_.publisher) inspected_ = makeSource();
@@ -201,7 +201,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     inspected_.publisher->update({.values = vk::makeBuffer(device_, values, "inspected"),
                                   .chunks = inspected_.publisher->allChunks(),
                                   .unit = unit});
-    inspected_.bake = bake_->number; // which edits change
+    inspected_.bake = bake_->number; // edits change the number
     write(inspected_, *slot,
           {.content = request.content,
            .complete = live.complete,
@@ -251,7 +251,8 @@ PatchValues MapPublisher::inspect(const InspectRequest& request) {
     return PatchValues(bake_->baker.patches().scene.patches.size(), glm::vec4(0.0f));
 }
 
-// No ray is traced for it: its layer, weighed alone. Dark where it has none.
+// Returns one light's layer times its weight, for which no ray is traced. It is dark where the light has
+// none.
 PatchValues MapPublisher::layerOf(const InspectRequest& request) {
     PatchValues values(bake_->baker.patches().scene.patches.size(), glm::vec4(0.0f));
     const auto* solver = dynamic_cast<const LayerSolver*>(&bake_->baker.solver());
@@ -280,7 +281,7 @@ uint32_t MapPublisher::patchAt(uint32_t texel) const {
     return texel < size * size ? inspector_->patchAt(texel % size, texel / size) : shader::kNoPatch;
 }
 
-// A slot for maps of this size. Notes what is owed where there is none yet.
+// Claims a slot for maps of this size. Where there is none yet, it notes that a map is owed.
 std::optional<uint32_t> MapPublisher::claim(uint32_t size) {
     if (shared_ && exchange_.refused()) {
         if (desc_.display == DisplayMode::Shared)
@@ -317,7 +318,7 @@ void MapPublisher::offer() {
     }
 }
 
-// Images that nobody draws with any more.
+// Destroys images that nobody draws with any more.
 void MapPublisher::takeBackFormer() {
     std::erase_if(former_,
                   [&](const FormerImages& images) { return exchange_.retiredBefore(images.set + 1); });
@@ -325,7 +326,7 @@ void MapPublisher::takeBackFormer() {
 
 void MapPublisher::write(Source& source, uint32_t slot, PublishedMap map) {
     Publisher& publisher = *source.publisher;
-    // What another source wrote to the slots is not this one's.
+    // The slots may hold what another source wrote, which this one does not know.
     if (writer_ != &publisher) publisher.forget();
     writer_ = &publisher;
     const std::vector<TexelArea> areas =

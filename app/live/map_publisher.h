@@ -13,21 +13,21 @@
 
 namespace relume {
 
-/// Brings what a bake has found to the exchange, as maps: decides between shared images and plain memory, and
-/// keeps the light of the bake before until the new one has a solution. For the bake thread.
+/// Brings what a bake has found to the exchange, as maps. It decides between shared images and plain memory,
+/// and keeps the light of the bake before until the new one has a solution. Only the bake thread uses it.
 class MapPublisher {
 public:
     struct Desc {
         DisplayMode display = DisplayMode::Auto;
         DisplayHost host;
     };
-    /// Throws Error when images must be shared and cannot be.
+    /// Decides how images reach OpenGL. Throws Error when they must be shared and cannot be.
     MapPublisher(const vk::Device& device, LightmapExchange& exchange, const Desc& desc);
 
-    /// What was chosen, with the reason: "shared (OpenGL and Vulkan use one device)".
+    /// Tells what was chosen, with the reason: "shared (OpenGL and Vulkan use one device)".
     const std::string& choice() const { return choice_; }
 
-    /// Another bake begins. All must outlive it until end().
+    /// A bake for begin(). The references must stay valid until end().
     struct Bake {
         Baker& baker;
         uint64_t number = 0;
@@ -36,33 +36,34 @@ public:
         const BakeSettings& settings;
     };
     void begin(const Bake& bake);
-    /// The bake goes on with another number, its lights or surfaces edited: a map of it follows, whether or
-    /// not anything is to be seen of that.
+    /// Says that the bake goes on with another number, because its lights or surfaces were edited. A map of
+    /// it follows, even if the edit changes nothing that can be seen.
     void edited(uint64_t number);
     void end();
 
-    /// Layers at these texels go to the exchange, one with each publish() while there are any to tell.
+    /// Sends the layers at these texels to the exchange, one with each publish() while there are any to tell.
     void setProbes(ProbeRequest request) { probes_.ask(std::move(request)); }
 
-    /// Publishes what was asked for, where there is something new and a slot to write. True when it did.
+    /// Publishes what was asked for, where there is something new and a slot to write. Returns whether it
+    /// did.
     bool publish(const InspectRequest& request);
-    /// Whether something new waits for a slot.
+    /// Tells whether something new is left to publish: it waits for a slot or its time, or is the next probe.
     bool owes() const { return owes_; }
 
-    /// Light as it stands, as the solver has it for each patch. Needs a bake.
+    /// Returns the light as the solver has it now for each patch. Needs a bake.
     std::vector<glm::vec4> lightNow();
-    /// Light paths of the patch at this texel, none beside all charts. Needs a bake.
+    /// Returns the light paths of the patch at this texel, or nothing beside all charts. Needs a bake.
     std::optional<InspectPaths> paths(uint32_t texel);
     InspectVoxels voxels(uint32_t resolution) const;
 
 private:
-    /// What writes maps of one kind.
+    /// A publisher that writes maps of one kind, and what goes with each map.
     struct Source {
         std::unique_ptr<Publisher> publisher;
         uint64_t bake = 0;
         bool radiance = false, filled = true;
     };
-    /// Images that the drawing thread may still have.
+    /// Images that the drawing thread may still use.
     struct FormerImages {
         uint32_t set = 0;
         std::array<vk::SharedImage, Publisher::kSlots> images;
@@ -96,7 +97,7 @@ private:
     std::optional<PatchInspector> inspector_;
     Source light_, next_, inspected_; // next_: takes light_'s place once there is a solution
     std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
-    uint64_t drawnVersion_ = 0;       // of the solver's light, in light_; 0: none of this bake
+    uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
     bool edited_ = false;             // since the newest map
     bool owes_ = false;
     InspectRequest shown_; // by the newest map

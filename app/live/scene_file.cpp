@@ -41,7 +41,8 @@ bool SceneFile::differs(const SceneEdits& edits) const {
                        held_.placements.end(), samePlace);
 }
 
-// A light that became one of another kind stays in the node it had.
+// Returns the file's node of a light, or -1. A light that became one of another kind stays in the node it
+// had.
 int SceneFile::fileNode(const Light& light) const {
     const Place place = placeOf(light);
     for (const bool area : {place.second, !place.second})
@@ -85,7 +86,7 @@ void SceneFile::keep(const Result& result) {
     for (size_t i = 0; i < file_.instances.size(); ++i)
         file_.instances[i].node = result.nodes.instances[i];
     std::set<int> taken(result.nodes.lights.begin(), result.nodes.lights.end());
-    // What was deleted may come back to its node, unless another light has that now.
+    // A deleted light may come back to its node, unless another light has that now.
     std::erase_if(nodes_, [&](const auto& entry) { return taken.contains(entry.second); });
     for (size_t i = 0; i < file_.lights.size(); ++i) {
         nodes_[placeOf(pending_.lights[i])] = result.nodes.lights[i];

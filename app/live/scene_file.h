@@ -13,8 +13,8 @@
 
 namespace relume {
 
-/// The file that a scene is edited in: what of the edits it has, and where. Saves on a thread of its own. For
-/// one thread.
+/// The file that a scene is edited in. It knows which of the edits the file has, and in which nodes. It saves
+/// on a thread of its own; its functions are for a single thread.
 class SceneFile {
 public:
     /// A finished save.
@@ -23,21 +23,22 @@ public:
         std::optional<std::filesystem::file_time_type> time; // of the file, as it was written
     };
 
-    /// The file is as this scene was loaded from it. Waits for a save that is under way, and forgets it.
+    /// Says that the file is as this scene was loaded from it. Waits for a save under way, and forgets it.
     void loaded(const Scene& scene);
-    /// As it was loaded or saved.
+    /// Returns the scene as it was loaded or saved last.
     const Scene& scene() const { return file_; }
-    /// Gives each light that the file has not, and that is new to this, a number of its own in Light::node
-    /// (below -1), by which it is known from then on, through undo too.
+    /// Gives each light that is not in the file, and that has no number yet, a number of its own in
+    /// Light::node (below -1). The light is known by it from then on, through undo too.
     void number(std::vector<Light>& lights);
-    /// Whether a save would change the file. What it cannot hold, as hidden objects, does not count.
+    /// Tells whether a save would change the file. What a file cannot hold, such as hidden objects, does not
+    /// count.
     bool differs(const SceneEdits& edits) const;
 
-    /// Saves edits of that scene into the file `path`, which is the scene's file from then on. Not while
-    /// saving().
+    /// Saves edits of that scene into the file `path`, which is the scene's file from then on. Must not be
+    /// called while saving().
     void save(const std::string& path, const SceneEdits& edits);
     bool saving() const { return saving_.valid(); }
-    /// Once per frame. What was saved since; throws the save's Error.
+    /// Returns what was saved since the last call, which comes once per frame. Throws the save's Error.
     std::optional<Saved> update();
     /// Waits for the save that is under way, if there is one.
     void wait() const;

@@ -17,9 +17,9 @@ namespace {
 
 // Pictures are wider than high; only the camera's distance depends on it.
 constexpr float kAspect = 16.0f / 9.0f;
-// A file is looked at so often, and must have held still for so long: who writes it may not be done yet.
+// A file is looked at so often, and must have stayed the same for so long: its writer may not be done yet.
 constexpr double kPollSeconds = 0.5;
-// Steps of undo that are kept.
+// Undo keeps so many steps.
 constexpr size_t kMaxSteps = 200;
 
 struct LoadUnwanted {};
@@ -57,7 +57,8 @@ bool haveSameNames(const std::vector<Named>& a, const std::vector<Named>& b) {
                       [](const Named& x, const Named& y) { return x.name == y.name; });
 }
 
-// Placements go by the objects' order, which a save may change where an object left its node.
+// Tells whether both scenes have the same objects in the same order. Placements go by that order, which a
+// save may change where an object left its node.
 bool sameObjects(const Scene& a, const Scene& b) {
     return std::equal(
         a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
@@ -83,7 +84,7 @@ Session::~Session() {
 }
 
 void Session::open(const std::string& path, bool keep) {
-    if (loading_.valid()) { // one at a time: the newest wish is looked at when the present one has ended
+    if (loading_.valid()) { // one at a time: the newest request is followed when the present load has ended
         if (path != loadingPath_) unwanted_ = true;
         nextPath_ = path;
         keepNext_ = keep;
@@ -95,7 +96,7 @@ void Session::open(const std::string& path, bool keep) {
     desc.path = path;
     desc.size = document_.bake.size;
     spdlog::info("opening {}", path);
-    finishSaving(); // what is read is what is there then
+    finishSaving(); // so that the load reads what was saved
     loadingTime_ = fileTime(path);
     sameFile_ = keep && path == prepare_.path && loadingTime_ && loadingTime_ == watched_;
     unwanted_ = false;
@@ -121,7 +122,7 @@ bool Session::finishLoading() {
     try {
         take(loading_.get());
         changed = true;
-    } catch (const LoadUnwanted&) { // another one comes below
+    } catch (const LoadUnwanted&) { // another scene is opened below
     } catch (const std::bad_alloc&) {
         fail(loadingPath_ + ": does not fit in memory");
     } catch (const std::exception& error) {
@@ -131,7 +132,7 @@ bool Session::finishLoading() {
     if (!nextPath_.empty())
         open(std::exchange(nextPath_, {}), keepNext_);
     else if (changed && scene_->size != document_.bake.size)
-        open(prepare_.path, true); // edited meanwhile
+        open(prepare_.path, true); // the size was edited meanwhile
     else if (!changed && scene_ && scene_->size != document_.bake.size) {
         scene_->size = document_.bake.size; // its file is gone: the atlas it has must do
         startBake(true);
@@ -144,8 +145,8 @@ void Session::fail(const std::string& message) {
     lastError_ = message;
 }
 
-// What was edited goes over to a file that was written anew; the rest is as the file has it now: where its
-// lights changed, all of them.
+// Carries edits over to a file that was written anew; the rest is as the file has it now. Where the file's
+// lights changed, all of them are the file's.
 void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instances) {
     const Scene& file = file_.scene();
     const SceneEdits own = editsOf(file);
@@ -159,7 +160,7 @@ void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instance
         edits.sky = document_.edits.sky;
     }
     if (sameNames && sameInstances && sameLights) return;
-    forgetSteps(); // which number materials, instances and lights
+    forgetSteps(); // they refer to materials, instances and lights by number
     document_.mix = {};
 }
 
@@ -288,7 +289,7 @@ void Session::apply(const Document& next) {
     const bool resized = next.bake.size != document_.bake.size;
     document_ = next;
     ++changes_;
-    // Charts are packed for a size: another one is another atlas.
+    // Charts are packed for a size: another size needs another atlas.
     if (resized && scene_)
         open(prepare_.path, true);
     else
@@ -339,7 +340,7 @@ std::string Session::redoName() const {
     return done_ < steps_.size() ? steps_[done_].name : "";
 }
 
-// Who writes the file may take a while: it is read once its time stamp stays as it is.
+// Reads the scene's file again once its new time stamp stays as it is: its writer may take a while.
 void Session::pollFile() {
     if (!scene_ || loading_.valid() || secondsSince(polled_) < kPollSeconds) return;
     polled_ = Clock::now();

@@ -17,16 +17,16 @@
 
 namespace relume {
 
-/// A scene as it was loaded, never changed after.
+/// A scene as it was loaded. It is never changed afterwards.
 struct LoadedScene {
     PreparedScene prepared;
     SceneGeometry geometry; // for the renderer, made beside the main thread
-    ViewCamera view;        // the file's first camera, else a good one
+    ViewCamera view;        // the file's first camera, else one that goodView() finds
     uint32_t size = 0;      // lightmap edge that the atlas is made for [texels]
     uint64_t number = 0;    // counts loads from 1
 };
 
-/// What a user edits, and what undo restores.
+/// All that a user edits and that undo restores.
 struct Document {
     SceneEdits edits; // of the scene
     LightMix mix;
@@ -34,35 +34,37 @@ struct Document {
     LightmapDesc lightmap; // of exports
 };
 
-/// The scene on screen, its document with undo and redo, and the bake that follows them. Knows no window and
-/// no OpenGL. For one thread.
+/// The scene on screen, its document with undo and redo, and the bake that follows them. It knows neither a
+/// window nor OpenGL, and is for a single thread.
 class Session {
 public:
-    /// `bake` must outlive it. The request gives the first settings, its path is not opened.
+    /// Takes the first settings from the request, whose path is not opened. `bake` must outlive the session.
     Session(LiveBake& bake, const BakeRequest& request);
     ~Session();
 
-    /// Loads a scene beside the main thread; the present one stays until it is there, or for good when it
-    /// cannot be read: then lastError() says why. With `keep` (the file changed) camera and settings are to
-    /// stay, edits of materials by name, and those of lights where the file's are what they were; of a file
-    /// that is as it was loaded or saved all edits.
+    /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
+    /// when that cannot be read: then lastError() says why. With `keep` (the file changed) the camera and
+    /// settings stay, and so do edits of materials, by name, and of objects and lights where the file's are
+    /// what they were. Where the file is still as it was loaded or saved, all edits stay.
     void open(const std::string& path, bool keep = false);
     bool loading() const { return loading_.valid(); }
     const std::string& loadingPath() const { return loadingPath_; }
-    /// Once per frame. True when another scene is there: scene() changed.
+    /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
+    /// changed.
     bool update();
     const LoadedScene* scene() const { return scene_.get(); } // nullptr: none yet
-    /// Number of the scene's first bake: maps of earlier ones show another scene.
+    /// Returns the number of the scene's first bake: maps of earlier ones show another scene.
     uint64_t firstBake() const { return firstBake_; }
     bool sceneWasKept() const { return kept_; } // the newest scene came with `keep`
-    /// The newest message of something that could not be done, "" for none; clearError() when it was shown.
+    /// Returns the newest message of something that could not be done, "" for none. Call clearError() once it
+    /// was shown.
     const std::string& lastError() const { return lastError_; }
     void clearError() { lastError_.clear(); }
 
     const Document& document() const { return document_; }
-    /// Another number whenever the document is another one.
+    /// Returns a number that changes whenever the document does.
     uint64_t changes() const { return changes_; }
-    /// Number of the bake that follows the document: maps of earlier ones show what was before.
+    /// Returns the number of the bake that follows the document: maps of earlier ones show what was before.
     uint64_t newestBake() const { return newestBake_; }
     /// Sets the document and bakes it. `name` is shown by undo ("Emission of Lamp"). Edits with the same name
     /// one after the other become one step until endEdit(): those of a dragged slider.
@@ -72,26 +74,26 @@ public:
     void cancelEdit();
     bool undo(); // false: nothing left
     bool redo();
-    /// Of the edit that undo or redo would take back or make again, "" for none.
+    /// Name the edit that undo or redo would take back or make again, "" for none.
     std::string undoName() const;
     std::string redoName() const;
 
-    /// Saves the document's edits into the scene's file, or as `path`, which is that file from then on,
-    /// beside the main thread; the newest wish counts. lastError() says what went wrong.
+    /// Saves the document's edits beside the main thread, into the scene's file or as `path`, which is that
+    /// file from then on. The newest request counts. lastError() says what went wrong.
     void save(const std::string& path = "");
     bool saving() const { return file_.saving() || nextSave_.has_value(); }
-    /// Whether there is something that a save would put into the file.
+    /// Tells whether there is something that a save would put into the file.
     bool dirty() const { return scene_ && file_.differs(document_.edits); }
-    /// The scene's file, "" for none: where it was loaded from, or saved as.
+    /// Returns the scene's file, which it was loaded from or saved as; "" for none.
     std::string path() const { return scene_ ? prepare_.path : ""; }
-    /// Counts saves that are done.
+    /// Returns how many saves are done.
     uint64_t saves() const { return saves_; }
 
-    /// Why these settings cannot be baked, one line; "" when they can.
+    /// Tells in one line why these settings cannot be baked; "" when they can.
     static std::string problem(const BakeSettings& settings);
 
     LiveBake& bake() { return bake_; }
-    /// While on, update() loads the scene anew whenever its file was written.
+    /// Switches watching on or off. While on, update() loads the scene anew whenever its file was written.
     void watchFile(bool on) { watch_ = on; }
     bool watchesFile() const { return watch_; }
 
@@ -117,9 +119,9 @@ private:
     PrepareDesc prepare_; // of the present scene
     Document document_;
     std::unique_ptr<LoadedScene> scene_;
-    std::vector<std::unique_ptr<LoadedScene>> former_; // that the bake thread may still read
+    std::vector<std::unique_ptr<LoadedScene>> former_; // the bake thread may still read them
     std::future<std::unique_ptr<LoadedScene>> loading_;
-    std::atomic<bool> unwanted_ = false; // what is loading, so that it ends early
+    std::atomic<bool> unwanted_ = false; // the load under way, so that it ends early
     std::string loadingPath_, nextPath_, lastError_;
     bool keepLoading_ = false, keepNext_ = false, kept_ = false;
     SceneFile file_;
@@ -133,9 +135,9 @@ private:
     static FileTime fileTime(const std::string& path);
     bool watch_ = false;
     Clock::time_point polled_{};
-    FileTime watched_, seen_; // of the scene as it was read or saved; when looked at last
-    FileTime loadingTime_;    // of what is loading
-    bool sameFile_ = false;   // what is loading is the file as it was read or saved before
+    FileTime watched_, seen_; // of the scene's file: when it was read or saved, when it was looked at last
+    FileTime loadingTime_;    // of the file that is loading
+    bool sameFile_ = false;   // the file that is loading is as it was read or saved before
 };
 
 } // namespace relume

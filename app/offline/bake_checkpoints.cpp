@@ -9,11 +9,11 @@
 namespace relume {
 namespace {
 
-// Of the time, what saving may take: beyond that it is done less often than asked for.
+// Saving may take this share of the time: beyond that it is done less often than asked for.
 constexpr double kSavingShare = 0.1;
 constexpr double kWorthTelling = 1.0; // [s]
 
-// As a value in a list that is separated by spaces.
+// Makes the text one value in a list that is separated by spaces.
 std::string oneWord(std::string text) {
     std::replace(text.begin(), text.end(), ' ', '_');
     return text;

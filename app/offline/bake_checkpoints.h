@@ -11,13 +11,14 @@
 
 namespace relume {
 
-/// What --checkpoint and --resume ask for; nothing if neither was given.
+/// Does what --checkpoint and --resume ask for; nothing if neither was given.
 class BakeCheckpoints final : public SolveWatcher {
 public:
-    /// Reads the one and sees whether the other can be written. Throws Error.
+    /// Reads the file of --resume and sees whether that of --checkpoint can be written. Throws Error.
     explicit BakeCheckpoints(const BakeOptions& options);
 
-    /// Before the first step: goes on from --resume's file. Throws Error when it belongs to another bake.
+    /// Goes on from --resume's file, before the first step. Throws Error when the file belongs to another
+    /// bake.
     void begin(Baker& baker, const Scene& scene, const BakeSettings& settings, const vk::DeviceInfo& device);
     /// Saves when it is time to. A failure is a warning: the bake itself is sound.
     void afterStep(Solver& solver) override;

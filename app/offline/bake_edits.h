@@ -5,8 +5,8 @@
 
 namespace relume {
 
-/// Bakes options.scene as edited into options.output: with options.layers light by light, in one .exr. The
-/// atlas is that of the scene as its file has it, as in the viewer. Throws Error.
+/// Bakes options.scene as edited into options.output; with options.layers it does so light by light, in one
+/// .exr. The atlas is that of the scene as its file has it, as in the viewer. Throws Error.
 void bakeEdited(const BakeOptions& options, const SceneEdits& edits);
 
 } // namespace relume

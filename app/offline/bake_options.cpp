@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDefaultError = 0.01;
 
-// Of the methods that follow directions.
+// Adds the options of the methods that follow directions.
 void addLinkOptions(CLI::App& command, BakeOptions& o) {
     command
         .add_option(
@@ -85,7 +85,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
                                                       : Rotation::Patch;
     solver.links.indirectScale = std::max(o.indirectScale, 1u);
     solver.links.footprint = o.footprint;
-    // For these, passes are bounces: how many samples they need is another question.
+    // The passes of these methods are bounces: how many samples they need is another question.
     if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
 }
 

@@ -15,12 +15,12 @@ class Option;
 
 namespace relume {
 
-constexpr float kRtradReflectivity = 0.9f; // of its preset, unless told otherwise
+constexpr float kRtradReflectivity = 0.9f; // of RTRad's preset, unless told otherwise
 
-/// What the user typed after `relume bake`.
+/// The options that the user typed after `relume bake`.
 struct BakeOptions {
     std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;
-    std::string method;             // "": hybrid, of the RTRad preset pure
+    std::string method;             // "": hybrid, or with the RTRad preset pure
     std::string directions, rotate; // "": not given
     std::string tracer = "auto", preset, quantity;
     uint32_t size = 512;
@@ -45,25 +45,26 @@ struct BakeOptions {
 };
 
 void addBakeOptions(CLI::App& command, BakeOptions& options);
-/// Those of them that say how a lightmap is made, for other verbs that need one.
+/// Adds those of them that say how a lightmap is made, for other verbs that need one.
 void addSolverOptions(CLI::App& command, BakeOptions& options);
-/// Those of them that go with every method and number of samples: tracer, device, patches, what is written.
+/// Adds those of them that go with every method and number of samples: tracer, device, patches, what is
+/// written.
 void addMachineOptions(CLI::App& command, BakeOptions& options);
-/// How users name methods and tracers.
+/// Return how users name methods and tracers.
 std::vector<std::string> methodNames();
 std::vector<std::string> tracerNames();
-/// For a layer for each light.
+/// Adds the option for the memory of a layer for each light.
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& options);
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);
 
-/// What the options ask for. Throws UsageError when they contradict each other.
+/// The bake that the options ask for. resolveBakeOptions() throws UsageError when they contradict each other.
 struct BakeRequest {
     PrepareDesc prepare;
     BakeSettings bake;
     LightmapDesc lightmap;
 };
 BakeRequest resolveBakeOptions(const BakeOptions& options);
-/// The part of it that concerns voxels; a ratio of 0: they play no part.
+/// Returns the part of it that concerns voxels; with a ratio of 0 they play no part.
 VoxelSettings resolveVoxels(const BakeOptions& options);
 
 } // namespace relume

@@ -7,7 +7,7 @@
 namespace relume {
 namespace {
 
-// Every struct is taken apart by name: one more setting does not compile until it was decided here whether it
+// Every struct is taken apart by name: one more setting does not compile until it is decided here whether it
 // changes a bake's bytes.
 
 std::string describe(const TransportSettings& settings) {

@@ -69,7 +69,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"seconds", seconds},
                        {"bakeCpuSeconds", s.bakeCpuSeconds},
                        {"atlas", atlasJson(s.prepared)}};
-    // Names of files, and those from the scene's file, need not be UTF-8.
+    // The names of files, and those from the scene's file, need not be UTF-8.
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     if (path == "-")
         std::cout << text << std::flush;

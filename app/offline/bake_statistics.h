@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What a finished bake was and cost.
+/// A finished bake, for the figures of what it was and what it cost.
 struct BakeStatistics {
     const BakeOptions& options;
     const PreparedScene& prepared;
@@ -17,7 +17,8 @@ struct BakeStatistics {
     double bakeCpuSeconds; // of all threads, from the lightmap's rasterization to the finished map
 };
 
-/// Writes them as JSON to `path`, or to standard output for "-". Temporary name, then rename. Throws Error.
+/// Writes them as JSON to `path`, under a temporary name that is then changed, or to standard output for "-".
+/// Throws Error.
 void writeStatistics(const std::string& path, const BakeStatistics& statistics);
 
 } // namespace relume

@@ -8,34 +8,34 @@
 
 namespace relume {
 
-/// Which file a path names, whatever way leads there: links, "./" and a second name are the same.
+/// Which file a path names, whatever way leads there: links, "./" and a second name make no difference.
 struct FileIdentity {
-    bool device = false;           // a character device, as /dev/null: it takes what comes from everyone
-    uint64_t disk = 0, number = 0; // st_dev and st_ino: of the file, of what does not exist yet of its folder
-    std::string name;              // of what does not exist yet, else ""
+    bool device = false;           // a character device like /dev/null: it takes what comes from everyone
+    uint64_t disk = 0, number = 0; // st_dev and st_ino of the file, or of its folder if it does not exist yet
+    std::string name;              // of a file that does not exist yet, else ""
     bool operator==(const FileIdentity&) const = default;
 };
 
-/// Nothing where not even the folder is there.
+/// Returns the identity of a path's file, or nothing where not even the folder is there.
 std::optional<FileIdentity> identityOf(const std::string& path);
 
-/// The files that a command reads and writes, told before it does either.
+/// The files that a command reads and writes. They are told before it does either.
 class CommandFiles {
 public:
-    /// `option`: as users type it, or what the help calls an argument: "--json", "SCENE". A path that is ""
-    /// or "-" is none.
+    /// Adds a file that is read. `option` is as users type it, or what the help calls an argument: "--json",
+    /// "SCENE". A path that is "" or "-" is no file.
     CommandFiles& reads(const std::string& option, const std::string& path);
-    /// A scene, with the files that belong to it.
+    /// Adds a scene that is read, with the files that belong to it.
     CommandFiles& readsScene(const std::string& option, const std::string& path);
     CommandFiles& writes(const std::string& option, const std::string& path);
-    /// A folder in which frames are replaced.
+    /// Adds a folder in which frames are replaced.
     CommandFiles& writesFrames(const std::string& option, const std::string& folder);
-    /// The one may be the file that the other reads.
+    /// Says that `output` may write the file that `input` reads.
     CommandFiles& mayBe(const std::string& output, const std::string& input);
 
-    /// Tells what is written twice, or read and overwritten: one line, "" when there is nothing.
+    /// Tells in one line what is written twice, or read and overwritten; "" when there is nothing.
     std::string clash() const;
-    /// Throws UsageError when there is something.
+    /// Throws UsageError when there is such a clash.
     void check() const;
 
 private:
@@ -44,7 +44,7 @@ private:
         Use use{};
         std::string option, path;
         std::optional<FileIdentity> identity;
-        std::optional<FileIdentity> folder; // of Read and Linked: that it is in
+        std::optional<FileIdentity> folder; // the one that a Read or Linked file is in
     };
     CommandFiles& add(Use use, const std::string& option, const std::string& path);
     bool clashes(const File& written, const File& other) const;

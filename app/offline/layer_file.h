@@ -10,18 +10,19 @@
 
 namespace relume {
 
-/// The lightmap of a layered bake (whose solver is a LayerSolver) as it stands, light by light: each layer
-/// with its weight, light and level, and with what it does not show of the scene any more. Seams are filled
-/// as in the composite, which is the sum of the others and bears these attributes. desc.quantity: lighting.
+/// Returns the lightmap of a layered bake (whose solver is a LayerSolver) as it stands, light by light: each
+/// layer with its weight, light and level, and with what it does not show of the scene any more. Seams are
+/// filled as in the composite, which is the sum of the others and bears these attributes. desc.quantity must
+/// be lighting.
 LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& desc,
                           const std::map<std::string, std::string>& attributes);
 
-/// writeLayeredExr, and a line to the log about each layer.
+/// Writes the image by writeLayeredExr, and a line to the log about each layer.
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type);
 
-/// Of each layer that does not show the scene as it is.
+/// Returns the reason of each layer that does not show the scene as it is, one line each.
 std::vector<std::string> staleReasons(const LayerSolver& solver);
-/// Of all layers, one line; "": all of them show the scene as it is.
+/// Returns the reasons of all layers in one line; "": all of them show the scene as it is.
 std::string staleLayers(const LayerSolver& solver);
 
 } // namespace relume

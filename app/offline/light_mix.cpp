@@ -69,7 +69,8 @@ void turnOff(LayeredImage::Layer& layer) {
     layer.weight = glm::vec3(0.0f);
 }
 
-// What is no sum of layers, as an error per texel, is not that of the new sum.
+// Drops the channels that are no sum of layers, such as an error per texel: they are not those of the new
+// sum.
 void keepSummedChannels(FloatImage& image) {
     for (size_t c = image.channels.size(); c-- > 0;) {
         const std::string& name = image.channels[c];
@@ -87,7 +88,7 @@ void sum(LayeredImage& image) {
         std::vector<double> total(size_t(composite.width) * composite.height);
         for (const LayeredImage::Layer& layer : image.layers) {
             const double weight = layer.weight[c];
-            if (weight == 0.0) continue; // whatever such a layer holds, it is off
+            if (weight == 0.0) continue; // such a layer is off, whatever it holds
             const std::vector<float>& plane = *layer.image.find(channel);
             for (size_t i = 0; i < total.size(); ++i)
                 total[i] += weight * plane[i];
@@ -148,7 +149,7 @@ void mixLayers(LayeredImage& image, const MixDesc& desc) {
     for (const WeightEdit& edit : desc.edits) {
         LayeredImage::Layer& layer = layerOf(image, edit.name);
         if (edit.isFactor) {
-            const glm::vec3 weight = layer.weight * edit.intensity; // one that is off stays off
+            const glm::vec3 weight = layer.weight * edit.intensity; // a layer that is off stays off
             weigh(layer, intensityOf(layer) * edit.intensity, colorOf(layer));
             layer.weight = weight;
         } else {

@@ -12,10 +12,10 @@ class App;
 
 namespace relume {
 
-/// Whether it takes windows of texels together.
+/// Tells whether the method takes windows of texels together.
 bool hasWindow(Method method);
 
-/// What the user typed for the pair methods and the caches.
+/// The options that the user typed for the pair methods and the caches.
 struct PairOptions {
     std::optional<uint32_t> window, node; // [texels]
     std::optional<double> threshold, thresholdRamp;
@@ -27,7 +27,7 @@ void addPairOptions(CLI::App& command, PairOptions& options);
 /// Throws UsageError for values that are wrong or that the method has no use for.
 void resolvePairOptions(const PairOptions& options, SolverSettings& settings);
 
-/// Name and value of those that the method uses, as "name=value" with a blank before each.
+/// Returns name and value of those that the method uses, as "name=value" with a blank before each.
 std::string describePairSettings(const SolverSettings& settings);
 
 } // namespace relume

@@ -9,8 +9,8 @@
 
 namespace relume {
 
-/// One line on stderr that tells how a long job stands: rewritten in place on a terminal, a new line every
-/// few seconds otherwise.
+/// One line on stderr that tells how a long job stands. On a terminal it is rewritten in place, otherwise
+/// there is a new line every few seconds.
 class ProgressLine {
 public:
     ProgressLine();
@@ -18,7 +18,7 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// Whether a new text would be shown now; cheap.
+    /// Tells whether a new text would be shown now. The call is cheap.
     bool due() const;
     void show(const std::string& text);
 
@@ -27,10 +27,10 @@ private:
     std::chrono::steady_clock::time_point next_;
 };
 
-/// Shows how what comes before and after a bake's steps stands, phase by phase, and ends it on Ctrl-C.
+/// Shows how the work before and after a bake's steps stands, phase by phase, and ends it on Ctrl-C.
 class PhaseProgress final : public Watch {
 public:
-    /// nothingToLose: as Abandonable has it.
+    /// Begins; with nothingToLose the work is Abandonable.
     explicit PhaseProgress(bool nothingToLose);
     ~PhaseProgress() override;
     /// Throws Error when Ctrl-C was pressed while an InterruptGuard exists.
@@ -42,10 +42,10 @@ private:
     WatchScope scope_;
 };
 
-/// "patches  45 %", or "tracer" where the share is not known.
+/// Returns "patches 45 %", or "tracer" where the share is not known.
 std::string phaseText(const char* phase, double done);
 
-/// "12 s", "3 min 05 s", "2 h 10 min"; "?" for a negative number.
+/// Returns "12 s", "3 min 05 s" or "2 h 10 min"; "?" for a negative number.
 std::string formatDuration(double seconds);
 
 } // namespace relume

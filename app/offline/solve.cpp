@@ -10,7 +10,9 @@
 namespace relume {
 namespace {
 
-// Pass, percent, rays per second and the time left: of this pass when only the error can end the bake.
+// Returns how the bake stands: with link methods directions per patch, rays per second and error; with pair
+// methods pass, percent, rays per second, error and the time left, which is that of this pass when only the
+// error can end the bake.
 std::string progressText(Solver& solver, const SolverSettings& settings) {
     const SolverProgress& p = solver.progress();
     if (!isPairMethod(settings.method)) {

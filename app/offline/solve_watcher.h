@@ -4,11 +4,11 @@
 
 namespace relume {
 
-/// What is done on the way of a bake, between its steps.
+/// Something that is done while a bake goes on, between its steps.
 class SolveWatcher {
 public:
     virtual ~SolveWatcher() = default;
-    /// After every step but the last one.
+    /// Is called after every step but the last one.
     virtual void afterStep(Solver& solver) = 0;
     /// Throws the Error that ends a bake which the user interrupted.
     [[noreturn]] virtual void interrupt(Solver& solver) = 0;

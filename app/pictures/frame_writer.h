@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// Where the frames of a series go.
+/// Writes the frames of a series.
 class FrameWriter {
 public:
     struct Desc {
@@ -15,15 +15,16 @@ public:
         uint32_t width = 0, height = 0; // of all frames [pixels]
         double rate = 2;                // of a video [frames/s]
         double hold = 0;                // how long a video stays on its last frame [s]
-        bool overwrite = false;         // frames that are in the folder go when the first new one comes
+        bool overwrite = false;         // old frames in the folder go when the first new one comes
     };
 
     virtual ~FrameWriter() = default;
-    /// The next frame, so many times. Throws Error.
+    /// Writes the next frame so many times. Throws Error.
     virtual void write(const FloatImage& frame, uint32_t times) = 0;
-    /// After the last one. Without it a video is not left behind; frames in a folder are. Throws Error.
+    /// Ends the series after the last frame. Without it, frames in a folder stay but a video does not. Throws
+    /// Error.
     virtual void finish() = 0;
-    /// Whether frames so far are worth something without finish().
+    /// Tells whether the frames so far are worth something without finish().
     virtual bool keepsFrames() const = 0;
     uint32_t count() const { return count_; } // frames so far
 

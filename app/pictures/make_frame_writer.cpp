@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// frame_0001.png and so on.
+/// Writes frame_0001.png and so on into a folder.
 class FolderWriter final : public FrameWriter {
 public:
     explicit FolderWriter(const Desc& desc) : folder_(desc.path) {

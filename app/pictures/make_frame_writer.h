@@ -6,7 +6,8 @@
 
 namespace relume {
 
-/// Throws Error where writing is sure to fail: before the bake, which would be in vain. Changes nothing yet.
+/// Makes the writer for a path, and changes nothing on the disk yet. Throws Error where writing is sure to
+/// fail: before the bake, which would be in vain.
 std::unique_ptr<FrameWriter> makeFrameWriter(const FrameWriter::Desc& desc);
 
 } // namespace relume

@@ -12,12 +12,12 @@ namespace relume {
 /// Makes pictures of one scene without a display.
 class PictureStudio {
 public:
-    /// Opens OpenGL: before a bake, which would be in vain where there is none. Throws Error.
+    /// Opens OpenGL, before a bake, which would be in vain where there is none. Throws Error.
     explicit PictureStudio(const BakeOptions& options);
 
     /// Takes the scene that the pictures show. Throws Error, also for a camera that it does not have.
     void open(const ShotOptions& options, const ShotRequest& request, const PreparedScene& prepared);
-    /// In the size asked for. Throws Error.
+    /// Takes a picture in the size asked for. Throws Error.
     FloatImage take(const LightmapTexture& lightmap, const DrawSettings& settings);
     float exposure() const { return renderer_.exposure(); } // of the last picture of light [EV]
 
@@ -29,15 +29,15 @@ private:
     gl::Framebuffer target_;
 };
 
-/// A bake for pictures, not yet stepped: what it uses and how many patches there are is logged. Destroyed
-/// after the studio: with NVIDIA's driver OpenGL finds its context no more once the process has let go of
-/// Vulkan.
+/// A bake for pictures, not yet stepped. It logs what it uses and how many patches there are. It must be
+/// destroyed after the studio: with NVIDIA's driver OpenGL finds its context no more once the process has let
+/// go of Vulkan.
 class PictureBake {
 public:
     PictureBake(const BakeOptions& options, const BakeRequest& request, const PreparedScene& prepared);
 
     Baker& baker() { return *baker_; }
-    /// Tells how it ended.
+    /// Logs how the bake ended.
     void logEnd();
 
 private:

@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// What the user typed after `relume shot`.
+/// The options that the user typed after `relume shot`.
 struct ShotOptions {
     BakeOptions bake;     // scene, output and how the lightmap is made; its size is the lightmap's
     std::string lightmap; // an image to take instead, "": bake
@@ -19,20 +19,21 @@ struct ShotOptions {
 };
 
 void addShotOptions(CLI::App& command, ShotOptions& options);
-/// Those of them that say what a picture looks like, for other verbs that make some.
+/// Adds those of them that say what a picture looks like, for other verbs that make pictures.
 void addPictureOptions(CLI::App& command, ShotOptions& options);
 
-/// What the options ask for. Throws UsageError when they are wrong or contradict each other.
+/// The picture that the options ask for. resolveShotOptions() throws UsageError when they are wrong or
+/// contradict each other.
 struct ShotRequest {
     uint32_t width = 0, height = 0; // [pixels]
     DrawSettings draw;
 };
 ShotRequest resolveShotOptions(const ShotOptions& options);
-/// The same for those of addPictureOptions.
+/// Does the same for the options of addPictureOptions().
 ShotRequest resolvePictureOptions(const ShotOptions& options);
 
-/// The camera asked for: by name, by place, else the file's first one, else a good one. Throws Error when the
-/// scene has none of that name.
+/// Returns the camera asked for: by name, by place, else the file's first one, else one that goodView()
+/// finds. Throws Error when the scene has none of that name.
 ViewCamera chooseCamera(const ShotOptions& options, const Scene& scene, const WorldMesh& mesh, float aspect);
 
 } // namespace relume

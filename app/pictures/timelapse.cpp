@@ -10,8 +10,8 @@
 namespace relume {
 namespace {
 
-// Lightmaps that wait in memory [bytes]: a hundred of 1024 x 1024. With more, the series gets the exposure of
-// what it shows by then, which hardly differs from its end's.
+// At most so many bytes of lightmaps wait in memory: a hundred of 1024 x 1024. With more, the series gets the
+// exposure of what it shows by then, which hardly differs from its end's.
 constexpr uint64_t kMostWaiting = uint64_t{2} << 30;
 
 uint64_t bytesOf(const FloatImage& image) {
@@ -28,7 +28,7 @@ uint32_t Timelapse::countNow() const {
     return desc_.pairs ? progress.passes : progress.samples;
 }
 
-// How many frames show what there is now.
+// Returns how many frames show what there is now.
 uint32_t Timelapse::framesDue() {
     const uint32_t count = countNow();
     if (desc_.request.every > 0) {
@@ -36,7 +36,7 @@ uint32_t Timelapse::framesDue() {
         if (behind < 0) return 0;
         const double frames = std::floor(behind / desc_.request.every) + 1;
         nextSeconds_ += frames * desc_.request.every;
-        // Nothing is known before the first pass or round: the series starts with the first light.
+        // Nothing is known before the first bounce or sample pass: the series starts with the first light.
         if (count == 0) return 0;
         const bool first =
             moments_.size() == 1 && moments_.back().frames.empty() && desc_.writer.count() == 0;
@@ -58,7 +58,7 @@ uint32_t Timelapse::framesDue() {
 }
 
 void Timelapse::afterStep(Solver&) {
-    // By time, a frame may be due within a round, when light cannot be told: it is kept when one ends.
+    // By time, a frame may be due within a sample pass, when light cannot be told: it is kept when one ends.
     const bool fresh = moments_.empty() ? countNow() > 0 : moments_.back().count != countNow();
     if (desc_.request.every > 0 && fresh) keepLight();
     const uint32_t frames = framesDue();
@@ -67,7 +67,7 @@ void Timelapse::afterStep(Solver&) {
     uint64_t waiting = 0;
     for (const Moment& moment : moments_)
         waiting += bytesOf(moment.lightmap);
-    // The newest may turn out to be the bake's end, which is another frame.
+    // The newest moment waits: it may turn out to be the bake's end, which is another frame.
     if (draw_.exposure || waiting > kMostWaiting) flush(1);
 }
 
@@ -91,7 +91,7 @@ std::vector<std::string> Timelapse::caption() const {
     return {desc_.title, text + fmt::format(", {:.2f} s", progress.seconds)};
 }
 
-// All but so many of the newest, whose exposure is taken where none was given.
+// Writes all but the `kept` newest moments. Where no exposure was given, the newest one's is measured.
 void Timelapse::flush(size_t kept) {
     if (moments_.empty()) return;
     if (!draw_.exposure) {
@@ -123,7 +123,7 @@ void Timelapse::interrupt(Solver&) {
 }
 
 void Timelapse::finish() {
-    // What is counted may have come before the last of what is not.
+    // By count, the last moment may have the same count as the end: the end replaces it.
     const bool again = desc_.request.every == 0 && !moments_.empty() && moments_.back().count == countNow();
     if (again) moments_.pop_back();
     add(1);

@@ -8,10 +8,10 @@
 namespace relume {
 
 /// Takes pictures of a bake on its way. All of a series have the exposure of its end, so that it does not
-/// flicker: where that is measured, lightmaps wait for it in memory.
+/// flicker: where that must be measured, lightmaps wait for it in memory.
 class Timelapse final : public SolveWatcher {
 public:
-    /// All must outlive it.
+    /// All that a time lapse needs. The references must outlive it.
     struct Desc {
         PictureStudio& studio;
         Baker& baker;
@@ -24,9 +24,9 @@ public:
     explicit Timelapse(const Desc& desc);
 
     void afterStep(Solver& solver) override;
-    /// Frames in a folder are written before.
+    /// Writes the frames first where they go to a folder.
     [[noreturn]] void interrupt(Solver& solver) override;
-    /// The last frame, and all that waited for it. Throws Error.
+    /// Writes the last frame, and all that waited for it. Throws Error.
     void finish();
 
 private:

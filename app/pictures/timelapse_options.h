@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// What the user typed after `relume timelapse`.
+/// The options that the user typed after `relume timelapse`.
 struct TimelapseOptions {
     ShotOptions shot; // all but its lightmap
     std::string at;   // "": not given
@@ -18,7 +18,8 @@ struct TimelapseOptions {
 
 void addTimelapseOptions(CLI::App& command, TimelapseOptions& options);
 
-/// What the options ask for. Throws UsageError when they are wrong or contradict each other.
+/// The series that the options ask for. resolveTimelapseOptions() throws UsageError when they are wrong or
+/// contradict each other.
 struct TimelapseRequest {
     ShotRequest shot;
     std::vector<uint32_t>

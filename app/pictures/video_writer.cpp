@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As a shell finds it; "" where there is none.
+// Finds a program as a shell does; "" where there is none.
 std::string findProgram(const std::string& name) {
     const char* path = std::getenv("PATH");
     std::istringstream folders(path != nullptr ? path : "");
@@ -39,7 +39,8 @@ std::string findProgram(const std::string& name) {
     return "";
 }
 
-// Of the file that ffmpeg writes, as ffmpeg has it: it goes to and fro in it, and opens it a second time.
+// The file that ffmpeg writes has this descriptor in ffmpeg, which goes to and fro in it and opens it a
+// second time.
 constexpr int kVideoDescriptor = 3;
 
 void closeDescriptor(int& descriptor) {
@@ -59,11 +60,11 @@ std::string lastLine(int descriptor) {
     return last;
 }
 
-// H.264 that every player takes: half the colours, in the standard of high-definition television, and told
-// so.
+// Returns arguments for H.264 that every player takes: colours at half the resolution, in the standard of
+// high-definition television, and marked so.
 std::vector<std::string> ffmpegArguments(const FrameWriter::Desc& desc) {
-    // Constant rate factor of x264, 0 lossless, 23 its default: noise is what a time lapse shows, and low
-    // factors keep it.
+    // This is the constant rate factor of x264, where 0 is lossless and 23 its default: a time lapse shows
+    // noise, which low factors keep.
     constexpr const char* kQuality = "16";
     return {"ffmpeg",
             "-hide_banner",
@@ -120,11 +121,11 @@ VideoWriter::~VideoWriter() {
     closeDescriptor(log_);
 }
 
-// Beside us, in a process group of its own: Ctrl-C is for us.
+// Starts ffmpeg beside us, in a process group of its own, because Ctrl-C is for us.
 void VideoWriter::start() {
     file_.emplace(desc_.path);
     int ends[2] = {-1, -1};
-    // A socket, as a write to one can fail instead of raising SIGPIPE.
+    // It is a socket because a write to one can fail instead of raising SIGPIPE.
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         throw Error(desc_.path + ": no socket for ffmpeg: " + std::strerror(errno) +
                     ": close other programs");

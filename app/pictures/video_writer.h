@@ -10,7 +10,7 @@
 
 namespace relume {
 
-/// An MP4 made by ffmpeg, which runs beside us and is given the frames as they come. The file has its name
+/// Writes an MP4 by ffmpeg, which runs beside us and is given the frames as they come. The file has its name
 /// once it is whole.
 class VideoWriter final : public FrameWriter {
 public:

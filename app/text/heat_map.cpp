@@ -13,8 +13,8 @@ constexpr float kGrey = 0.2f;        // linear; no colour of the ramp
 
 } // namespace
 
-// A helix around the grey diagonal of the RGB cube, its deviation scaled by t (1 - t) / 2 [Green 2011: A
-// colour scheme for the display of astronomical intensity images, equation 2].
+// The colours are a helix around the grey diagonal of the RGB cube, with its deviation scaled by t (1 - t) /
+// 2 [Green 2011: A colour scheme for the display of astronomical intensity images, equation 2].
 glm::vec3 heatColour(double t) {
     constexpr double kStart = 0.5, kRotations = -1.1, kHue = 1.2; // begins blue, ends yellow; colourful
     t = std::clamp(t, 0.0, 1.0);
@@ -34,7 +34,7 @@ double heatScale(const std::vector<float>& values, const std::vector<bool>& cove
         sorted.begin() + static_cast<ptrdiff_t>(kShownShare * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), place, sorted.end());
     double wanted = *place;
-    // Differences in fewer texels than that still make a scale.
+    // Values above 0 in fewer texels than that still make a scale.
     if (wanted <= 0.0) wanted = *std::max_element(sorted.begin(), sorted.end());
     if (!(wanted > 0.0)) return 1.0;
     const double power = std::pow(10.0, std::floor(std::log10(wanted)));

@@ -8,15 +8,15 @@
 
 namespace relume {
 
-/// Display colour (sRGB, 0 to 1) for t in [0, 1]: black over blue, red and yellow-green to white, ever
-/// brighter, so that it reads in grey too [Green 2011, cubehelix].
+/// Returns the display colour (sRGB, 0 to 1) for t in [0, 1]: from black over blue, red and yellow-green to
+/// white, ever brighter, so that it reads in grey too [Green 2011, cubehelix].
 glm::vec3 heatColour(double t);
 
-/// The smallest of 1, 2 or 5 times a power of ten that 99 % of the covered values do not exceed; 1 where all
-/// are 0. A round end of a scale that a few outliers do not stretch.
+/// Returns a round end of a scale that a few outliers do not stretch: the smallest of 1, 2 or 5 times a power
+/// of ten that 99 % of the covered values do not exceed; 1 where all are 0.
 double heatScale(const std::vector<float>& values, const std::vector<bool>& covered);
 
-/// `values` from 0 to `scale` as colours (linear, for writeImage), grey where nothing is covered.
+/// Returns `values` from 0 to `scale` as colours (linear, for writeImage), grey where nothing is covered.
 FloatImage heatMap(uint32_t width, const std::vector<float>& values, const std::vector<bool>& covered,
                    double scale);
 

@@ -27,7 +27,7 @@ extern "C" void onInterrupt(int number) {
     if (abandonable != 0) startAlarm();
 }
 
-// Calls only what a signal handler may.
+// Ends the program, and calls only what a signal handler may.
 extern "C" void onAlarm(int) {
     if (abandonable == 0) return; // it has ended by itself, or work has begun that is worth being saved
     for (const std::string_view part :
@@ -36,7 +36,7 @@ extern "C" void onAlarm(int) {
     _exit(1);
 }
 
-// Calls of the system that a signal comes across go on.
+// Sets a signal's handler so that system calls that the signal interrupts go on.
 void handleSignal(int number, void (*handler)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;

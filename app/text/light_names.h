@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// "point", "spot", ...
+/// Returns "point", "spot", ...
 inline const char* lightTypeName(LightType type) {
     switch (type) {
     case LightType::Point:
@@ -21,7 +21,7 @@ inline const char* lightTypeName(LightType type) {
     return "";
 }
 
-/// Of Light::intensity.
+/// Returns the unit of Light::intensity.
 inline const char* lightUnit(LightType type) {
     if (type == LightType::Directional) return "lux";
     return type == LightType::Point || type == LightType::Spot ? "cd" : "cd/m^2";

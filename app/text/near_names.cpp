@@ -18,8 +18,8 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
-// Letters to put in, take out, replace or swap with their neighbour: the optimal string alignment distance
-// [Damerau 1964].
+// Returns how many letters to put in, take out, replace or swap with their neighbour: the optimal string
+// alignment distance [Damerau 1964].
 size_t distance(const std::string& a, const std::string& b) {
     std::vector<std::vector<size_t>> cost(a.size() + 1, std::vector<size_t>(b.size() + 1));
     for (size_t i = 0; i <= a.size(); ++i) {
@@ -46,7 +46,7 @@ std::string listed(const std::vector<std::string>& names, const char* last) {
 
 std::vector<std::string> nearNames(const std::string& typed, const std::vector<std::string>& names) {
     const std::string wanted = lowerCase(typed);
-    // A letter in three mistyped; of two letters any would be another name.
+    // One letter in three may be mistyped; with two letters, any change would be another name.
     const size_t farthest = wanted.size() / 3;
     std::vector<std::pair<size_t, std::string>> found;
     for (const std::string& name : names) {

@@ -16,7 +16,8 @@ namespace {
 
 using ReadText = std::function<std::optional<std::string>(const std::string&)>;
 
-/// `read` returns the text as CLI11 is to convert it, nothing where it is not allowed.
+/// Makes a check of which `read` returns the text as CLI11 must convert it, or nothing where it is not
+/// allowed.
 CLI::Validator checkOf(const std::string& allowed, const std::string& mend, ReadText read) {
     const auto check = [mend, read = std::move(read)](std::string& text) -> std::string {
         std::optional<std::string> good = read(text);
@@ -27,7 +28,7 @@ CLI::Validator checkOf(const std::string& allowed, const std::string& mend, Read
     return CLI::Validator(check, allowed, kOptionCheck);
 }
 
-// Users write numbers without the zeros of a float.
+// Returns a number as users write it, without the zeros of a float.
 std::string shortNumber(double value) {
     return fmt::format("{:.12g}", value);
 }

@@ -15,7 +15,7 @@ namespace relume {
 void holdStandardStreams() {
     for (int descriptor = 0; descriptor <= 2; ++descriptor) {
         if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-        // The lowest free one, which is this one.
+        // open() takes the lowest free descriptor, which is this one.
         if (open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY) < 0) return;
     }
 }

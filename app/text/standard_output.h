@@ -2,12 +2,12 @@
 
 namespace relume {
 
-/// At the start: descriptors 0 to 2 that are closed would go to the first files that are opened, into which
-/// results would be printed then. They become ones at which every read or write fails.
+/// Fills descriptors 0 to 2 where they are closed; call it at the start. Otherwise they would go to the first
+/// files that are opened, into which results would then be printed. Reading or writing what fills them fails.
 void holdStandardStreams();
 
-/// At the end: what was printed leaves, and is an error where it did not arrive. Returns the exit status for
-/// a command that ended with `status`.
+/// Flushes what was printed, at the end, and logs an error where it did not arrive. Returns the exit status
+/// for a command that ended with `status`.
 int finishOutput(int status);
 
 /// Tells whether something that was printed is known to be lost.

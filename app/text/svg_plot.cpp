@@ -10,13 +10,13 @@
 namespace relume {
 namespace {
 
-// In units of the view box, about a pixel each at full width.
+// Lengths are in units of the view box, about a pixel each at full width.
 constexpr double kWidth = 640, kHeight = 400, kLeft = 72, kRight = 28, kTop = 14, kBottom = 52;
 constexpr double kMarker = 3.5;
 constexpr double kLine = 18; // of text in a file of its own
 constexpr size_t kMostTicks = 12;
 
-// Told apart by people with any colour vision [Okabe and Ito 2008]; yellow and black would vanish on light
+// People with any colour vision tell these apart [Okabe and Ito 2008]; yellow and black would vanish on light
 // and dark pages.
 constexpr std::array<const char*, 7> kColours = {"#808890", "#0072b2", "#e69f00", "#009e73",
                                                  "#cc79a7", "#56b4e9", "#d55e00"};
@@ -39,7 +39,7 @@ struct Axis {
     double place(double value) const { return start + (std::log10(value) - low) / (high - low) * length; }
 };
 
-// Room for a single value too.
+// Returns an axis that has room around a single value too.
 Axis axisOver(double low, double high, double start, double length) {
     constexpr double kMargin = 0.05, kLeast = 0.15; // [decades]
     const double margin = std::max(kMargin * (high - low), kLeast);
@@ -51,7 +51,8 @@ struct Tick {
     bool labelled;
 };
 
-// Decades; where there are few, 2 and 5 between them as well. Not more labels than there is room for.
+// Returns the decades, and where there are few, 2 and 5 between them as well. There are not more labels than
+// there is room for.
 std::vector<Tick> ticksOf(const Axis& axis) {
     const double span = axis.high - axis.low;
     const int first = static_cast<int>(std::floor(axis.low)), last = static_cast<int>(std::ceil(axis.high));
@@ -188,7 +189,7 @@ private:
     std::string out_;
 };
 
-// Length of the UTF-8 sequence at `at` that XML allows, 0 where there is none.
+// Returns the length of the UTF-8 sequence at `at` that XML allows, 0 where there is none.
 size_t characterLength(const std::string& text, size_t at) {
     const auto byte = [&](size_t i) {
         return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0u;
@@ -202,7 +203,8 @@ size_t characterLength(const std::string& text, size_t at) {
     if (lead < 0xc2 || length == 0) return 0;
     for (size_t i = 1; i < length; ++i)
         if ((byte(i) & 0xc0) != 0x80) return 0;
-    // Overlong forms, surrogates, beyond U+10FFFF, non-characters at the end of the first plane.
+    // XML excludes overlong forms, surrogates, what is beyond U+10FFFF and non-characters at the end of the
+    // first plane.
     if ((lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xed && byte(1) > 0x9f)) return 0;
     if ((lead == 0xf0 && byte(1) < 0x90) || (lead == 0xf4 && byte(1) > 0x8f)) return 0;
     if (lead == 0xef && byte(1) == 0xbf && byte(2) >= 0xbe) return 0;

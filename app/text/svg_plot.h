@@ -24,21 +24,21 @@ struct PlotDesc {
     std::vector<double> xTicks = {}; // none: decades
 };
 
-/// Text as HTML and SVG take it, in elements and quoted attributes. Bytes that are no UTF-8 or not allowed in
-/// XML become U+FFFD.
+/// Returns text as HTML and SVG take it, in elements and quoted attributes. Bytes that are not UTF-8 or not
+/// allowed in XML become U+FFFD.
 std::string escapeMarkup(const std::string& text);
 
-/// An <svg> element with both axes logarithmic: a line and markers for each series, no legend. Colours come
-/// from plotStyle().
+/// Returns an <svg> element with both axes logarithmic: a line and markers for each series, no legend.
+/// Colours come from plotStyle().
 std::string logLogPlot(const PlotDesc& desc);
 
-/// The same as an SVG file of its own: on white, with title and legend.
+/// Returns the same as an SVG file of its own: on white, with title and legend.
 std::string logLogPlotFile(const PlotDesc& desc);
 
-/// A small <svg> that shows a series' colour and dash, for legends.
+/// Returns a small <svg> that shows a series' colour and dash, for legends.
 std::string plotSwatch(const PlotSeries& series);
 
-/// CSS of the plots, for light and dark pages.
+/// Returns the CSS of the plots, for light and dark pages.
 std::string plotStyle();
 
 } // namespace relume

@@ -21,7 +21,7 @@ std::optional<Number> allOf(std::string_view text) {
     return value;
 }
 
-// from_chars knows no plus sign; users may write one.
+// Reads a finite number. from_chars knows no plus sign, but users may write one.
 template<typename Number>
 std::optional<Number> finiteOf(std::string_view text) {
     if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);

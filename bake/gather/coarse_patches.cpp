@@ -14,20 +14,20 @@ using shader::Patch;
 
 constexpr uint32_t kTileWindows = 8; // windows
 constexpr uint32_t kTaps = 4;
-// Members of a part that count for less than this with its receiver get another one: normals 40 degrees
-// apart, or half a window off the plane.
+// Members of a part that count for less than this with its receiver get another one: their normals are 40
+// degrees apart, or they are half a window off the plane.
 constexpr float kLeastLikeness = 0.1f;
-// In the world no further apart than this many times what the distance in the chart says: a chart may come
-// close to itself in the atlas.
+// Patches say nothing about each other that are further apart in the world than so many times what the
+// distance in the chart says: a chart may come close to itself in the atlas.
 constexpr float kMaxStretch = 3.0f;
 
-// A receiver's place.
+// The place of a receiver.
 struct ReceiverPlace {
     uint32_t patch = kNoPatch, chart = kNoChart;
     glm::ivec2 texel{0};
 };
 
-// What of a window has one chart.
+// The patches of a window that belong to one chart.
 struct Part {
     std::array<uint32_t, 16> patches{};
     uint32_t count = 0, chart = kNoChart;
@@ -74,7 +74,7 @@ private:
     bool inGrid(glm::ivec2 window) const {
         return window.x >= 0 && window.y >= 0 && window.x < windows_ && window.y < windows_;
     }
-    // The patch of a texel, if there is one of this chart that receives.
+    // Returns the patch of a texel, if there is one of this chart that receives.
     uint32_t patchAt(glm::ivec2 texel, uint32_t chart) const {
         if (texel.x < 0 || texel.y < 0 || texel.x >= size_ || texel.y >= size_) return kNoPatch;
         const uint32_t i = set_.scene.texelToPatch[static_cast<size_t>(texel.y) * static_cast<size_t>(size_) +
@@ -116,7 +116,7 @@ private:
         count_[w] = static_cast<uint32_t>(places_.size()) - begin_[w];
     }
 
-    // The middle first; then whoever is too unlike it.
+    // Adds the patch in the middle first, then whoever is too unlike it.
     void addPart(glm::ivec2 window, Part& part) {
         const glm::vec2 wanted = wantedPlace(window, part);
         while (part.count > 0) {
@@ -142,8 +142,8 @@ private:
         }
     }
 
-    // The part's middle; where the chart ends beside the window its edge, so that light need not be guessed
-    // beyond the last receiver.
+    // Returns the part's middle; where the chart ends beside the window it is its edge, so that light need
+    // not be guessed beyond the last receiver.
     glm::vec2 wantedPlace(glm::ivec2 window, const Part& part) const {
         glm::ivec2 lo(size_), hi(-1);
         glm::vec2 sum(0.0f);
@@ -181,8 +181,8 @@ private:
         result_.receivers.push_back(receiver);
     }
 
-    // How much patch j says about i, as in shaders/lib/smoothing.glsl but for the distance, which the place
-    // in the chart tells: 1 on an even surface.
+    // Returns how much patch j says about i, as in shaders/lib/smoothing.glsl but for the distance, which the
+    // place in the chart tells. It is 1 on an even surface.
     float likeness(uint32_t i, uint32_t j) const {
         const Patch &a = set_.scene.patches[i], &b = set_.scene.patches[j];
         const glm::vec3 d = b.position - a.position;
@@ -211,8 +211,8 @@ private:
         result_.neighbours.resize(result_.receivers.size());
     }
 
-    // The patches of the receivers on both sides of one, if there are two; returns the share of the first in
-    // what a straight line through both says.
+    // Finds the patches of the receivers on both sides of one, if there are two; returns the share of the
+    // first in what a straight line through both says.
     float between(uint32_t receiver, int axis, uint32_t& before, uint32_t& after) const {
         const ReceiverPlace& own = places_[receiver];
         glm::ivec2 step(0);
@@ -227,7 +227,7 @@ private:
         return static_cast<float>(last - own.texel[axis]) / static_cast<float>(last - first);
     }
 
-    // Of a window's receivers the one that suits a patch best.
+    // Returns the one of a window's receivers that suits a patch best.
     uint32_t receiverIn(glm::ivec2 window, uint32_t i, float& like) const {
         like = 0.0f;
         uint32_t best = kNoPatch;
@@ -251,7 +251,8 @@ private:
                 glm::vec4(weights[0], weights[1], weights[2], weights[3])};
     }
 
-    // Bilinear between the own window's receiver and those of the windows on the side where the patch lies.
+    // Interpolates bilinearly between the own window's receiver and those of the windows on the side where
+    // the patch lies.
     void interpolate(uint32_t i, std::array<uint32_t, kTaps>& receivers,
                      std::array<float, kTaps>& weights) const {
         const glm::ivec2 texel = texelOf(i), window = texel / scale_;
@@ -291,7 +292,7 @@ private:
             const double w = weights[t], x = d[t].x, y = d[t].y;
             s0 += w, sx += w * x, sy += w * y, sxx += w * x * x, sxy += w * x * y, syy += w * y * y;
         }
-        // The first row of the inverse of the moments, up to a factor.
+        // This is the first row of the inverse of the moments, up to a factor.
         const double a = sxx * syy - sxy * sxy, b = sxy * sy - sx * syy, c = sx * sxy - sxx * sy;
         const double det = s0 * a + sx * b + sy * c;
         if (det <= 1e-3 * s0 * s0 * s0) return;

@@ -7,10 +7,10 @@
 
 namespace relume {
 
-/// Gathers links on devices whose memory is the CPU's own: the sums of shaders/links.comp in loops of C++,
-/// which are several times as fast as the shader on such a device. All pointers are to what the passes have
-/// in their buffers (link_passes.h), one entry per patch, padding included, unless said otherwise. The same
-/// bytes come out whatever the number of threads.
+/// This gathers links on devices whose memory is the CPU's own: it makes the sums of shaders/links.comp in
+/// loops of C++, which are several times as fast as the shader on such a device. All pointers are to what the
+/// passes have in their buffers (link_passes.h), one entry per patch, padding included, unless said
+/// otherwise. The same bytes come out whatever the number of threads.
 
 /// Links of chunks firstChunk .. firstChunk + chunkCount - 1.
 struct HostLinks {
@@ -26,14 +26,14 @@ struct HostLinks {
 };
 void gatherLinks(WorkerPool& pool, const HostLinks& work);
 
-/// After a bounce: what patches send next, and how much the light changed.
+/// The work after a bounce: it makes what patches send next, and tells how much the light changed.
 struct HostSend {
     const shader::Patch* patches = nullptr;
     const glm::vec4* albedo = nullptr;
-    const glm::vec4* before = nullptr; // of the bounce
-    const glm::vec4* light = nullptr;  // that came of it
+    const glm::vec4* before = nullptr; // light before the bounce
+    const glm::vec4* light = nullptr;  // light that came of it
     glm::vec4* radiance = nullptr;     // written: reflectivity * albedo * light, of those that send
-    glm::vec4* changes = nullptr;      // per chunk, as of ChangePush; nullptr: not told
+    glm::vec4* changes = nullptr;      // per chunk, as in ChangePush; nullptr: not told
     const uint8_t* full = nullptr;     // per chunk, not 0: all of its patches send and are shown
     float reflectivity = 1;
     uint32_t chunkCount = 0;

@@ -23,19 +23,19 @@ constexpr uint32_t kRing = 32;      // places at hand, at most: a power of two a
 constexpr uint32_t kChannels = 3 * kReplicates;
 constexpr int32_t kNoChart = -1, kNotSmoothed = -2;
 
-// Texels of kLanes lines, one of each.
+// One texel of each of kLanes lines.
 struct Place {
     Floats px, py, pz;    // [m]
     Floats gx, gy, gz;    // geometric normal
     Floats sx, sy, sz;    // shading normal
     Floats falloff;       // of the weight's exponent over squared distance [1/m^2]
-    Ints chart, tapChart; // its own if it is smoothed; if others may take from it
+    Ints chart, tapChart; // its chart where it is smoothed; where others may take from it
     std::array<uint32_t, kLanes> patch;
     std::array<Floats, kChannels> value;
 };
 
-// e to the power of x <= 0: 2 to a whole number times 2 to one within a half, of which the series' first
-// seven terms are exact to a float's last bits.
+// Makes e to the power of x <= 0: it is 2 to a whole number times 2 to one within a half, of which the
+// series' first seven terms are exact to a float's last bits.
 [[gnu::always_inline]] inline void exponential(Floats& x) {
     constexpr float kLeast = -86.0f, kLog2e = 1.44269504f;
     const Floats power = (x > kLeast ? x : kLeast + Floats{}) * kLog2e;
@@ -53,11 +53,11 @@ struct Place {
     x = sum * __builtin_bit_cast(Floats, bits);
 }
 
-// Lines of texels, smoothed along themselves. What is read of a place is copied before anything of its line
-// is written, and other lines read nothing of it.
+// Smooths lines of texels along themselves. What is read of a place is copied before anything of its line is
+// written, and other lines read nothing of it.
 class LineSmoother {
 public:
-    // down: lines are columns, else rows. from, to: [kReplicates][patches].
+    // With `down` lines are columns, else rows. from and to are [kReplicates][patches].
     LineSmoother(const HostResolve& work, const glm::vec4* from, glm::vec4* to, bool down)
         : work_(work), from_(from), to_(to), down_(down), patchCount_(size_t{work.chunkCount} * kChunk),
           mask_(std::bit_ceil(2 * work.reach + 1) - 1) {}
@@ -193,7 +193,7 @@ float sumOfSquares(const Float4& v) {
     return squares[0] + squares[1] + squares[2];
 }
 
-// lib/replicates.glsl
+// Returns what spread() of lib/replicates.glsl does.
 float spread(const Replicates& v) {
     Float4 middle, sum{};
     mean(middle, v);

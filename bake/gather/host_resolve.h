@@ -8,10 +8,11 @@
 
 namespace relume {
 
-/// What comes of a layer's sums over links, for devices whose memory is the CPU's own: shaders/smooth.comp,
-/// resolve.comp and layer_result.comp in loops of C++ that take eight texels at a time. All pointers are to
-/// what the passes have in their buffers (link_passes.h, and those of layers), one entry per patch, padding
-/// included, unless said otherwise. The same bytes come out whatever the number of threads.
+/// Makes a layer's result of its sums over links, on devices whose memory is the CPU's own:
+/// shaders/smooth.comp, resolve.comp and layer_result.comp in loops of C++ that take eight texels at a time.
+/// All pointers are to what the passes have in their buffers (link_passes.h, and those of layers), one entry
+/// per patch, padding included, unless said otherwise. The same bytes come out whatever the number of
+/// threads.
 struct HostResolve {
     const shader::Patch* patches = nullptr;
     const uint32_t* patchChart = nullptr;
@@ -28,7 +29,7 @@ struct HostResolve {
     float scale = 1;    // from a replicate's sum to its mean; 0: there is no indirect light
 };
 
-/// Per chunk: of indirect light, and of the result as LayerResultPush has it.
+/// Sums per chunk: of indirect light, and of the result as in LayerResultPush.
 struct HostResolveSums {
     std::vector<shader::ResolveSums> indirect;
     std::vector<glm::vec4> result;

@@ -9,15 +9,15 @@
 
 namespace relume {
 
-/// Links of all rounds, as long as there is memory: what light is gathered over again without a ray (the
-/// transport cache). Knows where links are, not how they are traced.
+/// Keeps the links of all sample passes as long as there is memory: light is gathered over them again without
+/// a ray (the transport cache). It knows where links are, not how they are traced.
 class LinkCache {
 public:
     struct Desc {
         uint32_t chunkCount = 0;
-        uint32_t links = 16; // per patch and round
+        uint32_t links = 16; // per patch and sample pass
         uint32_t batch = 1;  // chunks of a batch of links that are not kept, at most
-        uint64_t bytes = 0;  // at most; whole rounds are kept, the first ones
+        uint64_t bytes = 0;  // at most; whole sample passes are kept, the first ones
     };
     LinkCache(const vk::Device& device, const Desc& desc);
 
@@ -25,11 +25,11 @@ public:
         const vk::Buffer* links = nullptr; // uint[chunk][links][64]
         uint64_t offset = 0;               // [links], of the first chunk that was asked for
         bool known = false;                // they are there; else to be traced
-        uint32_t count = 0;                // of chunks from that one on that are alike
+        uint32_t count = 0;                // chunks from that one on that are alike
     };
-    /// Of up to `most` chunks from `first` on.
+    /// Returns the place of the links of up to `most` chunks from `first` on.
     Place find(uint32_t round, uint32_t first, uint32_t most);
-    /// The links of these chunks were traced to where find() said.
+    /// Notes that the links of these chunks were traced to where find() said.
     void note(uint32_t round, ChunkRange range);
 
     uint64_t bytes() const { return kept_.size() * roundBytes_; } // in use
@@ -44,8 +44,8 @@ private:
     const vk::Device& device_;
     Desc desc_;
     uint64_t roundBytes_;
-    std::deque<Round> kept_; // where a Place points, while more are added
-    vk::Buffer staging_;     // of a batch beyond these
+    std::deque<Round> kept_; // a Place points into it while more are added
+    vk::Buffer staging_;     // of a batch beyond the kept ones
 };
 
 } // namespace relume

@@ -18,10 +18,10 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// A round's rays should fill a GPU: 4M are a few milliseconds there.
+// The rays of a sample pass should fill a GPU: 4M are a few milliseconds there.
 constexpr uint32_t kGpuRays = 4u << 20;
-constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and round
-// Chunks of one submit at most.
+constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and sample pass
+// A submit has at most so many chunks.
 constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
 
 uint64_t vec4s(uint64_t count) {
@@ -75,7 +75,7 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
 uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
     const uint64_t count = uint64_t{chunkCount} * kChunk;
     const bool hybrid = settings.method == Method::Hybrid;
-    const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with lamps
+    const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with direct light
     const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint64_t scale = settings.links.indirectScale, receivers = count / scale;

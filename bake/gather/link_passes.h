@@ -11,15 +11,15 @@
 
 namespace relume {
 
-/// Directions per patch that one round takes: so many that a batch fills the device, but no more than are
-/// asked for. samples: directions per patch in all, 0: what the error needs.
+/// Returns the directions per patch that one sample pass takes: so many that a batch fills the device, but no
+/// more than are asked for. samples is the number of directions per patch in all, 0 for what the error needs.
 uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software);
 
-/// Buffers of the link methods. "Sums" hold each replicate's samples by themselves:
+/// The buffers of the link methods. "Sums" hold each replicate's samples by themselves:
 /// vec4[kReplicates][patches].
 struct LinkBuffers {
     vk::Buffer patchChart, texelToPatch;
-    vk::Buffer links;        // uint[chunk][links of a round][64], of the first keptChunks chunks
+    vk::Buffer links;        // uint[chunk][links of a sample pass][64], of the first keptChunks chunks
     vk::Buffer linksStaging; // of one batch beyond these
     vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
@@ -31,7 +31,7 @@ struct LinkBuffers {
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
     uint32_t keptChunks = 0;
-    // Where links are followed from fewer patches than there are:
+    // These are there where links are followed from fewer patches than there are.
     vk::Buffer receivers, taps, neighbours; // Patch, CoarseTaps, CoarseNeighbours
     vk::Buffer coarseDistances;             // as distances, per receiver
     vk::Buffer coarseSums;                  // vec4[kReplicates][receivers], of one bounce
@@ -45,19 +45,19 @@ struct LinkBuffers {
         uint64_t linkBytes = 0; // at most, for links that later bounces gather again
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
-    /// With direct light's, without those of footprints.
+    /// Returns their bytes, with those of direct light but without those of footprints.
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 };
 
-/// How far smoothing looks [texels], 0: not at all. sigma: its width [texels].
+/// Returns how far smoothing looks [texels], 0 for not at all. sigma is its width [texels].
 uint32_t smoothingReach(float sigma);
-/// Of all chunks.
+/// Returns the sum over all chunks.
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks);
 glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
 
-/// Light over links: the mean of what the links' patches send, and of direct light, to ligOut. Where only
-/// receivers of a coarser grid have links: first to coarseSums, cleared before, then by interpolation to
-/// ligOut. On a software device host_links.h gathers.
+/// Gathers light over links: the mean of what the links' patches send goes to ligOut, together with direct
+/// light. Where only receivers of a coarser grid have links, it first goes to coarseSums, which were cleared
+/// before, then by interpolation to ligOut. On a software device host_links.h gathers.
 class LinkGatherPass {
 public:
     LinkGatherPass(const vk::Device& device, const TransportSettings& settings)
@@ -70,40 +70,41 @@ public:
     struct Work {
         const vk::Buffer* links = nullptr;
         uint64_t linksOffset = 0;           // of range.first [links]
-        VkDeviceAddress nodes = 0;          // PyramidNode[], of recordDistances: links may be nodes
+        VkDeviceAddress nodes = 0;          // PyramidNode[], for recordDistances: links may be nodes
         uint32_t samples = 0;               // per patch
         const vk::Buffer* direct = nullptr; // vec4 per patch, added to ligOut
         bool output = true;                 // to ligOut
         bool accumulate = false;            // add to linkSums
         bool newSums = false;               // nothing is in these yet; on the host only
-        bool distances = false;             // of recordInterpolate: those of recordDistances are spread, too
+        bool distances = false;             // for recordInterpolate: those of recordDistances are spread, too
         ChunkRange range;
         VkDeviceAddress address() const { return links->address() + linksOffset * sizeof(uint32_t); }
     };
-    /// Whether record gathers at once, on the host: what it reads must be there by then.
+    /// Tells whether record gathers at once, on the host; what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
-    WorkerPool& pool() const { return *pool_; } // of the host, where it gathers there
-    /// Where it gathers on the host, of a bounce from ligIn to ligOut: makes radiance, of no emission;
-    /// full, changes: as HostSend has them.
+    WorkerPool& pool() const { return *pool_; } // the host's, where it gathers there
+    /// Makes radiance, without emission, after a bounce from ligIn to ligOut that the host gathered. full and
+    /// changes are as HostSend has them.
     void sendOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
                    glm::vec4* changes) const;
-    /// Before any bounce: ligIn is that of `first`, and makes radiance.
+    /// Begins on the host, before any bounce: makes ligIn that of `first`, and radiance from it.
     void startOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
                     const vk::Buffer& first) const;
-    /// Makes packed of the light's radiance.
+    /// Makes packed from the light's radiance.
     void recordPack(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
-    /// Distances of these links' ends, for smoothing.
+    /// Makes the distances of these links' ends, for smoothing.
     void recordDistances(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                          const Work& work) const;
-    /// Of all links of a bounce; links and samples of the Work's ranges are over.
+    /// Spreads what all links of a bounce have brought to the patches of work.range, with work.samples links
+    /// each.
     void recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                            const Work& work) const;
-    /// ligIn = direct light (vec4 per patch, nullptr: none) and the mean of `samples` links.
+    /// Makes ligIn of direct light (vec4 per patch, nullptr for none) and the mean of `samples` links.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        const vk::Buffer* direct, uint32_t samples) const;
-    /// direct, as it was after so many rounds.
+    /// Makes direct what it was after so many sample passes.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds) const;
 
@@ -114,16 +115,16 @@ private:
     vk::ComputeProgram pack_, gather_, distance_, interpolate_, compose_;
 };
 
-/// Sums over chunks: what a bounce changed, and the result with its errors.
+/// Makes sums over chunks: of what a bounce changed, and of the result with its errors.
 class ResolvePass {
 public:
     explicit ResolvePass(const vk::Device& device)
         : change_(device, "change"), coarse_(device, "coarse_error"), smooth_(device, "smooth"),
           resolve_(device, "resolve") {}
-    /// Compares ligOut with ligIn: vec4 per chunk in chunkSums.
+    /// Compares ligOut with ligIn: makes a vec4 per chunk in chunkSums.
     void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
-    /// Compares receivers of a coarser grid with their neighbours: vec4 per chunk of theirs in chunkSums.
-    /// samples: links per receiver in linkSums.
+    /// Compares receivers of a coarser grid with their neighbours: makes a vec4 per chunk of theirs in
+    /// chunkSums. samples is the number of links per receiver in linkSums.
     void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                       uint32_t samples) const;
     struct Work {
@@ -132,7 +133,7 @@ public:
         uint32_t directRounds = 0; // in directSums; 0: no direct light
         float sigma = 0;           // of smoothing [texels], 0: none
     };
-    /// result and ResolveSums per chunk in chunkSums (sumsOf).
+    /// Makes result, and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                 const Work& work) const;
 

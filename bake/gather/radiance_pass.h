@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Forms what each patch sends and notes which chunks send at all. Reads ligIn.
+/// Makes what each patch sends and notes which chunks send at all. It reads ligIn.
 class RadiancePass {
 public:
     explicit RadiancePass(const vk::Device& device) : program_(device, "radiance") {}

@@ -7,19 +7,19 @@
 namespace relume {
 namespace {
 
-// Smoothing is as wide as its error is small: widths that are tried [texels], and how often the model is
-// asked again with what the new width showed.
+// Smoothing is as wide as its error is small. These are the widths that are tried [texels], and how often the
+// model is asked again with what the new width showed.
 constexpr double kSigmaStep = 0.1, kLeastWidth = 0.3, kMostSigma = 4.0;
 constexpr double kSigmaGrowth = 2.0; // per try
 constexpr uint32_t kSigmaTries = 3;
 // A width within this factor of the best one is left alone: the error hardly depends on it there.
 constexpr double kSigmaSlack = 1.25;
 
-// Of a Gaussian of this width that is sampled at whole texels [texels^2]: less than sigma^2 where it is
-// narrow, and nothing below the least width.
+// Returns the variance of a Gaussian of this width that is sampled at whole texels [texels^2]: it is less
+// than sigma^2 where that is narrow, and nothing below the least width.
 double kernelVariance(double sigma) {
     if (sigma < kLeastWidth) return 0.0;
-    double sum = 0.5, squares = 0.0; // of one half
+    double sum = 0.5, squares = 0.0; // over one half of it
     for (int k = 1; k <= 4.0 * kMostSigma; ++k) {
         const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
         sum += weight;
@@ -53,9 +53,9 @@ shader::ResolveSums SmoothingWidth::settle(const std::function<shader::ResolveSu
     return sums;
 }
 
-// Of a smooth function the mean over a width sigma is off by sigma^2 times its curvature, and independent
-// noise falls with the area, 1 / (1 + a sigma^2): the squares of both, as measured at one width, tell the
-// best one. The bias found holds on where nothing is smoothed, which shows none.
+// Takes the best width: the mean of a smooth function over a width sigma is off by sigma^2 times its
+// curvature, and independent noise falls with the area, 1 / (1 + a sigma^2); the squares of both, as measured
+// at one width, tell it. The bias found holds on where nothing is smoothed, which shows none.
 void SmoothingWidth::adapt(const shader::ResolveSums& sums) {
     if (!(sums.raw > 0.0f)) {
         sigma = 0;

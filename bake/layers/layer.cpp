@@ -35,7 +35,7 @@ bool alike(const LightPattern& group, size_t i, const LightPattern& other, size_
     return group.members[i] == other.members[k] && group.weights[i] == other.weights[k];
 }
 
-// How many of a group's members are alike from the start on.
+// Counts how many of a group's members are alike from the start on.
 size_t alikeFromTheStart(const LightPattern& a, const LightPattern& b) {
     size_t i = 0;
     while (i < std::min(a.members.size(), b.members.size()) && alike(a, i, b, i))
@@ -43,7 +43,7 @@ size_t alikeFromTheStart(const LightPattern& a, const LightPattern& b) {
     return i;
 }
 
-// One name stands for what changed: a member that is lit otherwise, or one that is off or gone.
+// Tells what changed. One name stands for it: a member that is lit otherwise, or one that is off or gone.
 std::string groupReason(const Layer& layer, const Layer& shown) {
     const LightPattern &now = layer.pattern, &then = shown.pattern;
     if (now.members == then.members && now.weights == then.weights) return "";

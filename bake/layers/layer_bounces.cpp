@@ -13,10 +13,10 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// Of the memory that is free, what layers beside the first one may take.
+// Layers beside the first one may take this share of the memory that is free.
 constexpr double kShare = 0.25;
 constexpr std::array kPrograms = {"bounce", "bounce_two", "bounce_four", "bounce_eight"};
-constexpr uint32_t kPasses = 2; // of which changes are told
+constexpr uint32_t kPasses = 2; // bounces of which changes are told
 constexpr uint32_t kChangeValues = sizeof(glm::vec4) / sizeof(float);
 
 } // namespace

@@ -14,47 +14,49 @@
 
 namespace relume {
 
-/// Bounces of up to eight layers side by side on a GPU: what patches send lies together, so that one link,
-/// and one access to what is behind it, serves all of them. What a layer becomes is the same whichever
-/// bounce beside it. Barriers are the caller's.
+/// Bounces up to eight layers side by side on a GPU. What patches send lies together, so that one link, and
+/// one access to what is behind it, serves all of them. What a layer becomes is the same whichever layers
+/// bounce beside it. The caller sets the barriers.
 class LayerBounces {
 public:
     static constexpr uint32_t kMostLanes = 8;
     static constexpr uint32_t kMostRounds = std::extent_v<decltype(shader::BouncePush::links)>;
 
-    /// light: where the first lane's light is, sums: where its sums over links are; both stay where they are.
+    /// Takes the first lane's light and its sums over links from `light` and `sums`; both must stay where
+    /// they are.
     LayerBounces(const vk::Device& device, const LightBuffers& light, const vk::Buffer& sums);
 
-    /// How many of so many layers there is room for; memory for more than one is taken when it is asked for.
+    /// Returns for how many of so many layers there is room; memory for more than one is taken when it is
+    /// asked for.
     uint32_t room(uint32_t layers);
-    /// A layer for each of these, vec4 per patch: direct light. None may be under way.
+    /// Begins with a layer for each of these buffers of direct light, vec4 per patch. None may be under way.
     void begin(std::span<const vk::Buffer* const> direct);
-    /// Which of them go on, a bit each; others keep their light and sums.
+    /// Sets which of the layers go on, a bit each; the others keep their light and sums.
     void setLive(uint32_t lanes) { live_ = lanes; }
-    /// Their light is that of these buffers, vec4 per patch each.
+    /// Makes their light that of these buffers, vec4 per patch each.
     void recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) const;
-    /// They send the light that they have.
+    /// Makes them send the light that they have.
     void recordSend(VkCommandBuffer cmd, float reflectivity) const;
 
     struct Work {
-        std::vector<VkDeviceAddress> links; // of a round each, kMostRounds at most: uint[chunks][samples][64]
-        uint32_t samples = 0;               // per patch and round
+        std::vector<VkDeviceAddress> links; // per sample pass, kMostRounds at most: uint[chunks][samples][64]
+        uint32_t samples = 0;               // per patch and sample pass
         ChunkRange range;
         uint32_t sums = 0;               // shader::kNoSums, kNewSums, kMoreSums
-        bool keeps = true;               // light is read again: what changes next is told, or it is the last
-        bool ends = false;               // the pass: light is made, and what is sent next
-        float scale = 0;                 // of it, from the sum of all sums to the mean
-        float reflectivity = 1;          // of it
-        std::optional<uint32_t> changes; // it is told how much it changed, here (0 or 1)
+        bool keeps = true;               // light is stored: its next change is told, or it is the last
+        bool ends = false;               // it ends the bounce: light is made, and what is sent next
+        float scale = 0;                 // for that, from the sum of all sums to the mean
+        float reflectivity = 1;          // for that
+        std::optional<uint32_t> changes; // where it is told how much light changed (0 or 1)
     };
     void record(VkCommandBuffer cmd, const Work& work) const;
-    /// The light that was made is what bounces now.
+    /// Ends a bounce: the light that was made is what bounces now.
     void endPass();
-    /// What was told, in changes(): vec4[2][lanes()] as ChangePush has it.
+    /// Sums up what was told, to changes(): vec4[2][lanes()] as in ChangePush.
     void recordChanges(VkCommandBuffer cmd) const;
     const vk::Buffer& changes() const { return totals_; }
     uint32_t lanes() const { return lanesOf_; }
-    /// Of a lane other than the first one: vec4[kReplicates][patches].
+    /// Returns the sums of a lane other than the first one: vec4[kReplicates][patches].
     vk::Buffer& sums(uint32_t lane) { return beside_[lane - 1].sums; }
 
 private:
@@ -72,8 +74,8 @@ private:
     vk::Buffer lanes_;               // BounceLane[kMostLanes]
     std::array<vk::Buffer, 2> sent_; // uvec2[patches][lanesOf_], one is read while the other one is made
     vk::Buffer changes_, totals_;
-    std::vector<Beside> beside_;               // the first lane
-    std::vector<vk::ComputeProgram> programs_; // for 1, 2, 4 and 8 layers; where there are as many
+    std::vector<Beside> beside_;               // lanes beside the first one
+    std::vector<vk::ComputeProgram> programs_; // for 1, 2, 4 and 8 layers, as far as the device runs them
     ChunkSumPass sum_;
     uint32_t lanesOf_ = 1; // of the program that runs
     uint32_t room_ = 1;    // lanes that there is memory for

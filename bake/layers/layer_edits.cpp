@@ -1,4 +1,4 @@
-// Of LayerSolver: what an edit leaves as it was, and what it makes anew.
+// This part of LayerSolver decides what an edit leaves as it was, and what it makes anew.
 #include "bake/layers/layer_solver.h"
 
 #include "assets/base/error.h"
@@ -14,10 +14,10 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-// Patterns in the records of layers, members of groups counted: a few hundred bytes each.
+// The records hold at most so many cache keys, members of groups counted; each takes a few hundred bytes.
 constexpr size_t kMostRecorded = 16384;
 
-// FNV-1a of all base colour factors.
+// Returns FNV-1a of all base colour factors.
 uint64_t surfacesOf(const Scene& scene) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const Material& material : scene.materials) {
@@ -27,7 +27,7 @@ uint64_t surfacesOf(const Scene& scene) {
     return hash;
 }
 
-// The same of where objects stand. Hidden ones stand nowhere.
+// Returns the same of where objects stand. Hidden ones stand nowhere.
 uint64_t objectsOf(const Scene& scene) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (const Instance& instance : scene.instances) {
@@ -49,7 +49,7 @@ void LayerSolver::edit(const LightMix& mix) {
     weigh();
 }
 
-// Of those that stay what they are; what is not known yet comes with adopt().
+// Weighs the layers that stay what they are; what is not known yet comes with adopt().
 void LayerSolver::weigh() {
     const std::vector<Wanted> wanted = wantedLayers();
     const auto has = [&](const LightPattern& pattern) {
@@ -80,7 +80,7 @@ std::unique_ptr<Layer> LayerSolver::makeLayer(const LightPattern& pattern) const
     return layer;
 }
 
-// A driver takes longer to find memory than a GPU to fill it.
+// Takes a spare buffer where there is one: a driver takes longer to find memory than a GPU to fill it.
 vk::Buffer LayerSolver::takeBuffer(const char* name) {
     if (spare_.empty())
         return {input_.device, {.size = LightBuffers::lightBytes(input_.patches), .name = name}};
@@ -96,8 +96,8 @@ void LayerSolver::recycle(Layer& layer) {
     if (layer.result) spare_.push_back(std::move(layer.result));
 }
 
-// From those that are or were there; nullptr: none is like this. A group of which nothing shines stays as it
-// is, for it may shine again.
+// Takes a layer from those that are or were there; returns nullptr where none is like this. A group of which
+// nothing shines stays as it is, for it may shine again.
 std::unique_ptr<Layer> LayerSolver::takeLayer(const Wanted& wanted) {
     const auto fits = [&](const std::unique_ptr<Layer>& layer) {
         return layer && (wanted.isDarkGroup() ? layer->source.key == wanted.source.key
@@ -116,7 +116,7 @@ std::unique_ptr<Layer> LayerSolver::takeLayer(const Wanted& wanted) {
     return nullptr;
 }
 
-// Kept for an undo, as long as there is memory for it.
+// Keeps a layer for an undo, as long as there is memory for it.
 void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     if (layer->before) archive(std::move(layer->before));
     layer->covered = false;
@@ -130,7 +130,7 @@ void LayerSolver::archive(std::unique_ptr<Layer> layer) {
     }
 }
 
-// One on its way to a level that it had is in the records already.
+// Records a layer. One on its way to a level that it had is in the records already.
 void LayerSolver::remember(const Layer& layer) {
     if (layer.redo) return;
     std::erase_if(records_, [&](const Record& record) { return record.pattern == layer.pattern; });
@@ -145,8 +145,8 @@ void LayerSolver::remember(const Layer& layer) {
         recorded -= count(0, records_.front());
 }
 
-// To where it was when memory did not do for it, in the same steps: an undo brings back the bytes. Direct
-// light that it got from another layer must have been made likewise.
+// Has a layer made as far as it was when memory was short, in the same steps: an undo brings back the bytes.
+// Direct light that it got from another layer must have been made likewise.
 void LayerSolver::recall(Layer& layer) const {
     const auto found = std::find_if(records_.begin(), records_.end(),
                                     [&](const Record& record) { return record.pattern == layer.pattern; });
@@ -166,9 +166,10 @@ void LayerSolver::recall(Layer& layer) const {
     layer.redoSteps = steps;
 }
 
-// Surfaces of other colours change bounces alone, objects that moved direct light where it may meet them. The
-// new layer goes as far as the one before was, whose direct light may already be that of its next level. That
-// of a group which was dark while objects moved has not followed them.
+// Takes over direct light: surfaces of other colours change bounces alone, objects that moved change direct
+// light where it may meet them. The new layer goes as far as the one before was, whose direct light may
+// already be that of its next level. The direct light of a group that was dark while objects moved has not
+// followed them.
 void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     LightPattern alike = from.pattern;
     alike.surfaces = to.pattern.surfaces;
@@ -184,7 +185,7 @@ void LayerSolver::keepDirect(const Layer& from, Layer& to) const {
     to.redoSteps = from.redoSteps;
 }
 
-// Where their places among the layers stand.
+// Returns where the solver notes the indices of layers that are under way.
 std::vector<size_t*> LayerSolver::layersUnderWay() {
     std::vector<size_t*> places;
     if (!work_) return places;
@@ -194,7 +195,8 @@ std::vector<size_t*> LayerSolver::layersUnderWay() {
     return places;
 }
 
-// What comes again and again, sixty times a second, finds that the picture of the one before is shown.
+// Tells whether an edit is taken now: what comes again and again, sixty times a second, waits until the
+// picture of the one before is shown.
 bool LayerSolver::takesEdits() const {
     if (sumDue_ || unlitLayer()) return false;
     return !work_ || (!work_->sum && (sumShown_ || layers_[work_->layer]->has()));

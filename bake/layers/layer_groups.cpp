@@ -1,4 +1,4 @@
-// Of LayerSolver: which lights have a layer, and what the direct light of each is made of.
+// This part of LayerSolver decides which lights have a layer, and what the direct light of each is made of.
 #include "bake/layers/layer_solver.h"
 
 #include "assets/base/log.h"
@@ -13,7 +13,7 @@ using Kind = LightKey::Kind;
 
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
-// Direct light and result.
+// Returns for how many layers there is room: each has direct light and a result.
 uint64_t roomFor(const PatchSet& patches, uint64_t bytes) {
     return bytes / (2 * LightBuffers::lightBytes(patches));
 }
@@ -22,7 +22,7 @@ bool isGrouped(const std::unique_ptr<Layer>& layer) {
     return layer->source.key.kind == Kind::Group;
 }
 
-// Whether a light of this pattern is among those that shine in the group.
+// Tells whether a light of this cache key is among those that shine in the group.
 bool isIn(const LightPattern& group, LightPattern light) {
     light.surfaces = light.objects = 0; // the group has them
     return std::find(group.members.begin(), group.members.end(), light) != group.members.end();
@@ -53,7 +53,7 @@ uint64_t LayerSolver::layerRoom() const {
     return roomFor(input_.patches, layerBytes_);
 }
 
-// Under the surfaces and objects that are known.
+// Returns the layers that are wanted under the surfaces and objects that are known.
 std::vector<LayerSolver::Wanted> LayerSolver::wantedLayers() const {
     std::vector<Wanted> wanted;
     const auto weigh = [&](LightSource& source) {
@@ -104,7 +104,7 @@ void LayerSolver::updateParts() {
             layers_[i]->parts.push_back({.emitters = false, .group = group});
 }
 
-// One group for each layer with emitters, in the layers' order.
+// Makes one group for each layer with mesh lights, in the layers' order.
 void LayerSolver::updateEmitters() {
     std::vector<EmitterGroup> groups;
     for (const std::unique_ptr<Layer>& layer : layers_) {
@@ -144,14 +144,15 @@ void LayerSolver::tellGroups() {
                  static_cast<long>(layers_.size()) - groups, text, layerRoom());
 }
 
-// Whether its light is to come from other layers, where nobody wants it as it is.
+// Tells whether the layer's light is to come from other layers, where nobody wants it as it is.
 bool LayerSolver::isRegrouped(const Layer& layer, const std::vector<Wanted>& wanted) {
     return layer.source.key.kind == Kind::Group ||
            std::any_of(wanted.begin(), wanted.end(),
                        [&](const Wanted& group) { return isIn(group.pattern, layer.pattern); });
 }
 
-// Of which layers the light is in groups that nobody took, or is theirs as soon as they are baked.
+// Tells which wanted layers have their light in groups that nobody took, or are new groups, which have it
+// once they are baked.
 std::vector<bool> LayerSolver::standsIn(const std::vector<Wanted>& wanted,
                                         const std::vector<std::unique_ptr<Layer>>& taken) const {
     std::vector<bool> covered;
@@ -169,9 +170,9 @@ std::vector<bool> LayerSolver::standsIn(const std::vector<Wanted>& wanted,
     return covered;
 }
 
-// Where lights go into a group that had layers, or come out of one, what was shown of them all is kept until
-// there are all the new layers: it cannot be told apart, nor grow dark. layers_ are those that nobody took.
-// Returns which of the wanted ones it covers.
+// Keeps, where lights go into a group that had layers or come out of one, what was shown of them all until
+// there are all the new layers: it cannot be told apart, nor may it grow dark. layers_ are those that nobody
+// took. Returns which of the wanted ones it covers.
 std::vector<bool> LayerSolver::beginStandIn(const std::vector<Wanted>& wanted,
                                             const std::vector<std::unique_ptr<Layer>>& taken) {
     std::vector<bool> covered = standsIn(wanted, taken);

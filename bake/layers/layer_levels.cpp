@@ -1,4 +1,5 @@
-// Of LayerSolver: which layer comes next and how far it is taken, and what is known of its error.
+// This part of LayerSolver decides which layer comes next and how far it is taken, and keeps what is known of
+// its error.
 #include "bake/gather/host_resolve.h"
 #include "bake/layers/layer_solver.h"
 
@@ -16,19 +17,21 @@ namespace {
 // pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
 // the memory are traced for each.
 constexpr double kSegmentLinks = 1.0;
-// Of the variance that is allowed, what a level aims at: a little too much costs bounces of another level.
+// A level aims at this share of the variance that is allowed: a little too much costs bounces of another
+// level.
 constexpr double kAimed = 0.85;
-// Of the first level, which has no time to try which width is best [texels]: its few links are noisy.
+// The first level is smoothed by this [texels]: its few links are noisy, and there is no time to try more.
 constexpr double kFirstSigma = 3.0;
-// Directions or points per patch beyond which no error is worth the time.
+// Beyond so many directions or points per patch no error is worth the time.
 constexpr uint32_t kMaxSamples = 65536;
 
-// Floats per chunk.
+// These are floats per chunk.
 constexpr uint32_t kResolveValues = sizeof(shader::ResolveSums) / sizeof(float);
 constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
 
-// Noise falls as samples come in, so that the best width does, too [texels]: as in the Cornell rooms and an
-// atrium, where it is 2 to 4 with 50 directions per patch and .5 to .7 with 2000. settle() finds what it is.
+// Returns the width that is likely best [texels]: noise falls as samples come in, so that the best width
+// falls, too, as in the Cornell rooms and an atrium, where it is 2 to 4 with 50 directions per patch and .5
+// to .7 with 2000. settle() finds what it is.
 double likelyWidth(uint32_t samples) {
     constexpr double kLeast = 0.5;
     return std::max(kLeast, kFirstSigma * std::pow(32.0 / std::max(samples, 32u), 0.4));
@@ -46,18 +49,18 @@ LayerLevel LayerSolver::lastLevel() const {
     return {rounds(kPointsOfRound), settings_.passes == 1 ? 0 : rounds(linksOfRound_)};
 }
 
-// What a light that is moved shows at once: with another round of direct light in its penumbra.
+// Returns what a light that is moved shows at once: another sample pass of direct light goes to its penumbra.
 LayerLevel LayerSolver::firstLevel() const {
     const LayerLevel last = lastLevel();
     return {std::min(2u, last.directRounds), std::min(2u, last.linkRounds)};
 }
 
-// The first level, where others follow.
+// Tells whether this is the first level and others follow.
 bool LayerSolver::isHasty(LayerLevel target) const {
     return target == firstLevel() && target != lastLevel();
 }
 
-// Whether or not links are there already: the level must not depend on what was done before.
+// Returns the next level, whether or not links are there already: it must not depend on what was done before.
 LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     const LayerLevel now = layer.level, last = lastLevel();
     if (settings_.error <= 0) return last;
@@ -78,8 +81,8 @@ LayerLevel LayerSolver::nextLevel(const Layer& layer) const {
     return {rounds.first, rounds.second};
 }
 
-// A level that was there before is made in the steps that it was made in. Where these begin with the first
-// level, that is seen at once.
+// Returns the level to be made now. One that was there before is made in the steps that it was made in. Where
+// these begin with the first level, that is seen at once.
 LayerLevel LayerSolver::targetOf(const Layer& layer) const {
     if (!layer.redo) return layer.has() ? nextLevel(layer) : firstLevel();
     const uint32_t rounds = firstLevel().directRounds;
@@ -88,7 +91,8 @@ LayerLevel LayerSolver::targetOf(const Layer& layer) const {
     return first ? firstLevel() : *layer.redo;
 }
 
-// Those of which nothing is to be seen yet come first; of others the one whose error weighs most.
+// Returns the layer to go on with. Those of which nothing is to be seen yet come first; of others the one
+// whose error weighs most.
 std::optional<size_t> LayerSolver::nextLayer() const {
     std::optional<size_t> worst;
     double most = 0;
@@ -105,7 +109,7 @@ std::optional<size_t> LayerSolver::nextLayer() const {
     return worst;
 }
 
-// Of what is summed over chunks, all of them or, where the device gathers, the sum.
+// Reads back what is summed over chunks: the sums of all of them or, where the device gathers, their sum.
 void LayerSolver::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceSize at) {
     const uint32_t chunks = input_.patches.chunkCount();
     const VkDeviceSize bytes = width * sizeof(float);
@@ -118,7 +122,7 @@ void LayerSolver::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceS
     recordBack(cmd, buffers_.sums, bytes, at);
 }
 
-// Makes the layer's result of its sums over links, none: of direct light alone.
+// Makes the layer's result of its sums over links; with no sample passes of links, of direct light alone.
 LayerSolver::LevelSums LayerSolver::resolve(const Layer& layer, uint32_t linkRounds, double sigma) {
     if (gatherPass_.onCpu()) return resolveOnCpu(layer, linkRounds, sigma);
     const uint32_t chunks = input_.patches.chunkCount(), sums = bounces_ ? 1 : chunks;
@@ -193,7 +197,8 @@ void LayerSolver::finishLevel(const Lane& lane) {
     layer.count = total.z;
     layer.directVariance = total.y;
     layer.indirectVariance = smoothedVariance(sums.indirect);
-    // What bounces have settled is gathered once more; over all rounds the last gather is what was measured.
+    // The light that bounces have converged to is gathered once more; of several gathers the last one is what
+    // was measured.
     const double more = work.gathers > 1 ? 1.0 : lane.ratio;
     layer.iterationError = settings_.passes > 0 ? 0.0 : lane.iterationError * more;
     layer.error = 0;
@@ -209,7 +214,8 @@ void LayerSolver::finishLevel(const Lane& lane) {
     layer.converged =
         !layer.redo && (layer.level == lastLevel() ||
                         (settings_.error > 0 && layer.error <= settings_.error) || layer.light <= 0);
-    // As the level takes them, whoever bounced along and whatever was begun in vain: the light's own history.
+    // The counters take the level's own work, whoever bounced along and whatever was begun in vain: it is the
+    // light's own history.
     progress_.passes += lane.looked + work.gathers;
     progress_.pairs += lane.gathered;
     progress_.cacheBytes = links_.bytes();
@@ -222,7 +228,7 @@ void LayerSolver::finishLevel(const Lane& lane) {
     tellError();
 }
 
-// Layers share links, so that their errors may have one sign.
+// Layers share links, so that their errors may have one sign: they are added up.
 void LayerSolver::tellError() {
     double light = 0, error = 0;
     bool all = true, converged = true;

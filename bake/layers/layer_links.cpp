@@ -1,4 +1,4 @@
-// Of LayerSolver: bounces of a layer over links.
+// This part of LayerSolver bounces layers over links.
 #include "bake/layers/layer_solver.h"
 
 #include <algorithm>
@@ -9,17 +9,17 @@
 namespace relume {
 namespace {
 
-// Of the first level, which is in haste.
+// The first level is in haste: this iteration error is small enough for it.
 constexpr double kFirstIterationError = 0.01;
-// Bounces after which the CPU looks for the first time, and between two looks at most. A look waits for the
-// device, which takes longer than a bounce.
+// The CPU looks for the first time after so many bounces, and then after so many more at most. A look waits
+// for the device, which takes longer than a bounce.
 constexpr uint32_t kFirstLook = 2, kMostUnseen = 8;
-constexpr uint32_t kToldBounces = 2; // of those between two looks the last ones: both changes make a ratio
+constexpr uint32_t kToldBounces = 2; // the last ones before a look: both changes make a ratio
 
 } // namespace
 
 // Hybrid's first pass is the direct light: with a number of passes the others are gathered over all links.
-// Else bounces settle over the links of the first round.
+// Else bounces converge over the links of the first sample pass.
 void LayerSolver::beginBounces() {
     Work& work = *work_;
     work.bounce = work.round = 0;
@@ -37,7 +37,7 @@ void LayerSolver::beginBounces() {
     beginPass(settings_.passes > 0 ? Stage::Gather : Stage::Bounces);
 }
 
-// Others that are to go on and want as many links, gathered alike.
+// Returns others that are to go on and want as many links, gathered alike.
 std::vector<size_t> LayerSolver::companions(size_t index, LayerLevel target) const {
     std::vector<size_t> others;
     for (size_t i = 0; bounces_ && i < layers_.size(); ++i) {
@@ -50,8 +50,8 @@ std::vector<size_t> LayerSolver::companions(size_t index, LayerLevel target) con
     return others;
 }
 
-// Of layers that can bounce together one whose direct light is to be made before they do. A viewer is in
-// haste for the first level of each.
+// Returns one of the layers that can bounce together whose direct light is to be made before they do. A
+// viewer is in haste for the first level of each.
 std::optional<size_t> LayerSolver::directFirst(size_t index) const {
     const LayerLevel target = targetOf(*layers_[index]);
     if (target.linkRounds == 0 || (settings_.live && !layers_[index]->has())) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<size_t> LayerSolver::directFirst(size_t index) const {
     return std::nullopt;
 }
 
-// The layer itself and others that have all their direct light.
+// Returns the lanes of the layer itself and of others that have all their direct light.
 std::vector<LayerSolver::Lane> LayerSolver::lanes() const {
     std::vector<Lane> lanes = {{.layer = work_->layer, .target = work_->target, .look = kFirstLook}};
     if (work_->sum) return lanes;
@@ -83,13 +83,13 @@ void LayerSolver::recordRadiance(VkCommandBuffer cmd) {
     radiancePass_.record(cmd, input_.light, settings_.transport);
 }
 
-// The first bounce is that of the direct light, or, for the sum, of what is shown: an edit changes part of
-// it.
+// Returns what the first bounce sends: the direct light or, for the sum, what is shown, as an edit changes
+// part of it.
 const vk::Buffer& LayerSolver::firstLight(const Lane& lane) const {
     return work_->sum && settings_.passes == 0 ? composite_ : *layerOf(lane).direct;
 }
 
-// To gather is to begin with sums of nothing.
+// Begins a pass; a gather begins with empty sums.
 void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
     if (!work_->lit) {
         if (work_->bounce == 0 && work_->gathers == 0) {
@@ -110,7 +110,7 @@ void LayerSolver::recordPassBegin(VkCommandBuffer cmd) {
     work_->lit = work_->begun = true;
 }
 
-// most: chunks of links that are there.
+// Returns the next portion. `most` is the number of chunks that it takes where links are there.
 LayerSolver::LinkPortion LayerSolver::nextLinks(double most) {
     const uint32_t next = order_.next(1, 0).first;
     const LinkCache::Place place = links_.find(work_->round, next, input_.patches.chunkCount() - next);
@@ -138,8 +138,7 @@ LayerSolver::LinkPortion LayerSolver::nextLinks(double most) {
                        .range = range}};
 }
 
-// Rounds that are there as a whole are gathered several at a time: sums are read and written once for all of
-// them.
+// Takes later sample passes along that are there as a whole: sums are read and written once for all of them.
 void LayerSolver::takeFollowing(LinkPortion& portion, double most) {
     const uint32_t chunks = input_.patches.chunkCount();
     if (!bounces_ || work_->stage != Stage::Gather || portion.range.count < chunks) return;
@@ -182,7 +181,7 @@ void LayerSolver::recordGather(VkCommandBuffer cmd, const LinkPortion& portion) 
     bounces_->record(cmd, record);
 }
 
-// Each layer that bounces along has gathered them.
+// Counts these links for each layer that bounces along, as it has gathered them.
 void LayerSolver::noteLinks(const LinkPortion& portion) {
     const ChunkRange range = portion.range;
     const auto first = senders_.begin() + range.first;
@@ -202,8 +201,8 @@ void LayerSolver::noteLinks(const LinkPortion& portion) {
     work_->round += static_cast<uint32_t>(portion.following.size());
 }
 
-// Where the CPU does both, a submit would take longer than a small batch. Returns whether the CPU is to look,
-// as do those below.
+// Traces and gathers without a submit, which would take longer than a small batch where the CPU does both.
+// Returns whether the CPU is to look, as do those below.
 bool LayerSolver::linksAtOnce(const LinkPortion& portion) {
     const auto start = Clock::now();
     if (!work_->lit)
@@ -254,8 +253,8 @@ bool LayerSolver::linksBySubmit(const LinkPortion& portion) {
     return seen;
 }
 
-// Pass after pass, until the time is up, links are not there or the CPU is to look: a GPU's submit takes
-// longer than a bounce.
+// Records pass after pass, until the time is up, links are not there or the CPU is to look: a GPU's submit
+// takes longer than a bounce.
 bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     const auto start = Clock::now();
     const double most = gatherRate_.wanted(batchMs_);
@@ -287,14 +286,14 @@ bool LayerSolver::knownLinksBySubmit(LinkPortion portion) {
     return seen;
 }
 
-// Whether the end of the pass under way is more than to count it; what the CPU gathered in a bounce it sends,
-// too.
+// Tells whether the end of the pass under way records commands. The end of a bounce that the CPU gathered
+// does not, as the CPU sends, too.
 bool LayerSolver::recordsPassEnd() const {
     return work_->stage == Stage::Gather && work_->round + 1 == work_->target.linkRounds && !isLastGather();
 }
 
-// What was gathered is what the next pass, of whichever stage, begins with. Returns whether the CPU is to
-// look what became of it; else the next pass has begun.
+// Ends a pass: what was gathered is what the next pass, of whichever stage, begins with. Returns whether the
+// CPU is to look what became of it; else the next pass has begun.
 bool LayerSolver::recordPassEnd(VkCommandBuffer cmd) {
     Work& work = *work_;
     if (work.stage == Stage::Gather) {
@@ -312,8 +311,8 @@ bool LayerSolver::recordPassEnd(VkCommandBuffer cmd) {
     return true;
 }
 
-// What has settled over few links has their noise, which all links see then: it is gathered again until the
-// light has settled over all of them, unless that is for a look only.
+// Ends a gather. What has converged over few links has their noise, which all links see then: it is gathered
+// again until the light has converged over all of them, unless that is for a look only.
 bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
     Work& work = *work_;
     const bool last = isLastGather();
@@ -330,19 +329,19 @@ bool LayerSolver::recordGatherEnd(VkCommandBuffer cmd) {
     return true;
 }
 
-// A gather, known to be the last one before it is made.
+// Tells whether this gather is known to be the last one before it is made.
 bool LayerSolver::isLastGather() const {
     if (settings_.passes > 0) return work_->gathers + 2 >= settings_.passes;
     return work_->target.linkRounds == 1 || isHasty(work_->target);
 }
 
-// Of the pass under way, while its end is recorded.
+// Tells whether the change of the pass under way is told, while its end is recorded.
 bool LayerSolver::tellsChange() const {
     if (work_->stage == Stage::Gather) return settings_.passes == 0;
     return work_->bounce + kToldBounces >= nextLook();
 }
 
-// The light that was made is what is sent next.
+// Makes the light that was gathered what is sent next.
 void LayerSolver::recordPassLight(VkCommandBuffer cmd) {
     if (bounces_) {
         vk::barrier(cmd);
@@ -368,7 +367,7 @@ void LayerSolver::recordPassLight(VkCommandBuffer cmd) {
     recordRadiance(cmd);
 }
 
-// For the CPU, where it does not gather itself.
+// Reads back what changed for the CPU, where it does not gather itself.
 void LayerSolver::recordChanges(VkCommandBuffer cmd) {
     if (!bounces_) return;
     bounces_->recordChanges(cmd);
@@ -382,8 +381,8 @@ uint32_t LayerSolver::nextLook() const {
     return next;
 }
 
-// What came of a pass decides what is next: which depends on each layer's light alone, not on how batches
-// were cut nor on who bounces along.
+// Looks what came of a pass and decides what is next, which depends on each layer's light alone, not on how
+// batches were cut nor on who bounces along.
 void LayerSolver::look() {
     Work& work = *work_;
     if (work.stage == Stage::Gather) return lookAtGather();
@@ -433,7 +432,7 @@ double LayerSolver::iterationAim(const Lane& lane) const {
     return isHasty(lane.target) ? std::max(aim, kFirstIterationError) : aim;
 }
 
-// both: what the pass before changed has not been seen yet.
+// Learns what the last pass changed; `both` says that what the pass before changed has not been seen yet.
 void LayerSolver::learnChanges(Lane& lane, bool both) {
     const Work& work = *work_;
     const uint32_t passes = work.stage == Stage::Gather ? work.gathers : work.bounce; // this one, too
@@ -451,8 +450,8 @@ void LayerSolver::learnChanges(Lane& lane, bool both) {
     learnChange(lane, total(passes));
 }
 
-// The remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two changes.
-// A light that reaches nothing has settled at once.
+// Learns the remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two
+// changes. A light that reaches nothing has converged at once.
 void LayerSolver::learnChange(Lane& lane, const glm::dvec4& total) {
     const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
@@ -465,14 +464,14 @@ void LayerSolver::learnChange(Lane& lane, const glm::dvec4& total) {
     lane.change = change;
 }
 
-// As the ratio of the last two has it.
+// Returns how many bounces there are to the aim, as the ratio of the last two changes has it.
 uint32_t LayerSolver::bouncesToAim(const Lane& lane) const {
     const double more = std::log(iterationAim(lane) / lane.iterationError) / std::log(lane.ratio);
     const double most = std::min(kMostUnseen, kMaxPasses - std::min(work_->bounce, kMaxPasses - 1));
     return lane.ratio < 1.0 && more > 1.0 ? static_cast<uint32_t>(std::ceil(std::min(more, most))) : 1;
 }
 
-// Of the first round's links: the same for every layer.
+// Tells whether distances are made: those of the first sample pass's links are the same for every layer.
 bool LayerSolver::wantsDistances() const {
     return buffers_.distances && !distancesKnown_ && work_->stage == Stage::Gather && work_->round == 0;
 }

@@ -1,4 +1,4 @@
-// Of LayerSolver: the sum of the layers, and what else can be looked at.
+// This part of LayerSolver makes the sum of the layers, and what else can be looked at.
 #include "bake/layers/layer_solver.h"
 
 #include "assets/base/error.h"
@@ -38,7 +38,7 @@ std::vector<shader::LayerWeight> LayerSolver::shares(std::optional<size_t> witho
     return list;
 }
 
-// Returns how many.
+// Writes the weights and returns how many there are.
 uint32_t LayerSolver::writeWeights(const std::vector<shader::LayerWeight>& list) {
     const uint64_t bytes = std::max<uint64_t>(1, list.size()) * sizeof(shader::LayerWeight);
     if (!weights_ || weights_.size() < bytes)
@@ -47,7 +47,7 @@ uint32_t LayerSolver::writeWeights(const std::vector<shader::LayerWeight>& list)
     return static_cast<uint32_t>(list.size());
 }
 
-// In the layers' order: the same bytes whatever was shown before.
+// Mixes in the layers' order: the bytes are the same whatever was shown before.
 void LayerSolver::mix(const vk::Buffer& to) {
     VkCommandBuffer cmd = commands_.begin();
     if (sumShown_) {
@@ -60,7 +60,8 @@ void LayerSolver::mix(const vk::Buffer& to) {
     run(cmd);
 }
 
-// While one layer changes again and again the sum of the others is kept: an edit then costs two layers.
+// Mixes for a viewer. While one layer changes again and again the sum of the others is kept: an edit then
+// costs two layers.
 void LayerSolver::mixForViewer() {
     if (std::exchange(allChanged_, false) || sumShown_ || changed_.size() != 1) {
         mix(composite_);
@@ -126,7 +127,7 @@ std::vector<glm::vec4> LayerSolver::layerLight(const Layer& layer) const {
 
 namespace {
 
-// Of a layer, what its buffers do not hold.
+// The part of a layer's state that its buffers do not hold.
 struct LayerState {
     uint32_t directRounds = 0;
     LayerLevel level;
@@ -137,7 +138,7 @@ struct LayerState {
 
 } // namespace
 
-// A level under way is begun anew: it is a pure function of what it began with.
+// A level under way is begun anew after a restore: it is a pure function of what it began with.
 SolverState LayerSolver::state() {
     ASSERT(!done_);
     SolverState state{progress_, progress_.passSeconds, {}};

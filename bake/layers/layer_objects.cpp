@@ -1,5 +1,5 @@
-// Of LayerSolver: objects that move. Links and direct light are made anew where they may meet what moved,
-// with the samples that they were made of; bounces are gathered again.
+// This part of LayerSolver follows objects that move. Links and direct light are made anew where they may
+// meet what moved, with the samples that they were made of; bounces are gathered again.
 #include "bake/layers/layer_solver.h"
 
 #include "assets/base/error.h"
@@ -13,7 +13,7 @@ namespace {
 using Kind = LightKey::Kind;
 using shader::kChunk;
 
-// Around a light: more than rounding moves its points by, as a share of where it is.
+// A light's box grows by more than rounding moves its points by, as a share of where it is.
 constexpr float kRounding = 1e-5f;
 
 LightPlace grown(LightPlace place) {
@@ -28,7 +28,7 @@ LightPlace placeOfLamp(const Light& light, float reach) {
     const glm::vec3 at(light.transform[3]);
     glm::vec3 extent(light.radius);
     if (light.type == LightType::Directional) {
-        // Where it comes from; chords across the disc are shorter than the angle.
+        // This is where it comes from; chords across the disc are shorter than the angle.
         const glm::vec3 from = glm::normalize(glm::vec3(light.transform[2]));
         extent = glm::vec3(0.5f * light.angle);
         return grown({LightPlace::Kind::Directions, reach * (from - extent), reach * (from + extent)});
@@ -59,7 +59,7 @@ void LayerSolver::moveObjects(const ObjectMove& move) {
     moved_->add(move);
 }
 
-// Everything that was made of the former scene; layers come after.
+// Renews everything that was made of the former scene; layers come after.
 void LayerSolver::adoptMove() {
     if (!gatherPass_.onCpu() && !pool_) pool_ = std::make_unique<WorkerPool>(0);
     countSenders();
@@ -71,7 +71,7 @@ void LayerSolver::adoptMove() {
         vk::upload(input_.device, buffers_.texelToPatch, map.data(), map.size() * sizeof(map[0]));
     }
     Relink relink;
-    // Of what was moved on, links of early rounds have followed the moves before, or some of them.
+    // Where an object moved on, links of early sample passes have followed the moves before, or some of them.
     ObjectMove early = *moved_, late = *moved_;
     if (relink_) {
         relink.earlyRounds = std::max(relink_->round, relink_->earlyRounds);
@@ -91,7 +91,7 @@ void LayerSolver::adoptMove() {
     relink_ = std::move(relink);
 }
 
-// A batch of the links that are kept.
+// Retraces a batch of the links that are kept.
 void LayerSolver::relinkBatch() {
     Relink& relink = *relink_;
     const uint32_t chunks = input_.patches.chunkCount();
@@ -140,7 +140,7 @@ LightPlace LayerSolver::placeOf(const LightPattern& pattern) const {
     return {};
 }
 
-// 1 for those whose direct light of one light may change with what moved.
+// Returns 1 for those chunks whose direct light of one light may change with what moved.
 std::vector<uint8_t> LayerSolver::chunksOf(const LightPattern& pattern) const {
     const std::vector<uint32_t>& moved = moved_->instances;
     const bool far = pattern.kind == Kind::Sky ||
@@ -152,7 +152,7 @@ std::vector<uint8_t> LayerSolver::chunksOf(const LightPattern& pattern) const {
                          *moved_);
 }
 
-// Of direct light that was taken over from another layer of this light.
+// Takes over what is dirty along with direct light from another layer of this light.
 void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     to.stale = from.stale;
     to.begun = from.begun;
@@ -171,7 +171,7 @@ void LayerSolver::keepStale(const Layer& from, Layer& to) const {
     if (std::count(to.stale.begin(), to.stale.end(), 0) == std::ssize(to.stale)) to.stale.clear();
 }
 
-// Neighbours of what is stale: that decides on their rounds, too.
+// Marks neighbours of what is dirty, too, as it decides on their sample passes.
 void LayerSolver::growToParts(std::vector<uint8_t>& stale) const {
     std::vector<uint8_t> parts(parts_.count, 0);
     for (uint32_t i = 0; i < stale.size(); ++i)
@@ -182,18 +182,18 @@ void LayerSolver::growToParts(std::vector<uint8_t>& stale) const {
     }
 }
 
-// Direct light of stale chunks, made of the same rounds in the same steps as that of all others. Meanwhile
-// ligOut, which nobody else needs, holds the layer's direct light.
+// Begins to repair direct light of dirty chunks, with the same sample passes in the same steps as that of all
+// others. Meanwhile ligOut, which nobody else needs, holds the layer's direct light.
 void LayerSolver::beginMending() {
     Layer& layer = *layers_[work_->layer];
-    if (raysOf(layer) == 0) return endMending(); // as all of it
+    if (raysOf(layer) == 0) return endMending(); // nothing in it shines
     work_->mended = layer.begun ? 1 : 0;
     work_->round = layer.begun ? layer.directSteps.front() : 0;
     if (layer.begun) {
         VkCommandBuffer cmd = commands_.begin();
         recordCopy(cmd, *layer.direct, input_.light.ligOut, mendedRanges(layer));
         run(cmd);
-        setPenumbra(layer); // else the first round finds it
+        setPenumbra(layer); // else the first sample pass finds it
     }
     beginPass(Stage::Direct);
     if (!seekRound()) endMendingStep();
@@ -243,8 +243,8 @@ void LayerSolver::endMendingStep() {
     work_.reset();
 }
 
-// A viewer gets the first step of all direct light first, then all of it, and the sum of all lights after
-// either.
+// Ends a repair. A viewer gets the first step of all direct light first, then all of it, and the sum of all
+// lights after either.
 void LayerSolver::endMending() {
     const Work work = *work_;
     const bool outdated = layers_[work.layer]->isOutdated();
@@ -256,8 +256,8 @@ void LayerSolver::endMending() {
     begin(work.layer, work.target, work.directAlone);
 }
 
-// Whose direct light is to be made anew before any layer goes on, those of which nothing is there yet first;
-// nothing: none, or nobody looks.
+// Returns a layer whose direct light is to be repaired before any layer goes on, those whose repair has not
+// begun first; nothing where there is none or nobody looks.
 std::optional<size_t> LayerSolver::staleLayer() const {
     std::optional<size_t> stale;
     for (size_t i = 0; settings_.live && i < layers_.size(); ++i) {

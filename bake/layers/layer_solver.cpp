@@ -15,7 +15,8 @@ namespace {
 using shader::kChunk;
 
 // A submit, or what a GPU waits for between two batches, takes as long as rays from about so many chunks:
-// they come along with those around them. In rounds of penumbrae alone these have hardly any rays.
+// chunks in smaller gaps come along with those around them. In sample passes of penumbrae alone these have
+// hardly any rays.
 constexpr uint32_t kGap = 256, kPenumbraGap = 2048;
 
 const SolverInput& checked(const SolverInput& input, const SolverSettings& settings) {
@@ -80,7 +81,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
 
 LayerSolver::~LayerSolver() = default;
 
-// Of all chunks at first, then of those in which objects have moved.
+// Counts the senders of all chunks at first, then of those in which objects have moved.
 void LayerSolver::countSenders() {
     const std::vector<shader::Patch>& patches = input_.patches.scene.patches;
     senders_.resize(input_.patches.chunkCount(), 0);
@@ -143,7 +144,7 @@ void LayerSolver::begin(size_t index, LayerLevel target, bool directAlone) {
         layer.penumbra.assign(parts_.count, 0);
         layer.redoSteps.clear();
     }
-    if (work_->round > 0 || raysOf(layer) == 0) setPenumbra(layer); // else the first round finds it
+    if (work_->round > 0 || raysOf(layer) == 0) setPenumbra(layer); // else the first sample pass finds it
     beginPass(Stage::Direct);
     if (raysOf(layer) == 0 || !seekRound()) endDirectStep(commands_.begin());
 }
@@ -154,7 +155,7 @@ void LayerSolver::beginPass(Stage stage) {
     order_.begin(input_.patches.chunkCount(), seen_);
 }
 
-// Into back_, whose former contents are over with.
+// Copies into back_, whose former contents are over with.
 void LayerSolver::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes,
                              VkDeviceSize at) {
     vk::barrier(cmd);
@@ -175,7 +176,8 @@ uint32_t LayerSolver::raysOf(const Layer& layer) const {
     return rays;
 }
 
-// cost: of a chunk, over that of those that the rate is of; done: of these in the batch so far.
+// Returns the next chunks. cost is that of a chunk over that of those that the rate is of; done is the number
+// of these in the batch so far.
 ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most, double cost, double done) const {
     const double limit =
         std::clamp((rate.wanted(batchMs_) - done) / cost, 1.0, std::max(1.0, static_cast<double>(most)));
@@ -183,8 +185,9 @@ ChunkRange LayerSolver::nextRange(const BatchRate& rate, uint32_t most, double c
                        static_cast<uint32_t>(rate.perMs() / cost * kWorthASubmit));
 }
 
-// A round goes over the parts of the layer one by one. Tracers that record take as much of a step in one
-// submit as fits, for what comes next is known but for the first round.
+// Makes a batch of direct light. A sample pass goes over the parts of the layer one by one. Tracers that
+// record take as much of a step in one submit as fits, for what comes next is known but for the first sample
+// pass.
 void LayerSolver::directBatch() {
     const std::vector<DirectPart>& parts = layers_[work_->layer]->parts;
     const bool records = !input_.tracer.onCpu();
@@ -232,7 +235,7 @@ void LayerSolver::directBatch() {
     }
 }
 
-// cmd: of a tracer that records.
+// Traces a portion; cmd is that of a tracer that records.
 template<typename Lights>
 void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_t group, ChunkRange range,
                               uint32_t mark) {
@@ -264,9 +267,10 @@ void LayerSolver::traceDirect(VkCommandBuffer cmd, const Lights& lights, uint32_
     work_->begun = true;
 }
 
-// A submit takes longer than a small batch.
+// Traces and gathers without a submit, which takes longer than a small batch.
 void LayerSolver::traceOnCpu(const LampLight::Work& work) {
-    // What comes first of a layer, and of all patches, writes all sums; else they are added to.
+    // The first part of a layer's first sample pass, with all patches, writes all sums; else they are added
+    // to.
     const bool newSums = work_->round == 0 && work_->part == 0 && !work_->mended;
     if (!work_->begun) {
         if (!newSums) std::memset(buffers_.directSums.as<uint8_t>(), 0, buffers_.directSums.size());
@@ -283,7 +287,7 @@ void LayerSolver::traceOnCpu(const LampLight::Work& work) {
     progress_.gatherSeconds += secondsSince(traced);
 }
 
-// Of the round, where this step ends.
+// Returns the sample pass before which this step ends.
 uint32_t LayerSolver::directEnd() const {
     const Layer& layer = *layers_[work_->layer];
     if (work_->mended) return layer.directSteps[*work_->mended];
@@ -293,7 +297,7 @@ uint32_t LayerSolver::directEnd() const {
     return next == layer.redoSteps.end() ? end : std::min(*next, end);
 }
 
-// Which chunks take part in the round; whether any does.
+// Finds which chunks take part in the sample pass; tells whether any does.
 bool LayerSolver::orderRound() {
     const Layer& layer = *layers_[work_->layer];
     order_.begin(input_.patches.chunkCount(), seen_);
@@ -316,15 +320,15 @@ bool LayerSolver::orderRound() {
     return order_.left() > 0;
 }
 
-// Goes on to a round in which any chunk takes part; whether the step has one.
+// Goes on to a sample pass in which any chunk takes part; tells whether the step has one.
 bool LayerSolver::seekRound() {
     for (; work_->round < directEnd(); ++work_->round)
         if (orderRound()) return true;
     return false;
 }
 
-// Goes on to the part of a step that comes next. False: the step is over, or what comes depends on what the
-// first round meets.
+// Goes on to the part of a step that comes next. Returns false where the step is over, or what comes depends
+// on what the first sample pass meets.
 bool LayerSolver::nextDirect() {
     if (++work_->part < layers_[work_->layer]->parts.size()) {
         orderRound(); // the same chunks as of the part before
@@ -374,8 +378,8 @@ void LayerSolver::recordPenumbra(VkCommandBuffer cmd) {
     recordBack(cmd, penumbra_.lights, penumbra_.lights.size(), buffers_.rays.size());
 }
 
-// Where direct light is mended, of parts that are mended as a whole; chunks beside stale ones are done with
-// where that is what it was.
+// Learns where the penumbra is; in a repair only of parts that are repaired as a whole. Chunks beside dirty
+// ones are done with where it is what it was.
 void LayerSolver::learnPenumbra() {
     Layer& layer = *layers_[work_->layer];
     const auto* lights = reinterpret_cast<const glm::uvec2*>(back_.as<uint8_t>() + buffers_.rays.size());
@@ -403,7 +407,7 @@ void LayerSolver::learnPenumbra() {
     setPenumbra(layer);
 }
 
-// Where direct light is mended, of what takes part in that: rays are for these alone.
+// Sets the penumbra; in a repair only of what takes part in that, as rays are for these alone.
 void LayerSolver::setPenumbra(const Layer& layer) {
     std::vector<uint8_t> parts = layer.penumbra;
     if (work_->mended) {
@@ -426,8 +430,8 @@ void LayerSolver::recordPenumbraUpload(VkCommandBuffer cmd) {
     vkCmdCopyBuffer(cmd, newPenumbra_.handle(), penumbra_.lights.handle(), 1, &all);
 }
 
-// Of direct light that a layer shares with one that is to stay as it is, a copy. Returns what that was made
-// of, to be kept until the copy is there; nullptr: none was needed.
+// Copies direct light that a layer shares with one that is to stay as it is. Returns what the copy is made
+// of, to be kept until it is there; nullptr where none was needed.
 std::shared_ptr<vk::Buffer> LayerSolver::recordOwnDirect(VkCommandBuffer cmd, Layer& layer) {
     if (layer.direct && layer.direct.use_count() == 1) return nullptr;
     const std::shared_ptr<vk::Buffer> shared =
@@ -449,7 +453,8 @@ void LayerSolver::countRays() {
     progress_.rays = std::accumulate(counters, counters + shader::kRayCounters, progress_.rays);
 }
 
-// Direct light is counted on the device, for as long as a step of many rounds takes.
+// Asks the device for rays of direct light, which it counts for as long as a step of many sample passes
+// takes.
 uint64_t LayerSolver::raysSoFar() {
     if (work_ && work_->stage == Stage::Direct) {
         VkCommandBuffer cmd = commands_.begin();

@@ -19,11 +19,11 @@
 
 namespace relume {
 
-/// The hybrid method light by light: each has a layer, its light for a unit of its weight with all bounces,
-/// and what is shown is the sum of weights times layers. Lights beyond the memory share layers
-/// (bake/layers/light_groups.h), in which they are weighed before they bounce. A layer's level says how many
-/// rounds of samples of its direct light and of links it is made of; its bytes depend on nothing but that,
-/// its pattern, geometry and surfaces: not on weights, on other lights, or on what was edited before.
+/// Solves with the hybrid method, light by light: each light has a layer, its light for a unit of its weight
+/// with all bounces, and what is shown is the sum of weights times layers. Lights beyond the memory share
+/// layers (bake/layers/light_groups.h), in which they are weighed before they bounce. A layer's level says
+/// how many sample passes of direct light and of links it is made of. Its bytes depend on nothing but that,
+/// its cache key, geometry and surfaces: not on weights, on other lights, or on what was edited before.
 class LayerSolver final : public Solver {
 public:
     /// Throws Error.
@@ -31,7 +31,7 @@ public:
     ~LayerSolver() override;
 
     void step() override;
-    /// The sum of all layers; w: at most the standard error.
+    /// Returns the sum of all layers; w is an upper bound of the standard error.
     const std::vector<glm::vec4>& light() override;
     std::vector<float> errors() override;
     void setPriority(std::vector<uint8_t> chunkSeen) override;
@@ -43,48 +43,49 @@ public:
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
-    /// Why so many bytes do not do for layers of the scene's lights, not even for groups of them, with the
-    /// mend, one line; "" where they do.
+    /// Tells in one line why so many bytes are not enough for layers of the scene's lights, not even for
+    /// groups of them, and what helps; returns "" where they are enough.
     static std::string problem(const Scene& scene, const PatchSet& patches, uint64_t bytes);
-    /// Whether there is memory for layers of so many lamps beside those of the other lights, grouped or not.
+    /// Tells whether there is memory for layers of so many analytic lights beside those of the other lights,
+    /// grouped or not.
     bool holds(size_t lamps) const;
 
-    /// What the user sees and changes; valid until the next step() or edit().
+    /// Returns what the user sees and changes; it is valid until the next step() or edit().
     const std::vector<std::unique_ptr<Layer>>& layers() const { return layers_; }
-    /// vec4 per patch of a layer's result, for a unit of its weight.
+    /// Returns a layer's result for a unit of its weight, vec4 per patch.
     std::vector<glm::vec4> layerLight(const Layer& layer) const;
 
-    /// The scene's lights, its sky, the colours of its materials (Baker::updateMaterials) or switches are
-    /// others now: the scene that the solver was made with has been changed. Weights count at once, or in
-    /// the next sum of all lights while all are seen in one; layers whose pattern changed are made anew once
+    /// Takes up that the scene which the solver was made with has been changed: its lights, its sky, the
+    /// colours of its materials (Baker::updateMaterials) or the switches. Weights count at once, or in the
+    /// next sum of all lights while all are seen in one. Layers whose cache key changed are made anew once
     /// the first level of the layer under way is through, so that a light that is dragged is seen.
     void edit(const LightMix& mix);
-    /// Whether what is shown is of the newest colours of surfaces and places of objects: layer by layer, or
-    /// all in one.
+    /// Tells whether what is shown is of the newest colours of surfaces and places of objects: layer by
+    /// layer, or all in one.
     bool current() const;
-    /// Objects have moved (Baker::moveObjects), which edit() is to be told, too. Needs atRest().
+    /// Takes up that objects have moved (Baker::moveObjects); edit() is to be told, too. Needs atRest().
     void moveObjects(const ObjectMove& move);
-    /// Whether base colours and objects may be changed now: no layer is on its way to its first level, unless
-    /// all of them are seen in one, nor are all of them on the way to that, and a viewer was shown what was
-    /// changed before.
+    /// Tells whether base colours and objects may be changed now: no layer is on its way to its first level,
+    /// unless the sum of all lights is shown, that sum is not under way either, and a viewer was shown what
+    /// was changed before.
     bool atRest() const { return takesEdits() && !(settings_.live && unseen_); }
 
-    /// Points on each light per patch and round: few, so that a light that moves is seen soon.
+    /// Each light gets few points per patch and sample pass, so that a light that moves is seen soon.
     static constexpr uint32_t kPointsOfRound = shader::kReplicates;
 
 private:
-    // Of a pass in one submit, at most: marks of time are between them.
+    // A submit holds at most so many portions of a pass: marks of time are between them.
     static constexpr uint32_t kMostPortions = 32;
 
     enum class Stage : uint8_t { Direct, Bounces, Gather };
-    /// Of layers that bounce together one.
+    /// One of the layers that bounce together.
     struct Lane {
         size_t layer = 0;
         LayerLevel target;
         bool live = true;      // goes on in this stage
-        uint32_t look = 0;     // after so many bounces the CPU looks whether they have settled
-        uint32_t looked = 0;   // after so many it did
-        uint64_t gathered = 0; // links, in all its passes
+        uint32_t look = 0;     // after so many bounces the CPU looks whether they have converged
+        uint32_t looked = 0;   // after so many it last did
+        uint64_t gathered = 0; // links, in all its bounces
         double change = 0, ratio = 0, iterationError = 1;
     };
     /// A layer on its way to the next level.
@@ -95,36 +96,36 @@ private:
         bool directAlone = false; // bounces wait for other layers to come along
         std::vector<Lane> lanes;  // once it bounces: itself, and others that bounce along
         Stage stage = Stage::Direct;
-        uint32_t round = 0;             // of samples, or of links that are gathered
-        uint32_t part = 0;              // of Layer::parts, within a round of samples
+        uint32_t round = 0;             // sample pass of direct light, or of links that are gathered
+        uint32_t part = 0;              // of Layer::parts, within a sample pass of direct light
         std::vector<uint8_t> penumbra;  // chunks with a part of Layer::penumbra; empty: not known yet
-        uint32_t bounce = 0;            // finished ones, over the links of the first round
-        uint32_t gathers = 0;           // as bounces, over the links of all rounds
+        uint32_t bounce = 0;            // finished ones, over the links of the first sample pass
+        uint32_t gathers = 0;           // finished ones, over the links of all sample passes
         bool begun = false;             // a batch of this pass has been made
         bool lit = false;               // what patches send is that of ligIn
-        std::optional<uint32_t> mended; // of Layer::directSteps; direct light of stale chunks is made anew
+        std::optional<uint32_t> mended; // step of Layer::directSteps; set while dirty chunks are repaired
     };
     /// Part of a pass over links.
     struct LinkPortion {
-        bool trace = false; // they are not there yet
+        bool trace = false; // the links are not there yet
         ChunkRange range;
         ClosestWork closest;
         LinkGatherPass::Work gather;
-        std::vector<VkDeviceAddress> following; // links of rounds after it, which are gathered along
+        std::vector<VkDeviceAddress> following; // links of later sample passes, gathered along
     };
-    /// Over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it.
+    /// Sums over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it.
     struct LevelSums {
         shader::ResolveSums indirect{};
         glm::dvec4 result{0.0};
     };
-    /// Where objects were and are, for tracers.
+    /// The places where objects were and are, for tracers.
     struct Path {
         ObjectMove move;
         vk::Buffer boxes, changed;
     };
     /// Kept links on their way to where objects are now.
     struct Relink {
-        Path early, late; // of the first earlyRounds rounds, of the others
+        Path early, late; // for the first earlyRounds sample passes, for the others
         uint32_t earlyRounds = 0;
         vk::Buffer list;
         BatchRate rate;
@@ -139,13 +140,13 @@ private:
 
         bool isDarkGroup() const { return !members.empty() && pattern.members.empty(); }
     };
-    /// Emitters whose direct light is sampled together.
+    /// Mesh lights whose direct light is sampled together.
     struct EmitterGroup {
         std::vector<EmitterChoice> choices;
         EmitterSet set;
     };
 
-    /// Of a layer that memory did not do for: what makes its bytes again.
+    /// The record of a layer that memory was short for: what makes its bytes again.
     struct Record {
         LightPattern pattern;
         LayerLevel level;
@@ -301,8 +302,8 @@ private:
     ChunkSumPass chunkSums_;
     TileParts parts_;
     Penumbra penumbra_;        // of the layer whose direct light is under way
-    vk::Buffer newPenumbra_;   // its lights, as they are to be there; unless the CPU sees these
-    bool penumbraDue_ = false; // they wait for the next submit
+    vk::Buffer newPenumbra_;   // penumbra_.lights as they are to be; none where the CPU sees these
+    bool penumbraDue_ = false; // newPenumbra_ waits for the next submit
     vk::Buffer back_;          // what the CPU reads after a submit: sums per chunk, or counters of rays
     vk::Commands commands_;
     vk::Timestamps timestamps_;
@@ -311,21 +312,21 @@ private:
     std::vector<uint32_t> senders_;   // patches that take part, per chunk
     std::vector<uint8_t> fullChunks_; // not 0: all of its patches do, and are shown
     BatchRate directRate_, traceRate_, gatherRate_;
-    bool distancesKnown_ = false; // of the first round's links
+    bool distancesKnown_ = false; // of the links of the first sample pass
 
     std::vector<std::unique_ptr<Layer>> layers_; // in the order of groupLights()
-    std::vector<std::unique_ptr<Layer>> former_; // of undone edits, the newest last
+    std::vector<std::unique_ptr<Layer>> former_; // kept for an undo, the newest last
     std::vector<Record> records_;                // of those that are no longer kept, the newest last
-    std::vector<vk::Buffer> spare_;              // of layers that are gone, for the next ones
+    std::vector<vk::Buffer> spare_;              // of layers that are gone, to be used again
     uint64_t layerBytes_ = 0;                    // at most, of all of them
     std::vector<EmitterGroup> emitterGroups_;    // of emitters_
-    std::string toldGroups_;                     // to the log
+    std::string toldGroups_;                     // what the log was told last
     vk::Buffer standIn_; // vec4 per patch: light of those that were grouped otherwise before
     uint64_t surfaces_ = 0, objects_ = 0;
     uint64_t objectsBefore_ = 0;      // before the newest edit
     std::optional<ObjectMove> moved_; // an edit of objects that waits to be adopted
     std::optional<Relink> relink_;
-    std::unique_ptr<WorkerPool> pool_; // for what objects that move take of the CPU, where a GPU gathers
+    std::unique_ptr<WorkerPool> pool_; // for the CPU's share of moves, where a GPU gathers
     bool reachMoved_ = false;          // rays to suns and the sky end elsewhere since objects moved
     std::optional<Work> work_;
     LightMix mix_;
@@ -340,7 +341,7 @@ private:
     vk::Buffer rest_;      // the composite without restOf_
     std::optional<size_t> restOf_;
     std::vector<size_t> changed_; // layers since the composite was made
-    bool allChanged_ = false;     // which ones there are, too
+    bool allChanged_ = false;     // all of them, and which ones there are
     bool stale_ = true;           // light_ is behind
     std::vector<glm::vec4> light_;
     uint64_t version_ = 0; // of what a viewer is shown

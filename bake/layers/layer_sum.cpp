@@ -1,5 +1,5 @@
-// Of LayerSolver: all lights in one, for what changes every layer. Direct light is known, so that their
-// weighted sum takes no longer to bounce than one layer; layers follow.
+// This part of LayerSolver bounces all lights in one, for what changes every layer. Direct light is known, so
+// that their weighted sum takes no longer to bounce than one layer; layers follow.
 #include "bake/layers/layer_solver.h"
 
 #include <algorithm>
@@ -7,22 +7,22 @@
 namespace relume {
 namespace {
 
-// Of which the sum's bounces are made, per patch: their noise is then about what hybrid's aim is.
+// The sum's bounces are made of so many links per patch: their noise is then about what hybrid's aim is.
 constexpr uint32_t kSumLinks = 64;
 
 bool shines(const Layer& layer) {
     return layer.source.weight != glm::vec3(0.0f);
 }
 
-// Whether there is direct light of it, of where objects are.
+// Tells whether the layer has direct light, made for where objects are.
 bool isInSum(const Layer& layer) {
     return layer.directRounds > 0 && !layer.isOutdated();
 }
 
 } // namespace
 
-// One layer alone is seen as soon itself, unless it takes more links. What is shown stays until all are
-// there.
+// Tells whether the sum is wanted. One layer alone is seen as soon itself, unless it takes more links. What
+// is shown stays until all are there.
 bool LayerSolver::wantsSum() const {
     if (!settings_.live || settings_.passes == 1) return false;
     size_t waiting = 0;
@@ -41,7 +41,8 @@ bool LayerSolver::canSum() const {
            });
 }
 
-// Whose direct light is to be made before any layer goes on, so that it is seen among all lights.
+// Returns a layer whose direct light is to be made before any layer goes on, so that it is seen among all
+// lights.
 std::optional<size_t> LayerSolver::unlitLayer() const {
     const bool summed = sumShown_ || (unseen_ && wantsSum());
     for (size_t i = 0; summed && i < layers_.size(); ++i)
@@ -49,12 +50,13 @@ std::optional<size_t> LayerSolver::unlitLayer() const {
     return std::nullopt;
 }
 
-// Of links.
+// Returns the sample passes of links that the sum takes.
 uint32_t LayerSolver::sumRounds() const {
     return std::max(1u, kSumLinks / linksOfRound_);
 }
 
-// Before the links of later rounds follow objects that moved: direct light does, and all is seen in one.
+// Tells whether the links of later sample passes wait before they follow objects that moved: direct light
+// comes first, and all is seen in one.
 bool LayerSolver::sumComesFirst() const {
     return settings_.live && relink_->round >= sumRounds() &&
            (work_ || sumDue_ || staleLayer() || unlitLayer());
@@ -64,7 +66,7 @@ bool LayerSolver::current() const {
     return !edited_ && isWhole();
 }
 
-// Whether what is shown is of the last edit that was adopted.
+// Tells whether what is shown is of the last edit that was adopted.
 bool LayerSolver::isWhole() const {
     if (sumDue_ || (work_ && work_->sum)) return false;
     return std::all_of(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& layer) {

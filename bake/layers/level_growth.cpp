@@ -7,10 +7,10 @@
 namespace relume {
 namespace {
 
-// Rounds over those that there are, at most.
+// There are at most so many times as many sample passes as before.
 constexpr uint32_t kMostGrowth = 8;
 
-// The least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least.
+// Returns the least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least.
 uint32_t onLadder(double rounds) {
     constexpr double kAlmostWhole = 1e-9;
     const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
@@ -32,14 +32,14 @@ double within(const SampledPart& part, double rounds) {
     return std::clamp(rounds, double(part.rounds), double(std::max(part.rounds, part.most)));
 }
 
-// By which the part comes to what the other one leaves of `allowed` when that has so many rounds.
+// Returns the sample passes by which the part comes to what the other one leaves of `allowed` with so many.
 double roundsBeside(const SampledPart& part, const SampledPart& other, double otherRounds, double allowed) {
     if (part.variance <= 0.0) return part.rounds;
     const double left = allowed - varianceOfRound(other) / std::max(1.0, otherRounds);
     return left > 0.0 ? varianceOfRound(part) / left : double(part.most);
 }
 
-// By what takes away more of the variance for its cost.
+// Doubles what takes away more of the variance for its cost.
 Rounds doubled(const SampledPart& first, const SampledPart& second) {
     const auto worth = [](const SampledPart& part) {
         return part.variance / (std::max(1u, part.rounds) * part.costOfRound);

@@ -4,12 +4,12 @@
 
 namespace relume {
 
-/// A part of a layer's error: its variance falls as one over the rounds of samples it is made of.
+/// Part of a layer's error: its variance falls as one over the sample passes that it is made of.
 struct SampledPart {
     uint32_t rounds = 0;    // so far
-    uint32_t most = 0;      // rounds that there can be
+    uint32_t most = 0;      // sample passes that there can be
     double variance = 0;    // of the part, as it is
-    double costOfRound = 1; // in what it is counted in for the other part, too
+    double costOfRound = 1; // in the same unit as the other part's
 };
 
 struct Rounds {
@@ -18,10 +18,10 @@ struct Rounds {
     bool operator==(const Rounds&) const = default;
 };
 
-/// Rounds that cost least of those by which both variances come to `allowed` in all (a Lagrange multiplier:
-/// rounds as the root of variance over cost), no more than a few times as many as there are, for what is
-/// known of the variances is not exact. As steps of a ladder, so that layers meet on them. More than before
-/// of one at least, while there can be.
+/// Returns the sample passes that cost least of those by which both variances come to `allowed` in all (a
+/// Lagrange multiplier: their number goes as the root of variance over cost). They are no more than a few
+/// times as many as there are, for what is known of the variances is not exact. They are steps of a ladder,
+/// so that layers meet on them. Of one part at least there are more than before, while there can be.
 Rounds roundsFor(const SampledPart& first, const SampledPart& second, double allowed);
 
 } // namespace relume

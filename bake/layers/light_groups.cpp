@@ -34,7 +34,7 @@ std::vector<size_t> inOrderOfRank(const Scene& scene, const std::vector<LightSou
     return order;
 }
 
-// Lights keep their names whatever there is memory for.
+// Names the group as no light is named: lights keep their names whatever there is memory for.
 void nameApart(LightSource& group, const std::vector<LightSource>& sources) {
     const std::string name = group.name;
     const auto taken = [&] {

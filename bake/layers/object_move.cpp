@@ -9,13 +9,13 @@ namespace {
 
 using shader::kChunk;
 
-// So many boxes at most: beyond, one around all of them. Each is a test per ray.
+// There are so many boxes at most; beyond, one goes around all of them. Each is a test per ray.
 constexpr size_t kMostPlaceBoxes = 8;
-// That a thread looks at in one go.
+// A thread looks at so many chunks in one go.
 constexpr uint32_t kTaskChunks = 128;
 
-// Whether a segment from within a to within b may meet the box: points between are within boxes that go from
-// a to b evenly, and along each axis such a box meets the other one for an interval of the way.
+// Tells whether a segment from within a to within b may meet the box: points between are within boxes that go
+// from a to b evenly, and along each axis such a box meets the other one for an interval of the way.
 bool shaftMeets(const shader::TraceBox& a, const shader::TraceBox& b, const shader::TraceBox& box) {
     float from = 0.0f, to = 1.0f;
     const auto atMost = [&](float start, float end, float limit) { // start + t (end - start) <= limit

@@ -8,19 +8,19 @@
 
 namespace relume {
 
-/// What objects that were moved, hidden or shown again leave to be traced again.
+/// Tells what is to be traced again after objects were moved, hidden or shown again.
 struct ObjectMove {
     std::vector<shader::TraceBox> boxes; // where they were and are, grown by what floats round off
     std::vector<glm::uvec2> changed;     // per chunk, a bit for each patch that is another one than before
     std::vector<uint32_t> instances;     // that moved
-    bool texels = false;                 // others show what is baked: hidden, or inside something
+    bool texels = false;                 // others show what is baked: patches got hidden or inside something
 
-    /// As if both had been one.
+    /// Adds a later move, as if both had been one.
     void add(const ObjectMove& later);
     bool changes(uint32_t chunk) const { return (changed[chunk].x | changed[chunk].y) != 0; }
 };
 
-/// Where a light shines from, to tell which segments may meet a box.
+/// The place that a light shines from, to tell which segments may meet a box.
 struct LightPlace {
     enum class Kind : uint8_t {
         Box,        // within lo..hi [m]
@@ -31,8 +31,8 @@ struct LightPlace {
     glm::vec3 lo{0.0f}, hi{0.0f};
 };
 
-/// Per chunk 1 where direct light from there may be another one after the move, for what segments to it meet
-/// or for its patches.
+/// Returns a 1 per chunk where direct light from there may be another one after the move, because of what
+/// segments to it meet or because of its patches.
 std::vector<uint8_t> chunksReached(WorkerPool& pool, const PatchSet& patches, const LightPlace& light,
                                    const ObjectMove& move);
 

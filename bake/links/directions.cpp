@@ -14,7 +14,7 @@ namespace {
 using Point = glm::dvec2;
 
 constexpr double kMirror = 2.0; // radii to the mirror image behind the border, of the distance to the border
-// Corners of a triangle around all: so far away that the disc sees them as directions.
+// The corners of a triangle around all are so far away that the disc sees them as directions.
 constexpr double kFar = 1e3;
 constexpr uint32_t kNoNeighbour = 0xffffffffu;
 
@@ -22,8 +22,8 @@ double square(Point p) {
     return glm::dot(p, p);
 }
 
-/// A triangle of the Delaunay triangulation, counter-clockwise. next[k]: the one across the edge from corner
-/// k to the next.
+/// A triangle of the Delaunay triangulation, counter-clockwise. next[k] is the one across the edge from
+/// corner k to the next.
 struct Triangle {
     std::array<uint32_t, 3> corner{};
     std::array<uint32_t, 3> next{kNoNeighbour, kNoNeighbour, kNoNeighbour};
@@ -32,14 +32,14 @@ struct Triangle {
     bool isAlive = true;
 };
 
-/// Where a point could be put; valid as long as both triangles are alive.
+/// A place where a point could be put; it is valid as long as both triangles are alive.
 struct Candidate {
     double radius = 0; // of the empty circle around it
     Point at{0.0};
     uint32_t triangle = kNoNeighbour, other = kNoNeighbour;
     bool operator<(const Candidate& c) const {
         // The set is symmetric, so many are equal but for rounding, which must not decide. Then one from
-        // anywhere: in order of place a half-filled generation would be all on one side.
+        // anywhere is taken: in order of place a half-filled generation would be all on one side.
         constexpr double kEqual = 1e-9;
         if (std::abs(radius - c.radius) > kEqual) return radius < c.radius;
         return anyOrder() < c.anyOrder();
@@ -47,7 +47,7 @@ struct Candidate {
     double anyOrder() const { return glm::fract(glm::dot(at, Point(37.17, 53.71))); }
 };
 
-/// Delaunay triangulation by insertion [Bowyer 1981; Watson 1981] with the candidates of its dual.
+/// Makes a Delaunay triangulation by insertion [Bowyer 1981; Watson 1981] with the candidates of its dual.
 class DiscFiller {
 public:
     DiscFiller();
@@ -111,7 +111,7 @@ void DiscFiller::insert(Point p, uint32_t within) {
             fresh_.push_back(t);
         }
     }
-    // The fan's spokes: where one triangle's edge ends the next one's begins.
+    // The fan's spokes are joined: where one triangle's edge ends the next one's begins.
     for (const uint32_t t : fresh_)
         for (const uint32_t o : fresh_)
             if (triangles_[o].corner[0] == triangles_[t].corner[1])
@@ -120,7 +120,7 @@ void DiscFiller::insert(Point p, uint32_t within) {
         addCandidates(t);
 }
 
-// How far the circle around x through a reaches beyond what the border allows it.
+// Returns how far the circle around x through a reaches beyond what the border allows it.
 double excess(Point x, Point a) {
     return glm::length(x - a) - kMirror * (1 - glm::length(x));
 }
@@ -137,10 +137,10 @@ void DiscFiller::addCandidates(uint32_t triangle) {
     }
 }
 
-// The Voronoi edge between two triangles' centres, where it leaves what the border allows.
+// Adds where the Voronoi edge between two triangles' centres leaves what the border allows.
 void DiscFiller::addEdgeCandidate(uint32_t triangle, uint32_t other, Point a) {
     const Point c0 = triangles_[triangle].centre, c1 = triangles_[other].centre;
-    // The edge's nearest point to the border's centre is inside if any is: both ways from there.
+    // The edge's nearest point to the border's centre is inside if any is: the search goes both ways from it.
     const Point along = c1 - c0;
     const double length2 = square(along);
     if (!(length2 > 0)) return;

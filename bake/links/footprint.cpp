@@ -11,8 +11,8 @@ namespace {
 
 using shader::kChunk;
 
-// Way up from each patch and node, with all that the next step needs in one load. No area is as large as what
-// is not there.
+// Returns the way up from each patch and node, with all that the next step needs in one load. A parent that
+// is not there is larger than any area.
 std::vector<glm::uvec2> stepsOf(const PatchPyramid& pyramid) {
     const auto patchCount = static_cast<uint32_t>(pyramid.parents.size());
     const auto step = [&](uint32_t parent) {
@@ -45,7 +45,8 @@ vk::Buffer Footprints::makeRadiance(const vk::Device& device) const {
     return {device, {.size = (uint64_t{patchCount_} + nodeCount_) * sizeof(glm::vec4), .name = "radiance"}};
 }
 
-// Every node has two children or more, so there are fewer of them than patches; in compact charts a third.
+// Every node has two children or more, so there are fewer of them than patches; in compact charts a third as
+// many.
 uint64_t Footprints::bytes(uint64_t patchCount) {
     return patchCount * (sizeof(shader::PyramidNode) + sizeof(glm::vec4) + 2 * sizeof(glm::uvec2));
 }

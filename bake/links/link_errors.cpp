@@ -1,4 +1,4 @@
-// Of LinkSolver: what is known of its error, and the result.
+// This part of LinkSolver finds its error, and makes the result.
 #include "bake/links/link_solver.h"
 
 #include "bake/base/finite_light.h"
@@ -9,20 +9,21 @@
 namespace relume {
 namespace {
 
-// A receiver left out is missed over twice the gap, at its worst place. Square of what texels are off, over
-// the mean square of that: 1/32 where light is smooth, 1/4 across a step (at scale 2); 0.12 to 0.24 at scale
-// 2 and 0.27 to 0.51 at scale 4 in the Cornell rooms at 128 x 128, where boxes touch the floor.
+// A receiver left out is missed over twice the gap, at its worst place. The share is the square of what
+// texels are off, over the mean square of that: 1/32 where light is smooth, 1/4 across a step (at scale 2);
+// 0.12 to 0.24 at scale 2 and 0.27 to 0.51 at scale 4 in the Cornell rooms at 128 x 128, where boxes touch
+// the floor.
 constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
 // Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
 // square.
 constexpr double kBesideGrid = 0.1;
-// The error is looked at again when so much of the rounds that it seems to need are done (variance falls as 1
-// / rounds or faster), and when their number has doubled.
+// The error is looked at again when so much of the sample passes that it seems to need are done (variance
+// falls as 1 / rounds or faster), and when their number has doubled.
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 
 } // namespace
 
-// The error that is left, from what the replicates say and the iteration; kept in progress().
+// Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
 void LinkSolver::check() {
     const uint32_t rounds = state_.directRounds + state_.linkRounds;
     state_.nextCheck = rounds + 1;
@@ -32,7 +33,7 @@ void LinkSolver::check() {
     const double off = progress_.error / settings_.error;
     const double growth = std::min(kCheckGrowth, kCheckShare * off * off);
     state_.nextCheck = std::max(rounds + 1, static_cast<uint32_t>(growth * rounds));
-    // No number of samples mends a grid that is too coarse.
+    // No number of samples makes up for a grid that is too coarse.
     const double grid2 = progress_.gridError * progress_.gridError;
     gridLimits_ = progress_.gridError > settings_.error &&
                   progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
@@ -45,7 +46,7 @@ void LinkSolver::resolve() {
     light_.clear();
 }
 
-// What sums over all patches say, and that there is a new result.
+// Learns what sums over all patches say, and that there is a new result.
 void LinkSolver::learn(const shader::ResolveSums& sums) {
     requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
     state_.directVariance = sums.direct;
@@ -71,7 +72,8 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
     live_.complete = live_.complete || settings_.passes > 0 || state_.settling.left <= kMostDimmer;
 }
 
-// What interpolation leaves: a share of how far the receivers themselves are from what their neighbours say.
+// Returns what interpolation leaves: a share of how far the receivers themselves are from what their
+// neighbours say.
 double LinkSolver::coarseVariance(double patches) {
     if (coarse_.count == 0 || state_.linkRounds == 0) return 0.0;
     VkCommandBuffer cmd = commands_.begin();
@@ -100,8 +102,8 @@ shader::ResolveSums LinkSolver::resolveOnce(double sigma) {
         vk::readBuffer<shader::ResolveSums>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()));
 }
 
-// Within a round only some patches have its samples. What a look teaches about widths and variances must not
-// decide what comes next: looking changes no byte.
+// Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
+// about widths and variances must not decide what comes next: looking changes no byte.
 const std::vector<glm::vec4>& LinkSolver::light() {
     if (stale_ && state_.stage == Stage::Plan && state_.directRounds + state_.linkRounds > 0) {
         const State before = state_;

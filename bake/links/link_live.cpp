@@ -1,4 +1,4 @@
-// Of LinkSolver: what a viewer asks of it.
+// This part of LinkSolver answers what a viewer asks.
 #include "bake/links/link_solver.h"
 
 #include "assets/base/error.h"
@@ -34,13 +34,13 @@ void LinkSolver::setPriority(std::vector<uint8_t> chunkSeen) {
     if (state_.stage != Stage::Plan) order_.prefer(seenOfStage());
 }
 
-// Sums of a round in which every patch has its bounces.
+// Tells whether there are sums of a sample pass in which every patch has its bounces.
 bool LinkSolver::hasSolution() const {
     return state_.linkRounds > 0 || (hybrid_ && settings_.passes == 1 && state_.directRounds > 0);
 }
 
-// At a round's end: makes its result where a viewer waits for one and there is time. Once: the width of
-// smoothing is what the look before said. light() and the end make theirs anew.
+// Makes a sample pass's result at its end, where a viewer waits for one and there is time. It does so once:
+// the width of smoothing is what the look before said. light() and the end make theirs anew.
 void LinkSolver::look() {
     const uint32_t rounds = state_.directRounds + state_.linkRounds;
     if (!stale_ || !hasSolution() || !live_.asked || rounds == live_.rounds) return;
@@ -57,7 +57,7 @@ void LinkSolver::look() {
     live_.cost = secondsSince(live_.looked);
     live_.rounds = rounds;
     live_.asked = false;
-    light_.clear(); // within the next round this is the latest there is
+    light_.clear(); // within the next sample pass this is the latest there is
 }
 
 LiveLight LinkSolver::liveLight() {
@@ -74,8 +74,8 @@ LiveLight LinkSolver::liveLight() {
     return {&buffers_.result, live_.version, live_.complete || done_, std::move(changed)};
 }
 
-// The light that bounces on, and where the bounce under way has been the light of that one. After a restore
-// within a round this is all that can be shown: sums are of different rounds.
+// Shows the light that bounces on and, where the bounce under way has been, the light of that one. After a
+// restore within a sample pass this is all that can be shown: sums are of different sample passes.
 std::vector<ChunkRange> LinkSolver::showUnfinished() {
     std::vector<ChunkRange> ranges = merged(std::exchange(live_.ranges, {}));
     if (!live_.all && ranges.empty()) return {};
@@ -98,8 +98,8 @@ const vk::Buffer& LinkSolver::sumsOfStage() const {
     return state_.stage == Stage::Direct ? buffers_.directSums : buffers_.linkSums;
 }
 
-// What smoothing is made with lies idle within a round. With a coarser grid, links add to sums only when all
-// of them are there.
+// Keeps the sums in what smoothing is made with, which lies idle within a sample pass. With a coarser grid,
+// links add to sums only when all of them are there.
 void LinkSolver::recordUndo(VkCommandBuffer cmd) {
     live_.undoable = settings_.live;
     if (!settings_.live || (state_.stage == Stage::Links && coarse_.count > 0)) return;
@@ -135,7 +135,7 @@ void LinkSolver::abortPass() {
     if (direct) {
         const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
         progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
-    } else if (state_.linkRounds == 0) { // settling begins anew
+    } else if (state_.linkRounds == 0) { // convergence begins anew
         state_.change = state_.ratio = 0;
         state_.iterationError = 1;
         state_.settling = {};

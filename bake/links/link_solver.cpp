@@ -12,7 +12,7 @@ namespace {
 
 using shader::kChunk;
 
-// Chunks of one submit of interpolation: 0.26M patches take about 20 ms on two cores.
+// A submit interpolates so many chunks: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
 
 EmitterLight makeEmitters(const SolverInput& input, bool hybrid, uint32_t links) {
@@ -82,8 +82,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / static_cast<double>(senders_.size());
 }
 
-// Each replicate goes through the set once; where the error decides how many rounds there will be, once per
-// round: a set that is broken off is less even.
+// Makes the directions' set. Each replicate goes through it once; where the error decides how many sample
+// passes there will be, once per sample pass: a set that is broken off is less even.
 void LinkSolver::makeDisc() {
     const uint32_t rounds = settings_.links.samples > 0 ? roundsWanted() : 1;
     discCount_ = rounds * linksOfRound_ / shader::kReplicates;
@@ -106,7 +106,7 @@ void LinkSolver::step() {
     progress_.seconds += secondsSince(start);
 }
 
-// Direct light first, then links; then whichever takes more of the error away for its rays.
+// Plans direct light first, then links; then whichever takes more of the error away for its rays.
 void LinkSolver::plan() {
     const uint32_t rounds = state_.directRounds + state_.linkRounds;
     // With a number of samples alone, errors decide nothing.
@@ -141,9 +141,9 @@ uint32_t LinkSolver::roundsWanted() const {
     return (limit + linksOfRound_ - 1) / linksOfRound_;
 }
 
-// Each direction stands for its share of the whole result. Where the error decides how many there will be,
-// for that of what is there so far: the mean over rounds of something that falls as 1 / rounds falls to
-// nothing, too.
+// Returns how many directions share the result. Each direction stands for its share of the whole result.
+// Where the error decides how many there will be, it is that of what is there so far: the mean over sample
+// passes of something that falls as 1 / rounds falls to nothing, too.
 uint32_t LinkSolver::footprintSamples() const {
     return linksOfRound_ * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
 }
@@ -166,7 +166,7 @@ bool LinkSolver::wantsDirect() const {
     if (state_.linkRounds == 0) return false;
     if (settings_.links.samples > 0) return state_.directRounds <= state_.linkRounds;
     const double linkShare = static_cast<double>(senders_.size()) / input_.patches.chunkCount();
-    // Variance falls as 1 / rounds at least; what one more takes away, for its cost.
+    // Variance falls as 1 / rounds at least; this is what one more takes away, for its cost.
     const auto gain = [](double variance, double then, double now, double cost) {
         return variance * then / (now * now * cost);
     };
@@ -225,7 +225,7 @@ void LinkSolver::directBatch() {
     state_.stage = Stage::Plan;
 }
 
-// What links read: of patches and, where they have footprints, of nodes.
+// Makes what links read: radiance of patches and, where they have footprints, of nodes.
 void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
     radiancePass_.record(cmd, input_.light, settings_.transport);
     if (footprints_) {
@@ -267,7 +267,8 @@ void LinkSolver::beginBounce() {
 }
 
 void LinkSolver::linkBatch() {
-    // Mostly links are there from the round's second bounce on; after a restore they are traced once more.
+    // Mostly links are there from the sample pass's second bounce on; after a restore they are traced once
+    // more.
     const uint32_t next = order_.next(1, 0).first;
     const bool kept = next < buffers_.keptChunks;
     const auto known = traced_.begin() + std::min(next, buffers_.keptChunks);
@@ -312,7 +313,7 @@ void LinkSolver::linkBatch() {
     if (order_.left() == 0) endBounce();
 }
 
-// Where the CPU does both, a submit would take longer than a small batch.
+// Traces and gathers without a submit, which would take longer than a small batch where the CPU does both.
 void LinkSolver::linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work) {
     const auto start = Clock::now();
     if (closest) input_.tracer.closest(VK_NULL_HANDLE, *closest);
@@ -363,7 +364,7 @@ void LinkSolver::linksBySubmit(const ClosestWork* closest, const LinkGatherPass:
     progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
 }
 
-// From the receivers of the coarser grid to all patches.
+// Interpolates from the receivers of the coarser grid to all patches.
 void LinkSolver::interpolate() {
     const uint32_t chunks = input_.patches.chunkCount();
     const bool distances = buffers_.distances && state_.linkRounds == 0 && state_.last;
@@ -406,7 +407,8 @@ void LinkSolver::endBounce() {
     state_.stage = Stage::Plan;
 }
 
-// The remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two changes.
+// Measures the remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two
+// changes.
 void LinkSolver::measureChange() {
     VkCommandBuffer cmd = commands_.begin();
     resolvePass_.recordChange(cmd, input_.light, buffers_);

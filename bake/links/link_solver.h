@@ -15,20 +15,20 @@
 
 namespace relume {
 
-/// Directional and hybrid. A round takes a few samples of every patch: points on emitters (hybrid) or links.
-/// The first round of links is iterated until its bounces have settled; later ones start from the light so
-/// far and need one bounce each, so that light and samples improve together. With a number of passes given,
-/// each round starts from nothing and has just so many bounces. The mean over rounds is the result; the
-/// spread of the replicates is its error.
+/// Solves with the directional or the hybrid method. A sample pass takes a few samples of every patch: points
+/// on lights (on mesh lights in hybrid only) or links. The first sample pass of links is iterated until its
+/// bounces have converged; later ones start from the light so far and need one bounce each, so that light and
+/// samples improve together. With a number of passes given, each sample pass starts from nothing and has just
+/// so many bounces. The mean over sample passes is the result; the spread of the replicates is its error.
 class LinkSolver final : public Solver {
 public:
     /// Throws Error.
     LinkSolver(const SolverInput& input, const SolverSettings& settings);
-    /// Device bytes of its buffers, for patches in so many chunks.
+    /// Returns the device bytes of its buffers, for patches in so many chunks.
     static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 
     void step() override;
-    /// Direct and (smoothed) indirect light; w: standard error.
+    /// Returns direct and (smoothed) indirect light; w is the standard error.
     const std::vector<glm::vec4>& light() override;
     std::vector<float> errors() override; // standard errors
     SolverState state() override;
@@ -40,25 +40,25 @@ public:
     void abortPass() override;
     LiveLight liveLight() override;
 
-    /// Directions per patch beyond which no error is worth the time.
+    /// Beyond so many directions per patch no error is worth the time.
     static constexpr uint32_t kMaxSamples = 65536;
 
 private:
     enum class Stage : uint32_t { Plan, Direct, Links };
-    /// Everything that decides what comes next, but the sums, the light and the order of chunks.
+    /// Everything that decides what comes next, except for the sums, the light and the order of chunks.
     struct State {
         Stage stage = Stage::Plan;
         uint32_t directRounds = 0, linkRounds = 0; // finished
-        uint32_t bounce = 0;                       // of the current round
-        uint32_t nextCheck = 0;                    // rounds of both kinds after which the error is looked at
-        bool last = false;                         // this bounce is the round's last one: it counts
+        uint32_t bounce = 0;                       // of the current sample pass
+        uint32_t nextCheck = 0;                    // sample passes of both kinds before the next check
+        bool last = false;                         // this bounce is the sample pass's last one: it counts
         double change = 0;                         // RMS of the last bounce [cd/m^2]
         double ratio = 0;                          // of the last two changes
         double iterationError = 1, directVariance = 0, indirectVariance = 0,
                coarseVariance = 0; // of the light, R, G and B of all patches together
         SmoothingWidth width;
-        uint32_t directAtCheck = 0, linksAtCheck = 0; // rounds behind these variances
-        Settling settling;                            // of the first round, then of the result
+        uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
+        Settling settling;                            // of the first sample pass, then of the result
     };
 
     void makeDisc();
@@ -70,7 +70,7 @@ private:
     bool directDone() const;
     bool enoughRounds() const;
     bool wantsDirect() const;
-    /// Direct light: of emitters, which hybrid samples, and of lamps.
+    /// Tells whether there is direct light: of mesh lights, which hybrid samples, or of analytic lights.
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     void directBatch();
     void linkBatch();
@@ -91,7 +91,7 @@ private:
     ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
     const std::vector<uint8_t>& seenOfStage() const;
 
-    // For a viewer: link_live.cpp.
+    // These serve a viewer and are in link_live.cpp.
     bool hasSolution() const;
     void look();
     std::vector<ChunkRange> showUnfinished();
@@ -116,14 +116,15 @@ private:
     vk::Commands commands_;
     vk::Timestamps timestamps_;
     State state_;
-    ChunkOrder order_;                                 // of the round's chunks
+    ChunkOrder order_;                                 // of the sample pass's chunks
     std::vector<uint8_t> seenPatches_, seenReceivers_; // chunks that come first
     BatchRate directRate_, traceRate_, gatherRate_;
     std::vector<uint32_t> senders_; // of each chunk with links: patches that take part
     bool gridLimits_ = false;       // more samples are of no use
     bool stale_ = true;             // light_ is behind the sums
     std::vector<glm::vec4> light_;  // empty: not read back yet
-    /// What a viewer has seen. Before the first solution `result` holds what there is, then rounds' results.
+    /// Keeps what a viewer has seen. Before the first solution `result` holds what there is, later the
+    /// results of sample passes.
     struct Live {
         uint64_t version = 0;
         bool all = true;                  // result is behind the light that bounces
@@ -131,14 +132,14 @@ private:
         uint32_t resolves = 0, shown = 0; // results with a solution; as of the last call
         bool complete = false, asked = true;
         Clock::time_point looked;            // when the last look began
-        double cost = 0;                     // of it [s]
-        uint32_t rounds = 0;                 // it was at
+        double cost = 0;                     // of that look [s]
+        uint32_t rounds = 0;                 // sample passes at that look
         std::optional<SmoothingWidth> width; // for the next one; else the solver's
         bool undoable = false;               // what `undo` goes back to is there
     };
     Live live_;
     vk::Buffer undo_;             // vec4[kReplicates][patches]; none where `rows` serves
-    std::vector<uint8_t> traced_; // of each chunk whose links are kept: whether those of this round are there
+    std::vector<uint8_t> traced_; // per chunk whose links are kept: whether this sample pass traced them
 };
 
 } // namespace relume

@@ -10,12 +10,11 @@ namespace {
 
 using shader::kNoPatch;
 
-// Length of the mean normal below which patches do not count as one: a fold of 52 degrees has it, or an arc
-// of
-// 88. What lies around an edge is lit by something else.
+// Patches do not count as one where their mean normal is shorter than this: a fold of 52 degrees has it, or
+// an arc of 88. What lies around an edge is lit by something else.
 constexpr double kLeastEvenness = 0.9;
 
-// What stands for some texels of a chart.
+// A patch or node that stands for some texels of a chart.
 struct TexelGroup {
     uint64_t place = 0; // chart, then texel in Morton order
     uint32_t index = 0; // patch or node; kNoPatch: they do not count as one
@@ -64,7 +63,7 @@ public:
     }
 
 private:
-    // In order of their places, so that what belongs together at any level is side by side.
+    // Returns patches in order of their places, so that what belongs together at any level is side by side.
     std::vector<TexelGroup> patchItems() const {
         std::vector<TexelGroup> items;
         items.reserve(set_.count);
@@ -80,7 +79,7 @@ private:
         return items;
     }
 
-    // One item for each group of 2^level texels squared.
+    // Makes one item of each group of 2^level texels squared.
     void mergeItems(std::vector<TexelGroup>& items, uint32_t level) {
         size_t kept = 0;
         for (size_t first = 0; first < items.size();) {
@@ -103,7 +102,7 @@ private:
         }
         if (!(sum.area > 0) || glm::length(sum.normal) < kLeastEvenness * sum.area) return kNoPatch;
         const glm::dvec3 mean = sum.position / sum.area;
-        // Of a square of area A the mean square distance from the middle is A / 6.
+        // In a square of area A the mean square distance from the middle is A / 6.
         const double spread = 6.0 * (sum.square / sum.area - glm::dot(mean, mean));
         sum.size = std::max({sum.size, sum.area, spread});
         shader::PyramidNode node{glm::vec3(mean), static_cast<float>(sum.size), glm::uvec4(children[0].index),

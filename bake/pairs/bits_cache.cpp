@@ -12,7 +12,7 @@ namespace {
 using shader::kSuper;
 using shader::kSuperBlocks;
 
-// Few allocations, and none so large that a fragmented heap refuses it.
+// Allocations are few, and none is so large that a fragmented heap refuses it.
 constexpr uint64_t kBlockBytes = uint64_t{256} << 20;
 
 } // namespace

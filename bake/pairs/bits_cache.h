@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// Units of a super-block, one bit each.
+/// A set of units of a super-block, one bit each.
 struct UnitMask {
     glm::uvec4 lo{0u}, hi{0u}; // bit u % 32 of word u / 32
 
@@ -18,7 +18,7 @@ struct UnitMask {
     UnitMask with(const UnitMask& other) const { return {lo | other.lo, hi | other.hi}; }
     UnitMask within(const UnitMask& other) const { return {lo & other.lo, hi & other.hi}; }
     uint32_t count() const; // of units in it
-    /// Those of units first .. last - 1.
+    /// Returns the set of units first .. last - 1.
     static UnitMask range(uint32_t first, uint32_t last);
 
 private:
@@ -26,8 +26,8 @@ private:
     uint32_t word(uint32_t unit) const { return unit < 128 ? lo[int(unit / 32)] : hi[int(unit / 32 - 4)]; }
 };
 
-/// The visibility cache: bits of super-blocks that stay for later passes, in memory taken piece by piece, up
-/// to a limit. Super-blocks that come when it is full are not kept.
+/// The visibility cache keeps bits of super-blocks for later passes, in memory taken piece by piece, up to a
+/// limit. Super-blocks that come when it is full are not kept.
 class BitsCache {
 public:
     struct Entry {
@@ -42,7 +42,7 @@ public:
     };
     BitsCache(const vk::Device& device, const Desc& desc);
 
-    /// Null when it is not kept and no room is left. Pointers stay valid.
+    /// Returns the super-block's entry; null when it is not kept and no room is left. Pointers stay valid.
     Entry* find(uint32_t row, uint32_t column);
     uint64_t bytes() const { return bytes_; } // taken so far
     bool full() const { return next_ >= slots_; }

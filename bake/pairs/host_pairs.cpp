@@ -17,7 +17,7 @@ using shader::kChunk;
 using shader::kSuper;
 using shader::kSuperPatches;
 
-using Rows = std::array<uint64_t, kChunk>; // of each receiver of a chunk, a bit per sender of another
+using Rows = std::array<uint64_t, kChunk>; // per receiver of a chunk, a bit per sender of another one
 
 // A chunk of senders by component.
 struct SenderLanes {
@@ -29,13 +29,13 @@ struct SenderLanes {
     std::array<uint32_t, kChunk> index; // of its patch and edges
 };
 
-// What one receiver gets, before lanes are added up.
+// The light that one receiver gets, before lanes are added up.
 struct Received {
     Floats r, g, b;
 };
 
-// The disc form factor (farFactor of shaders/gather.comp) from senders whose bit is set and that are not
-// within `close` patch sizes. Always inlined, to be compiled once for each instruction set.
+// Adds light by the disc form factor (farFactor of shaders/gather.comp) from senders whose bit is set and
+// that are not within `close` patch sizes. It is inlined, to be compiled for each instruction set.
 [[gnu::always_inline]] inline void addFar(const shader::Patch* receivers, const Rows& rows,
                                           const SenderLanes& s, float close, Received* sums) {
     constexpr Ints kBits = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -86,7 +86,7 @@ AddFar chooseAddFar() {
 }
 #endif
 
-// Columns become rows.
+// Turns columns into rows.
 void transpose(Rows& rows) {
     uint64_t mask = 0x00000000ffffffffull;
     for (uint32_t step = 32; step > 0; step /= 2, mask ^= mask << step) {
@@ -98,7 +98,7 @@ void transpose(Rows& rows) {
     }
 }
 
-// One side of one super-block: what the patches of a super-row get from those of another.
+// Gathers one side of one super-block: what the patches of a super-row get from those of another.
 class SideGather {
 public:
     SideGather(const HostPairs& work, size_t super, uint32_t side)
@@ -134,7 +134,7 @@ private:
     uint32_t receivers_, senders_; // super-rows
 };
 
-// The senders before a chunk of receivers.
+// Loads the senders that a chunk of receivers has before it.
 void SideGather::load(std::vector<SenderLanes>& lanes, uint32_t receivers) const {
     const uint32_t key = work_.patches[size_t{receivers} * kChunk].flags >> 8;
     for (uint32_t c = 0; c < lanes.size(); ++c) {
@@ -162,7 +162,7 @@ void SideGather::load(std::vector<SenderLanes>& lanes, uint32_t receivers) const
     }
 }
 
-// Bits as they were traced.
+// Returns bits as they were traced.
 Rows SideGather::traced(uint32_t row, uint32_t column) const {
     const uint32_t* words = bits_ + size_t{row * kSuper + column} * kBlockWords;
     Rows rows;
@@ -171,7 +171,7 @@ Rows SideGather::traced(uint32_t row, uint32_t column) const {
     return rows;
 }
 
-// What chunk r of the receivers sees of chunk c of the senders.
+// Returns what chunk r of the receivers sees of chunk c of the senders.
 Rows SideGather::seen(uint32_t r, uint32_t c) const {
     const uint32_t receiver = receivers_ * kSuper + r, sender = senders_ * kSuper + c;
     if (!work_.symmetric || receiver < sender) return traced(r, c);
@@ -190,7 +190,7 @@ bool SideGather::close(uint32_t receivers, uint32_t senders) const {
     return glm::dot(gap, gap) <= shader::kClosePair * shader::kClosePair * q.size * q.size;
 }
 
-// The exact form factor of the pairs that addFar leaves out.
+// Adds light by the exact form factor from the pairs that addFar leaves out.
 void SideGather::addClose(const shader::Patch* receivers, const Rows& rows, const SenderLanes& lanes,
                           std::array<glm::vec3, kChunk>& sums) const {
     for (uint32_t i = 0; i < kChunk; ++i) {

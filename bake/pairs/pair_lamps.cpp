@@ -1,5 +1,5 @@
-// Of PairSolver: direct light of lamps, which no patch sends. It is found once, before the first pass, and
-// each pass adds to it.
+// This part of PairSolver makes the direct light of analytic lights, which no patch sends. It is found once,
+// before the first pass, and each pass adds to it.
 #include "bake/pairs/pair_solver.h"
 
 #include "assets/base/clock.h"
@@ -10,9 +10,10 @@
 namespace relume {
 namespace {
 
-// Rays to each lamp that has an extent, per patch: beside what pairs of patches cost, next to nothing.
+// So many sample passes find the light of each analytic light that has an extent: beside what pairs of
+// patches cost, they cost next to nothing.
 constexpr uint32_t kRounds = 16;
-// The first batch, before anything is measured.
+// The first batch has so many chunks, before anything is measured.
 constexpr double kFirstChunks = 4;
 
 } // namespace
@@ -35,7 +36,7 @@ void PairSolver::clearLamps() {
     commands_.run();
 }
 
-// Rays so far are noted before.
+// Clears the counters of rays; rays so far are noted before.
 void PairSolver::clearCounters() {
     VkCommandBuffer cmd = commands_.begin();
     vkCmdFillBuffer(cmd, rays_.handle(), 0, VK_WHOLE_SIZE, 0);

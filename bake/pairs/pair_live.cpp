@@ -1,4 +1,4 @@
-// Of PairSolver: what a viewer asks of it.
+// This part of PairSolver answers what a viewer asks.
 #include "bake/pairs/pair_solver.h"
 
 #include "assets/base/error.h"
@@ -45,7 +45,7 @@ LiveLight PairSolver::liveLight() {
     return {&live_, liveVersion_, complete_, merged(std::move(changed))};
 }
 
-// Bits that are kept stay.
+// Bits that are kept stay when a pass is aborted.
 void PairSolver::abortPass() {
     if (passBoundary()) return;
     countRays();

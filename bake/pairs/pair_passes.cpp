@@ -11,8 +11,8 @@ namespace {
 
 constexpr VkDeviceSize kPartialBytes = VkDeviceSize{2} * shader::kSuperPatches * sizeof(glm::vec4);
 
-// Super-blocks whose bits fit at once: 64 MiB and their transposes on a GPU, enough to fill it for 20 ms; a
-// few on a software device, where a batch is small and the cache counts.
+// Returns how many super-blocks' bits fit at once: 64 MiB and their transposes on a GPU, enough to fill it
+// for 20 ms; a few on a software device, where a batch is small and the cache counts.
 uint64_t superCapacity(bool software) {
     return software ? 16 : 512;
 }
@@ -20,7 +20,7 @@ uint64_t superCapacity(bool software) {
 } // namespace
 
 PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, SenderKind kind) {
-    // One more than there are: a batch may end within a super-block and begin within another.
+    // There is one more than there are super-blocks: a batch may end within one and begin within another.
     const uint64_t slots = std::min(superCapacity(device.info().software()), superCount + 1);
     capacity = static_cast<uint32_t>(slots);
     supers = vk::Buffer(device, {.size = slots * sizeof(SuperBlock), .name = "super-blocks"});

@@ -10,14 +10,14 @@
 
 namespace relume {
 
-/// What senders the pairs are made with.
+/// The kinds of senders that pairs are made with.
 enum class SenderKind : uint32_t {
     Patches, // the patches themselves; each pair is traced once and serves both ends
     List,    // a sender list
     Drawn,   // a list, a patch of each sender drawn by each chunk of receivers
 };
 
-/// Buffers of one batch of super-blocks.
+/// The buffers of one batch of super-blocks.
 struct PairBuffers {
     vk::Buffer supers;     // SuperBlock, the batch's table
     vk::Buffer transposed; // bits seen from the other side; patches as senders only
@@ -25,12 +25,12 @@ struct PairBuffers {
     uint32_t capacity = 0; // super-blocks per batch
 
     PairBuffers() = default;
-    /// For superCount super-blocks and as many per batch as pay on the device.
+    /// Makes buffers for superCount super-blocks in all, with as many per batch as pay on the device.
     PairBuffers(const vk::Device& device, uint64_t superCount, SenderKind kind);
     static uint64_t bytes(uint64_t superCount, bool software); // at most, with BitsRing's
 };
 
-/// Bits that are kept until they are gathered: super-blocks take turns.
+/// Holds bits until they are gathered: super-blocks take turns.
 struct BitsRing {
     vk::Buffer bits;
     uint64_t slotBytes = 0;
@@ -41,7 +41,7 @@ struct BitsRing {
     uint32_t* host(uint64_t slot) const; // nullptr where the host cannot see it
 };
 
-/// Bits of a super-block [bytes]; bothEnds: with those traced from the other end.
+/// Returns the bytes of a super-block's bits; bothEnds includes those traced from the other end.
 constexpr uint64_t superBytes(bool bothEnds) {
     return uint64_t{shader::kSuperWords} * sizeof(uint32_t) * (bothEnds ? 2 : 1);
 }
@@ -56,9 +56,9 @@ struct SenderBuffers {
     uint32_t chunkCount = 0;
 };
 
-/// RTL, second half: gathers some super-blocks and adds the sums to ligOut in the table's order. Reads bits,
-/// patches and radiance. Barriers between its dispatches are its own, those around it the caller's. On a
-/// software device all but the RTRad preset is gathered by host_pairs.h.
+/// The second half of RTL: gathers some super-blocks and adds the sums to ligOut in the table's order. It
+/// reads bits, patches and radiance. It sets the barriers between its dispatches, the caller those around it.
+/// On a software device all but the RTRad preset is gathered by host_pairs.h.
 class GatherPass {
 public:
     GatherPass(const vk::Device& device, SenderKind kind, const TransportSettings& settings);
@@ -72,7 +72,7 @@ public:
         uint32_t size = 0;                      // lightmap edge [texels]
         const TransportSettings& transport;
     };
-    /// Whether record gathers at once, on the host: what it reads must be there by then.
+    /// Tells whether record gathers at once, on the host; what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
     void record(VkCommandBuffer cmd, const Desc& desc) const;
 

@@ -6,8 +6,9 @@
 
 namespace relume {
 
-/// Which units of a pass have a sender. Rows are chunks of patches, columns chunks of senders; symmetric: of
-/// the same patches, where a unit serves both of its chunks and those behind the diagonal are left out.
+/// Tells which units of a pass have a sender. Rows are chunks of patches, columns chunks of senders. Where it
+/// is symmetric both are of the same patches: a unit serves both of its chunks, and those behind the diagonal
+/// are left out.
 class PairPlan {
 public:
     struct Desc {
@@ -15,21 +16,21 @@ public:
         bool symmetric = true;
     };
     PairPlan() = default;
-    /// sends: per column chunk, 0: nothing in it sends.
+    /// Plans for `sends`: per column chunk, 0 where nothing in it sends.
     PairPlan(const Desc& desc, const std::vector<uint32_t>& sends);
 
     uint32_t superRows() const { return superCount(desc_.rows); }
     uint32_t superColumns() const { return superCount(desc_.columns); }
     bool symmetric() const { return desc_.symmetric; }
-    /// First column of a row of super-blocks.
+    /// Returns the first column of a row of super-blocks.
     uint32_t firstColumn(uint32_t row) const { return desc_.symmetric ? row : 0; }
     UnitMask units(uint32_t row, uint32_t column) const;
     uint64_t unitCount() const { return unitCount_; } // of the pass
-    /// Receiver-sender pairs of a super-block, both ways where it is symmetric.
+    /// Returns the number of receiver-sender pairs of a super-block, both ways where it is symmetric.
     uint64_t pairs(uint32_t row, uint32_t column) const;
 
     static uint32_t superCount(uint32_t chunks) { return (chunks + shader::kSuper - 1) / shader::kSuper; }
-    /// Super-blocks of a pass with so many chunks.
+    /// Returns the number of super-blocks of a pass with so many chunks.
     static uint64_t superBlocks(const Desc& desc);
 
 private:

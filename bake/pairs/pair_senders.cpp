@@ -54,7 +54,7 @@ const vk::Buffer& PairSenders::sendsBuffer() const {
 }
 
 void PairSenders::setList(SenderList list) {
-    // Whose patches that stand for the senders are the same keeps its bits.
+    // A chunk keeps its bits if the patches that stand for its senders are the same.
     changed_.assign(list.chunkCount(), true);
     const auto face = [](const SenderList& l, size_t i) {
         return l.senders[i].count > 0 ? l.members[l.senders[i].first] : shader::kNoPatch;
@@ -118,7 +118,7 @@ void PairSenders::sendRadiance(const std::vector<glm::vec4>& radiance) {
     uploadSends();
 }
 
-// Those that may draw from a chunk of patches that sends.
+// Notes the chunks of senders that may draw from a chunk of patches that sends.
 void PairSenders::listSending(const std::vector<uint32_t>& chunkSends) {
     sends_.assign(list_.chunkCount(), 0);
     for (uint32_t i = 0; i < list_.count; ++i) {

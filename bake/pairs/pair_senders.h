@@ -6,26 +6,26 @@
 
 namespace relume {
 
-/// Who sends in the passes of a pair method, and how much.
+/// Decides who sends in the passes of a pair method, and how much.
 class PairSenders {
 public:
     PairSenders(const SolverInput& input, const SolverSettings& settings);
 
     SenderKind kind() const { return kind_; }
-    /// Chunks of senders; at most.
+    /// Returns the chunks of senders; maxColumns() returns how many there are at most.
     uint32_t columns() const;
     uint32_t maxColumns() const;
-    /// For a pass that starts from this light; lists that follow the light are made anew. threshold: of the
-    /// quad-tree. Reads chunkSends of the device where the patches themselves send or are drawn.
+    /// Prepares a pass that starts from this light; lists that follow the light are made anew. threshold is
+    /// that of the quad-tree. It reads the device's chunkSends where patches themselves send or are drawn.
     void prepare(const std::vector<glm::vec4>& light, double threshold);
-    /// Per column: whether anything in it sends.
+    /// Tells for each column whether anything in it sends.
     const std::vector<uint32_t>& sends() const { return sends_; }
     const vk::Buffer& sendsBuffer() const;
-    /// Columns whose senders are not those of the pass before.
+    /// Tells for each column whether its senders differ from those of the pass before.
     const std::vector<bool>& changed() const { return changed_; }
     const SenderBuffers* buffers() const { return kind_ == SenderKind::Patches ? nullptr : &buffers_; }
     const SenderRuns* runs() const { return kind_ == SenderKind::Patches ? nullptr : &runs_; }
-    /// RTRad: what senders a receiver skips beside itself [texels].
+    /// Returns, for RTRad, the window of senders that a receiver skips beside itself [texels].
     uint32_t skippedWindow() const { return adaptive_ ? 1 : pairs_.window; }
 
 private:

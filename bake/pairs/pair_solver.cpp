@@ -16,15 +16,16 @@ using shader::kChunk;
 using shader::kRayCounters;
 using shader::kSuperBlocks;
 
-// Traced by the first batch of a bake, before anything is measured: surely below 50 ms.
+// The first batch of a bake traces so many units, not measured yet: it surely takes less than 50 ms.
 constexpr uint32_t kFirstUnits = 16;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
 constexpr double kMaxGrowth = 4.0;
-// Of the free device memory, that the visibility cache takes unless told otherwise.
+// The visibility cache takes one over this of the free device memory unless told otherwise.
 constexpr uint64_t kCacheShare = 3;
-// Patches whose change one thread sums up at a time.
+// One thread sums up the change of so many patches at a time.
 constexpr uint32_t kMeasured = 1u << 16;
-// Per patch and round, to each lamp that has an extent: few enough for a batch to be short.
+// Each analytic light that has an extent gets so many rays per patch and sample pass: few enough for a batch
+// to be short.
 constexpr uint32_t kLampRays = 16;
 
 } // namespace
@@ -41,8 +42,8 @@ uint64_t PairSolver::bytes(uint32_t chunkCount, bool software, const SolverSetti
     const uint64_t live = settings.live ? patches * sizeof(glm::vec4) : 0;
     const uint64_t lamps =
         patches * sizeof(glm::vec4) * (shader::kReplicates + 1) + LampLight::bytes(chunkCount, software);
-    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1) + live +
-           lamps; // the host's copy
+    // On a software device the host's copy of the senders counts, too.
+    return PairBuffers::bytes(supers, software) + senders * (software ? 2 : 1) + live + lamps;
 }
 
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
@@ -64,7 +65,7 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
         spdlog::warn("the preset rtrad knows emissive materials only: {} lights are left out",
                      input.scene.lights.size() + (input.scene.sky.shines() ? 1 : 0));
 
-    // RTRad starts from the emission itself, lighting from nothing.
+    // RTRad starts from the emission itself, the lighting of the others from nothing.
     last_.assign(patches_.scene.patches.size(), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     if (settings.transport.rtrad) {
         for (size_t i = 0; i < last_.size(); ++i)
@@ -140,7 +141,7 @@ void PairSolver::beginPass() {
     nextRow();
 }
 
-// What the pass goes through; follows from the light it starts from.
+// Lists what the pass goes through, which follows from the light it starts from.
 void PairSolver::listSupers() {
     senders_.prepare(last_, state_.threshold);
     if (cache_) keptRays_ *= cache_->forgetColumns(senders_.changed());
@@ -170,7 +171,7 @@ void PairSolver::nextRow() {
     state_.unit = 0;
 }
 
-// Of a row that has not begun.
+// Returns the first column of a row that has not begun.
 uint32_t PairSolver::firstColumn() const {
     uint32_t column = 0;
     while (column < plan_.superColumns() && isDone(column))
@@ -178,7 +179,7 @@ uint32_t PairSolver::firstColumn() const {
     return column;
 }
 
-// Whether the row of the patches that send in a column had its super-blocks before.
+// Tells whether the row of the patches that send in a column had its super-blocks before.
 bool PairSolver::isDone(uint32_t column) const {
     return plan_.symmetric() && !rows_.isLeft(column);
 }
@@ -188,7 +189,7 @@ SuperBlock PairSolver::current() const {
     return {.row = turned ? state_.column : state_.row, .column = turned ? state_.row : state_.column};
 }
 
-// Super-blocks in which nobody sends are left out.
+// Cuts a batch; super-blocks in which nobody sends are left out.
 PairSolver::Batch PairSolver::cutBatch() {
     Batch batch;
     batch.firstUnit = state_.unit;
@@ -206,7 +207,7 @@ PairSolver::Batch PairSolver::cutBatch() {
     return batch;
 }
 
-// Adds the current super-block; false when only a part of it fits.
+// Adds the current super-block; returns false when only a part of it fits.
 bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
     const SuperBlock super = current();
     BitsCache::Entry* entry = cache_ ? cache_->find(super.row, super.column) : nullptr;
@@ -245,7 +246,7 @@ bool PairSolver::addSuper(Batch& batch, const UnitMask& units) {
     return true;
 }
 
-// Up to which unit of the super-block just added the batch goes; always some further.
+// Returns up to which unit of the super-block just added the batch goes; it always goes some further.
 uint32_t PairSolver::unitsThatFit(const Batch& batch, const UnitMask& missing) const {
     const double room =
         msPerTraced_ > 0 ? (batchMs_ - batch.cost) / msPerTraced_ : kFirstUnits - batch.tracedUnits;
@@ -295,7 +296,7 @@ void PairSolver::run(Batch& batch) {
     progress_.traceSeconds += batch.tracedUnits > 0 ? traced : 0.0;
     progress_.gatherSeconds += gathered;
     progress_.pairs += batch.pairs;
-    // What both do not account for goes with them: the submit itself.
+    // The rest of the time, which the submit itself takes, is shared out between both.
     const double wall = secondsSince(start), scale = wall / std::max(1e-9, traced + gathered);
     learn(batch, 1000.0 * traced * scale, 1000.0 * gathered * scale);
 }
@@ -365,8 +366,8 @@ void PairSolver::endPass() {
     done_ = progress_.converged || allPasses || progress_.passes >= kMaxPasses;
 }
 
-// The remaining error of a geometric series: change * q / (1 - q), q being the ratio of the last two changes,
-// relative to the mean.
+// Measures the remaining error of a geometric series: change * q / (1 - q), q being the ratio of the last two
+// changes, relative to the mean.
 void PairSolver::measureChange() {
     const auto pieces = static_cast<uint32_t>((patches_.count + kMeasured - 1) / kMeasured);
     std::vector<ChangeSums> parts(pieces);
@@ -393,7 +394,7 @@ void PairSolver::measureChange() {
     state_.settling.add(mean);
 }
 
-// Of the patches from `first` on.
+// Sums up the change of the patches from `first` on.
 PairSolver::ChangeSums PairSolver::changeOf(uint32_t first) const {
     ChangeSums sums;
     for (uint32_t i = first; i < std::min(first + kMeasured, patches_.count); ++i) {

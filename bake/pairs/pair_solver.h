@@ -11,10 +11,10 @@
 
 namespace relume {
 
-/// Where a pair method stands; with ligOut and the rows that are left all that a bake needs to go on at a
-/// super-block's border.
+/// Tells where a pair method stands; with ligOut and the rows that are left it is all that a bake needs to go
+/// on at a super-block's border.
 struct PairState {
-    uint32_t lampRounds = 0;      // of direct light of lamps, before the first pass; finished
+    uint32_t lampRounds = 0;      // finished sample passes of analytic lights, before the first pass
     uint32_t lampChunk = 0;       // of the next one, the first chunk that is left
     uint32_t passes = 0;          // finished
     bool inPass = false;          // then:
@@ -26,10 +26,10 @@ struct PairState {
     Settling settling;
 };
 
-/// The pair methods. A pass gathers every patch's light from all senders and adds one bounce; ligIn and
-/// ligOut swap between passes. Where the patches themselves send, visibility of a pair is traced once and
-/// serves both ends. Bits may be kept for later passes. Sums run over super-blocks of 1024 x 1024 pairs in a
-/// fixed order.
+/// Solves with the pair methods. A pass gathers every patch's light from all senders and adds one bounce;
+/// ligIn and ligOut swap between passes. Where the patches themselves send, visibility of a pair is traced
+/// once and serves both ends. Bits may be kept for later passes. Sums run over super-blocks of 1024 x 1024
+/// pairs in a fixed order.
 class PairSolver final : public Solver {
 public:
     /// Throws Error.
@@ -125,12 +125,12 @@ private:
     std::vector<glm::vec4> before_;              // of the one before it
     float left_ = -1; // share of the last change that is still to come; negative: not known yet
     WorkerPool pool_{0};
-    // Of rows of super-blocks. Where the patches themselves send, a row is all super-blocks of its patches,
-    // as rows or as columns, that no earlier row had: at its end its patches have all their light.
+    // These are rows of super-blocks. Where the patches themselves send, a row is all super-blocks of its
+    // patches, as rows or as columns, that no earlier row had: at its end its patches have all their light.
     ChunkOrder rows_;
-    std::vector<uint8_t> seenRows_; // that come first
+    std::vector<uint8_t> seenRows_; // rows that come first
 
-    // For a viewer: pair_live.cpp.
+    // These serve a viewer and are in pair_live.cpp.
     enum class Fresh : uint8_t { No, LigIn, LigOut };
     vk::Buffer live_;          // vec4 per patch, what is shown
     std::vector<Fresh> fresh_; // per row: where there is light that live_ has not

@@ -48,7 +48,7 @@ private:
         float area = 0.0f;
     };
 
-    // Quarters in Z-order down to the nodes: what follows each other in the list lies close together.
+    // Divides into quarters in Z-order down to the nodes: neighbours in the list lie close together.
     void divide(const Members& members, uint32_t edge) {
         if (members.empty()) return;
         if (edge == desc_.node) return addNodes(members);
@@ -112,7 +112,7 @@ private:
         return result;
     }
 
-    // A mean, kept up to date.
+    // Adds to a mean that is kept up to date.
     static void addTo(Node& node, glm::vec3 light, glm::vec3 normal, float area) {
         node.area += area;
         const float share = node.area > 0.0f ? area / node.area : 1.0f;
@@ -128,7 +128,7 @@ private:
     float scale_ = 0.0f; // 1 / mean light
 };
 
-// In RTRad's ligIn.a, level by level: c0 takes what the four hold.
+// Returns what RTRad has in ligIn.a, made level by level: c0 takes what the four hold.
 std::vector<float> rtradWeights(const PatchSet& set, const std::vector<glm::vec4>& radiance,
                                 const QuadTreeDesc& desc) {
     const uint32_t size = set.scene.size;

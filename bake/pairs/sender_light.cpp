@@ -19,7 +19,7 @@ struct Level {
         const int64_t n = size;
         return texels[size_t(((y % n) + n) % n) * size + size_t(((x % n) + n) % n)];
     }
-    // Bilinear, wrapped; at in texels of this level.
+    // Returns a bilinear, wrapped sample; `at` is in texels of this level.
     glm::vec4 sample(glm::dvec2 at) const {
         const glm::dvec2 corner = glm::floor(at - 0.5);
         const glm::vec2 f(at - 0.5 - corner);
@@ -29,7 +29,7 @@ struct Level {
     }
 };
 
-// As a graphics card makes them: each level by bilinear lookups in the one before.
+// Makes levels as a graphics card does: each by bilinear lookups in the one before.
 std::vector<Level> mipLevels(const PatchSet& set, const std::vector<glm::vec4>& radiance) {
     std::vector<Level> levels(1);
     levels[0].size = set.scene.size;
@@ -62,7 +62,7 @@ std::vector<glm::vec4> mipRadiance(const PatchSet& set, const SenderList& list,
     return result;
 }
 
-// Sums by area.
+// Returns the mean by area.
 glm::vec4 meanRadiance(const PatchSet& set, const SenderList& list, const std::vector<glm::vec4>& radiance,
                        const shader::Sender& sender) {
     const uint32_t* members = &list.members[sender.first];

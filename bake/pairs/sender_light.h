@@ -5,12 +5,12 @@
 
 namespace relume {
 
-/// What each patch sends [cd/m^2] at this light, as radiance.comp has it: emission + reflectivity * albedo *
-/// light; in the RTRad preset its light itself.
+/// Returns what each patch sends [cd/m^2] at this light, as radiance.comp has it: emission + reflectivity *
+/// albedo * light; in the RTRad preset its light itself.
 std::vector<glm::vec4> patchRadiance(const PatchSet& patches, const std::vector<glm::vec4>& light,
                                      const TransportSettings& transport);
 
-/// How a sender's light follows from its members'.
+/// Tells how a sender's light follows from its members'.
 enum class SenderLight {
     First,     // that of the first member; RTRad: times the weight
     Mean,      // by area
@@ -18,7 +18,8 @@ enum class SenderLight {
     RtradMips, // RTRad's mip maps of ligIn, looked up in the middle of a window
 };
 
-/// radiance: of all patches. window: edge [texels], for RtradMips.
+/// Returns what each sender sends. radiance is that of all patches; window is the edge [texels], for
+/// RtradMips.
 std::vector<glm::vec4> senderRadiance(const PatchSet& patches, const SenderList& list,
                                       const std::vector<glm::vec4>& radiance, SenderLight kind,
                                       uint32_t window);

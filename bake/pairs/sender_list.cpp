@@ -17,7 +17,7 @@ glm::uvec2 texelPlace(const PatchSet& set, uint32_t patch) {
     return {texel % set.scene.size, texel / set.scene.size};
 }
 
-// Windows of a lightmap in the order of tiles of 8 x 8.
+// The windows of a lightmap in the order of tiles of 8 x 8.
 struct WindowOrder {
     uint32_t tiles; // in a row
 
@@ -33,7 +33,7 @@ struct WindowOrder {
     }
 };
 
-// RTRad's integer hash and its jitter within a window.
+// This is RTRad's integer hash; its jitter within a window follows.
 uint32_t rtradHash(uint32_t x) {
     x = (x ^ 61) ^ (x >> 16);
     x *= 9;
@@ -61,8 +61,8 @@ void SenderListBuilder::addWeighted(uint32_t patch, float weight) {
     addShape(patches_.scene.patches[patch], patches_.edges[patch]);
 }
 
-// The parallelogram is that of the rectangle of texels that the members lie in, scaled to their area, about
-// their mean position: exact for whole windows on a plane.
+// Adds a parallelogram that is that of the rectangle of texels that the members lie in, scaled to their area,
+// about their mean position: it is exact for whole windows on a plane.
 void SenderListBuilder::add(const std::vector<uint32_t>& members, size_t first, uint32_t key) {
     const uint32_t face = members[first];
     const auto begin = static_cast<uint32_t>(list_.members.size());
@@ -133,7 +133,7 @@ size_t nearestToMiddle(const PatchSet& set, const std::vector<uint32_t>& members
     return best;
 }
 
-// A back side has no chart of its own: it goes by its front's. Where the front is not to be found (of charts
+// A back side has no chart of its own: it goes by its front's. Where the front is not to be found (in charts
 // that cover no texel centre) it stays alone.
 std::vector<uint32_t> mergeableParts(const PatchSet& set) {
     const uint32_t charts = set.scene.mesh.chartCount;

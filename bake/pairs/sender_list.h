@@ -20,25 +20,25 @@ struct SenderList {
     uint32_t chunkCount() const { return static_cast<uint32_t>(bounds.size()); }
 };
 
-/// One sender per window of edge x edge texels, aligned, chart and side: only patches that send are members,
-/// the first is the one nearest to the middle of them. In order of tiles of 8 x 8 windows. edge: a power of
-/// two [texels].
+/// Makes one sender per window of edge x edge texels, aligned, chart and side. Only patches that send are
+/// members, and the first is the one nearest to the middle of them. Senders are in order of tiles of 8 x 8
+/// windows. edge is a power of two [texels].
 SenderList windowSenders(const PatchSet& patches, uint32_t edge);
 
-/// RTRad's: one patch per window whose corner texel is one. jittered: its Monte-Carlo choice; else the
-/// corner. Weight: the window's texels.
+/// Makes RTRad's senders: one patch per window whose corner texel is one. jittered takes its Monte-Carlo
+/// choice, else it is the corner. The weight is the window's number of texels.
 SenderList rtradSenders(const PatchSet& patches, uint32_t edge, bool jittered);
 
-/// What builds a list, sender by sender.
+/// Builds a list, sender by sender.
 class SenderListBuilder {
 public:
     explicit SenderListBuilder(const PatchSet& patches) : patches_(patches) {}
-    /// members: at least one, in tile order. `first`: the index in members of the one that stands for all.
-    /// key: of its random numbers.
+    /// Adds a sender of these members, at least one, in tile order. `first` is the index in members of the
+    /// one that stands for all, key that of its random numbers.
     void add(const std::vector<uint32_t>& members, size_t first, uint32_t key);
-    /// RTRad's: a patch as it is that counts for so many texels.
+    /// Adds a sender of RTRad's: a patch as it is that counts for so many texels.
     void addWeighted(uint32_t patch, float weight);
-    /// Padded to whole chunks; at least one. Bounds hold all members.
+    /// Returns the list, padded to whole chunks, at least one. Bounds hold all members.
     SenderList finish();
 
 private:
@@ -48,10 +48,10 @@ private:
     SenderList list_;
 };
 
-/// The member nearest to the middle of all, in texels; of equals the first.
+/// Returns the index of the member nearest to the middle of all, in texels; of equals the first.
 size_t nearestToMiddle(const PatchSet& patches, const std::vector<uint32_t>& members);
 
-/// Number of a chart's side: patches of one number may be merged.
+/// Returns per patch the number of its chart's side: patches of one number may be merged.
 std::vector<uint32_t> mergeableParts(const PatchSet& patches);
 
 } // namespace relume

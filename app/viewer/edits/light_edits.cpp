@@ -17,15 +17,16 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-// Of a room lit for reading, 300 lux on white [cd/m^2].
+// A room lit for reading has this lighting, 300 lux on white [cd/m^2].
 constexpr float kUsualLighting = 100.0f;
-// Of the way from the eye to what it sees: there new lights stand.
+// New lights stand at this share of the way from the eye to what it sees.
 constexpr float kWay = 0.6f;
-constexpr float kExtent = 0.2f;       // across its body, of its distance from what it shines at
-constexpr float kRadiusShare = 0.02f; // of the same: a bulb's
+constexpr float kExtent = 0.2f;       // across an area light, of its distance from what it shines at
+constexpr float kRadiusShare = 0.02f; // of a bulb, of the same distance
 constexpr float kSunAngle = 0.00925f; // [rad], as seen from the earth
 constexpr float kSunTilt = 0.8727f;   // [rad] below the horizon: a sun in the forenoon
-// Between a light and its copy: of what it is across, and from middle to middle at least [m].
+// Between a light and its copy there is this share of what it is across, and from middle to middle at least
+// so much [m].
 constexpr float kBeside = 0.2f, kLeastBeside = 0.25f;
 
 const Light& lamp(const SceneEdits& edits, const LightKey& key) {
@@ -59,7 +60,7 @@ const char* newName(LightType type) {
     return "Light";
 }
 
-// Lighting is irradiance over pi.
+// Returns the irradiance that a new light should give: lighting is irradiance over pi.
 float wantedIrradiance(const LightSpot& spot) {
     const float lighting = (spot.lighting.r + spot.lighting.g + spot.lighting.b) / 3.0f;
     return std::numbers::pi_v<float> *
@@ -173,9 +174,10 @@ void toggle(std::vector<LightKey>& keys, const LightKey& key) {
 glm::vec3 lightAngles(const glm::mat4& transform) {
     const glm::vec3 x = glm::normalize(glm::vec3(transform[0])), y = glm::normalize(glm::vec3(transform[1])),
                     z = glm::normalize(glm::vec3(transform[2]));
-    // R = turn(Y) tilt(X) roll(Z): its third column is (sin turn cos tilt, -sin tilt, cos turn cos tilt).
+    // The rotation is turn(Y) tilt(X) roll(Z), with the third column (sin turn cos tilt, -sin tilt, cos turn
+    // cos tilt).
     const float tilt = std::asin(std::clamp(-z.y, -1.0f, 1.0f));
-    constexpr float kUpright = 1e-4f; // cosine below which turn and roll are one
+    constexpr float kUpright = 1e-4f; // cosine of the tilt below which turn and roll are one
     if (std::hypot(z.x, z.z) < kUpright) return glm::degrees(glm::vec3(std::atan2(-x.z, x.x), tilt, 0.0f));
     return glm::degrees(glm::vec3(std::atan2(z.x, z.z), tilt, std::atan2(x.y, y.y)));
 }
@@ -215,7 +217,7 @@ glm::vec3 normalAt(const WorldMesh& mesh, uint32_t instance, const glm::vec3& po
         const glm::vec3 &a = mesh.positions[3 * i], &b = mesh.positions[3 * i + 1],
                         &c = mesh.positions[3 * i + 2];
         const glm::vec3 area = glm::cross(b - a, c - a), normal = glm::normalize(area);
-        // How far beside its edges, and above it.
+        // The position is so far beside the triangle's edges, or off its plane.
         float off = std::abs(glm::dot(position - a, normal));
         for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
             off = std::max(off, glm::dot(position - from, glm::normalize(glm::cross(to - from, normal))));

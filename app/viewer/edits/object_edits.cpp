@@ -24,7 +24,7 @@ const glm::mat4& loadedTransform(const LoadedScene& scene, uint32_t instance) {
     return scene.prepared.scene.instances[instance].transform;
 }
 
-// Of unit axes, right-handed; the same position.
+// Returns the transform with right-handed unit axes and the same position.
 glm::mat4 withoutScale(const glm::mat4& transform) {
     const glm::vec3 scale = scaleOf(transform);
     glm::mat4 plain = transform;

@@ -23,7 +23,8 @@ constexpr std::array<uint32_t, 3> kScales = {1, 2, 4};
 constexpr std::array<uint32_t, 4> kVoxels = {32, 64, 128, 256};
 constexpr uint32_t kMostSamples = 65536, kMostRatio = 256;
 
-// Of sliders and fields that one drags or types in: when they are let go of. Each step would start a bake.
+// Tells whether a slider or field in which one drags or types was let go of. Otherwise each step would start
+// a bake.
 bool released() {
     return ImGui::IsItemDeactivatedAfterEdit();
 }
@@ -49,7 +50,7 @@ void BakePanel::drawMethod(bool& done) {
         std::find(kOfferedMethods.begin(), kOfferedMethods.end(), solver.method) - kOfferedMethods.begin());
     if (ui::combo("Method", index, names)) {
         solver.method = kOfferedMethods[index];
-        // What one method keeps the other has no use for.
+        // A method has no use for what another one keeps.
         if (solver.cache.kind != CacheSettings::Kind::None) solver.cache.kind = CacheSettings::Kind::Auto;
         if (hasWindow(solver.method) && solver.pairs.window < 2) solver.pairs.window = 2;
         done = true;
@@ -212,8 +213,8 @@ void BakePanel::settle(const PanelContext& context, bool done) {
 }
 
 void BakePanel::draw(const PanelContext& context) {
-    // What was changed elsewhere (undo) is taken over, unless something is being typed or was until now: a
-    // field tells that it was left one frame later.
+    // A change made elsewhere (undo) is taken over, unless something is being typed or was until now: a field
+    // tells only one frame later that it was left.
     if (!waiting_ && !active_ && !ImGui::IsAnyItemActive()) draft_ = context.session.document();
     drawBakeProgress(context);
     bool done = false;

@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// How the lightmap is made, and how far it is.
+/// The panel that sets how the lightmap is made and shows how far it is.
 class BakePanel {
 public:
     void draw(const PanelContext& context);
@@ -28,7 +28,7 @@ private:
     std::string problem_;
 };
 
-/// What the buttons and figures of the panel show; separate, as they stay above the settings.
+/// Draws the buttons and figures of the panel. They are separate because they stay above the settings.
 void drawBakeProgress(const PanelContext& context);
 
 } // namespace relume

@@ -6,7 +6,8 @@
 
 namespace relume {
 
-/// Remaining error over seconds of solving, the error on a logarithmic axis; aim: a line, 0: none.
+/// Draws the remaining error over seconds of solving, with the error on a logarithmic axis and a line at
+/// `aim`; 0: no line.
 void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim);
 
 } // namespace relume

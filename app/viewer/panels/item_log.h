@@ -7,9 +7,9 @@
 
 namespace relume::ui {
 
-/// Tells on the standard error where the controls of panels are: "item: Bake/Method 203 96" in the window's
-/// coordinates, whenever one is drawn for the first time or elsewhere. So that a test, or who follows a bug
-/// report, can click them.
+/// Tells on the standard error where the controls of panels are, so that a test, or someone who follows a bug
+/// report, can click them: "item: Bake/Method 203 96" in the window's coordinates, whenever one is drawn for
+/// the first time or elsewhere.
 class ItemLog {
 public:
     /// Names the controls that are drawn while it lives: "Scene", within it "Lamp".
@@ -27,9 +27,10 @@ public:
     };
 
     explicit ItemLog(bool on) : on_(on) {}
-    /// A control with its label; `at`: its middle.
+    /// Adds a control with its label; `at` is its middle.
     void add(const char* label, const glm::ivec2& at);
-    /// The log of the innermost scope, nullptr outside of all: as ImGui has one context, there is one.
+    /// Returns the log of the innermost scope, nullptr outside of all. There is one because ImGui has one
+    /// context.
     static ItemLog* current();
 
 private:

@@ -17,25 +17,27 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-// A pixel of a drag: share of a strength, kelvin.
+// A drag changes a strength and a temperature by so much per pixel: a share of the strength, and kelvin.
 constexpr float kStrengthStep = 0.01f, kKelvinStep = 20.0f;
 constexpr float kLeastStep = 0.001f; // of strengths near 0
 constexpr float kMostStrength = 1e9f;
-// Emitters and a sky of no strength are no lights and would leave the board: mute does that.
+// Mesh lights and a sky of no strength are no lights and would leave the board, so this is the least: mute
+// makes them dark.
 constexpr float kLeastStrength = 1e-3f; // [cd/m^2]
-// Shares of a colour's largest channel: a black body's, as far as one sees; one that is like it.
+// A colour may be off by these shares of its largest channel: kSame where one sees no difference from a black
+// body's, kLike where it is only similar.
 constexpr float kSame = 0.02f, kLike = 0.2f;
 constexpr float kDaylight = 6500.0f; // [K], where a colour is nothing like a black body's
 constexpr float kBoardShare = 0.55f; // of the panel's height, at most
 constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
 
-/// Of one light: makes the edit under its name.
+/// Edits one light, and names the edit after it.
 class LightEditor {
 public:
     LightEditor(const PanelContext& context, const LightSource& source)
         : context_(context), source_(source), next(context.session.document()) {}
 
-    /// To be called behind a control: `changed` as it returned.
+    /// Follows the control before it; `changed` is what that returned.
     void follow(const char* what, bool changed) const {
         if (changed) {
             context_.edit(std::string(what) + " of " + source_.name, next);
@@ -88,7 +90,7 @@ void tellShared(const PanelContext& context, const LightKey& key) {
                       .c_str());
 }
 
-// What says so in a row: behind the type.
+// Returns what tells in a row, behind the type, that the light is in a group.
 std::string groupMark(const LightGroup* group) {
     return group != nullptr ? ", in " + group->source.name : "";
 }

@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// All lights as a mix board, and below it what can be set of the selected one.
+/// The panel with all lights as a mix board, and below it what can be set of the selected one.
 class LightsPanel {
 public:
     void draw(const PanelContext& context);
@@ -20,7 +20,8 @@ private:
     void drawLamp(const PanelContext& context, const LightSource& source);
     void drawAngles(const PanelContext& context, const LightSource& source);
 
-    // As they were typed: of a light that shines straight down turn and roll are one.
+    // The angles are kept as they were typed, because turn and roll of a light that shines straight down are
+    // one.
     glm::vec3 angles_{0.0f}; // [degrees]
     LightKey anglesOf_;
 };

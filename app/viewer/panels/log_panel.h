@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What was logged, the newest line last.
+/// Draws what was logged, the newest line last.
 void drawLogPanel(const PanelContext& context);
 
 } // namespace relume

@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What can be set of the selected object: where it stands, and whether it is there.
+/// The panel that sets where the selected object stands and whether it is there.
 class ObjectPanel {
 public:
     void draw(const PanelContext& context, uint32_t instance);
@@ -12,7 +12,8 @@ public:
 private:
     void drawAngles(const PanelContext& context, uint32_t instance, const std::string& name);
 
-    // As they were typed: of an object that is tilted upright turn and roll are one.
+    // The angles are kept as they were typed, because turn and roll of an object that is tilted upright are
+    // one.
     glm::vec3 angles_{0.0f}; // [degrees]
     uint32_t anglesOf_ = 0;
 };

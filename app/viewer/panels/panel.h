@@ -15,7 +15,7 @@
 
 namespace relume {
 
-/// What panels show and change; all of it lives in the viewer.
+/// All that panels show and change. It lives in the viewer.
 struct PanelContext {
     Session& session;
     const BakeStatus& status;
@@ -26,9 +26,9 @@ struct PanelContext {
     const LogBuffer& log;
     const LightList& lights;
     LightPreviews& previews;
-    const PublishedMap* map; // that is shown, nullptr: none yet
+    const PublishedMap* map; // the one that is shown, nullptr: none yet
     float exposure = 0;      // of the last picture [EV]
-    double& budgetMs;        // aim of a batch while the camera is still
+    double& budgetMs;        // how long a batch should take while the camera is still
     bool recording = false;
     std::function<void(Action, int)> perform;
     std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew

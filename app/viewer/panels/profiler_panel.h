@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What frames and the bake cost.
+/// Draws what frames and the bake cost.
 void drawProfilerPanel(const PanelContext& context);
 
 } // namespace relume

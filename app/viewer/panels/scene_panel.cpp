@@ -15,7 +15,7 @@
 
 namespace relume {
 
-// Beside us, on a copy without pictures, which outlives the scene if it must.
+// Measures the scene beside the main thread, on a copy without pictures, which outlives the scene if it must.
 void ScenePanel::measure(const LoadedScene& scene, uint32_t size) {
     if (measuring_.valid()) {
         if (measuring_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
@@ -99,7 +99,7 @@ void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
     if (ended) context.endEdit();
 }
 
-// With the materials that it has.
+// Draws the selected object, with the materials that it has.
 void ScenePanel::drawObject(const PanelContext& context, const Scene& scene) {
     const auto instance = static_cast<uint32_t>(context.view.selected);
     const ui::ItemLog::Scope scope(context.items, "Object");

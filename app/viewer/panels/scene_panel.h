@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// What the scene is made of, and edits of its objects and materials.
+/// The panel that shows what the scene is made of, and edits its objects and materials.
 class ScenePanel {
 public:
     void draw(const PanelContext& context);

@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What is seen of the scene and how.
+/// Draws the controls of what is seen of the scene and how.
 void drawViewPanel(const PanelContext& context);
 
 } // namespace relume

@@ -12,15 +12,15 @@
 namespace relume::ui {
 
 constexpr double kMebi = 1024.0 * 1024.0; // bytes
-// A pixel of a drag: share of the scene's diagonal, degrees.
+// A drag changes a place and an angle by so much per pixel: a share of the scene's diagonal, and degrees.
 constexpr float kPlaceStep = 0.001f, kAngleStep = 0.5f;
 
-/// Text that is shown when the last control is pointed at.
+/// Shows a text when the last control is pointed at.
 void tip(const char* text);
-/// Tells ItemLog about the last control; framed: its label stands beside it.
+/// Tells ItemLog about the last control. `framed` says that its label stands beside it.
 void mark(const char* label, bool framed);
 
-// ImGui's controls, told to ItemLog; arguments and results are theirs.
+// These are ImGui's controls, which are also told to ItemLog; arguments and results are ImGui's.
 template<typename... Rest>
 bool button(const char* label, Rest... rest) {
     const bool result = ImGui::Button(label, rest...);
@@ -70,16 +70,16 @@ bool colour(const char* label, Rest... rest) {
     return result;
 }
 
-/// A list to choose from; true when the choice changed.
+/// Draws a list to choose from. Returns whether the choice changed.
 bool combo(const char* label, size_t& index, std::span<const char* const> names);
 bool combo(const char* label, size_t& index, const std::vector<std::string>& names);
-/// The same of whole numbers; a value that is none of them is shown all the same.
+/// Does the same for whole numbers; a value that is none of them is shown all the same.
 bool combo(const char* label, uint32_t& value, std::span<const uint32_t> values);
-/// A number that is typed; true when it was finished.
+/// Draws a field for a number that is typed. Returns whether it was finished.
 bool number(const char* label, double& value, const char* format);
 bool number(const char* label, uint32_t& value);
 
-/// Greys out and disables what comes until it goes.
+/// While it lives, it greys out and disables what is drawn.
 class Disabled {
 public:
     explicit Disabled(bool on) { ImGui::BeginDisabled(on); }
@@ -88,7 +88,8 @@ public:
     Disabled& operator=(const Disabled&) = delete;
 };
 
-/// A table of names and values: row() between beginRows(), where it returns true, and ImGui::EndTable().
+/// Begins a table of names and values: where beginRows() returns true, row() follows and then
+/// ImGui::EndTable().
 bool beginRows(const char* id);
 void row(const char* name, const std::string& value);
 

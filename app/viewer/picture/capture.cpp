@@ -28,7 +28,8 @@ constexpr double kRate = 30;     // [frames/s] of a recording
 constexpr size_t kMostJobs = 6;  // pictures that wait: tens of megabytes
 constexpr double kLongest = 600; // [s] that one picture stays in a recording
 
-// As readPicture() gives it, upper row first; an even number of pixels each way, as videos want it.
+// Returns an image like readPicture() gives it, upper row first; with `even` it has an even number of pixels
+// each way, as videos want it.
 FloatImage imageOf(const Pixels& pixels, bool even) {
     const uint32_t width = even ? pixels.width & ~1u : pixels.width;
     const uint32_t height = even ? pixels.height & ~1u : pixels.height;
@@ -82,7 +83,8 @@ std::string captureName(const std::string& folder, const std::string& ending) {
             number = 10 * number + (name[i] - '0');
         last = std::max(last, number);
     }
-    // Between the look and the writing nobody else takes the name, or freePath() of the writer finds out.
+    // Should somebody else take the name between this look and the writing, freePath() of the writer finds
+    // out.
     return fmt::format("{}/{}{:03}{}", folder, start, last + 1, ending);
 }
 
@@ -119,7 +121,7 @@ void Capture::start(const std::string& folder, double now) {
     spdlog::info("recording");
 }
 
-// How often the waiting frame is to be written when it goes now.
+// Returns how often the waiting frame must be written when the next one comes now.
 uint32_t Capture::timesUntil(double now) const {
     const double shown = std::min(now - begun_, static_cast<double>(sent_) / kRate + kLongest);
     const double due = std::floor(shown * kRate) - static_cast<double>(sent_);
@@ -181,7 +183,7 @@ void Capture::work() {
     }
 }
 
-// A video where there is ffmpeg, else a folder.
+// Begins a video where there is ffmpeg, else a folder.
 void Capture::beginRecording(const Job& job) {
     makeFolder(job.path);
     FrameWriter::Desc desc{.path = captureName(job.path, ".mp4"),
@@ -209,7 +211,7 @@ void Capture::write(const Job& job) {
     if (failed_) return;
     if (!writer_ && job.times > 0) beginRecording(job);
     if (!writer_) return;
-    // Frames in a folder are there to be looked at: a picture that stays is one file.
+    // Frames in a folder are there to be looked at, so a picture that stays is one file.
     if (job.times > 0) writer_->write(imageOf(job.pixels, true), writer_->keepsFrames() ? 1 : job.times);
     if (!job.ends) return;
     const uint32_t count = writer_->count();

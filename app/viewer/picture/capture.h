@@ -13,17 +13,17 @@
 
 namespace relume {
 
-/// Pixels as OpenGL gives them: RGBA of 8 bits, the lowest row first.
+/// The pixels of a picture as OpenGL gives them: RGBA of 8 bits, the lowest row first.
 struct Pixels {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgba;
-    std::vector<std::string> caption = {}; // written into the picture; none: nothing
+    std::vector<std::string> caption = {}; // lines that are written into the picture
 };
-/// Reads what the window or a framebuffer (0: the window's back one) holds.
+/// Reads the pixels of a framebuffer; 0 is the window's back buffer.
 Pixels readPixels(uint32_t framebuffer, uint32_t width, uint32_t height);
 
-/// "relume_2026-11-21_001.png": a name with today's date whose number no file or folder in the folder has, of
-/// this ending or another. ending: ".png", "" for a folder.
+/// Returns a name with today's date, "relume_2026-11-21_001.png", whose number no file or folder in the
+/// folder has, with this ending or another. The ending is ".png", or "" for a folder.
 std::string captureName(const std::string& folder, const std::string& ending);
 
 /// Writes screenshots and recordings on a thread of its own. Calls return at once; frames that come faster
@@ -35,15 +35,16 @@ public:
     Capture(const Capture&) = delete;
     Capture& operator=(const Capture&) = delete;
 
-    /// The log tells where it went, or what went wrong.
+    /// Writes a screenshot. The log tells where it went, or what went wrong.
     void screenshot(Pixels pixels, const std::string& folder);
-    /// Records from the next frame on, an MP4 where there is ffmpeg, else PNG frames in a folder.
+    /// Records from the next frame on: an MP4 where there is ffmpeg, else PNG frames in a folder.
     void start(const std::string& folder, double now);
     void stop(double now);
     bool recording() const { return recording_; }
-    /// Whether a frame that is shown from `now` on would be taken: ask before reading pixels.
+    /// Tells whether a frame that is shown from `now` on would be taken: ask before reading pixels.
     bool wants(double now) const;
-    /// What is on screen from `now` [s] on. A frame of another size than the first ends the recording.
+    /// Adds the frame that is on screen from `now` [s] on. A frame of another size than the first ends the
+    /// recording.
     void frame(Pixels pixels, double now);
 
 private:
@@ -51,7 +52,7 @@ private:
         Pixels pixels = {};
         std::string path = {}; // a folder
         uint32_t times = 0;    // how often a recording shows it; 0: a screenshot
-        bool ends = false;     // the recording
+        bool ends = false;     // it ends the recording
     };
     void push(Job job);
     void work();
@@ -59,18 +60,18 @@ private:
     void beginRecording(const Job& job);
     uint32_t timesUntil(double now) const;
 
-    // The calling thread's.
+    // These belong to the calling thread.
     bool recording_ = false;
     double begun_ = 0, lastTime_ = 0;
     uint64_t sent_ = 0;             // frames of the recording, repeated ones counted
     std::optional<Pixels> waiting_; // the newest frame: how long it is shown is not known yet
     std::string folder_;
-    // Both threads'.
+    // These belong to both threads.
     mutable std::mutex mutex_;
     std::condition_variable news_;
     std::deque<Job> jobs_;
     bool quit_ = false;
-    // The writing thread's.
+    // These belong to the writing thread.
     std::unique_ptr<FrameWriter> writer_;
     std::string recordingPath_;
     bool failed_ = false;

@@ -10,18 +10,18 @@
 namespace relume {
 namespace {
 
-// In points.
+// These lengths are in points.
 constexpr float kIcon = 13.0f;       // radius
-constexpr float kClickReach = 12.0f; // that a click may be off
+constexpr float kClickReach = 12.0f; // a click may be so far off
 constexpr float kThin = 1.3f, kThick = 2.2f, kShade = 2.0f;
 constexpr glm::vec3 kSelected(1.0f, 0.55f, 0.1f), kHeld(1.0f, 0.9f, 0.3f), kDark(0.45f); // as displayed
-constexpr float kWhitened = 0.5f; // of an icon's colour: a deep blue would not be seen
+constexpr float kWhitened = 0.5f; // share of white in an icon's colour: a deep blue would not be seen
 
 ImU32 packed(const glm::vec3& color, float opacity) {
     return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, opacity});
 }
 
-/// Draws in points.
+/// Draws with points as its unit.
 class Pen {
 public:
     Pen(const LightStage& stage, const glm::vec2& corner) : scale_(stage.scale), corner_(corner) {}
@@ -57,7 +57,7 @@ void drawIcon(const LightStage& stage, const Pen& pen, const LightKey& key, cons
                            .size = kIcon * lengthOnScreen(stage.screen, glm::vec3(light.transform[3]))};
     const std::vector<OutlineSegment> segments = lightOutline(light, desc);
     const float width = stage.view.light == key ? kThick : kThin;
-    // A dark line below each, so that they show before anything.
+    // There is a dark line below each, so that they show before anything.
     for (const bool shade : {true, false}) {
         const ImU32 color =
             shade ? packed(glm::vec3(0.0f), 0.5f) : packed(iconColor(stage, key, light), 1.0f);

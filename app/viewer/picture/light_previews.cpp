@@ -11,11 +11,12 @@
 namespace relume {
 namespace {
 
-// As bright as most of what a light reaches gets [1]: a spot's cone shows, and so does the room around it.
+// Most of what a light reaches gets no brighter than this [1]: a spot's cone shows, and so does the room
+// around it.
 constexpr float kBright = 0.5f;
-// Share of what it lights that is brighter: lamps seen from near do not decide.
+// This share of what a light lights is brighter, so that lamps seen from near do not decide.
 constexpr float kBrighter = 0.1f;
-constexpr float kGlow = 4.0f;                      // of what shines itself, times kBright
+constexpr float kGlow = 4.0f;                      // of a surface that shines itself, times kBright
 constexpr glm::vec3 kNothing(0.11f, 0.12f, 0.13f); // where there is no surface, as displayed
 constexpr glm::vec3 kDefaultAlbedo(1.0f);          // of glTF's default material
 
@@ -23,7 +24,7 @@ glm::vec3 albedoOf(const std::vector<Material>& materials, uint32_t material) {
     return material < materials.size() ? glm::vec3(materials[material].baseColor) : kDefaultAlbedo;
 }
 
-// Of all that is lit; 0: nothing is.
+// Returns the exposure for all that is lit, or 0 where nothing is.
 float exposureFor(const std::vector<glm::vec3>& seen) {
     std::vector<float> lit;
     for (const glm::vec3& value : seen)
@@ -67,7 +68,7 @@ std::vector<uint8_t> previewPixels(const PreviewDesc& desc) {
 ProbeRequest LightPreviews::see(Surfaces surfaces, uint32_t edge) {
     surfaces_ = std::move(surfaces);
     for (auto& [key, preview] : previews_)
-        preview.light.clear(); // of other surfaces; its picture stays until there is a newer one
+        preview.light.clear(); // it was of other surfaces; the picture stays until there is a newer one
     ProbeRequest request{.number = ++requests_, .texels = {}};
     request.texels.reserve(surfaces_.size());
     const auto last = static_cast<float>(edge) - 1.0f;

@@ -10,7 +10,7 @@
 namespace relume {
 
 LightmapBridge::~LightmapBridge() {
-    // At the end only: whoever writes the slots must not find them gone while something is drawn from them.
+    // Only the end waits: the slots must not go while something is drawn from them.
     gl::Fence all = gl::Fence::insert();
     all.wait();
     const uint32_t last = next_ ? next_->number : shown_ ? shown_->number : 0;
@@ -76,7 +76,7 @@ void LightmapBridge::show(const PublishedMap& map) {
     }
     ASSERT(shown_ && shown_->number == map.set);
     if (shown_->shared) {
-        // Pictures that read the former slot were all issued before this.
+        // All pictures that read the former slot were issued before this fence.
         if (!first && map_) releases_.push_back({gl::Fence::insert(), map_->set, map_->slot});
     } else {
         const gl::PixelBuffer& buffer = shown_->buffers[map.slot];
@@ -88,7 +88,7 @@ void LightmapBridge::show(const PublishedMap& map) {
     map_ = map;
 }
 
-// In order: a fence is signalled no sooner than those before it.
+// Lets go in order, because a fence is signalled no sooner than those before it.
 void LightmapBridge::letGo() {
     while (!releases_.empty() && releases_.front().fence.signalled()) {
         exchange_.release(releases_.front().set, releases_.front().slot);

@@ -13,22 +13,23 @@
 
 namespace relume {
 
-/// The drawing thread's end of the exchange: the newest map as a texture, imported where images are shared
-/// and copied else. What is shown stays until a newer map is there. Never waits for the device.
+/// The drawing thread's end of the exchange. It has the newest map as a texture, imported where images are
+/// shared and copied otherwise. What is shown stays until a newer map is there. Only the destructor waits for
+/// the device.
 class LightmapBridge {
 public:
     explicit LightmapBridge(LightmapExchange& exchange) : exchange_(exchange) {}
-    /// Lets go of all sets, after what was drawn from them.
+    /// Waits for what was drawn from the sets, then lets go of all of them.
     ~LightmapBridge();
     LightmapBridge(const LightmapBridge&) = delete;
     LightmapBridge& operator=(const LightmapBridge&) = delete;
 
-    /// Once per frame, before it is drawn. True when there is a newer map.
+    /// Takes the newest map; call it once per frame, before drawing. Returns whether there is a newer one.
     bool update();
-    /// What texture() holds; nullptr: nothing yet.
+    /// Returns the map that texture() holds, or nullptr where there is none yet.
     const PublishedMap* map() const { return map_ ? &*map_ : nullptr; }
     LightmapTexture texture() const;
-    /// Whether slots or sets still wait for the device to be done: update() is to be called again soon.
+    /// Tells whether slots or sets still wait for the device to be done: call update() again soon.
     bool waiting() const { return !releases_.empty() || !retired_.empty(); }
 
 private:
@@ -39,7 +40,7 @@ private:
         std::array<gl::PixelBuffer, LightmapExchange::kSlots> buffers;
         gl::Texture copy; // of the newest buffer
     };
-    /// Something that goes when the device is behind a fence.
+    /// A slot that is released when the device has passed a fence.
     struct Release {
         gl::Fence fence;
         uint32_t set = 0, slot = 0;

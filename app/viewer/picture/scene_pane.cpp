@@ -69,7 +69,7 @@ bool ScenePane::storeReference(const Look& look) {
     return true;
 }
 
-// Exposed as the other half, so that nothing but light differs.
+// Draws the reference with the exposure of the other half, so that nothing but light differs.
 void ScenePane::drawReference(const Look& look, const DrawSettings& settings) {
     const uint32_t width = picture_.width(), height = picture_.height();
     if (!referenceRenderer_)
@@ -113,20 +113,20 @@ void ScenePane::reload() {
     surfaces_.reload();
 }
 
-// What the map holds may still be of the view before.
+// Returns how to draw the look. The map may still hold what the view before needs.
 DrawSettings ScenePane::settingsOf(const Look& look) {
     const ViewEntry& wanted = viewEntries()[look.state.view];
     const MapContent held = look.map != nullptr ? look.map->content : MapContent::Light;
     if (!wanted.readsMap || held == wanted.content) shownView_ = look.state.view;
     const ViewEntry* shown = &viewEntries()[shownView_];
-    // Another scene's map, or none: whatever was shown, only light can be drawn without.
+    // The map is another scene's, or there is none: whatever was shown, only light can be drawn without it.
     if (shown->readsMap && shown->content != held) shown = &viewEntries()[viewIndex("lit")];
     DrawSettings settings{.view = shown->view,
                           .filter = look.state.filter,
                           .tone = look.state.tone,
                           .exposure = look.state.exposure,
                           .selected = look.state.selected};
-    // RTRad's map has the albedo in it.
+    // RTRad's map already has the albedo in it.
     if (settings.view == View::Lit && look.map != nullptr && look.map->radiance)
         settings.view = View::Lighting;
     if (settings.view == View::InspectLeaves) settings.filter = LightmapFilter::Nearest; // they have edges
@@ -147,7 +147,7 @@ void ScenePane::makeRenderer(uint32_t samples) {
     samples_ = samples;
 }
 
-// Views of light differ in brightness: each goes on with its own exposure.
+// Lets each view go on with its own exposure, because views of light differ in brightness.
 void ScenePane::recallExposure() {
     if (light_ && !renderer_->adapting()) exposures_[drawnView_] = renderer_->exposure();
     if (drawnView_ == shownView_) return;
@@ -160,7 +160,7 @@ void ScenePane::drawFlat(const Look& look, const DrawSettings& settings,
                          const SceneRenderer::Target& target) {
     if (!flat_) flat_ = std::make_unique<UvView>();
     DrawSettings exposed = settings;
-    // The exposure that the scene asked for last: between model and texture nothing jumps.
+    // It takes the exposure that the scene asked for last, so that nothing jumps between model and texture.
     if (!exposed.exposure) exposed.exposure = exposure();
     flat_->draw(look.lightmap, {.window = look.state.uvWindow, .masked = look.state.masked, .draw = exposed},
                 target);

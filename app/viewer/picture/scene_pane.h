@@ -15,14 +15,14 @@
 
 namespace relume {
 
-/// The picture of the scene: drawn when something of it changed, shown as often as one likes. Belongs to the
-/// current OpenGL context.
+/// The picture of the scene. It is drawn when something of it changed, and shown as often as one likes. It
+/// belongs to the current OpenGL context.
 class ScenePane {
 public:
-    /// software: OpenGL is drawn by the CPU, which does without what costs it most.
+    /// Makes an empty pane. `software` says that the CPU draws OpenGL and leaves out what costs it most.
     explicit ScenePane(bool software) : software_(software) {}
 
-    /// nullptr: none. The scene is not read afterwards.
+    /// Sets the scene, which is not read afterwards; nullptr: none.
     void setScene(const LoadedScene* scene);
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);
@@ -30,7 +30,7 @@ public:
     void setSkyPicture(const Sky& sky);
     std::string skyFile() const { return gpu_ ? gpu_->skyFile() : ""; }
     void setPlacements(const std::vector<Placement>& placements);
-    /// The links of a patch, over the scene in the view of what it sees.
+    /// Sets the links of a patch, which are drawn over the scene in the view of what it sees.
     void setPaths(const InspectPaths& paths);
     void setVoxels(const InspectVoxels& voxels);
 
@@ -38,24 +38,25 @@ public:
         const ViewCamera& camera;
         const ViewState& state;
         LightmapTexture lightmap;
-        const PublishedMap* map = nullptr; // that lightmap holds
+        const PublishedMap* map = nullptr; // what `lightmap` holds
     };
-    /// Keeps a copy of the light that is shown, to be compared with. False: it is no light, or there is none.
+    /// Keeps a copy of the light that is shown, as the reference. Returns false where no light is shown.
     bool storeReference(const Look& look);
     bool hasReference() const { return reference_ != nullptr; }
     void draw(const Look& look, glm::uvec2 size);
     /// Copies the last picture into the window's framebuffer, its lower left corner at `corner` [pixels].
     void show(glm::uvec2 corner) const;
     const gl::Framebuffer& picture() const { return picture_; }
-    /// Whether the last picture's automatic exposure is not settled: draw again soon.
+    /// Tells whether the last picture's automatic exposure is not settled: draw again soon.
     bool adapting() const { return light_ && renderer_ && renderer_->adapting(); }
     float exposure() const { return renderer_ ? renderer_->exposure() : 0.0f; }
     SceneRenderer::Counts counts() const { return renderer_ ? renderer_->counts() : SceneRenderer::Counts{}; }
-    /// Device and host times of the newest frame that is known; empty before.
+    /// Ends a frame. Returns device and host times of the newest frame for which they are known; empty
+    /// before.
     std::vector<gl::Timer::Pass> endFrame();
 
-    /// What is at a pixel of the last picture, counted from its upper left corner; `without` an instance:
-    /// behind it.
+    /// Returns what is at a pixel of the last picture, counted from its upper left corner, or what is behind
+    /// the instance `without`.
     std::optional<Pick> pick(const Look& look, glm::vec2 pixel, std::optional<uint32_t> without = {});
     /// Asks which tiles are seen; seenTiles() answers some frames later.
     void askTiles(const Look& look);
@@ -74,7 +75,7 @@ private:
     struct Reference {
         gl::Texture copy;
         LightmapTexture lightmap;
-        bool radiance = false; // as PublishedMap has it
+        bool radiance = false; // see PublishedMap::radiance
     };
     void drawReference(const Look& look, const DrawSettings& settings);
     DrawSettings settingsOf(const Look& look);
@@ -96,7 +97,7 @@ private:
     std::unique_ptr<Reference> reference_;
     std::unique_ptr<SceneRenderer> referenceRenderer_; // keeps its own last picture
     gl::Framebuffer referencePicture_;
-    std::map<size_t, float> exposures_; // that views asked for when drawn last [EV]
+    std::map<size_t, float> exposures_; // what each view asked for when it was drawn last [EV]
     size_t drawnView_ = 0;              // of viewEntries(): in the last picture
     size_t shownView_ = 0;              // of viewEntries(): the newest whose content was there
     uint32_t samples_ = 0;

@@ -17,11 +17,11 @@ public:
         bool chosen = false; // by the user, not by the document
     };
     ~SkyPictures();
-    /// The newest wish counts.
+    /// Begins to read a picture. The newest request counts.
     void read(const std::string& file, bool chosen);
-    /// What is read, or is to be; "": nothing.
+    /// Returns the file that is being read or is next; "": none.
     const std::string& reading() const { return reading_; }
-    /// Once after each read(), as soon as it is there.
+    /// Returns the result of a read() once, as soon as it is there.
     std::optional<Result> poll();
 
 private:

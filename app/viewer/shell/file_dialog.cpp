@@ -19,7 +19,7 @@ bool isFolder(const std::string& path) {
     return fs::is_directory(path, code);
 }
 
-// Tab, in the field: the text as far as it can only go on one way.
+// Completes the text when Tab is pressed in the field, as far as it can only go on one way.
 int onCompletion(ImGuiInputTextCallbackData* data) {
     const PathCompletion& completion = *static_cast<const PathCompletion*>(data->UserData);
     if (completion.matches.empty()) return 0;

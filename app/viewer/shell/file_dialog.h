@@ -8,14 +8,14 @@
 
 namespace relume {
 
-/// Asks for a path, typed with completion. One at a time.
+/// Asks for a path, which is typed with completion. It asks for one at a time.
 class FileDialog {
 public:
     struct Desc {
-        std::string title, path;          // path: what is there already
-        std::vector<std::string> endings; // of files that count
-        std::vector<std::string> recent;  // to choose from
-        bool saves = false;               // a file that exists is not taken at once
+        std::string title, path;          // path: the text that it begins with
+        std::vector<std::string> endings; // of files that are listed
+        std::vector<std::string> recent;  // paths to choose from
+        bool saves = false;               // a file that exists is taken only after a question
         std::function<void(const std::string& path)> done;
     };
     void open(Desc desc);

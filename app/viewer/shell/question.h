@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Asks one thing before all else; each answer has a key.
+/// Asks one question, before anything else goes on. Each answer has a key.
 class Question {
 public:
     struct Answer {
@@ -14,11 +14,11 @@ public:
         int key = 0; // GLFW_KEY_
         std::function<void()> done = {};
     };
-    /// The last answer does nothing: it is what Esc means.
+    /// Asks. The last answer does nothing: it is what Esc means.
     void ask(const std::string& text, std::vector<Answer> answers);
     bool isOpen() const { return !answers_.empty(); }
     void close() { answers_.clear(); }
-    /// Takes the answer of a key. False: it has none.
+    /// Gives the answer of a key. Returns false where it has none.
     bool answer(int key);
     void draw();
 

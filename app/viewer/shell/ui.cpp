@@ -47,7 +47,7 @@ bool isChecked(const PanelContext& context, const Shortcut& shortcut) {
     }
 }
 
-// Undo and redo say what they would do.
+// Returns the title of a menu item. Undo and redo say what they would do.
 std::string titleOf(const PanelContext& context, const Shortcut& shortcut, bool& enabled) {
     const bool undo = shortcut.action == Action::Undo;
     if (!undo && shortcut.action != Action::Redo) return shortcut.name;

@@ -17,14 +17,14 @@ namespace relume {
 /// All that is drawn over the scene or beside it: menus, the side panel with its tabs, status, dialogs.
 class Ui {
 public:
-    /// Of the window, in screen coordinates from the upper left: what is left for the scene.
+    /// The part of the window that is left for the scene, in screen coordinates from the upper left.
     struct Area {
         glm::vec2 corner{0.0f}, size{0.0f};
     };
-    /// Between Gui::begin() and end(). `hidden`: messages and dialogs only.
+    /// Draws all between Gui::begin() and end(), or with `hidden` only messages and dialogs.
     Area draw(const PanelContext& context, bool hidden, float scale);
 
-    /// Closes what is in front. False: nothing was open.
+    /// Closes what is in front. Returns false where nothing was open.
     bool closeDialog();
     void toggleHelp() { help_ = !help_; }
     void showPanel(size_t index) { wantedPanel_ = static_cast<int>(index); }
@@ -51,10 +51,10 @@ private:
     int wantedPanel_ = -1;
 };
 
-/// How the scene is looked at: "Lit", "Light: Lamp", "Lights: rest" where it shares a layer.
+/// Tells how the scene is looked at: "Lit", "Light: Lamp", "Lights: rest" where the light shares a layer.
 std::string viewTitle(const ViewState& view, const LightList& lights, const std::vector<LightGroup>& groups);
 
-/// One line about the bake: phase, method, pass, error, rays. Of status bars and captions.
+/// Returns one line about the bake, for status bars and captions: phase, method, pass, error, rays.
 std::string statusLine(const BakeStatus& status);
 
 } // namespace relume

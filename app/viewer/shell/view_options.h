@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What the user typed after `relume view`.
+/// The options that the user typed after `relume view`.
 struct ViewOptions {
     BakeOptions bake; // scene, and how its lightmap is made
     std::string display = "auto", window, camera;
@@ -16,15 +16,15 @@ struct ViewOptions {
 };
 
 void addViewOptions(CLI::App& command, ViewOptions& options);
-/// --display, and what its text means.
+/// Adds --display; displayModeOf() tells what its text means.
 void addDisplayOption(CLI::App& command, std::string& display);
 DisplayMode displayModeOf(const std::string& display);
 
-/// What the options ask for. Throws UsageError when they are wrong or contradict each other.
+/// Returns what the options ask for. Throws UsageError when they are wrong or contradict each other.
 ViewerDesc resolveViewOptions(const ViewOptions& options);
 
-/// The arguments with "view" in front of a scene that stands where a verb belongs: `relume room.glb`.
-/// `verbs`: those that there are.
+/// Returns the arguments with "view" in front of a scene that stands where one of the verbs belongs: `relume
+/// room.glb`.
 std::vector<std::string> withViewVerb(std::vector<std::string> arguments,
                                       const std::vector<std::string>& verbs);
 

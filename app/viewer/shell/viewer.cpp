@@ -15,14 +15,14 @@ namespace {
 
 using Phase = BakeStatus::Phase;
 
-// Turns without anything to draw: so often what runs beside is looked at [s].
+// Without anything to draw, the viewer looks at what runs beside it after so long [s].
 constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleWatching = 0.25, kIdleFence = 0.01;
 constexpr double kRestsAfter = 0.25;  // [s] without a move until the camera counts as still
-constexpr double kMovingShare = 0.25; // of the budget that a batch has while it moves
+constexpr double kMovingShare = 0.25; // of the budget: what a batch has while the camera moves
 constexpr double kLeastBatchMs = 1;
 constexpr uint64_t kNoMapVersion = ~uint64_t{0}; // of the lightmap before there is one: always the same
-// Frames are drawn no faster than the monitor shows them; a little faster, so that vsync, where it works, is
-// what decides.
+// Frames are drawn hardly faster than the monitor shows them: just so much that vsync decides, where it
+// works.
 constexpr double kLimiterSlack = 1.05;
 
 constexpr double kTilesEvery = 0.2; // [s] while the camera moves
@@ -65,7 +65,7 @@ Viewer::Viewer(const ViewerDesc& desc)
     spdlog::info("window: {}", gl::describeContext());
     view_.filter = preferences_.filter;
     view_.tone = preferences_.tone;
-    // Four samples per pixel cost a CPU most of a frame.
+    // Four samples per pixel would cost a CPU most of a frame.
     constexpr uint32_t kSamples = 4;
     view_.samples = preferences_.samples.value_or(software_ ? 0 : kSamples);
     vsync_ = preferences_.vsync;
@@ -206,7 +206,7 @@ void Viewer::followScene() {
         changeScene();
     }
     if (!session_->lastError().empty()) {
-        ui_.messages().add(session_->lastError(), true, now()); // which the log has told
+        ui_.messages().add(session_->lastError(), true, now()); // the log has told it, too
         session_->clearError();
     }
     followLights();
@@ -223,7 +223,7 @@ void Viewer::showMaterials(std::vector<Material> materials) {
 
 void Viewer::followBake(double time) {
     BakeStatus status = bake_->status();
-    // An edit may be answered between two looks: done before, and done again.
+    // An edit may be answered between two looks: then the bake was done before, and is done again.
     if (status.phase != status_.phase || (status.bake != status_.bake && status.phase == Phase::Done)) {
         pacer_.input();
         tell("bake", phaseName(status.phase));
@@ -259,7 +259,7 @@ void Viewer::followMap() {
     told_ = told;
 }
 
-// What is seen beside maps: links of a patch, voxels, and which tiles the camera sees.
+// Follows what is seen beside maps: links of a patch, voxels, and the tiles that the camera sees.
 void Viewer::followInspected() {
     if (const std::optional<InspectPaths> paths = bake_->takePaths()) {
         pane_.setPaths(*paths);
@@ -317,7 +317,7 @@ void Viewer::followCamera(double time) {
     pacer_.animate(camera_.flying());
 }
 
-// What went wrong beside the main thread is logged: it is shown as well.
+// Shows as well what is logged as an error: it went wrong beside the main thread.
 void Viewer::followLog() {
     const uint64_t count = log_.count();
     if (count == logSeen_) return;
@@ -371,7 +371,7 @@ ScenePane::Look Viewer::look() const {
     return {.camera = camera_.camera(), .state = view_, .lightmap = lightmap(), .map = map()};
 }
 
-// The picture of the scene, new or the last one, behind the panels.
+// Draws the picture of the scene, a new one or the last one, behind the panels.
 void Viewer::drawScene(bool anew) {
     const float pixels = pixelsPerPoint();
     const glm::uvec2 window = window_.size();
@@ -425,7 +425,7 @@ void Viewer::frame(const Redraw& redraw) {
     }
     figures_.drawCalls = pane_.counts().drawn;
     figures_.culled = pane_.counts().culled;
-    // A GPU's swap waits for the monitor, the CPU's draws.
+    // A GPU's swap waits for the monitor, while the CPU's draws.
     pacer_.drawn({anew, true}, end, software_ ? end - begin : beforeSwap - begin);
 }
 

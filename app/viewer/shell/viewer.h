@@ -25,17 +25,17 @@ namespace relume {
 struct ViewerDesc {
     std::string scene; // "": none yet
     BakeRequest request;
-    std::string device; // as vk::Device::Desc::select
+    std::string device; // the same as vk::Device::Desc::select
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
-    double budgetMs = 8; // aim of a batch while the camera is still
+    double budgetMs = 8; // how long a batch should take while the camera is still
     bool watch = false;
     uint32_t width = 0, height = 0; // of the window [screen coordinates], 0: as last time
     std::string camera;             // of the scene's, "": its first one
-    bool logActions = false;        // on stderr, each as it is done
+    bool logActions = false;        // on stderr, each when it is done
 };
 
-/// The window with the scene in it, lit by a bake that goes on beside it. Belongs to the main thread.
+/// The window with the scene in it, lit by a bake that goes on beside it. It belongs to the main thread.
 class Viewer {
 public:
     explicit Viewer(const ViewerDesc& desc); // shows the window; throws Error when there can be none
@@ -43,11 +43,11 @@ public:
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
 
-    /// Until the window is closed. Throws Error when drawing fails for good.
+    /// Runs until the window is closed. Throws Error when drawing fails for good.
     void run();
 
 private:
-    // viewer.cpp
+    // These are in viewer.cpp.
     void startBake();
     void savePreferences();
     double now() const;
@@ -70,7 +70,7 @@ private:
     void changeScene() { sceneDirty_ = settling_ = true; }
     float pixelsPerPoint() const;
 
-    // viewer_input.cpp
+    // These are in viewer_input.cpp.
     void handle(const std::vector<WindowEvent>& events);
     void onKey(const WindowEvent& event);
     void onButton(const WindowEvent& event);
@@ -81,7 +81,7 @@ private:
     void updateFlight();
     void cameraMoved();
 
-    // viewer_files.cpp
+    // These are in viewer_files.cpp.
     std::string scenePath() const; // absolute, the key of bookmarks; "" without a scene
     void performFile(Action action);
     void open(const std::string& path);
@@ -93,7 +93,7 @@ private:
     void followFile();
     void followSavedPath();
 
-    // viewer_progress.cpp
+    // These are in viewer_progress.cpp.
     void followBadge(double time);
     void beforeEdit(const std::string& name, const std::string& underWay);
     void performWipe(Action action);
@@ -102,7 +102,7 @@ private:
     void dragWipe(const glm::dvec2& at);
     void drawProgress();
 
-    // viewer_lights.cpp
+    // These are in viewer_lights.cpp.
     void selectLight(const std::optional<LightKey>& key);
     void followLights();
     LightSpot lightSpot();
@@ -112,7 +112,7 @@ private:
     void endEdit();
     void performLight(Action action, int argument);
 
-    // viewer_layers.cpp
+    // These are in viewer_layers.cpp.
     std::optional<LightKey> loneLight() const;
     void toggleAlone();
     void showShining();
@@ -122,7 +122,7 @@ private:
     void followSky();
     void takeSky(const SkyPictures::Result& result);
 
-    // viewer_gizmo.cpp
+    // These are in viewer_gizmo.cpp.
     LightStage stage() const;
     glm::vec2 pointAt(const glm::dvec2& at) const;
     bool showsLights() const;
@@ -139,7 +139,7 @@ private:
     void tellPlaces();
     void drawOverlay();
 
-    // viewer_actions.cpp
+    // These are in viewer_actions.cpp.
     void perform(Action action, int argument);
     void performUndo(Action action);
     void performBake(Action action);
@@ -176,14 +176,14 @@ private:
 
     ViewState view_;
     CameraControl camera_;
-    uint64_t saves_ = 0;              // that were told
+    uint64_t saves_ = 0;              // how many saves were told
     std::string title_, path_;        // of the window, and of the scene when it was loaded or saved
     std::function<void()> afterSave_; // waits for the save under way
     bool quitting_ = false;           // edits are saved, or not wanted
     LightList lights_;
-    std::optional<LightKey> shownAlone_; // in the last picture, as by loneLight()
+    std::optional<LightKey> shownAlone_; // what loneLight() was in the last picture
     LightPreviews previews_;
-    struct Previewed { // what previews are of
+    struct Previewed { // what the previews show
         ViewCamera camera;
         uint64_t scene = 0; // its number
         std::vector<Placement> placements;
@@ -192,9 +192,9 @@ private:
         bool operator==(const Previewed&) const = default;
     };
     std::optional<Previewed> previewed_; // none: nothing is asked for
-    bool previewsDue_ = false;           // some may be left to be drawn
+    bool previewsDue_ = false;           // some may still have to be drawn
     SkyPictures skies_;
-    std::string badSky_; // picture of the document's that could not be read
+    std::string badSky_; // the document's picture of the sky, where it could not be read
     std::optional<GizmoDrag> drag_;
     BakeBadge badge_;
     std::string newestEdit_; // its name, "": none since the scene came
@@ -205,31 +205,31 @@ private:
     RedrawPacer pacer_;
     BakeStatus status_;
     InspectRequest inspected_;
-    std::vector<Material> materials_; // as drawn
+    std::vector<Material> materials_; // as they are drawn
     Ui::Area area_;                   // of the scene, in the last frame
     bool sceneDirty_ = true, hidden_ = false, vsync_ = false;
     float scale_ = 1;
     enum class Shot { None, Plain, WithUi };
-    Shot shot_ = Shot::None; // that waits for a settled picture
-    int shotFrames_ = 0;     // for how many frames it has
+    Shot shot_ = Shot::None; // the one that waits for a settled picture
+    int shotFrames_ = 0;     // how many frames it has waited
     bool settling_ = false;  // the exposure follows what the user did
     bool recordDue_ = false; // the picture is not in the recording
     double frameStart_ = 0;  // of the last frame
     double flown_ = 0;       // when the flight went on last
     double moved_ = -1e9;    // when the camera moved last
-    double batchMs_ = 0;     // that the bake was told
+    double batchMs_ = 0;     // what the bake was told
     uint64_t logSeen_ = 0;
     std::string edited_;     // name of the edit under way, "": none
     std::string told_;       // content of the newest map, as it was told
     glm::uvec2 toldSize_{0}; // of the window
     uint32_t askedVoxels_ = 0;
-    uint64_t askedBake_ = 0; // that voxels and tiles were asked for
+    uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
     double tilesAsked_ = -1e9;
     uint64_t mapVersion_ = 0;
     glm::dvec2 cursor_{0.0}, pressed_{0.0};
-    int button_ = 0;                      // of the mouse, that drags
+    int button_ = 0;                      // the mouse button that drags
     bool dragged_ = false;                // it went further than a click does
-    std::vector<int> keys_;               // of flight, that are held
+    std::vector<int> keys_;               // the keys of flight that are held
     bool fast_ = false, control_ = false; // Shift, Ctrl are held
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kExposureStep = 0.25f; // [EV] of a key press
 
-// Of the order in which they are declared.
+// Tells whether an action is from `first` to `last` in the order in which they are declared.
 bool within(Action action, Action first, Action last) {
     return action >= first && action <= last;
 }

@@ -39,7 +39,7 @@ void Viewer::performCapture(Action action) {
         recordDue_ = true;
         return changeScene(); // the first frame
     }
-    if (recordDue_) recordPicture(now()); // came sooner than a video's next frame
+    if (recordDue_) recordPicture(now()); // this picture came sooner than a video's next frame
     capture_.stop(now());
 }
 
@@ -55,7 +55,8 @@ void Viewer::recordPicture(double time) {
     recordDue_ = false;
 }
 
-// Whether the waiting screenshot shows what it will show in the end; not for ever, as new light keeps coming.
+// Tells whether the waiting screenshot shows what it will show in the end. It does not wait for ever, because
+// new light keeps coming.
 bool Viewer::settled() {
     constexpr int kMostFrames = 10;
     if (!pane_.adapting() || ++shotFrames_ > kMostFrames) return true;

@@ -122,12 +122,12 @@ void Viewer::quit() {
 bool Viewer::closes() {
     if (!window_.closing()) return false;
     if (quitting_ || !session_->dirty()) return true;
-    window_.keepOpen(); // closed by other means than our own: asks all the same
+    window_.keepOpen(); // it was closed by other means than our own, which is a question all the same
     quit();
     return false;
 }
 
-// Another file has the bookmarks of the one that it was.
+// Gives the bookmarks to the file that the scene was saved as.
 void Viewer::followSavedPath() {
     const std::string path = scenePath();
     const auto known = preferences_.bookmarks.find(path_);
@@ -138,7 +138,7 @@ void Viewer::followSavedPath() {
     path_ = path;
 }
 
-// The title tells what is not saved; what waited for a save goes on.
+// Follows the scene's file: the title tells what is not saved, and what waited for a save goes on.
 void Viewer::followFile() {
     if (session_->saves() != saves_) {
         saves_ = session_->saves();
@@ -150,7 +150,7 @@ void Viewer::followFile() {
     }
     if (afterSave_ && !session_->saving()) {
         const std::function<void()> go = std::exchange(afterSave_, {});
-        if (!session_->dirty()) go(); // else it went wrong, which a message has told
+        if (!session_->dirty()) go(); // else the save went wrong, which a message has told
     }
     if (session_->scene() == nullptr) return;
     const std::string title =

@@ -1,4 +1,4 @@
-// What of the viewer moves things: lights without geometry, and objects.
+// This is the part of the viewer that moves things: lights without geometry, and objects.
 #include "app/viewer/shell/viewer.h"
 
 #include "app/viewer/edits/object_edits.h"
@@ -19,7 +19,8 @@ constexpr float kNudge = 0.005f;   // of the scene's diagonal
 constexpr float kNudgeTurn = 5.0f; // [degrees]
 constexpr float kGap = 1e-3f;      // of the scene's diagonal, between a surface and a light on it
 
-// Axes of the world that are the most to the right of a picture, up and forward in it, with their directions.
+// Returns the axes of the world, with their signs, that point the most to the right of a picture, up and
+// forward in it.
 glm::mat3 nearestAxes(const ViewCamera& camera) {
     const glm::vec3 side = right(camera), front = forward(camera), up = glm::cross(side, front);
     glm::mat3 axes(0.0f);
@@ -50,7 +51,7 @@ LightStage Viewer::stage() const {
     return stage;
 }
 
-// Of the picture [points], as the stage has it.
+// Returns a point of the window as one of the picture [points], as the stage has it.
 glm::vec2 Viewer::pointAt(const glm::dvec2& at) const {
     return (glm::vec2(at) - area_.corner) / scale_;
 }
@@ -59,7 +60,7 @@ bool Viewer::showsLights() const {
     return session_->scene() != nullptr && !view_.uv && !hidden_;
 }
 
-// The selected instance, where it can be seen and no lamp is selected.
+// Returns the selected instance, where it can be seen and no analytic light is selected.
 std::optional<uint32_t> Viewer::movableObject() const {
     const std::vector<Placement>& placements = session_->document().edits.placements;
     if (view_.selected < 0 || static_cast<size_t>(view_.selected) >= placements.size()) return std::nullopt;
@@ -68,7 +69,7 @@ std::optional<uint32_t> Viewer::movableObject() const {
     return lamp || placements[object].hidden ? std::nullopt : std::optional(object);
 }
 
-// What the gizmo and the keys move, of a document; nullptr: nothing.
+// Returns what the gizmo and the keys move in a document, or nullptr where there is nothing.
 glm::mat4* Viewer::movable(Document& document) const {
     const std::optional<LightKey>& key = view_.light;
     if (key && key->kind == LightKey::Kind::Lamp && key->index < document.edits.lights.size())
@@ -97,7 +98,7 @@ void Viewer::nudge(int argument) {
         (*transform)[3] += glm::vec4(sign * step * axes[along], 0.0f);
         return editOnce("Position of " + movableName(), next);
     }
-    // Right: about what points up; up: about what points right.
+    // To the right it turns about what points up, upwards about what points right.
     const glm::vec3 axis = along == 0 ? axes[1] : along == 1 ? axes[0] : axes[2];
     const glm::vec3 pivot = gizmoOf(stage()).value_or(GizmoPlace{}).origin;
     const glm::mat4 turn = glm::rotate(glm::mat4(1.0f), glm::radians(sign * kNudgeTurn), axis);
@@ -137,7 +138,8 @@ bool Viewer::pressGizmo(const glm::dvec2& at) {
     return true;
 }
 
-// What is dragged, on the surface that is under the cursor; none: there is nothing.
+// Returns the transform that puts what is dragged on the surface under the cursor, or nothing where there is
+// none.
 std::optional<glm::mat4> Viewer::onSurface(const glm::dvec2& at) {
     const glm::vec2 pixel = (glm::vec2(at) - area_.corner) * pixelsPerPoint();
     const std::optional<uint32_t> object = movableObject();
@@ -173,7 +175,7 @@ void Viewer::endDrag() {
     endEdit();
 }
 
-// Keys while a gizmo is held.
+// Follows keys while a gizmo is held.
 void Viewer::onDragKey(const WindowEvent& event) {
     if (!event.pressed) return;
     switch (event.code) {
@@ -196,7 +198,7 @@ void Viewer::onDragKey(const WindowEvent& event) {
     dragGizmo(cursor_);
 }
 
-// Where one can click icons and take hold of the gizmo.
+// Tells where one can click icons and take hold of the gizmo.
 void Viewer::tellPlaces() {
     constexpr std::array<const char*, 8> kHandles = {"", "X", "Y", "Z", "YZ", "ZX", "XY", "Screen"};
     const LightStage now = stage();

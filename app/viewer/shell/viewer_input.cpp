@@ -11,14 +11,15 @@
 namespace relume {
 namespace {
 
-constexpr double kClickSlack = 4;   // [screen coordinates] that a hand moves while it clicks
+constexpr double kClickSlack = 4;   // a hand moves so far while it clicks [screen coordinates]
 constexpr float kUvZoomStep = 1.2f; // of one step of a wheel
 
 bool isFunctionKey(int key) {
     return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25;
 }
 
-// Directions of flight by places of the keyboard, so that they lie together on every layout.
+// Returns the direction of flight of a place on the keyboard. Places, not letters, lie together on every
+// layout.
 glm::ivec3 flightOf(int place) {
     switch (place) {
     case GLFW_KEY_D:
@@ -104,7 +105,7 @@ void Viewer::onKey(const WindowEvent& event) {
                          shortcut->action == Action::Undo || shortcut->action == Action::Redo ||
                          shortcut->action == Action::LightStrength || shortcut->action == Action::Nudge;
     if (event.repeated && !repeats) return;
-    // Letters, and Ctrl with one, are the text's while one types; Esc leaves a field, or closes a dialog.
+    // Letters, and Ctrl with one, go to the text while one types; Esc leaves a field, or closes a dialog.
     const bool closes = shortcut->action == Action::Close && ui_.files().isOpen();
     if (typing && !closes && !isFunctionKey(event.code) && shortcut->action != Action::Quit) return;
     perform(shortcut->action, shortcut->argument);

@@ -1,4 +1,4 @@
-// What of the viewer looks at lights one by one, and the sky's picture.
+// This is the part of the viewer that looks at lights one by one, and at the sky's picture.
 #include "app/viewer/shell/viewer.h"
 
 #include "app/viewer/state/views.h"
@@ -17,7 +17,7 @@ constexpr double kRests = 0.25; // [s] without a move until previews follow the 
 
 } // namespace
 
-// The light that the scene is shown lit by; none: by all of them.
+// Returns the light that alone lights the scene that is shown, or nothing where all of them do.
 std::optional<LightKey> Viewer::loneLight() const {
     return viewEntries()[view_.view].content == MapContent::Layer ? view_.light : std::nullopt;
 }
@@ -35,11 +35,11 @@ void Viewer::toggleAlone() {
     changeScene();
 }
 
-// What is muted is dark, and so is all but a light that is looked at alone.
+// Shows which lights shine: a muted one is dark, and so are all but a light that is looked at alone.
 void Viewer::showShining() {
     const std::optional<LightKey> alone = loneLight();
     const Document& document = session_->document();
-    const LightGroup* group = alone ? groupWith(status_.groups, *alone) : nullptr; // which is shown whole
+    const LightGroup* group = alone ? groupWith(status_.groups, *alone) : nullptr; // it is shown whole
     const auto shines = [&](const LightKey& key) {
         if (alone && group == nullptr) return key == *alone;
         return (group == nullptr || groupWith(status_.groups, key) == group) && document.mix.shines(key);
@@ -59,7 +59,7 @@ void Viewer::showShining() {
     pane_.setSky(sky);
 }
 
-// Nothing is done for what nobody sees.
+// Asks for previews and draws them. Nothing is done while nobody sees them.
 void Viewer::followPreviews(double time) {
     const LoadedScene* scene = session_->scene();
     previewsDue_ = false;
@@ -103,11 +103,11 @@ void Viewer::clearSky() {
     if (sky.file.empty()) return note("the sky has no picture");
     sky.file.clear();
     sky.rotation = 0.0f;
-    if (sky.radiance != glm::vec3(0.0f)) sky = makeSky(sky, lightSpot()); // its factor was of the picture
+    if (sky.radiance != glm::vec3(0.0f)) sky = makeSky(sky, lightSpot()); // it was the picture's factor
     editOnce("Sky without a picture", next);
 }
 
-// Pictures that an undo brings back are read again.
+// Follows the sky's picture. One that an undo brings back is read again.
 void Viewer::followSky() {
     if (const std::optional<SkyPictures::Result> result = skies_.poll()) takeSky(*result);
     const LoadedScene* scene = session_->scene();
@@ -132,7 +132,7 @@ void Viewer::takeSky(const SkyPictures::Result& result) {
     if (!result.chosen || session_->scene() == nullptr) return;
     Document next = session_->document();
     SkySettings& sky = next.edits.sky;
-    // What was cd/m^2 becomes a factor.
+    // The radiance in cd/m^2 becomes a factor.
     if (sky.file.empty() || sky.radiance == glm::vec3(0.0f)) sky.radiance = glm::vec3(1.0f);
     sky.file = result.sky.file;
     editOnce("Picture of the sky", next);

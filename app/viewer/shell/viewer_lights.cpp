@@ -31,7 +31,7 @@ void Viewer::selectLight(const std::optional<LightKey>& key) {
     changeScene();
 }
 
-// What is gone cannot stay selected.
+// Follows the lights. One that is gone cannot stay selected.
 void Viewer::followLights() {
     const bool changed = lights_.update(session_->scene(), *session_);
     if (view_.light && lights_.find(*view_.light) == nullptr) view_.light.reset();
@@ -76,7 +76,7 @@ void Viewer::addLight(int what) {
     selectLight(key);
 }
 
-// The next light of the board.
+// Selects the light that is `step` further on the board.
 void Viewer::stepLight(int step) {
     const std::vector<LightSource>& sources = lights_.sources();
     if (sources.empty()) return note("there are no lights");

@@ -12,8 +12,8 @@ namespace {
 
 using State = BakeBadge::State;
 
-// In points.
-constexpr float kGrip = 6.0f;   // that a hand may be beside the line
+// The first two lengths are in points.
+constexpr float kGrip = 6.0f;   // a hand may be so far beside the line
 constexpr float kKnob = 7.0f;   // radius
 constexpr float kMargin = 0.6f; // around text over the scene [heights of the font]
 
@@ -55,7 +55,7 @@ void Viewer::followBadge(double time) {
     badge_ = std::move(badge);
 }
 
-// What had converged is what an edit is compared with.
+// Notes an edit. Light that had converged becomes the reference that the edit is compared with.
 void Viewer::beforeEdit(const std::string& name, const std::string& underWay) {
     if (badge_.state == State::Converged && !ownReference_ && session_->scene() != nullptr)
         pane_.storeReference(look());
@@ -96,7 +96,7 @@ void Viewer::dragWipe(const glm::dvec2& at) {
     changeScene();
 }
 
-// Over the picture: the line of the wipe, and how far the light is.
+// Draws the line of the wipe over the picture, and how far the light is.
 void Viewer::drawProgress() {
     if (session_->scene() == nullptr) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();

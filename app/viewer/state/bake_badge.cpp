@@ -14,13 +14,13 @@ State stateOf(const BakeBadgeDesc& desc) {
     const bool follows = desc.status.bake == desc.newestBake && phase != Phase::Preparing;
     const bool shown = desc.map != nullptr && desc.map->bake == desc.newestBake;
     if (!follows || !shown) return State::Stale;
-    // Before the first edit there is no light that could be of another scene.
+    // Before the first edit there is no light that could show another state of the scene.
     if (!desc.edit.empty() && !desc.status.stale.empty()) return State::Stale;
     if (phase == Phase::Done && desc.map->complete) return State::Converged;
     return phase == Phase::Paused ? State::Paused : State::Refining;
 }
 
-// What the bake says of its layers; before it knows of the edit, the edit.
+// Returns what the bake says about its layers, or before it knows of the edit, the edit's name.
 std::string reasonOf(const BakeBadgeDesc& desc) {
     const std::vector<std::string>& stale = desc.status.stale;
     if (desc.status.bake != desc.newestBake || stale.empty()) return desc.edit;

@@ -6,12 +6,12 @@
 
 namespace relume {
 
-/// How far the light on screen is what the document asks for.
+/// Tells how far the light on screen is what the document asks for.
 struct BakeBadge {
     enum class State {
         None,     // no scene, or no bake
-        Stale,    // some light of before the newest edit
-        Refining, // of this document, and becoming better
+        Stale,    // some light is from before the newest edit
+        Refining, // the light is that of this document, and becomes better
         Paused,
         Converged,
     };
@@ -21,7 +21,7 @@ struct BakeBadge {
 
 struct BakeBadgeDesc {
     const BakeStatus& status;
-    const PublishedMap* map = nullptr; // that is shown
+    const PublishedMap* map = nullptr; // the one that is shown
     uint64_t newestBake = 0;           // of the document
     std::string edit;                  // name of the newest one, "": none
     double seconds = 0; // since it, or since the scene came, up to when the light had converged

@@ -33,7 +33,7 @@ bool CameraControl::move(float dx, float dy) {
     case Drag::Pan:
         camera_ = pan(camera_, -dx, dy);
         break;
-    // What is under the cursor stays there.
+    // The point under the cursor stays under it.
     case Drag::Look:
         camera_ = look(camera_, camera_.yfov * dx, camera_.yfov * dy);
         break;

@@ -15,21 +15,21 @@ struct LogLine {
     std::string text;
 };
 
-/// The newest lines of the log, for a panel; what is logged goes to stderr as well. For any thread.
+/// The newest lines of the log, for a panel; what is logged goes to stderr as well. Any thread may use it.
 class LogBuffer {
 public:
     static constexpr size_t kMostLines = 2000;
 
-    /// From now on until it goes. Not while other threads log.
+    /// Takes lines from now on until it is destroyed. Both must not happen while other threads log.
     LogBuffer();
     ~LogBuffer();
     LogBuffer(const LogBuffer&) = delete;
     LogBuffer& operator=(const LogBuffer&) = delete;
 
-    /// Counts lines ever added: to see whether there are new ones.
+    /// Returns how many lines were ever added, to see whether there are new ones.
     uint64_t count() const;
     std::vector<LogLine> lines() const;
-    /// Those since count() was `since`, as far as they are still there.
+    /// Returns the lines since count() was `since`, as far as they are still there.
     std::vector<LogLine> linesSince(uint64_t since) const;
 
 private:

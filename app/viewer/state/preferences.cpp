@@ -57,7 +57,7 @@ public:
             value = {(*found)[0].get<float>(), (*found)[1].get<float>(), (*found)[2].get<float>()};
         });
     }
-    /// An enumerator by its name.
+    /// Reads an enumerator by its name.
     template<typename T>
     void choice(const char* name, T& value, const std::vector<std::string>& names) const {
         std::string read;
@@ -85,7 +85,7 @@ private:
 
 constexpr std::string_view kFileUri = "file://";
 
-// A path as JSON can hold it: one that is no UTF-8 as a URI.
+// Returns a path as JSON can hold it: one that is not UTF-8 becomes a URI.
 std::string storedPath(const std::string& path) {
     return isUtf8(path) ? path : std::string(kFileUri) + encodedUri(path);
 }
@@ -106,7 +106,7 @@ Json writeBookmark(const Bookmark& mark) {
             {"znear", camera.znear},  {"zfar", camera.zfar}};
 }
 
-// None where it is no camera.
+// Reads a bookmark. Returns nothing where it has no usable camera.
 std::optional<Bookmark> readBookmark(const Json& json, int& wrong) {
     constexpr float kFar = 1e30f;
     const Reader reader(json, wrong);
@@ -124,8 +124,8 @@ std::optional<Bookmark> readBookmark(const Json& json, int& wrong) {
     const float sum = glm::length(camera.eye) + glm::length(camera.target) + glm::length(camera.up);
     const bool usable = !mark.name.empty() && std::isfinite(sum) && camera.eye != camera.target &&
                         glm::length(camera.up) > 0.0f;
-    // What is of unit length but for rounding stays as it is: each file would have other digits than the one
-    // before.
+    // A vector of unit length but for rounding stays as it is: otherwise each file would have other digits
+    // than the one before.
     const float length = glm::length(camera.up);
     reader.take(usable, [&] {
         if (std::abs(length - 1.0f) > 1e-6f) camera.up = glm::normalize(camera.up);
@@ -175,7 +175,7 @@ void Preferences::addRecent(const std::string& path) {
 std::string preferencesPath() {
     const char* config = std::getenv("XDG_CONFIG_HOME");
     const char* home = std::getenv("HOME");
-    // A relative one is to be ignored, says the XDG base directory specification.
+    // The XDG base directory specification says that a relative path is to be ignored.
     if (config != nullptr && config[0] == '/') return std::string(config) + "/relume/preferences.json";
     if (home != nullptr && home[0] == '/') return std::string(home) + "/.config/relume/preferences.json";
     return "";
@@ -237,7 +237,7 @@ void writePreferences(const std::string& path, const Preferences& preferences) {
     std::error_code code;
     fs::create_directories(fs::path(path).parent_path(), code);
     if (code) throw Error(path + ": its folder cannot be made: " + code.message() + ": set XDG_CONFIG_HOME");
-    // Names of bookmarks may be no UTF-8: what is not is replaced.
+    // Names of bookmarks may hold what is not UTF-8, which is replaced.
     writeFileAtomically(path, toJson(preferences).dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
                         OnFailure::Drop);
 }

@@ -19,7 +19,7 @@ struct Bookmark {
     ViewCamera camera;
 };
 
-/// What stays from one run of the viewer to the next.
+/// The settings that stay from one run of the viewer to the next.
 struct Preferences {
     static constexpr size_t kMostRecent = 12;
 
@@ -37,15 +37,15 @@ struct Preferences {
     void addRecent(const std::string& path);
 };
 
-/// $XDG_CONFIG_HOME/relume/preferences.json, or the same in ~/.config; "" where there is neither.
+/// Returns $XDG_CONFIG_HOME/relume/preferences.json, or the same in ~/.config; "" where there is neither.
 std::string preferencesPath();
-/// ~/Pictures/relume where there is a ~/Pictures, else the working folder.
+/// Returns ~/Pictures/relume where there is a ~/Pictures, else the working folder.
 std::string defaultCaptureFolder();
 
-/// What is missing or wrong in the file keeps its default, with one warning; so does all of it where there
-/// is none (no warning).
+/// Reads the file. What is missing or wrong in it keeps its default, with one warning; where there is no
+/// file, everything does, without a warning.
 Preferences readPreferences(const std::string& path);
-/// Makes the folder. Throws Error.
+/// Writes the file, and makes its folder. Throws Error.
 void writePreferences(const std::string& path, const Preferences& preferences);
 
 } // namespace relume

@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Everything that a user can do by a key or a menu; what belongs together stands together.
+/// Everything that a user can do by a key or a menu. Actions that belong together stand together.
 enum class Action : uint8_t {
     Open,
     Save,
@@ -59,31 +59,31 @@ enum class Action : uint8_t {
     Panel, // argument: of panelNames()
 };
 
-/// Argument of AddLight behind all of LightType.
+/// The argument of AddLight for a sky, which comes behind all of LightType.
 constexpr int kAddSky = 5;
 
-/// A key and what it does. Keys are GLFW_KEY_, mods GLFW_MOD_.
+/// A key and what it does. Keys are GLFW_KEY_, mods are GLFW_MOD_.
 struct Shortcut {
     Action action;
     int argument = 0;
     int key = 0; // 0: in the menu only
     int mods = 0;
     std::string group; // the menu
-    std::string name;  // "Make pass"; of all keys of an action the same
+    std::string name;  // "Make pass"; the same for all keys of an action
 };
 
-/// The one list of them: dispatch, menus and help are made of it.
+/// Returns the one list of shortcuts, of which dispatch, menus and help are made.
 const std::vector<Shortcut>& shortcuts();
-/// nullptr: this key does nothing.
+/// Returns the shortcut of a key, or nullptr where the key does nothing.
 const Shortcut* findShortcut(int key, int mods);
 const Shortcut& shortcutOf(Action action, int argument = 0);
-/// "Ctrl+Shift+Z", "" without a key.
+/// Returns "Ctrl+Shift+Z", or "" without a key.
 std::string keyText(const Shortcut& shortcut);
 
-/// In the order of their tabs.
+/// Returns the panels' names in the order of their tabs.
 const std::vector<std::string>& panelNames();
 
-/// Of keys that are not actions but are held or dragged: what and how, for the help.
+/// A line of the help about what is held or dragged and so is no action: what it does and how.
 struct MouseHint {
     const char* what;
     const char* how;

@@ -13,7 +13,7 @@
 
 namespace relume {
 
-/// How the scene is looked at: what the View panel and its keys change.
+/// How the scene is looked at, which the View panel and its keys change.
 struct ViewState {
     size_t view = 0; // of viewEntries()
     LightmapFilter filter = LightmapFilter::Bilinear;
@@ -21,11 +21,11 @@ struct ViewState {
     std::optional<float> exposure; // [EV], none: automatic
     uint32_t samples = 0;          // of each pixel
     int selected = -1;             // of Scene::instances
-    std::optional<LightKey> light; // that is selected
+    std::optional<LightKey> light; // the one that is selected
     bool lightIcons = true;
-    GizmoMode gizmo = GizmoMode::Translate; // of a selected lamp
+    GizmoMode gizmo = GizmoMode::Translate; // of a selected analytic light or object
 
-    bool wipe = false;   // left of the line: the reference
+    bool wipe = false;   // the reference is shown left of the line
     float wipeAt = 0.5f; // the line, as a share of the picture's width
 
     bool uv = false; // the lightmap as a flat picture

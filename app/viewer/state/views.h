@@ -20,9 +20,9 @@ struct ViewEntry {
 };
 
 const std::vector<ViewEntry>& viewEntries();
-/// By name; the first one for an unknown name.
+/// Finds a view by its name; an unknown name gives the first one.
 size_t viewIndex(const char* name);
-/// Whether a mip can be chosen.
+/// Tells whether a mip can be chosen.
 bool hasMips(MapContent content);
 
 } // namespace relume

@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What drawing costs: shown by the profiler.
+/// The cost of drawing, which the profiler shows.
 struct FrameFigures {
     static constexpr size_t kKept = 240; // frames
 

@@ -19,7 +19,8 @@ namespace {
 
 constexpr float kFontPixels = 15, kBuiltInPixels = 13; // at scale 1; ImGui's own is a bitmap of 13
 
-// Outlines that most systems have; ImGui's own letters are a bitmap, coarse when enlarged.
+// Most systems have one of these outline fonts; ImGui's own letters are a bitmap, which is coarse when
+// enlarged.
 constexpr std::array kFonts = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
     "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
@@ -102,7 +103,7 @@ void Gui::feed(const WindowEvent& event) {
     switch (event.kind) {
     case WindowEvent::Kind::Key:
         feedSeen();
-        // A key that goes down and up between two frames would never have been down.
+        // A key that goes down and up between two frames would never be seen down.
         if (!event.pressed && std::find(pressed_.begin(), pressed_.end(), event.place) != pressed_.end()) {
             releases_.push_back(event);
             break;
@@ -126,11 +127,12 @@ void Gui::feed(const WindowEvent& event) {
         ImGui_ImplGlfw_CursorEnterCallback(window, event.pressed ? GLFW_TRUE : GLFW_FALSE);
         break;
     default:
-        break; // where the cursor is it asks for itself
+        break; // ImGui asks for the cursor's place itself
     }
 }
 
-// Never within a frame: what widgets see of modifiers must not change under them.
+// Feeds the releases that had to wait. It is never called within a frame: the modifiers that widgets see must
+// not change meanwhile.
 void Gui::feedSeen() {
     for (const WindowEvent& event : std::exchange(seen_, {}))
         ImGui_ImplGlfw_KeyCallback(window_.handle(), event.place, event.scancode, GLFW_RELEASE, event.mods);

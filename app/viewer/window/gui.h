@@ -4,7 +4,8 @@
 
 namespace relume {
 
-/// Dear ImGui in a window: its context, fonts and style. Belongs to the window's context; one at a time.
+/// Dear ImGui in a window: its context, fonts and style. It belongs to the window's context; there is one at
+/// a time.
 class Gui {
 public:
     explicit Gui(Window& window);
@@ -12,16 +13,16 @@ public:
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Tells it what happened to the window.
+    /// Tells Dear ImGui what happened to the window.
     void feed(const WindowEvent& event);
-    /// Starts a frame; scale: of text and controls, a change of which makes new fonts.
+    /// Starts a frame. `scale` is that of text and controls; when it changes, the fonts are made anew.
     void begin(float scale);
-    /// Ends it and draws it into the window.
+    /// Ends the frame and draws it into the window.
     void end();
 
     bool wantsMouse() const;    // the cursor is over a panel, or drags something of one
     bool wantsKeyboard() const; // something is typed
-    /// Whether something blinks or is dragged.
+    /// Tells whether something blinks or is dragged.
     bool animates() const;
 
 private:
@@ -31,7 +32,7 @@ private:
     Window& window_;
     float scale_ = 0;
     std::vector<int> pressed_;          // keys, since the frame before
-    std::vector<WindowEvent> releases_; // of such keys, which the next frame is to see held
+    std::vector<WindowEvent> releases_; // of such keys: the next frame must still see them held
     std::vector<WindowEvent> seen_;     // of those that the last frame saw held
 };
 

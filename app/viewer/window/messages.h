@@ -5,7 +5,7 @@
 
 namespace relume {
 
-/// Lines shown over the scene for some seconds. All times [s] are the caller's.
+/// The lines that are shown over the scene for some seconds. The caller gives all times [s].
 class Messages {
 public:
     struct Message {
@@ -13,12 +13,12 @@ public:
         bool bad = false;
         double until = 0;
     };
-    /// The same text, shown already, stays longer.
+    /// Shows a text; where the same text is shown already, it stays longer.
     void add(const std::string& text, bool bad, double now);
     void expire(double now);
     void clear() { shown_.clear(); }
     const std::vector<Message>& shown() const { return shown_; }
-    /// When the next one goes; `never` without any.
+    /// Returns when the next message goes, or `never` where there is none.
     double nextExpiry(double never) const;
 
 private:

@@ -51,7 +51,7 @@ PathCompletion completePath(const std::string& typed, const std::vector<std::str
     }
     std::sort(result.matches.begin(), result.matches.end());
     if (result.matches.empty()) return result;
-    // Sorted: what first and last have in common all have.
+    // The matches are sorted: what the first and the last have in common all have.
     const std::string &first = result.matches.front(), &last = result.matches.back();
     const auto differs = std::mismatch(first.begin(), first.end(), last.begin(), last.end());
     result.text.assign(first.begin(), differs.first);

@@ -9,7 +9,7 @@ namespace {
 // their size for one more.
 constexpr int kSettlingFrames = 3;
 constexpr double kStatusPeriod = 0.1; // [s]: figures are not read faster
-// Where nobody moves anything drawing takes a third of the time: it waits this many times what it cost.
+// Where nobody moves anything, drawing takes a third of the time: it waits this many times what it cost.
 constexpr double kRest = 2.0;
 
 } // namespace
@@ -18,7 +18,7 @@ void RedrawPacer::input() {
     settling_ = kSettlingFrames;
 }
 
-// From when on a map or figures may be drawn.
+// Returns from when on a map or figures may be drawn.
 double RedrawPacer::nextPaced() const {
     const double cost = map_ ? std::max(lastCost_, sceneCost_) : lastCost_;
     const double rest = lastEnd_ + kRest * cost;

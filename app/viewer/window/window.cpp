@@ -27,7 +27,7 @@ std::string glfwReason() {
 }
 
 double readRefreshRate() {
-    constexpr double kUsual = 60; // what Xvfb, which tells 0, is taken for
+    constexpr double kUsual = 60; // assumed for Xvfb, which tells 0
     GLFWmonitor* monitor = glfwGetPrimaryMonitor();
     const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
     return mode != nullptr && mode->refreshRate > 0 ? mode->refreshRate : kUsual;
@@ -48,7 +48,7 @@ double readRefreshRate() {
                 kMend);
 }
 
-// Letters and signs are where the user's keyboard has them: Ctrl+Z is where Z is written.
+// Returns the key as the user's keyboard has letters and signs: Ctrl+Z is where Z is written.
 int letterOf(int key, int scancode) {
     const bool moves = (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) || key == GLFW_KEY_COMMA ||
                        key == GLFW_KEY_PERIOD || key == GLFW_KEY_SLASH || key == GLFW_KEY_SEMICOLON ||
@@ -114,7 +114,8 @@ void Window::installCallbacks() {
                      .repeated = action == GLFW_REPEAT});
     });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int mods) {
-        // glfwGetCursorPos would say where it is by now: after a slow frame that is not where it was pressed.
+        // glfwGetCursorPos would tell where the cursor is by now: after a slow frame that is not where it was
+        // pressed.
         add(window, {.kind = WindowEvent::Kind::Button,
                      .code = button,
                      .mods = mods,

@@ -14,7 +14,8 @@ namespace relume {
 struct WindowEvent {
     enum class Kind { Key, Letter, Button, Cursor, Scroll, Drop, Focus, Enter, Redraw };
     Kind kind = Kind::Redraw;
-    // Key: GLFW_KEY_ of the letter on the user's keyboard; Letter: Unicode; Button: GLFW_MOUSE_BUTTON_
+    // The code is GLFW_KEY_ of the letter on the user's keyboard (Key), Unicode (Letter) or
+    // GLFW_MOUSE_BUTTON_ (Button).
     int code = 0;
     int place = 0;                       // Key: GLFW_KEY_ of the same place on a US keyboard
     int scancode = 0;                    // Key
@@ -25,8 +26,8 @@ struct WindowEvent {
     std::vector<std::string> paths = {}; // Drop
 };
 
-/// A window with an OpenGL 4.5 core context, current on the thread that made it. One at a time; all calls but
-/// wake() are for that thread.
+/// A window with an OpenGL 4.5 core context, which is current on the thread that made it. There is one at a
+/// time; all calls but wake() are for that thread.
 class Window {
 public:
     struct Desc {
@@ -34,7 +35,7 @@ public:
         std::string title;
         bool debug = false; // the driver checks more and tells more, and is slower
     };
-    explicit Window(const Desc& desc); // shown; throws Error naming what is missing and the mend
+    explicit Window(const Desc& desc); // shows it; throws Error naming what is missing and the remedy
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
@@ -51,10 +52,11 @@ public:
     void setTitle(const std::string& title);
     void setVsync(bool on);
 
-    /// Takes what has happened so far after waiting for something at most so long [s]; 0: not at all.
+    /// Waits at most so long [s], 0: not at all, for something to happen, and returns what has happened so
+    /// far.
     std::vector<WindowEvent> wait(double seconds);
     void swap();
-    /// Ends wait(). From any thread.
+    /// Ends wait(). Any thread may call it.
     static void wake();
 
 private:
