@@ -10,19 +10,21 @@ namespace relume {
 namespace {
 
 constexpr float kPoleMargin = 0.01f; // [rad] to the poles, where yaw has no meaning
-// Of the scene's diagonal: nearer things are cut off. Depth is as good with any, see projectionMatrix.
+// Things nearer than this share of the scene's diagonal are cut off. Depth is as good with any share, see
+// projectionMatrix.
 constexpr float kNearShare = 1e-4f;
 
 glm::vec3 rotated(const glm::vec3& v, float angle, const glm::vec3& axis) {
     return glm::vec3(glm::rotate(glm::mat4(1.0f), angle, axis) * glm::vec4(v, 0.0f));
 }
 
-// `offset` turned about `up` and then towards it or away, by no more than up to the poles.
+// Returns `offset` turned about `up` and then towards it or away, by no more than up to the poles.
 glm::vec3 turned(const glm::vec3& offset, const ViewCamera& camera, float yaw, float pitch) {
     const float length = glm::length(offset);
     const float angle = std::acos(std::clamp(glm::dot(offset, camera.up) / length, -1.0f, 1.0f)); // from up
     const float wanted = std::clamp(angle - pitch, kPoleMargin, glm::pi<float>() - kPoleMargin);
-    // In the plane of `up` and `offset`; right(camera) is square to both, whichever way the offset goes.
+    // This lies in the plane of `up` and `offset`; right(camera) is square to both, whichever way the offset
+    // goes.
     const glm::vec3 side = right(camera);
     glm::vec3 flat = glm::cross(side, camera.up);
     if (glm::dot(flat, offset) < 0.0f) flat = -flat;

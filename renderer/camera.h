@@ -7,7 +7,8 @@
 
 namespace relume {
 
-/// Where a picture is seen from. A plain value; whatever moves it is a function that returns the moved one.
+/// Tells where a picture is seen from. It is a plain value; whatever moves it is a function that returns the
+/// moved one.
 struct ViewCamera {
     glm::vec3 eye{0.0f, 0.0f, 1.0f}, target{0.0f}; // [m], apart; orbits and zooms go about the target
     glm::vec3 up{0.0f, 1.0f, 0.0f};                // unit; yaw turns about it
@@ -23,8 +24,8 @@ glm::vec3 forward(const ViewCamera& camera); // unit
 glm::vec3 right(const ViewCamera& camera);   // unit, also where the camera looks along `up`
 
 glm::mat4 viewMatrix(const ViewCamera& camera);
-/// aspect: width / height. Depth runs from 1 at znear to 0 far away, for a clip control of [0, 1]: floats are
-/// then as fine far away as they are near by.
+/// Returns the projection; aspect: width / height. Depth runs from 1 at znear to 0 far away, for a clip
+/// control of [0, 1]: floats are then as fine far away as they are near by.
 glm::mat4 projectionMatrix(const ViewCamera& camera, float aspect);
 
 /// Turns the eye about the target [rad]; it stops short of the poles.
@@ -33,16 +34,17 @@ ViewCamera orbit(const ViewCamera& camera, float yaw, float pitch);
 ViewCamera look(const ViewCamera& camera, float yaw, float pitch);
 /// Moves by shares of the picture's height at the target: right and up.
 ViewCamera pan(const ViewCamera& camera, float dx, float dy);
-/// Scales the distance to the target (orthographic: the picture's height); factor > 0, below 1 comes closer.
+/// Scales the distance to the target (orthographic: the picture's height) by a factor > 0; one below 1 comes
+/// closer.
 ViewCamera zoom(const ViewCamera& camera, float factor);
 /// Moves by metres to the right, up and forward.
 ViewCamera fly(const ViewCamera& camera, const glm::vec3& move);
-/// The same direction and angle, from where all of the box is just seen.
+/// Returns a camera of the same direction and angle, from where all of the box is just seen.
 ViewCamera frameBox(const ViewCamera& camera, const Box& box, float aspect);
 
-/// A camera of a file in a scene with these bounds, which give the target's distance.
+/// Returns the camera for one of a file in a scene with these bounds, which give the target's distance.
 ViewCamera cameraOfFile(const Camera& camera, const Box& bounds);
-/// A camera at `eye` looking at `target` in a scene with these bounds.
+/// Returns a camera at `eye` looking at `target` in a scene with these bounds.
 ViewCamera cameraAt(const glm::vec3& eye, const glm::vec3& target, const Box& bounds);
 
 } // namespace relume

@@ -11,12 +11,13 @@
 namespace relume {
 namespace {
 
-// In units of the font, whose letters are 7 high and whose lines are 12 apart.
+// These are in units of the font, whose letters are 7 high and whose lines are 12 apart.
 constexpr uint32_t kLineUnits = 12, kPaddingUnits = 4;
-// Picture rows for each pixel that a unit is wide: a line is then 4 % of the picture's height.
+// There are so many picture rows for each pixel that a unit is wide; a line is then 4 % of the picture's
+// height.
 constexpr uint32_t kRowsPerUnit = 270;
-// What is left of the light below the letters: sRGB white becomes a third of grey, against which white has a
-// contrast of 7 : 1.
+// This share of the light is left below the letters: sRGB white becomes a third of grey, against which white
+// has a contrast of 7 : 1.
 constexpr float kBand = 0.1f;
 constexpr size_t kBytesPerLetter = 400; // of quads; the font takes about 270
 constexpr size_t kVertexBytes = 16;     // three floats and a colour
@@ -65,7 +66,7 @@ void drawCaption(FloatImage& picture, const std::vector<std::string>& lines) {
         for (uint32_t y = 0; y < box.height; ++y)
             std::for_each(row(y), row(y) + box.width, [](float& value) { value *= kBand; });
         for (int i = 0; i < count; ++i) {
-            // The first and the third corner; x and y in units, downwards.
+            // These are the first and the third corner; x and y are in units, downwards.
             std::array<float, 2> low{}, high{};
             const char* quad = quads.data() + static_cast<size_t>(i) * 4 * kVertexBytes;
             std::memcpy(low.data(), quad, sizeof(low));

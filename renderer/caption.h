@@ -7,12 +7,12 @@
 
 namespace relume {
 
-/// A rectangle of an image [pixels], row 0 on top.
+/// Describes a rectangle of an image [pixels], row 0 on top.
 struct CaptionBox {
     uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// The part of a picture of this size that a caption of these lines takes: its lower left corner.
+/// Returns the part of a picture of this size that a caption of these lines takes: its lower left corner.
 CaptionBox captionBox(uint32_t width, uint32_t height, const std::vector<std::string>& lines);
 
 /// Writes lines of ASCII (anything else becomes ?) into the picture's lower left corner, white on a darkened

@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// What is drawn of a scene; shaders/lib/scene_material.glsl says more.
+/// Says what is drawn of a scene; shaders/lib/scene_material.glsl says more.
 enum class View : uint32_t {
     Lit = shader::kViewLit,
     Lighting = shader::kViewLighting,
@@ -23,17 +23,19 @@ enum class View : uint32_t {
     Checker = shader::kViewChecker,
     Density = shader::kViewDensity,
     Coverage = shader::kViewCoverage,
-    // Of a quantity that the lightmap's texture holds in place of light, in RGB:
+    // The views below show a quantity that the lightmap's texture holds in place of light. These have it in
+    // RGB:
     InspectColor = shader::kViewInspectColor,       // light: ligIn, ligOut, their mips
     InspectRaw = shader::kViewInspectRaw,           // as displayed
     InspectPosition = shader::kViewInspectPosition, // as a share of DrawSettings' range
     InspectNormal = shader::kViewInspectNormal,
-    // R on a scale of colours over the range's x:
+    // This shows R on a scale of colours over the range's x:
     InspectHeat = shader::kViewInspectHeat,
-    // Quad-tree: R log2 of a leaf's edge in texels, G 1 along its border, B in [0, 1) tells it from
-    // neighbours:
+    // This shows the quad-tree: R is log2 of a leaf's edge in texels, G is 1 along its border, B in [0, 1)
+    // tells it from neighbours:
     InspectLeaves = shader::kViewInspectLeaves,
-    // R 1 seen or 0 not, G form factor, of the largest one, B 1 where it is seen from:
+    // This shows what is seen: R is 1 if seen and 0 if not, G is the form factor as a share of the largest
+    // one, B is 1 where it is seen from:
     InspectMask = shader::kViewInspectMask,
 };
 
@@ -45,15 +47,16 @@ enum class LightmapFilter : uint32_t {
 
 enum class ToneMap : uint32_t { None = shader::kToneNone, Aces = shader::kToneAces, Agx = shader::kToneAgx };
 
-/// By number, as users write them: "lit", "bilinear", "agx". Views only up to Coverage: the others need a
-/// baker that tells quantities.
+/// Return the names by number, as users write them: "lit", "bilinear", "agx". Views go only up to Coverage:
+/// the others need a baker that tells quantities.
 const std::vector<std::string>& viewNames();
 const std::vector<std::string>& filterNames();
 const std::vector<std::string>& toneNames();
 
-/// Views of light are exposed and tone mapped, the others are colours that mean something as they are.
+/// Tells whether a view shows light: such views are exposed and tone mapped, the others are colours that mean
+/// something as they are.
 bool showsLight(View view);
-/// Whether a view differs with what the lightmap holds.
+/// Tells whether a view depends on what the lightmap holds.
 bool readsLightmap(View view);
 
 struct DrawSettings {

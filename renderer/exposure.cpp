@@ -5,7 +5,7 @@
 
 namespace relume {
 
-// The log-average luminance [Reinhard, Stark, Shirley, Ferwerda 2002, equation 1], of cells of pixels.
+// Takes the log-average luminance [Reinhard, Stark, Shirley, Ferwerda 2002, equation 1] of cells of pixels.
 float automaticExposure(std::span<const glm::vec4> cells) {
     constexpr double kMiddleGrey = 0.18;  // reflectance of a grey card
     constexpr double kDarkest = 1.0 / 64; // of the mean: black corners shall not brighten the rest

@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-// Along each side: few to read back, and the picture's parts are still told apart.
+// There are so many cells along each side: few to read back, while the picture's parts are still told apart.
 constexpr uint32_t kMeterCells = 64;
 constexpr size_t kBytes = sizeof(glm::vec4) * kMeterCells * kMeterCells;
 

@@ -15,10 +15,11 @@ public:
     ExposureMeter(); // throws Error when its shader does not compile
 
     /// Begins to measure a picture whose alpha holds the brightness of its light (meterCode of light times
-    /// meterScale). samples: of each pixel, 0: no multisampling.
+    /// meterScale). `samples` is the number per pixel; 0: no multisampling.
     void measure(const gl::Framebuffer& picture, uint32_t samples, float meterScale);
     bool pending() const { return readback_.pending(); }
-    /// What began last, once; wait: in any case, where something is pending. [EV]
+    /// Returns the result [EV] of the measurement that began last, once; with `wait` in any case where one is
+    /// pending.
     std::optional<float> result(bool wait);
 
     /// Compiles its programs again. Throws Error and keeps the old ones when one fails.

@@ -4,7 +4,8 @@
 
 namespace relume {
 
-// Sums of the matrix' rows [Gribb and Hartmann 2001]. Near is where depth is 1 (reversed), so z <= w.
+// The planes are sums of the matrix' rows [Gribb and Hartmann 2001]. Near is where depth is 1 (reversed), so
+// z <= w.
 Frustum::Frustum(const glm::mat4& viewProjection) {
     const glm::mat4 rows = glm::transpose(viewProjection);
     planes_ = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2]};
@@ -12,7 +13,7 @@ Frustum::Frustum(const glm::mat4& viewProjection) {
 
 bool Frustum::sees(const Box& box) const {
     return std::all_of(planes_.begin(), planes_.end(), [&](const glm::vec4& plane) {
-        // The corner farthest along the plane's normal.
+        // This is the corner farthest along the plane's normal.
         const glm::vec3 corner(plane.x > 0.0f ? box.high.x : box.low.x,
                                plane.y > 0.0f ? box.high.y : box.low.y,
                                plane.z > 0.0f ? box.high.z : box.low.z);

@@ -8,14 +8,14 @@
 
 namespace relume {
 
-/// The planes that bound what a picture shows: left, right, bottom, top and near.
+/// Holds the planes that bound what a picture shows: left, right, bottom, top and near.
 class Frustum {
 public:
-    /// viewProjection: projectionMatrix times viewMatrix.
+    /// Takes projectionMatrix times viewMatrix.
     explicit Frustum(const glm::mat4& viewProjection);
 
-    /// False only where nothing of the box is in the picture; a box near the picture's edge may count as
-    /// seen.
+    /// Returns false only where nothing of the box is in the picture; a box near the picture's edge may count
+    /// as seen.
     bool sees(const Box& box) const;
 
 private:

@@ -14,15 +14,15 @@
 namespace relume {
 namespace {
 
-// All in points of the picture.
+// These are all in points of the picture.
 constexpr float kLength = 90, kRing = 80, kScreenRing = 96, kHead = 12, kCentre = 8;
 constexpr float kPlaneFrom = 24, kPlaneTo = 44; // of the squares between two axes
 constexpr float kHandReach = 7;                 // that a hand is off
 constexpr int kRingParts = 64;
-// Sine of the angle to the direction of view below which an axis, or a plane seen from its edge, says nothing
-// about depth: 6 degrees.
+// This is the sine of the angle to the direction of view below which an axis, or a plane seen from its edge,
+// says nothing about depth: 6 degrees.
 constexpr float kEdgeOn = 0.1f;
-// Of the distance to the eye: further no drag goes, where an axis runs to its vanishing point.
+// No drag goes further than so many distances to the eye, where an axis runs to its vanishing point.
 constexpr float kFarthest = 1e3f;
 constexpr float kTurnStep = std::numbers::pi_v<float> / 12.0f; // [rad]
 
@@ -52,7 +52,7 @@ glm::vec3 unit(int axis) {
     return direction;
 }
 
-// None: the ray runs beside the plane or away from it.
+// Returns where a ray meets a plane, or none where it runs beside the plane or away from it.
 std::optional<glm::vec3> meet(const ScreenRay& ray, const glm::vec3& origin, const glm::vec3& normal) {
     const float slope = glm::dot(ray.direction, normal);
     if (std::abs(slope) < 1e-6f) return std::nullopt;
@@ -113,7 +113,7 @@ public:
             true);
     }
 
-    // The half of a ring that is towards the eye, or all of it where it is seen face on.
+    // Adds the half of a ring that is towards the eye, or all of it where it is seen face on.
     void addRing(GizmoHandle handle, const glm::vec3& axis, float radius) {
         const glm::vec3 along = std::abs(axis.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
         const glm::vec3 a = glm::normalize(glm::cross(axis, along)), b = glm::cross(axis, a);
@@ -181,7 +181,7 @@ GizmoHandle gizmoAt(const GizmoPlace& place, const glm::vec2& point) {
         float distance = std::numeric_limits<float>::max();
         for (size_t i = 0; i + 1 < shape.points.size(); ++i)
             distance = std::min(distance, distanceToLine(point, shape.points[i], shape.points[i + 1]));
-        // Within an area all is as near as can be; a ring that small is one to its middle.
+        // Within an area all is as near as can be; so small a ring is an area up to its middle.
         const bool area =
             shape.filled || (place.mode == GizmoMode::Translate && shape.handle == GizmoHandle::Screen);
         if (area && inside(shape.points, point)) distance = 0.0f;
@@ -208,7 +208,7 @@ glm::vec3 GizmoDrag::translation(const glm::vec2& point) const {
         normal = unit(axis);
         flat = std::abs(eye[axis]) < kEdgeOn;
     } else if (axis >= 0) {
-        // The plane through the axis that faces the eye most.
+        // This is the plane through the axis that faces the eye most.
         const glm::vec3 side = glm::cross(unit(axis), eye);
         flat = glm::length(side) < kEdgeOn;
         if (!flat) normal = glm::normalize(glm::cross(side, unit(axis)));
@@ -229,7 +229,7 @@ glm::vec3 GizmoDrag::translation(const glm::vec2& point) const {
     return length > most ? move * (most / length) : move;
 }
 
-// [rad], counter-clockwise about the axis.
+// Returns the turn [rad], counter-clockwise about the axis.
 float GizmoDrag::rotation(const glm::vec3& axis, const glm::vec2& point) const {
     const glm::vec3 eye = towardsEye(place_.view.camera, place_.origin);
     const std::optional<glm::vec3> from = meet(rayThrough(place_.view, from_), place_.origin, axis);

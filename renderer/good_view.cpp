@@ -21,8 +21,8 @@ struct Hit {
     bool front = false;
 };
 
-// The nearest triangle along a ray [Moeller and Trumbore 1997]. All triangles are tried: there are a few
-// hundred rays only.
+// Returns the nearest triangle along a ray [Moeller and Trumbore 1997]. All triangles are tried: there are a
+// few hundred rays only.
 Hit trace(const WorldMesh& mesh, const glm::vec3& origin, const glm::vec3& direction) {
     Hit nearest;
     for (size_t i = 0; i < mesh.positions.size(); i += 3) {
@@ -43,7 +43,8 @@ Hit trace(const WorldMesh& mesh, const glm::vec3& origin, const glm::vec3& direc
     return nearest;
 }
 
-// Even over the sphere: a spiral of golden angles [Vogel 1979, on the sphere].
+// Returns a direction of a set that is even over the sphere: a spiral of golden angles [Vogel 1979, on the
+// sphere].
 glm::vec3 probeDirection(int index) {
     const float z = 1.0f - (2.0f * static_cast<float>(index) + 1.0f) / kProbeRays;
     const float angle = static_cast<float>(index) * glm::pi<float>() * (3.0f - std::sqrt(5.0f));
@@ -58,8 +59,9 @@ bool isInRoom(const WorldMesh& mesh, const glm::vec3& eye) {
     return static_cast<float>(fronts) >= kRoomShare * kProbeRays;
 }
 
-// How far one sees, as the geometric mean over a grid of the picture's rays: something close before the eye
-// counts much. In shares of `scale`; 0 where a ray meets a back, for then the eye is inside something.
+// Returns how far one sees, as the geometric mean over a grid of the picture's rays, so that something close
+// before the eye counts much. It is in shares of `scale`, and 0 where a ray meets a back, for then the eye is
+// inside something.
 float openness(const WorldMesh& mesh, const ViewCamera& camera, float aspect, float scale) {
     constexpr int kColumns = 7, kRows = 5;
     const glm::vec3 ahead = forward(camera), side = right(camera), above = glm::cross(side, ahead);
@@ -84,8 +86,8 @@ ViewCamera goodView(const WorldMesh& mesh, float aspect) {
     const glm::vec3 centre = bounds.centre(), half = 0.5f * bounds.size();
     ViewCamera best;
     float bestScore = 0.0f;
-    // Eyes before the room's corners and the middles of its walls, a little above half its height; they look
-    // a little down.
+    // The eyes stand before the room's corners and the middles of its walls, a little above half its height;
+    // they look a little down.
     for (int i = 0; i < 8; ++i) {
         constexpr float kInset = 0.8f, kHeight = 0.15f;
         const float angle = 0.25f * glm::pi<float>() * static_cast<float>(i + 1);

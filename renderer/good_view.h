@@ -5,8 +5,9 @@
 
 namespace relume {
 
-/// A camera for a scene that brings none. Where its middle is a room, closed but for some openings, it stands
-/// inside, in the corner from where most is seen; otherwise outside, where all is seen.
+/// Returns a camera for a scene that brings none. Where the scene's middle is a room, closed but for some
+/// openings, the camera stands inside, in the corner from where most is seen; otherwise it stands outside,
+/// where all is seen.
 ViewCamera goodView(const WorldMesh& mesh, float aspect);
 
 } // namespace relume

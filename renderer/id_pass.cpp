@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-// Uniforms, as the shaders number them.
+// These are the uniforms, as the shaders number them.
 constexpr GLint kIdsViewProjection = 0, kIdsMaterial = 1, kIdsLightmapSize = 2;
 
 } // namespace

@@ -25,8 +25,8 @@ public:
         std::optional<uint32_t> without = {}; // an instance that is left out
     };
 
-    /// Into a framebuffer of unsigned integers with depth: R32UI for Tile, else RGBA32UI. Throws Error when
-    /// the shader does not compile.
+    /// Draws into a framebuffer of unsigned integers with depth: R32UI for Tile, else RGBA32UI. Throws Error
+    /// when the shader does not compile.
     void draw(const Desc& desc, Output output, const gl::Framebuffer& to);
     /// Compiles its programs again. Throws Error and keeps the old ones when one fails.
     void reload() { programs_ = programs_.reloaded(); }

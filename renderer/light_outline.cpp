@@ -8,7 +8,8 @@ namespace relume {
 namespace {
 
 constexpr int kParts = 24; // of a circle
-// Of a sign: the radius of its dot; where rays begin and end; what shines in one direction points so far.
+// These are shares of a sign's size: the radius of its dot, where rays begin and end, and how far the arrow
+// of what shines in one direction reaches.
 constexpr float kDot = 0.3f, kRayFrom = 0.45f, kRayTo = 0.8f, kArrow = 2.2f, kArrowHead = 0.3f;
 constexpr int kRays = 8;
 

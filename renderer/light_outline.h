@@ -16,8 +16,8 @@ struct OutlineDesc {
     glm::vec3 right{1.0f, 0.0f, 0.0f}, up{0.0f, 1.0f, 0.0f}; // of the picture: signs stand in its plane
     float size = 1.0f;                                       // of a sign [m]
 };
-/// Lines that show what kind of light stands where and where it shines: its body and cone as they are, signs
-/// and directions of one size.
+/// Returns lines that show what kind of light stands where and where it shines: its body and cone as they
+/// are, signs and directions of one size.
 std::vector<OutlineSegment> lightOutline(const Light& light, const OutlineDesc& desc);
 
 } // namespace relume

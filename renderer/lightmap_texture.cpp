@@ -17,17 +17,17 @@ struct Range {
     float largest = 0; // of all
 };
 
-// Half floats are fine to 2^-11 of their value from 6e-5 to 65504: brighter maps, and those whose mean is so
-// dark that shadows would be steps, take floats.
+// Tells whether half floats hold the light. They are fine to 2^-11 of their value from 6e-5 to 65504;
+// brighter maps, and those whose mean is so dark that shadows would be steps, take floats.
 bool fitsHalf(const Range& range) {
     const double mean = (range.sum.x + range.sum.y + range.sum.z) / std::max(3.0 * range.count, 1.0);
     return range.largest < 6e4f && mean > 1e-2;
 }
 
-// Whether no texel that a filter reaches from a patch is empty.
+// Tells whether no texel that a filter reaches from a patch is empty.
 bool isFilled(const std::vector<glm::vec4>& texels, int64_t size) {
     constexpr int64_t kReach = 2; // [texels], of the cubic filter
-    // Along rows, then columns of the patches so widened.
+    // This goes along rows, then along columns of the patches so widened.
     std::vector<uint8_t> wide(texels.size(), 0);
     for (int64_t i = 0; i < size * size; ++i) {
         if (texels[static_cast<size_t>(i)].a < kCovered) continue;

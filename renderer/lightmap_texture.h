@@ -10,9 +10,10 @@
 
 namespace relume {
 
-/// A lightmap to draw with, whoever made and owns the texture: lighting (irradiance / pi) or, for the views
-/// that inspect, another quantity in RGB, coverage in A (1 a patch, 0.5 filled from its neighbours, 0 empty),
-/// row 0 is v = 0. Empty texels are 0 in all channels; the texture filters linearly and clamps at its edges.
+/// Describes a lightmap to draw with, whoever made and owns the texture. RGB holds lighting (irradiance / pi)
+/// or, for the views that inspect, another quantity; A holds coverage (1 a patch, 0.5 filled from its
+/// neighbours, 0 empty); row 0 is v = 0. Empty texels are 0 in all channels; the texture filters linearly and
+/// clamps at its edges.
 struct LightmapTexture {
     GLuint texture = 0;      // 0: no light yet, all is lit by `ambient`
     uint32_t size = 0;       // edge [texels]
@@ -24,11 +25,12 @@ struct LightmapTexture {
     bool operator==(const LightmapTexture&) const = default;
 };
 
-/// One that is made from an image: 16-bit floats where they hold its values, else 32-bit ones.
+/// Owns a lightmap texture that is made from an image: it has 16-bit floats where they hold its values, else
+/// 32-bit ones.
 class LightmapImage {
 public:
-    /// Channels R, G, B and perhaps coverage: without it all texels count as covered. Throws Error, naming it
-    /// `name`, when it is not square or a channel is missing.
+    /// Takes channels R, G, B and perhaps coverage, without which all texels count as covered. Throws Error,
+    /// naming the image `name`, where it is not square or a channel is missing.
     LightmapImage(const FloatImage& image, const std::string& name);
 
     LightmapTexture texture() const {

@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// Lines in a scene, in OpenGL's memory. What is behind surfaces shines through faintly.
+/// Holds lines in a scene, in OpenGL's memory. What is behind surfaces shines through faintly.
 class LineDraw {
 public:
     struct Segment {
@@ -31,7 +31,7 @@ private:
     gl::VertexArray vertexArray_;
 };
 
-/// Boxes of one size in OpenGL's memory, drawn in a scene's place.
+/// Holds boxes of one size in OpenGL's memory, drawn in a scene's place.
 class VoxelDraw {
 public:
     struct Desc {

@@ -7,7 +7,7 @@
 namespace relume {
 namespace {
 
-// A picture of one pixel out of one of `size`.
+// Returns the transform that makes a picture of one pixel out of one of `size`.
 glm::mat4 onlyPixel(const glm::vec2& pixel, const glm::vec2& size) {
     const glm::vec2 ndc(2.0f * pixel.x / size.x - 1.0f, 1.0f - 2.0f * pixel.y / size.y);
     const glm::mat4 scale = glm::scale(glm::mat4(1.0f), glm::vec3(size, 1.0f));

@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What is at a pixel of a picture.
+/// Tells what is at a pixel of a picture.
 struct Pick {
     uint32_t instance = 0,
              material = 0; // into Scene::instances and materials (materials.size(): the default)
@@ -29,7 +29,8 @@ public:
         uint32_t lightmapSize = 1; // edge [texels]
         std::optional<uint32_t> without = {}; // an instance that is looked through
     };
-    /// The nearest surface there, holes of masks left out; none where nothing is. Waits for the device.
+    /// Returns the nearest surface there, holes of masks left out, or none where nothing is. Waits for the
+    /// device.
     std::optional<Pick> pick(const Query& query);
 
     /// Compiles its programs again. Throws Error and keeps the old ones when one fails.

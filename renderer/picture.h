@@ -5,8 +5,8 @@
 
 namespace relume {
 
-/// A finished picture (GL_RGBA8, sRGB encoded) as an image of linear R, G and B, its upper row first: written
-/// as PNG it is the same again.
+/// Reads a finished picture (GL_RGBA8, sRGB encoded) as an image of linear R, G and B, its upper row first;
+/// written as PNG it is the same again.
 FloatImage readPicture(const gl::Framebuffer& framebuffer);
 
 } // namespace relume

@@ -31,7 +31,7 @@ public:
 private:
     static constexpr uint32_t kEmpty = 0xffffffffu;
 
-    // FNV-1a by words, its high bits folded down to where the table looks.
+    // Hashes by FNV-1a, word by word, and folds the high bits down to where the table looks.
     static size_t hash(const SceneVertex& vertex) {
         uint32_t words[sizeof(vertex) / sizeof(uint32_t)];
         std::memcpy(words, &vertex, sizeof(vertex));
@@ -64,7 +64,7 @@ SceneVertex vertexOf(const WorldMesh& mesh, uint32_t triangle, uint32_t corner) 
     return vertex;
 }
 
-// What a draw's triangles have together, `before` that of the first ones.
+// Returns what a draw's triangles have together; `before` is what the first ones have.
 uint32_t mappedWith(uint32_t before, bool first, bool mapped) {
     const uint32_t own = mapped ? shader::kMappedAll : shader::kMappedNone;
     return first || before == own ? own : shader::kMappedSome;

@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// What shaders/gl/scene.vert reads, in its order.
+/// Holds a vertex as shaders/gl/scene.vert reads it, in its order.
 struct SceneVertex {
     glm::vec3 position; // [m], world space
     glm::vec3 normal;   // unit
@@ -21,7 +21,7 @@ struct SceneVertex {
     uint32_t mapped = 0; // 1: lightmapUv is one
 };
 
-/// Triangles of one material and instance, drawn at once.
+/// Holds triangles of one material and instance, which are drawn at once.
 struct SceneDraw {
     uint32_t firstIndex = 0, indexCount = 0;
     uint32_t material = 0; // into Scene::materials; materials.size() is the default
@@ -32,20 +32,20 @@ struct SceneDraw {
     Box bounds;
 };
 
-/// A scene's triangles in the order in which they are drawn; equal corners share a vertex.
+/// Holds a scene's triangles in the order in which they are drawn; equal corners share a vertex.
 struct SceneGeometry {
     std::vector<SceneVertex> vertices;
     std::vector<uint32_t> indices;
     std::vector<SceneDraw> draws; // single-sided ones first, those of a material side by side
     Box bounds;
-    // Square root of lightmap area over surface area, the median over the surface [1/m]: times the lightmap's
-    // edge in texels it is the texels per metre. 0 without lightmap UVs.
+    // This is the square root of lightmap area over surface area, the median over the surface [1/m]; times
+    // the lightmap's edge in texels it is the texels per metre. It is 0 without lightmap UVs.
     float medianDensity = 0;
 };
 
 SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh);
 
-/// The bounds of all triangles.
+/// Returns the bounds of all triangles.
 Box boundsOf(const WorldMesh& mesh);
 
 } // namespace relume

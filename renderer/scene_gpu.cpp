@@ -36,7 +36,7 @@ gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb) {
 }
 
 gl::Texture makeSkyPicture(const Sky& sky) {
-    // What half floats cannot hold would be infinite, which no tone mapping brings back.
+    // Values that half floats cannot hold would be infinite, which no tone mapping brings back.
     constexpr float kMostHalf = 65504.0f;
     std::vector<glm::vec3> pixels = sky.pixels;
     for (glm::vec3& pixel : pixels)

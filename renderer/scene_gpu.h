@@ -14,20 +14,20 @@
 
 namespace relume {
 
-/// What brings points of an instance from where it stood to where it stands; the identity where it had no
-/// volume.
+/// Returns what brings points of an instance from where it stood to where it stands, or the identity where it
+/// had no volume.
 glm::mat4 placementBetween(const glm::mat4& from, const glm::mat4& to);
 
-/// A scene in OpenGL's memory: vertices, textures with their mips, materials. Belongs to the context that is
-/// current when it is made; needs neither scene nor mesh afterwards.
+/// Holds a scene in OpenGL's memory: vertices, textures with their mips, materials. It belongs to the context
+/// that is current when it is made, and needs neither scene nor mesh afterwards.
 class SceneGpu {
 public:
-    /// Textures of one material, 0: none.
+    /// Holds the textures of one material; 0: none.
     struct MaterialTextures {
         GLuint base = 0, emission = 0, metallic = 0;
         bool masked = false; // has holes
     };
-    /// Where an instance stands, seen from where it was when this was made.
+    /// Tells where an instance stands, seen from where it was when this was made.
     struct Place {
         glm::mat4 transform{1.0f};
         glm::mat3 normals{1.0f}; // of any length
@@ -37,26 +37,28 @@ public:
     static constexpr float kAnisotropy = 8.0f;
 
     SceneGpu(const Scene& scene, const WorldMesh& mesh); // throws Error when it does not fit
-    /// Of a geometry that was made before, beside the thread that draws.
+    /// Takes a geometry that was made before, beside the thread that draws.
     SceneGpu(const Scene& scene, const SceneGeometry& geometry);
 
     /// Takes the factors of the scene's materials anew: base colour, emission, metallic, roughness. Textures,
     /// the alpha mode and the number of materials must be as they were.
     void updateMaterials(const Scene& scene);
-    /// Draws instances where these are; as many as the scene's.
+    /// Lets instances be drawn where these placements are, of which there are as many as the scene has
+    /// instances.
     void updatePlacements(const std::vector<Placement>& placements);
-    /// The sky as it is set now. Another picture than the one that is here is not drawn.
+    /// Takes the sky as it is set now. Another picture than the one that is here is not drawn.
     void updateSky(const SkySettings& sky);
-    /// The picture of that file.
+    /// Takes the picture of the sky's file.
     void updateSkyPicture(const Sky& sky);
     const std::string& skyFile() const { return skyFile_; } // whose picture is here, "": none
-    /// Samples along the longer side of what a pixel covers of a texture, at most kAnisotropy; 1: none, which
-    /// spares a software device a little of a textured scene's time and blurs its floors.
+    /// Sets the number of samples along the longer side of what a pixel covers of a texture, at most
+    /// kAnisotropy. With 1 there is no anisotropy, which spares a software device a little of a textured
+    /// scene's time and blurs its floors.
     void setAnisotropy(float samples);
 
     const std::vector<SceneDraw>& draws() const { return draws_; }
     const Place& place(uint32_t instance) const { return places_[instance]; }
-    /// Of a draw as it is placed.
+    /// Returns the bounds of a draw as it is placed.
     Box boundsOf(const SceneDraw& draw) const;
     const MaterialTextures& textures(uint32_t material) const { return textures_[material]; }
     const SkySettings& sky() const { return sky_; }

@@ -11,7 +11,7 @@
 namespace relume {
 namespace {
 
-// Uniforms, as the shaders number them.
+// These are the uniforms, as the shaders number them.
 constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6,
                 kMeterScale = 7, kMedianDensity = 8, kExposure = 9, kUnit = 10, kRangeLow = 11,
                 kRangeHigh = 12;
@@ -19,7 +19,7 @@ constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye =
 constexpr GLint kSkyAhead = 0, kSkyAcross = 1, kSkyAbove = 2, kSkySize = 3, kSkyRadiance = 4,
                 kSkyRotation = 5;
 constexpr GLuint kLightmapUnit = 3;
-// Keys of programs; those of the scene are below.
+// These are keys of programs; those of the scene are below.
 constexpr uint32_t kSkyProgram = 1u << 29, kLineProgram = 1u << 30, kVoxelProgram = 1u << 31;
 
 constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
@@ -30,7 +30,8 @@ float meterScaleOf(const LightmapTexture& lightmap) {
     return mean > 0.0f && std::isfinite(mean) ? 1.0f / mean : 1.0f;
 }
 
-// Before anything was measured: the mean light on a surface of albedo one half is a middle grey.
+// Guesses the exposure before anything was measured: the mean light on a surface of albedo one half is a
+// middle grey.
 float guessExposure(const LightmapTexture& lightmap) {
     constexpr float kMiddleGrey = 0.18f, kAlbedo = 0.5f;
     return std::log2(kMiddleGrey / kAlbedo * meterScaleOf(lightmap));
@@ -44,7 +45,7 @@ bool fetchesEmission(View view) {
     return view == View::Lit || view == View::Emission;
 }
 
-/// What a variant of scene.frag is compiled for, in the order of its definitions.
+/// Tells what a variant of scene.frag is compiled for, in the order of its definitions.
 struct Variant {
     uint32_t view = 0, filter = 0, tone = 0, base = 0, emission = 0, metallic = 0, masked = 0, mapped = 0,
              selected = 0, filled = 0;
@@ -64,7 +65,8 @@ struct Variant {
     }
 };
 
-// No more of them than there are different programs: what a view does not look at is left out.
+// Returns the variant. There are no more of them than different programs: what a view does not look at is
+// left out.
 Variant variantOf(const DrawSettings& settings, const SceneDraw& draw,
                   const SceneGpu::MaterialTextures& textures, const LightmapTexture& lightmap) {
     const View view = settings.view;
@@ -96,7 +98,7 @@ void clear(const gl::Framebuffer& surface, const glm::vec3& background) {
 SceneRenderer::SceneRenderer(uint32_t samples, Metering metering)
     : metering_((gl::requireOpenGl45(), metering)), empty_({.attributes = {}, .name = "empty"}) {
     setSamples(samples);
-    // What is wrong with it shows now.
+    // A fault of the shader shows now.
     const DrawSettings usual;
     const Variant plain{.filter = static_cast<uint32_t>(usual.filter),
                         .tone = static_cast<uint32_t>(usual.tone),
@@ -122,7 +124,7 @@ void SceneRenderer::setSamples(uint32_t samples) {
 }
 
 void SceneRenderer::reload() {
-    // Both or none: the meter's few programs are made twice where the scene's fail.
+    // Both are reloaded or none: programs_ changes only once the meter's programs have compiled, too.
     gl::ProgramCache programs = programs_.reloaded();
     meter_.reload();
     programs_ = std::move(programs);
@@ -189,7 +191,7 @@ void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
     }
 }
 
-// Behind everything: where the depth is still what it was cleared to.
+// Draws the sky behind everything, where the depth is still what it was cleared to.
 void SceneRenderer::drawSky(const Frame& frame, const Pass& pass) {
     const SkySettings& sky = frame.scene.sky();
     if (frame.settings.view != View::Lit || sky.radiance == glm::vec3(0.0f)) return;
@@ -298,7 +300,7 @@ void SceneRenderer::resolve() {
 float SceneRenderer::exposureFor(const Frame& frame) const {
     if (frame.settings.exposure) return *frame.settings.exposure;
     if (!measured_) return guessExposure(frame.lightmap);
-    // Less than can be seen is no reason to draw again.
+    // A difference too small to be seen is no reason to draw again.
     return std::abs(*measured_ - exposure_) < kSameExposure ? exposure_ : *measured_;
 }
 
@@ -319,7 +321,8 @@ void SceneRenderer::takeMeasurement(bool wait) {
 }
 
 void SceneRenderer::measure(const Frame& frame) {
-    // What was asked for before must arrive, or a device that is behind would never be measured.
+    // A measurement that was asked for before must arrive, or a device that is behind would never be
+    // measured.
     unmeasured_ = meter_.pending();
     if (unmeasured_) return;
     const gl::Timer::Scope scope(timer_, "meter");

@@ -15,16 +15,16 @@
 
 namespace relume {
 
-/// Draws a scene with its lightmap. Works in whatever context is current when it is made, a window's or a
-/// headless one. Keeps the last picture, so that a viewer can show it again.
+/// Draws a scene with its lightmap. It works in whatever context is current when it is made, a window's or a
+/// headless one. It keeps the last picture, so that a viewer can show it again.
 class SceneRenderer {
 public:
-    /// Where the finished picture goes, in sRGB encoding.
+    /// Says where the finished picture goes, in sRGB encoding.
     struct Target {
         GLuint framebuffer = 0; // 0: the window's; its format is an ordinary one, not GL_SRGB8
         uint32_t width = 0, height = 0;
     };
-    /// What one picture shows.
+    /// Says what one picture shows.
     struct Frame {
         const SceneGpu& scene;
         LightmapTexture lightmap;
@@ -36,12 +36,12 @@ public:
     struct Counts {
         uint32_t drawn = 0, culled = 0; // SceneDraws
     };
-    /// Automatic exposure: Wait measures the picture that is drawn, as one shot needs; Async never waits for
-    /// the device and takes what earlier pictures measured, as a viewer needs.
+    /// Says how automatic exposure works: Wait measures the picture that is drawn, as one shot needs; Async
+    /// never waits for the device and takes what earlier pictures measured, as a viewer needs.
     enum class Metering { Wait, Async };
 
-    /// samples of each pixel, 0 or 1: no multisampling. Throws Error when a shader does not compile (draw:
-    /// that of another view) or the context is older than OpenGL 4.5.
+    /// Takes the samples of each pixel; 0 or 1: no multisampling. Throws Error when a shader does not compile
+    /// (draw throws it for that of another view) or the context is older than OpenGL 4.5.
     explicit SceneRenderer(uint32_t samples = 4, Metering metering = Metering::Wait);
 
     /// Shows the frame; draws it only where it is not what the last picture shows already. Returns whether it
@@ -49,14 +49,14 @@ public:
     bool draw(const Frame& frame, const Target& target);
     /// Shows the last picture again, scaled where the target has another size; nothing before the first.
     void present(const Target& target);
-    /// True until what the exposure of the last picture should be is known and drawn: draw again soon.
+    /// Returns true until the right exposure of the last picture is known and drawn: draw again soon.
     bool adapting() const;
 
-    /// What automatic exposure takes the next picture to ask for until it is measured, where Metering is
-    /// Async [EV]: so that a view that was seen before comes back without a jump.
+    /// Sets the exposure [EV] that automatic exposure takes for the next picture until it is measured, where
+    /// Metering is Async. Thus a view that was seen before comes back without a jump.
     void expectExposure(float exposure) { measured_ = exposure; }
 
-    /// Of the next pictures; the driver's largest number where it has fewer.
+    /// Sets the samples of the next pictures, or the driver's largest number where it has fewer.
     void setSamples(uint32_t samples);
     /// Compiles the programs in use again, from --shaders' folder. Throws Error and keeps them all when one
     /// fails.
@@ -68,7 +68,7 @@ public:
     gl::Timer& timer() { return timer_; } // its passes are measured; whoever ends frames calls endFrame
 
 private:
-    /// All that makes a picture what it is.
+    /// Holds all that makes a picture what it is.
     struct Shown {
         uint64_t scene = 0, lines = 0, voxels = 0; // versions
         LightmapTexture lightmap;

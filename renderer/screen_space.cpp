@@ -14,12 +14,12 @@ glm::vec3 upward(const ViewCamera& camera) {
     return glm::cross(right(camera), forward(camera));
 }
 
-// Half of the picture's height: of all depths, or at a depth of 1.
+// Returns half of the picture's height: for all depths, or at a depth of 1.
 float halfHeight(const ViewCamera& camera) {
     return isFlat(camera) ? camera.halfHeight : std::tan(0.5f * camera.yfov);
 }
 
-// Right, up and forward of the eye [m].
+// Returns how far a position is to the right of the eye, above it and before it [m].
 glm::vec3 inView(const ViewCamera& camera, const glm::vec3& position) {
     const glm::vec3 way = position - camera.eye;
     return {glm::dot(way, right(camera)), glm::dot(way, upward(camera)), glm::dot(way, forward(camera))};

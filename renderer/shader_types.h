@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-// As bake/base/shader_types.h has it for the kernels, for what is drawn; a source may include both.
+// This does for what is drawn what bake/base/shader_types.h does for the kernels; a source may include both.
 #ifndef FUNCTION
 #define FUNCTION inline
 #endif

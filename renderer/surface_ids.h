@@ -19,10 +19,12 @@ public:
         uint32_t instance = 0, material = 0;
         std::optional<glm::vec2> lightmapUv; // none: no lightmap UVs there
     };
-    /// Asks; replaces what was asked for before. Throws Error when the shader does not compile.
+    /// Asks for the surfaces, in place of what was asked for before. Throws Error when the shader does not
+    /// compile.
     void request(const SceneGpu& scene, const ViewCamera& camera);
     bool pending() const { return readback_.pending(); }
-    /// Once after each request, as soon as it is there: kWidth * kHeight, the upper row first.
+    /// Returns the surfaces once after each request, as soon as they are there: kWidth * kHeight, the upper
+    /// row first.
     std::optional<std::vector<Surface>> poll();
 
     /// Compiles its programs again. Throws Error and keeps the old ones when one fails.

@@ -7,7 +7,7 @@
 namespace relume {
 namespace {
 
-// [pixels]: a tile that covers none of them is too small in the picture to come first.
+// The picture is so wide [pixels]; a tile that covers none of them is too small in it to come first.
 constexpr uint32_t kWidth = 256;
 constexpr uint32_t kMostHeight = 1024; // of windows that are narrow and high
 

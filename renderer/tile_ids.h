@@ -13,11 +13,12 @@ namespace relume {
 /// waits for the device.
 class TileIds {
 public:
-    /// Asks; replaces what was asked for before. aspect: width / height of the picture that the user sees,
-    /// lightmapSize: edge [texels]. Throws Error when the shader does not compile.
+    /// Asks for the tiles, in place of what was asked for before. `aspect` is width / height of the picture
+    /// that the user sees, `lightmapSize` is an edge [texels]. Throws Error when the shader does not compile.
     void request(const SceneGpu& scene, const ViewCamera& camera, float aspect, uint32_t lightmapSize);
     bool pending() const { return readback_.pending(); }
-    /// Once after each request, as soon as it is there: row x tiles per row + column, ascending, each once.
+    /// Returns the tiles once after each request, as soon as they are there: row x tiles per row + column,
+    /// ascending, each once.
     std::optional<std::vector<uint32_t>> poll();
 
     /// Compiles its programs again. Throws Error and keeps the old ones when one fails.

@@ -8,7 +8,7 @@
 namespace relume {
 namespace {
 
-// Uniforms, as uv.frag and what it includes number them.
+// These are the uniforms, as uv.frag and what it includes number them.
 constexpr GLint kUvWindow = 0, kUvTargetSize = 1, kUvMasked = 2, kUvBackground = 3, kUvMeterScale = 7,
                 kUvExposure = 9, kUvUnit = 10, kUvRangeLow = 11, kUvRangeHigh = 12;
 constexpr GLuint kUvLightmapUnit = 3;

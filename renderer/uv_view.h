@@ -8,16 +8,17 @@
 
 namespace relume {
 
-/// Where a picture shows the texture of a lightmap, row 0 on top.
+/// Tells where a picture shows the texture of a lightmap, row 0 on top.
 struct UvWindow {
     glm::vec2 centre{0.5f}; // uv in the picture's middle
     float zoom = 1.0f;      // 1: all of the texture just fits
 };
-/// The uv at a pixel of a picture, counted from its upper left corner; outside of [0, 1] beside the texture.
+/// Returns the uv at a pixel of a picture, counted from its upper left corner; it is outside of [0, 1] beside
+/// the texture.
 glm::vec2 uvAt(const UvWindow& window, const glm::vec2& pixel, const glm::vec2& size);
 /// Moves by pixels, as a drag does.
 UvWindow pan(const UvWindow& window, const glm::vec2& pixels, const glm::vec2& size);
-/// Scales about a pixel; factor > 1 comes closer.
+/// Scales about a pixel; a factor > 1 comes closer.
 UvWindow zoom(const UvWindow& window, float factor, const glm::vec2& pixel, const glm::vec2& size);
 
 /// Draws the texture of a lightmap flat.
@@ -26,8 +27,8 @@ public:
     struct Settings {
         UvWindow window;
         bool masked = true; // empty texels are hatched; else they are shown as they are
-        // view: light (Lit, Lighting, InspectColor), Coverage or another view that inspects, the rest count
-        // as light; exposure none: 0 EV.
+        // The view is one of light (Lit, Lighting, InspectColor), Coverage or another view that inspects; the
+        // rest count as light. Without an exposure, it is 0 EV.
         DrawSettings draw;
     };
     UvView(); // throws Error when its shader does not compile

@@ -4,8 +4,8 @@
 
 namespace relume {
 
-/// A number that no other call in this process gave or gives, above 0: tells whether what was drawn before is
-/// still the same.
+/// Returns a number above 0 that no other call in this process gave or gives; it tells whether what was drawn
+/// before is still the same.
 uint64_t newVersion();
 
 } // namespace relume

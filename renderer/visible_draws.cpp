@@ -8,7 +8,7 @@
 namespace relume {
 namespace {
 
-// Uniforms, as scene.vert numbers them.
+// These are the uniforms, as scene.vert numbers them.
 constexpr GLint kPlacement = 13, kTurning = 14;
 
 float farthest(const Box& box, const glm::vec3& eye) { // squared
@@ -28,7 +28,7 @@ std::vector<const SceneDraw*> visibleDraws(const SceneGpu& scene, const glm::mat
         const Box bounds = scene.boundsOf(draw);
         if (frustum.sees(bounds)) seen.emplace_back(farthest(bounds, eye), &draw);
     }
-    // By the far ends: a room is behind what stands in it.
+    // They are sorted by their far ends: a room is behind what stands in it.
     std::stable_sort(seen.begin(), seen.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<const SceneDraw*> visible;

@@ -1,7 +1,8 @@
-// A bounce of LANES layers side by side: one read of a link, and of what lies together behind it, serves all of them.
-// Gathers their light over links as links.comp, sample by sample of each replicate; where that ends a pass, also what is
-// sent next, and how much the light changed. Without links: what they send to begin with. One workgroup per chunk, one
-// invocation per patch and layer: those of a patch lie side by side, so that what they read is one access.
+// Bounces LANES layers side by side: one read of a link, and of what lies together behind it, serves all of
+// them. Gathers their light over links as links.comp does, sample by sample of each replicate; where that
+// ends a bounce, it also makes what is sent next, and tells how much the light changed. Without links it
+// makes what they send to begin with. There is one workgroup per chunk and one invocation per patch and
+// layer: those of a patch lie side by side, so that what they read is one access.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -21,7 +22,8 @@ bool has(uint mask) { return ((mask >> l) & 1u) != 0u; }
 Vec4s lightNow() { return Vec4s(has(push.from) ? lane.lightB : lane.lightA); }
 Vec4s lightNext() { return Vec4s(has(push.from) ? lane.lightA : lane.lightB); }
 
-// Over links, added to the sums of rounds before. What is packed is scaled: so are sums of it, until they are whole.
+// Gathers over links, on top of the sums of earlier sample passes. Packed light is scaled: so are sums of it,
+// until they are whole.
 void gather(uint chunk, out vec3 sums[kReplicates]) {
     for (uint q = 0u; q < kReplicates; ++q) {
         sums[q] = vec3(0.0);
@@ -40,7 +42,7 @@ void gather(uint chunk, out vec3 sums[kReplicates]) {
     for (uint q = 0u; q < kReplicates; ++q) sums[q] *= kPackInverse;
 }
 
-// Of a pass that ends.
+// Sends the light of a bounce that ends.
 void send(vec3 light) {
     uint flags = loadPatch(push.patches, index).flags;
     vec3 albedo = Vec4s(push.albedo).items[index].rgb;

@@ -1,5 +1,5 @@
-// How much a bounce changed the light, summed over each chunk: x squares of the difference, y the light, z patches, w the
-// light before. One workgroup per chunk.
+// Tells how much a bounce changed the light, summed over each chunk: x squares of the difference, y the
+// light, z patches, w the light before. There is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,4 +1,4 @@
-// CIT pass: the surface behind a texel's centre.
+// CIT pass: finds the surface behind a texel's centre.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_nonuniform_qualifier : require
@@ -30,8 +30,8 @@ vec4 texel(int index, vec2 uv, vec2 dx, vec2 dy) {
     return textureGrad(textures[nonuniformEXT(index)], uv, dx, dy);
 }
 
-// A point on the triangle's edge moved a quarter of a texel towards its centre: on the very edge it would lie in the
-// neighbouring wall and see nothing.
+// Moves a point on the triangle's edge a quarter of a texel towards its centre: on the very edge it would lie
+// in the neighbouring wall and see nothing.
 vec3 inwards(vec3 b) {
     const float kInset = 0.25; // texels
     float away = length(uvAt(push.lightmapUv, vec3(1.0 / 3.0)) - uvAt(push.lightmapUv, b)) * float(push.size);
@@ -43,8 +43,8 @@ void main() {
         // The grown triangle's tips reach beyond the texels it touches.
         if (any(lessThan(pixel, pixelBounds.xy - 0.5)) || any(greaterThan(pixel, pixelBounds.zw + 0.5))) discard;
     }
-    // Interpolated one by one, the weights of a small or thin triangle sum to 1 only within 1e-5: of a far coordinate that
-    // is more than a patch's offset, and the point leaves the triangle's plane.
+    // Interpolated one by one, the weights of a small or thin triangle sum to 1 only within 1e-5: for a far
+    // coordinate that is more than a patch's offset, and the point leaves the triangle's plane.
     vec3 b = vec3(1.0 - bary.y - bary.z, bary.yz);
     vec3 dx = dFdx(b), dy = dFdy(b);
     if (grown != 0u) {
@@ -59,7 +59,7 @@ void main() {
     vec4 color = colors.items[i] * b.x + colors.items[i + 1u] * b.y + colors.items[i + 2u] * b.z;
 
     CitMaterial m = CitMaterials(push.materials).items[Words(push.material).items[triangle]];
-    bool rtrad = push.rtrad != 0u; // knows neither vertex colours, nor emission textures, nor holes
+    bool rtrad = push.rtrad != 0u; // it knows neither vertex colours, nor emission textures, nor holes
     if (rtrad) color = vec4(1.0);
     vec4 base = m.baseColor * color * texel(m.baseTexture, uvAt(push.baseUv, b), uvAt(push.baseUv, dx), uvAt(push.baseUv, dy));
     if (!rtrad && m.alphaCutoff > 0.0 && base.a < m.alphaCutoff) discard;

@@ -4,14 +4,14 @@
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { CitPush push; };
 
-layout(location = 0) out vec3 bary;       // of this vertex in its triangle; outside [0,1] where the triangle was grown
+layout(location = 0) out vec3 bary;       // outside [0,1] where the triangle was grown
 layout(location = 1) out vec2 pixel;      // [texels]
 layout(location = 2) flat out uint triangle;
 layout(location = 3) flat out uint grown;
 layout(location = 4) flat out vec4 pixelBounds; // of the triangle, lo and hi [texels]
 
-// The corner of the triangle whose edges are moved outwards so far that every texel they touch has its centre inside
-// [Hasselgren, Akenine-Moeller and Ohlsson 2005]. Distances in texels.
+// Returns the corner of the triangle whose edges are moved outwards so far that every texel they touch has
+// its centre inside [Hasselgren, Akenine-Moeller and Ohlsson 2005]. Distances are in texels.
 vec2 grownCorner(vec2 a, vec2 b, vec2 c) {
     float winding = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) >= 0.0 ? 1.0 : -1.0;
     vec2 e0 = (b - a) * winding, e1 = (a - c) * winding; // both edges at corner a

@@ -1,4 +1,4 @@
-// Closest hits: one workgroup per chunk (x) and eight samples (y).
+// Finds closest hits, with one workgroup per chunk (x) and eight samples (y).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -9,8 +9,9 @@ layout(push_constant, scalar) uniform Push { ClosestPush push; };
 #include "lib/trace.glsl"
 #include "lib/closest.glsl"
 
-// 1: a workgroup's rays are sorted by direction first, so that neighbouring lanes take neighbouring ways (GPUs); 0: one
-// invocation per patch (software devices, where barriers cost more than that gains).
+// With 1 a workgroup's rays are sorted by direction first, so that neighbouring lanes take neighbouring ways
+// (GPUs); with 0 there is one invocation per patch (software devices, where barriers cost more than that
+// gains).
 layout(constant_id = 0) const uint kSorted = 1;
 
 layout(local_size_x = 64) in;
@@ -20,7 +21,7 @@ const uint kCells = 1u << (2u * kCellBits);
 shared uint cellEnd[kCells];
 shared uint order[kSamplesPerInvocation * kChunk];
 
-// In Morton order, so that neighbouring cells mostly follow each other.
+// Cells are in Morton order, so that neighbouring cells mostly follow each other.
 uint cellOf(uint key, uint index) {
     vec2 u = push.discCount == 0u ? sobolPoint(replicateIndex(index), replicateSeed(key, index))
                                   : 0.4999 * discSample(key, index).xy + 0.5;
@@ -42,10 +43,10 @@ void main() {
         return;
     }
     uint firstPatch = (push.firstChunk + chunk) * kChunk, firstLocal = gl_WorkGroupID.y * kSamplesPerInvocation;
-    // Not by tile: the first patch has no say.
+    // Directions are not shared by tile here: the first patch has no say.
     Patch own = loadPatch(push.patches, firstPatch + lane);
     uint key = rotationKey(own, own, push.rotation, push.size);
-    // A counting sort. What comes first within a cell is open, but every link has a place of its own.
+    // This is a counting sort. The order within a cell is open, but every link has a place of its own.
     for (uint c = lane; c < kCells; c += kChunk) cellEnd[c] = 0u;
     barrier();
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) atomicAdd(cellEnd[cellOf(key, push.firstSample + firstLocal + k)], 1u);

@@ -1,6 +1,6 @@
-// How far each receiver of the coarser grid is from what its neighbours on both sides say, without what noise explains:
-// squares of the light's difference along rows of texels in x, how many were compared in y, along columns in z and w. Sums
-// over chunks of receivers. One workgroup per chunk.
+// Tells how far each receiver of the coarser grid is from what its neighbours on both sides say, without what
+// noise explains: squares of the light's difference along rows of texels in x, how many were compared in y,
+// along columns in z and w. These are sums over chunks of receivers. There is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

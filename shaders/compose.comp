@@ -1,5 +1,5 @@
-// The light that bounces on: direct light and the mean of all links so far. Or direct light itself, from its sums, as
-// direct.comp makes it. One invocation per patch.
+// Makes the light that bounces on: direct light and the mean of all links so far. Or it makes direct light
+// itself from its sums, as direct.comp does. There is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -39,20 +39,21 @@ void storePatch(uvec3 v, VoxelTriangle t, vec2 centre) {
     if (hit.doubleSided != 0u) atomicMin(Words(grid.patches).items[rank * kVoxelSides + (side ^ 1u)], kLinkDark);
 }
 
-// A masked triangle blocks in this column if it is solid at one of 4 x 4 points of the pixel, moved onto the triangle.
+// Tells whether a triangle is solid in this column: a masked one blocks if it is solid at one of 4 x 4 points
+// of the pixel, moved onto the triangle.
 bool solidInPixel(VoxelTriangle t, vec2 centre) {
     if (id.x < geometry.opaqueCount) return true;
     for (int k = 0; k < 16; ++k) {
-        // Off the very edge, where a repeated texture begins anew.
+        // The point is moved off the very edge, where a repeated texture begins anew.
         vec2 weights = mix(cornerWeights(t, centre + vec2(k & 3, k >> 2) * 0.25 - 0.375), vec2(1.0 / 3.0), 0.01);
         if (solidHit(id.x, weights.x, weights.y)) return true;
     }
     return false;
 }
 
-// RTRad's rule: one voxel per pixel that the triangle touches, that of the position interpolated to the pixel's centre,
-// however far outside the triangle it lies. Its rasterizer interpolates between corners snapped to 1/256 pixel, which sends
-// small triangles' positions astray.
+// Follows RTRad's rule: one voxel is set per pixel that the triangle touches, that of the position
+// interpolated to the pixel's centre, however far outside the triangle it lies. Its rasterizer interpolates
+// between corners snapped to 1/256 pixel, which sends small triangles' positions astray.
 void rtradVoxel(VoxelTriangle t, vec2 centre) {
     VoxelTriangle snapped = t;
     snapped.a.xy = round(t.a.xy * 256.0) / 256.0;

@@ -1,5 +1,6 @@
-// CVM pass: draws every triangle along the axis that it faces most, as a rectangle around it that holds the centre of
-// each pixel the triangle touches; the fragments find out which voxels those are. A pixel is a column of voxels.
+// CVM pass: draws every triangle along the axis that it faces most, as a rectangle around it that holds the
+// centre of each pixel the triangle touches; the fragments find out which voxels those are. A pixel is a
+// column of voxels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -7,14 +8,15 @@
 layout(push_constant, scalar) uniform Push { CvmPush push; };
 #define geometry push.geometry
 
-layout(location = 0) flat out vec3 corner0; // [pixels] along the picture's axes, then along the one it looks along
+layout(location = 0) flat out vec3 corner0; // [pixels] along the picture's axes, then along its view
 layout(location = 1) flat out vec3 corner1;
 layout(location = 2) flat out vec3 corner2;
 layout(location = 3) flat out uvec2 id; // triangle, axis
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelGrids { VoxelGrid items[]; };
 
-// Half a pixel's diagonal, and two steps of the rasterizer's grid of at most 1/16 pixel (its guaranteed precision).
+// It is half a pixel's diagonal, and two steps of the rasterizer's grid of at most 1/16 pixel (its guaranteed
+// precision).
 const float kGrow = 0.7072 + 0.125;
 
 void main() {
@@ -27,7 +29,8 @@ void main() {
     uint axis = dominantAxis(cross(p[1] - p[0], p[2] - p[0]));
     for (uint k = 0u; k < 3u; ++k) p[k] = alongAxis(p[k], axis);
 
-    // Along the longest edge as seen in the picture: at most twice the triangle's area, however thin it is.
+    // The rectangle lies along the longest edge as seen in the picture: it has at most twice the triangle's
+    // area, however thin that is.
     vec2 edge = vec2(1.0, 0.0);
     float longest = 0.0;
     for (uint k = 0u; k < 3u; ++k) {

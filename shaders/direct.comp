@@ -1,5 +1,6 @@
-// Light of the emitters' points that are seen, added to the replicates' sums: F_polygon L sum(V f) / sum(f), f being each
-// point's own form factor. One workgroup per chunk, one invocation per patch.
+// Adds the light of the mesh lights' points that are seen to the replicates' sums: F_polygon L sum(V f) /
+// sum(f), f being each point's own form factor. There is one workgroup per chunk and one invocation per
+// patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

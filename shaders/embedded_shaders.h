@@ -10,7 +10,7 @@ struct EmbeddedShader {
     std::span<const uint32_t> code; // SPIR-V
 };
 
-/// The programs of programs.txt, compiled when Relume was built.
+/// Returns the programs of programs.txt, compiled when Relume was built.
 std::span<const EmbeddedShader> embeddedShaders();
 
 struct EmbeddedText {
@@ -18,7 +18,7 @@ struct EmbeddedText {
     const char* text; // GLSL
 };
 
-/// The sources that OpenGL compiles at run time, and what they include.
+/// Returns the sources that OpenGL compiles at run time, and what they include.
 std::span<const EmbeddedText> embeddedTexts();
 
 } // namespace relume

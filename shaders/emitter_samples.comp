@@ -1,5 +1,5 @@
-// Points on emitters for the patches of some chunks: which emitter, where on it, and what it would send unshadowed. One
-// workgroup per chunk (x) and pick (y), one invocation per patch.
+// Makes points on mesh lights for the patches of some chunks: which polygon, where on it, and what it would
+// send unshadowed. There is one workgroup per chunk (x) and pick (y), and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -14,7 +14,8 @@ EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index);
 
 layout(local_size_x = 64) in;
 
-// Keep the numbers of picks and of points apart from those of directions, which start from the same seeds.
+// The salts keep the numbers of picks and of points apart from those of directions, which start from the same
+// seeds.
 const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
 
 void main() {
@@ -44,12 +45,13 @@ void main() {
     for (uint s = 0u; s < push.pointCount; ++s) {
         vec4 target = vec4(0.0);
         if (shines) {
-            // All emitters: a patch's points take turns among the replicates. Picked ones: a pick's belong to one.
+            // If all polygons are sampled, a patch's points take turns among the replicates; if they are
+            // picked, a pick's points belong to one.
             uint number = all ? push.round * push.pointCount + s : pick;
             uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
             EmitterSample y = emitterSample(p.position, p.shading, e, sobolPoint(turn, seed));
-            // Below the geometric horizon it is hidden, and not asked for.
+            // Below the geometric horizon the point is hidden, and not asked for.
             bool above = dot(y.point - p.position, p.normal) > p.offset;
             target = vec4(y.point + off, above ? y.factor : -y.factor);
         }

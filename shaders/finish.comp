@@ -1,4 +1,5 @@
-// The end of a pass. In the RTRad preset emission is added, and patches brighter than 0.1 keep their value.
+// Ends a bounce. In the RTRad preset emission is added, and patches whose emission is brighter than 0.1 keep
+// their value.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

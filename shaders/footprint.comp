@@ -1,5 +1,6 @@
-// Links that read the light filtered: the patch that a direction hit becomes the widest part of its chart around it that is
-// not wider than what the direction stands for. One workgroup per chunk, one invocation per receiver.
+// Makes links read the light filtered: the patch that a direction hit becomes the widest part of its chart
+// around it that is not wider than what the direction stands for. There is one workgroup per chunk and one
+// invocation per receiver.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,6 +1,7 @@
-// RTL, second half: the light that the patches of one super-row receive from the senders of another, one partial sum per
-// super-block, side and receiver. One workgroup per (super-block, side, receiving chunk), one invocation per receiver.
-// Senders are taken chunk by chunk in ascending order: the order of the sum never depends on how work was cut.
+// RTL, second half: gathers the light that the patches of one super-row receive from the senders of another,
+// as one partial sum per super-block, side and receiver. There is one workgroup per (super-block, side,
+// receiving chunk) and one invocation per receiver. Senders are taken chunk by chunk in ascending order: the
+// order of the sum never depends on how work was cut.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #ifdef SOFTWARE
@@ -15,7 +16,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Edg
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BoundsList { ChunkBounds items[]; };
 
 layout(constant_id = 0) const uint kRtrad = 0;   // 1: RTRad's form factor and its clamp of every addend
-layout(constant_id = 1) const uint kSenders = 0; // 0: the patches themselves, both ways; 1: a list; 2: drawn from a list
+layout(constant_id = 1) const uint kSenders = 0; // 0: patches, both ways; 1: a list; 2: drawn from it
 const uint kSymmetric = 0u, kDrawn = 2u;
 
 layout(local_size_x = 64) in;
@@ -51,8 +52,8 @@ Source loadSource(uint index, uint rowKey) {
     return s;
 }
 
-// Disc form A cos cos / (pi r^2 + A) with unnormalised cosines; the bit says that both are positive, but the receiver's
-// shading normal may disagree with its geometric one.
+// Returns the disc form A cos cos / (pi r^2 + A) with unnormalised cosines; the bit says that both are
+// positive, but the receiver's shading normal may disagree with its geometric one.
 float farFactor(Patch receiver, Source s) {
     vec3 d = s.position - receiver.position;
     float r2 = dot(d, d);
@@ -74,7 +75,7 @@ bool inOwnWindow(Patch receiver, Source s) {
     return d.x < push.window && d.y < push.window; // what lies to the left or above wraps around
 }
 
-// RTRad: rgb and the weight in a count as one vector, shortened to 0.05.
+// Returns RTRad's addend: rgb and the weight in a count as one vector, shortened to 0.05.
 vec4 rtradAddend(Patch receiver, vec3 albedo, Source s) {
     float f = rtradFormFactor(receiver.position, receiver.shading, s.position, s.normal, s.area, push.distanceFactor);
     vec4 addend = s.radiance * vec4(albedo, 1.0) * (push.reflectivity * f);
@@ -90,12 +91,12 @@ bool chunksClose(uint receivers, uint senders) {
 }
 
 #ifdef SOFTWARE
-// Senders straight from memory, by an index that is the same for all lanes: one load serves them all. Those that none of
-// the lanes sees are left out. (Staged in shared memory they would cost 3 times as much.)
+// Reads senders straight from memory, by an index that is the same for all lanes: one load serves them all.
+// Those that none of the lanes sees are left out. (Staged in shared memory they would cost 3 times as much.)
 vec4 gatherWord(uint first, uint mine, Patch receiver, vec3 albedo, uint rowKey, bool close) {
     vec4 sum = vec4(0.0);
     uint any = subgroupOr(mine);
-    // Two loops, one of them empty: a loop that ends at once is cheap, a branch inside one is not.
+    // There are two loops, one of them empty: a loop that ends at once is cheap, a branch inside one is not.
     uint closeOnes = close || kRtrad != 0u ? any : 0u, farOnes = any & ~closeOnes;
     while (closeOnes != 0u) {
         int j = findLSB(closeOnes);
@@ -147,7 +148,7 @@ vec4 gatherChunk(uint chunk, uvec2 mask, Patch receiver, vec3 albedo, uint rowKe
 }
 #endif
 
-// Where the bits of a unit stand for this side's receivers: as traced, or transposed.
+// Loads the bits of a unit for this side's receivers: as traced, or transposed.
 uvec2 loadMask(SuperBlock super, uint r, uint c, bool direct) {
     uint word = (direct ? r * kSuper + c : c * kSuper + r) * kBlockWords + gl_LocalInvocationID.x * 2u;
     if (!direct) word += gl_WorkGroupID.y * kSuperWords;

@@ -1,4 +1,4 @@
-// Closest hit of the ray tracing pipeline: which triangle, and where on it.
+// The closest-hit shader of the ray tracing pipeline tells which triangle was hit, and where on it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require

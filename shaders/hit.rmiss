@@ -1,4 +1,4 @@
-// Miss of the ray tracing pipeline.
+// The miss shader of the ray tracing pipeline.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require

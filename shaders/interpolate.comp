@@ -1,5 +1,5 @@
-// Spreads the light that links brought to the receivers of a coarser grid to all patches. One workgroup per chunk, one
-// invocation per patch.
+// Spreads the light that links brought to the receivers of a coarser grid to all patches. There is one
+// workgroup per chunk and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,5 +1,6 @@
-// Light of a group of lamps, added to the replicates' sums. Where the whole lamp's unshadowed light is known, its samples tell
-// the share that is seen; else their mean is the light. One workgroup per chunk, one invocation per patch.
+// Adds the light of a group of analytic lights to the replicates' sums. Where the unshadowed light of a whole
+// one is known, its samples tell the share that is seen; else their mean is the light. There is one workgroup
+// per chunk and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"
@@ -11,7 +12,7 @@ const uint kTargetsPerWord = 32u; // lib/segments.glsl
 
 uint chunk, lane;
 
-// What was sampled; the sky's light, of three colours, is made again.
+// Returns what was sampled; the sky's light, of three colours, is made again.
 LampRay sampled(Lamp l, Patch p, uint s) {
     if (l.type == kLampSky) return lampRay(l, p, s);
     float light = Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane].w;

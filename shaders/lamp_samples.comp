@@ -1,5 +1,5 @@
-// Ends of rays from the patches of some chunks to a group of lamps. One workgroup per chunk (x) and lamp (y), one invocation
-// per patch.
+// Makes the ends of rays from the patches of some chunks to a group of analytic lights. There is one
+// workgroup per chunk (x) and light (y), and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"

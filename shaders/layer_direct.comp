@@ -1,5 +1,5 @@
-// Direct light of a layer: the mean of all rounds, from that of the rounds before and the sums of new ones. One invocation
-// per patch.
+// Makes the direct light of a layer: the mean of all sample passes, from that of the passes before and the
+// sums of new ones. There is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

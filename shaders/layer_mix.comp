@@ -1,5 +1,5 @@
-// What is shown of layers: the sum of each one's light times its weight. Layers share their links, so that their errors may
-// have one sign: they are added as they are. One invocation per patch.
+// Mixes the layers to be shown: the sum of each one's light times its weight. Layers share their links, so
+// that their errors may have one sign: they are added as they are. There is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

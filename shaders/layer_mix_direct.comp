@@ -1,5 +1,5 @@
-// The direct light of all layers together: the sum of each one's times its weight. Lamps share random numbers, so that their
-// errors may have one sign: standard deviations are added. One invocation per patch.
+// Mixes the direct light of all layers: the sum of each one's times its weight. Lights share random numbers,
+// so that their errors may have one sign: standard deviations are added. There is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

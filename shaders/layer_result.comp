@@ -1,4 +1,5 @@
-// A layer's light: direct and indirect, with its standard error in w, and sums over each chunk. One workgroup per chunk.
+// Makes a layer's light: direct and indirect, with its standard error in w, and sums over each chunk. There
+// is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

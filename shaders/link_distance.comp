@@ -1,5 +1,6 @@
-// Harmonic mean of the distances along a round's links: how far away what lights a patch is, and so over what length its
-// indirect light may change [Ward et al. 1988]. One workgroup per chunk, one invocation per patch.
+// Makes the harmonic mean of the distances along a sample pass's links: how far away what lights a patch is,
+// and so over what length its indirect light may change [Ward et al. 1988]. There is one workgroup per chunk
+// and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,5 +1,5 @@
-// Gathers light over links, sample by sample of each replicate: the mean radiance of what cosine-distributed directions
-// hit is lighting. One workgroup per chunk, one invocation per patch.
+// Gathers light over links, sample by sample of each replicate: the mean radiance of what cosine-distributed
+// directions hit is lighting. There is one workgroup per chunk and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

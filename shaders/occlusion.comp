@@ -1,4 +1,4 @@
-// Occlusion of pair blocks: one workgroup per unit and word, one invocation per receiver.
+// Finds the occlusion of pair blocks, with one workgroup per unit and word, one invocation per receiver.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,4 +1,4 @@
-// What patches (and nodes behind them) send, in 8 bytes each for the links that read it.
+// Packs what patches (and nodes behind them) send into 8 bytes each, for the links that read it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,5 +1,6 @@
-// Light of patches to the texels that show them, as halves. One workgroup per chunk that changed. Ring 0: its patches; ring
-// r: the texels of that ring beside charts that depend on it. Several chunks may fill the same texel with the same light.
+// Writes the light of patches to the texels that show them, as halves. There is one workgroup per chunk that
+// changed. Ring 0 is its patches, ring r the texels of that ring beside charts that depend on it. Several
+// chunks may fill the same texel with the same light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

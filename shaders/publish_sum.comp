@@ -1,5 +1,5 @@
-// Sums of what is shown of some chunks, for the mean: one invocation per chunk, which costs a software device far less than
-// adding up across invocations.
+// Sums what is shown of some chunks, for the mean. There is one invocation per chunk, which costs a software
+// device far less than adding up across invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,4 +1,5 @@
-// What the nodes of one level send: the mean over their children's areas. One invocation per node.
+// Makes what the nodes of one level send: the mean over their children's areas. There is one invocation per
+// node.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,5 +1,6 @@
-// What each patch sends in this pass, formed once: emission + reflectivity * albedo * lighting [cd/m^2]; in the RTRad
-// preset ligIn itself. Also notes which chunks send at all. One workgroup per chunk, one invocation per patch.
+// Makes what each patch sends in this bounce, once: emission + reflectivity * albedo * lighting [cd/m^2]; in
+// the RTRad preset ligIn itself. Also notes which chunks send at all. There is one workgroup per chunk and
+// one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,4 +1,5 @@
-// Albedo of all patches by the base colours of their materials, of those that are others now. One invocation per patch.
+// Sets the albedo of patches by the base colours of their materials where these have changed. There is one
+// invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,5 +1,5 @@
-// Adds the partial sums of some super-blocks to the patches they belong to, in the order of the list. One invocation per
-// patch.
+// Adds the partial sums of some super-blocks to the patches they belong to, in the order of the list. There
+// is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

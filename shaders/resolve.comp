@@ -1,6 +1,6 @@
-// The result: direct light plus indirect light, smoothed along columns (rows are done), with each patch's standard error from
-// the spread of the replicates in w. Sums for the error of the whole go to one ResolveSums per chunk. One workgroup per
-// chunk.
+// Makes the result: direct light plus indirect light, smoothed along columns (rows are done), with each
+// patch's standard error from the spread of the replicates in w. Sums for the error of the whole go to one
+// ResolveSums per chunk. There is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

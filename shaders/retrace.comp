@@ -1,4 +1,4 @@
-// Links that retrace_mark.comp has listed.
+// Traces the links that retrace_mark.comp has listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

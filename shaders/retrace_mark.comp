@@ -1,4 +1,5 @@
-// Lists links that are to be traced again. One workgroup per chunk (x) and eight samples (y), one invocation per patch.
+// Lists links that are to be traced again. There is one workgroup per chunk (x) and eight samples (y), and
+// one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

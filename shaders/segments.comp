@@ -1,5 +1,5 @@
-// Segments from patches to targets of their own: one workgroup per chunk (x) and word of targets (y), one invocation per
-// patch.
+// Traces segments from patches to targets of their own, with one workgroup per chunk (x) and word of targets
+// (y), one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -19,7 +19,7 @@ namespace relume {
 
 namespace {
 
-// glslang keeps tables for the whole process; freed at its end so that leak checkers stay quiet.
+// glslang keeps tables for the whole process; they are freed at its end so that leak checkers stay quiet.
 struct GlslangProcess {
     GlslangProcess() { glslang::InitializeProcess(); }
     ~GlslangProcess() { glslang::FinalizeProcess(); }
@@ -41,7 +41,8 @@ EShLanguage stageOf(const std::string& name) {
                 "' names no shader stage: end it in .comp, .vert, .frag, .rgen, ...");
 }
 
-// The rules of glslangValidator -I: first beside the including file, then in the shader folder.
+// Finds includes by the rules of glslangValidator -I: first beside the including file, then in the shader
+// folder.
 class FolderIncluder final : public glslang::TShader::Includer {
 public:
     explicit FolderIncluder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -75,7 +76,7 @@ private:
     std::filesystem::path folder_;
 };
 
-// glslang prints one line per error and a summary; the first error is the one to mend.
+// Returns the first error, which is the one to mend: glslang prints one line per error and a summary.
 std::string firstError(const std::string& name, const std::string& log) {
     std::istringstream lines(log);
     for (std::string line; std::getline(lines, line);) {

@@ -13,7 +13,8 @@ struct ShaderSource {
     std::string includeFolder;            // where #include "shared.h" and "lib/pairs.glsl" are found
 };
 
-/// SPIR-V 1.5 of GLSL text, for Vulkan 1.2. Throws Error: "gather.comp:12: 'x' : undeclared identifier".
+/// Compiles GLSL text to SPIR-V 1.5, for Vulkan 1.2. Throws Error: "gather.comp:12: 'x' : undeclared
+/// identifier".
 std::vector<uint32_t> compileShader(const ShaderSource& source);
 
 } // namespace relume

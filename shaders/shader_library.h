@@ -7,22 +7,22 @@
 
 namespace relume {
 
-/// SPIR-V of a shader by name, as listed in shaders/programs.txt ("occlusion_bvh"). Comes from the
-/// executable, or, after setShaderFolder, compiled from that folder's sources. Throws Error (with file and
-/// line of the first error).
+/// Returns the SPIR-V of a shader by name, as listed in shaders/programs.txt ("occlusion_bvh"). It comes from
+/// the executable, or, after setShaderFolder, is compiled from that folder's sources. Throws Error (with file
+/// and line of the first error).
 std::vector<uint32_t> shaderCode(const std::string& name);
 
-/// The names that shaderCode knows.
+/// Returns the names that shaderCode knows.
 std::vector<std::string> shaderNames();
 
-/// The text of a source by its path in shaders/ ("gl/scene.frag", "lib/tone.glsl"): those that OpenGL
-/// compiles, at run time. Comes from the executable or from setShaderFolder's folder. Throws Error.
+/// Returns the text of a source by its path in shaders/ ("gl/scene.frag", "lib/tone.glsl"): those that OpenGL
+/// compiles, at run time. It comes from the executable or from setShaderFolder's folder. Throws Error.
 std::string shaderText(const std::string& path);
 
-/// From now on compile from sources in `folder` (a copy of shaders/), at each call. "" goes back to the
-/// embedded code. Throws Error when the folder does not hold them.
+/// Makes later calls compile from sources in `folder` (a copy of shaders/), each time anew. "" goes back to
+/// the embedded code. Throws Error when the folder does not hold them.
 void setShaderFolder(const std::string& folder);
-/// "": the embedded code.
+/// Returns that folder; "" means the embedded code.
 std::string shaderFolder();
 
 } // namespace relume

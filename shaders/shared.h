@@ -1,5 +1,5 @@
-// Structs and constants that C++ and GLSL share, scalar layout (GL_EXT_scalar_block_layout), no padding by
-// hand. C++ includes this inside namespace relume::shader with glm's types in scope (see
+// Structs and constants that C++ and GLSL share, in scalar layout (GL_EXT_scalar_block_layout), without
+// padding by hand. C++ includes this inside namespace relume::shader with glm's types in scope (see
 // bake/base/shader_types.h).
 #ifndef RELUME_SHARED_H
 #define RELUME_SHARED_H
@@ -11,8 +11,8 @@
 #endif
 #define ADDRESS uint64_t // of a buffer on the device
 
-// A chunk: 64 consecutive patches of the 8x8-texel tile order. A block: all pairs of two chunks, one bit
-// each.
+// A chunk has 64 consecutive patches of the 8x8-texel tile order. A block has all pairs of two chunks, one
+// bit each.
 CONST uint kChunk = 64u;
 // A super-block is kSuper x kSuper blocks: the unit of summation. 16 x 16 blocks are 1M pairs, 128 KiB of
 // bits.
@@ -28,16 +28,16 @@ CONST uint kReplicates = 4u;
 
 // Patch::flags, bits 0..7
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
-CONST uint kPatchBackSide = 2u; // the back of a double-sided emitter: sends its emission, is never shown
+CONST uint kPatchBackSide = 2u; // the back of a double-sided mesh light: sends its emission, is never shown
 CONST uint kPatchThin = 4u;     // stands for a chart that covers no texel centre: shown nowhere either
 
-// What patches side by side have in common of their directions: nothing; those in the same place of their 4 x
-// 4 texels all; a chunk's all.
+// These say which neighbouring patches have all their directions in common: none; those in the same place of
+// their 4 x 4 texels; those of one chunk.
 CONST uint kRotatePatch = 0u;
 CONST uint kRotateInterleaved = 1u;
 CONST uint kRotateTile = 2u;
 
-// What `closest` stores for a ray: a patch index below kLinkFirstSpecial, or
+// `closest` stores for a ray a patch index below kLinkFirstSpecial, or one of these.
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
 CONST uint kLinkSky = 0xffffffffu;  // hit nothing
 CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
@@ -46,7 +46,7 @@ CONST uint kLinkDark =
 CONST uint kNoPatch = 0xffffffffu; // texel -> patch map: empty
 CONST uint kNoTexel = 0xffffffffu; // patch -> texel: not shown
 
-// What the tracers and the gather read of a patch. Positions are texel centres on the surface.
+// A patch as the tracers and the gather read it. Positions are texel centres on the surface.
 struct Patch {
     vec3 position; // [m]
     float offset;  // [m] > 0, along the geometric normal: where its rays end; also the horizon's tolerance
@@ -70,22 +70,22 @@ struct ChunkBounds {
     float size; // [m], the largest patch edge
 };
 
-// Receivers of a coarser grid that a patch's light is made of. Weight 0: none.
+// The receivers of a coarser grid that a patch's light is made of. Weight 0 means none.
 struct CoarseTaps {
     uint receiver0, receiver1, receiver2, receiver3;
     vec4 weights;
 };
 
 // A receiver of the coarser grid and those before and after it in the chart: patches, `own` where there are
-// not both; share: of the one before in the light that both say is between them.
+// not both. A share is that of the one before in the light that both say is between them.
 struct CoarseNeighbours {
     uint own;
     uint left, right, below, above;
     float shareX, shareY;
 };
 
-// Patches of one chart side by side in the lightmap, as one sender of links. Indices of what it is made of,
-// and of what it is part of: patches, behind them nodes, as in the radiance buffer.
+// Patches of one chart side by side in the lightmap, as one sender of links. It has indices of what it is
+// made of, and of what it is part of: patches, behind them nodes, as in the radiance buffer.
 struct PyramidNode {
     vec3 position;  // [m], mean over its area
     float size;     // [m^2], its area; of what is stretched or scattered the square as wide as it is
@@ -113,14 +113,15 @@ struct EmitterPolygon {
     uint triangle; // the WorldMesh triangle it was made from, or the first one of two
 };
 
-// EmitterNode::link: the first of two children that lie side by side, or the polygon of a leaf with this bit.
+// EmitterNode::link is the first of two children that lie side by side, or the polygon of a leaf with this
+// bit.
 CONST uint kEmitterLeaf = 0x80000000u;
 CONST uint kNoEmitter = 0xffffffffu;
 
-// Lamp::type; a point may be a sphere.
+// These are the values of Lamp::type; a point may be a sphere.
 CONST uint kLampPoint = 0u, kLampSpot = 1u, kLampSun = 2u, kLampRectangle = 3u, kLampDisc = 4u, kLampSky = 5u;
 
-// What shines without geometry. Samples never depend on the colour.
+// An analytic light. Samples never depend on the colour.
 struct Lamp {
     vec3 position; // [m], of its centre
     uint type;     // kLamp...
@@ -132,16 +133,16 @@ struct Lamp {
     float coneScale;
     vec3 color;       // [cd]; sun: [lux]; rectangle, disc, sky: [cd/m^2], or a factor on its picture
     float coneOffset; // spot: its share is the square of cosine * coneScale + coneOffset, clamped
-    uint firstTarget; // of its group's
-    uint samples;     // per patch and round: 1, or a multiple of 2 * kReplicates
+    uint firstTarget; // the first of its group's targets
+    uint samples;     // per patch and sample pass: 1, or a multiple of 2 * kReplicates
     uint seed;
 };
 CONST uint kEmitterDepth = 48u; // inner nodes on the longest way down, at most
 
-// A node of the tree over the emitters; 0 is the root. Every normal below it is within the cone.
+// A node of the tree over the mesh lights; 0 is the root. Every normal below it is within the cone.
 struct EmitterNode {
     vec3 lo;       // [m]
-    float power;   // area times mean of the radiance's components, as a share of all emitters'
+    float power;   // area times mean of the radiance's components, as a share of all polygons'
     vec3 hi;       // [m]
     float cosCone; // cosine of the cone's half angle; 1: all normals are the axis
     vec3 axis;     // unit
@@ -173,7 +174,7 @@ struct HitTriangle {
     uint doubleSided;    // 1 if its material is
 };
 
-// Alpha test of masked triangles, all tracers alike.
+// The alpha test of masked triangles, alike in all tracers.
 struct AlphaTriangle {
     vec2 uv0, uv1, uv2; // of the base colour texture
     float a0, a1, a2;   // COLOR_0 alpha at the corners
@@ -187,12 +188,12 @@ struct AlphaMaterial {
     uint wrapS, wrapT; // enum Wrap
 };
 
-// Inner nodes on the longest way down, at most: the stack of a traversal.
+// The longest way down has at most so many inner nodes: the stack of a traversal.
 CONST uint kBvhDepth = 48u;
-// Our own binary BVH. Both children's boxes in one node of 48 bytes: their centres [m] and half of their
+// Our own binary BVH has both children's boxes in one node of 48 bytes: their centres [m] and half of their
 // extents [m], for which the upper half of a float is enough: child 0's in the upper 16 bits, child 1's in
-// the lower ones, both rounded up. child >= 0: inner node; < 0: leaf, ~child holds first triangle << 3 |
-// count (1..7).
+// the lower ones, both rounded up. A child >= 0 is an inner node; one < 0 is a leaf, and ~child holds first
+// triangle << 3 | count (1..7).
 struct BvhNode {
     vec3 centre0;
     int child0;
@@ -201,8 +202,8 @@ struct BvhNode {
     uvec3 extents;
     uint unused;
 };
-// Corners of a triangle for the watertight test, 48 bytes; the id is the index in WorldMesh order, bit 31:
-// alpha-masked.
+// The corners of a triangle for the watertight test, in 48 bytes; the id is the index in WorldMesh order,
+// with bit 31 for alpha-masked.
 struct BvhTriangle {
     vec3 p0;
     uint id;
@@ -212,9 +213,9 @@ struct BvhTriangle {
     uint unused1;
 };
 
-// Sides of a voxel by which patches are kept: +x, -x, +y, -y, +z, -z.
+// A voxel keeps patches by these sides: +x, -x, +y, -y, +z, -z.
 CONST uint kVoxelSides = 6u;
-// A voxel map. p lies in voxel floor((p - origin) * scale).
+// A voxel map. Point p lies in voxel floor((p - origin) * scale).
 struct VoxelGrid {
     ADDRESS bits;    // uint[], 1 bit per voxel, x runs fastest, then y: set where a triangle touches it
     ADDRESS ranks;   // uint[], per word of bits: set bits before it
@@ -227,9 +228,9 @@ struct VoxelGrid {
     uint ratio;      // one sender (group of samples) in `ratio` marches voxels; 1: all
 };
 
-// Push constants of the kernels. Buffers come by address.
+// The push constants of the kernels follow. Buffers come by address.
 
-// What rays are traced against; the first member of every tracing kernel's push constants.
+// The geometry that rays are traced against; the first member of every tracing kernel's push constants.
 struct TraceGeometry {
     ADDRESS accel;          // top level acceleration structure, BvhNode[] or VoxelGrid
     ADDRESS triangles;      // BvhTriangle[] (bvh), corners as vec3[] (voxel map while it is made)
@@ -330,7 +331,7 @@ struct RadiancePush {
     uint all;       // 1: chunks without light count as senders too
     uint reflected; // 1: without emission
 };
-// What is shown is copied in regions of kRegion x kRegion texels: 32 KiB of halves each.
+// Texels that are shown are copied in regions of kRegion x kRegion texels: 32 KiB of halves each.
 CONST uint kRegion = 64u;
 struct PublishPush {
     ADDRESS values;      // vec4[], per patch
@@ -390,7 +391,7 @@ struct CitMaterial {
     int metallicTexture;
 };
 
-// Beside this file, as C++ and GLSL see different roots.
+// These lie beside this file, as C++ and GLSL see different roots.
 #include "shared_links.h"
 #include "shared_layers.h"
 

@@ -1,19 +1,19 @@
-// Of layers, one light's share of the lightmap each: what their kernels are told. Part of shared.h, which
-// includes it.
+// These are the push constants of the kernels of layers, one light's share of the lightmap each. The file is
+// part of shared.h, which includes it.
 
-// Of the rounds of direct light that patches in a penumbra take, the others take the first and each so many
-// behind it.
+// Patches in a penumbra take all sample passes of direct light, the others the first one and then one in so
+// many.
 const uint kPenumbraRounds = 8u;
 
-// Adds some rounds of direct light to those before.
+// Adds some sample passes of direct light to those before.
 struct LayerDirectPush {
-    ADDRESS sums;   // vec4[kReplicates][patchCount], of these rounds
+    ADDRESS sums;   // vec4[kReplicates][patchCount], of these sample passes
     ADDRESS direct; // vec4[patchCount]: lighting, and the variance of R, G and B together
     ADDRESS parts;  // lib/penumbra.glsl
     ADDRESS penumbra;
     uint patchCount;
-    // Outside penumbrae and within: from a replicate's sum to its mean, and the share of these rounds among
-    // all; 0: none.
+    // These are for patches outside penumbrae and within: the factor from a replicate's sum to its mean, and
+    // the share of these sample passes among all; 0 means none.
     vec2 scale;
     vec2 share;
 };
@@ -44,11 +44,11 @@ struct BounceLane {
     ADDRESS lightB;
     ADDRESS sums; // vec4[kReplicates][patchCount]
 };
-// What becomes of sums over links.
+// Says what becomes of sums over links.
 const uint kNoSums = 0u, kNewSums = 1u, kMoreSums = 2u;
 struct BouncePush {
     ADDRESS lanes;    // BounceLane[LANES]
-    ADDRESS links[4]; // of a round each: uint[chunkCount][sampleCount][64]
+    ADDRESS links[4]; // of a sample pass each: uint[chunkCount][sampleCount][64]
     ADDRESS packed;   // uvec2[patchCount][LANES], radiance by packLight
     ADDRESS sent;     // as packed, of the light that is made; 0: the pass goes on
     ADDRESS patches;
@@ -58,7 +58,7 @@ struct BouncePush {
     uint chunkCount;
     uint allChunks;
     uint rounds;      // 0: light as it is
-    uint sampleCount; // of a round; a multiple of kReplicates
+    uint sampleCount; // of a sample pass; a multiple of kReplicates
     uint patchCount;
     uint live; // a bit per lane: its light and sums are written
     uint from; // a bit per lane: it is its light B that bounces

@@ -1,4 +1,5 @@
-// Of the methods that follow links: what their kernels are told. Part of shared.h, which includes it.
+// These are the push constants of the kernels of the methods that follow links. The file is part of shared.h,
+// which includes it.
 struct EmitterSamplesPush {
     ADDRESS patches;
     ADDRESS polygons; // EmitterPolygon[]
@@ -6,12 +7,12 @@ struct EmitterSamplesPush {
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
     ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
     ADDRESS parts;    // lib/penumbra.glsl, as penumbra
-    ADDRESS penumbra; // 0: every patch takes every round
+    ADDRESS penumbra; // 0: every patch takes every sample pass
     uint firstChunk;
     uint round;
     uint pickCount;
     uint pointCount; // per pick, a multiple of kReplicates
-    uint all;        // 1: pick i is emitter i; 0: picks are drawn
+    uint all;        // 1: pick i is mesh light i; 0: picks are drawn
 };
 struct DirectPush {
     ADDRESS targets;
@@ -93,7 +94,7 @@ struct FootprintPush {
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
-    uint samples; // of each receiver that the result is of
+    uint samples; // directions of each receiver that the result is made of
 };
 struct InterpolatePush {
     ADDRESS taps;            // CoarseTaps[]
@@ -131,7 +132,7 @@ struct ChangePush {
     ADDRESS sums; // vec4[chunkCount]
     uint chunkCount;
 };
-// Over a chunk's patches: light and variances of the mean, R, G and B together.
+// Sums over a chunk's patches: light and variances of the mean, R, G and B together.
 struct ResolveSums {
     float light;
     float direct;   // variance

@@ -1,12 +1,12 @@
-// Of objects that move and surfaces of other colours: what their kernels are told. Goes with shared.h, which
-// is to be included before.
+// These are the push constants of the kernels for objects that move and surfaces of other colours. The file
+// goes with shared.h, which must be included before.
 
-// Where an object was or is, axis-parallel [m].
+// A box in which an object was or is, axis-parallel [m].
 struct TraceBox {
     vec3 lo;
     vec3 hi;
 };
-// Lists links whose rays meet a box, and all of patches that are others now.
+// Lists links whose rays meet a box, and all links of patches that have changed.
 struct RetraceMarkPush {
     ADDRESS patches; // Patch[]
     ADDRESS boxes;   // TraceBox[boxCount]
@@ -38,7 +38,7 @@ struct RetracePush {
     uint silent;   // 1: of patches that send nothing, too
 };
 
-// Base colours of materials are others.
+// Follows base colours of materials that have changed.
 struct RecolourPush {
     ADDRESS materials;  // uint[patchCount]
     ADDRESS baseColors; // vec4[] per material; a < 0: as it was

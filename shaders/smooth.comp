@@ -1,4 +1,5 @@
-// First half of smoothing the indirect light: along rows of texels, each replicate by itself. One invocation per patch.
+// Does the first half of smoothing the indirect light: along rows of texels, each replicate by itself. There
+// is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

@@ -1,4 +1,4 @@
-// Sums over all chunks, always in the same order. One workgroup per value and group.
+// Sums over all chunks, always in the same order. There is one workgroup per value and group.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

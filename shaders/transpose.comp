@@ -1,5 +1,5 @@
-// The bits of a block from the other side, so that each ray serves both ends: word (column j) holds a bit per row i.
-// Of a diagonal block, traced for i < j only, this is the full symmetric block.
+// Makes the bits of a block from the other side, so that each ray serves both ends: word (column j) holds a
+// bit per row i. A diagonal block, traced for i < j only, becomes the full symmetric block.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"

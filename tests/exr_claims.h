@@ -6,7 +6,7 @@
 
 namespace relume::test {
 
-/// A number as files have it, lowest byte first.
+/// Returns a number as files have it, lowest byte first.
 template<typename T>
 std::string raw(T value) {
     std::string bytes(sizeof(T), '\0');
@@ -18,7 +18,7 @@ inline std::string text(const std::string& value) {
     return value + '\0';
 }
 
-/// OpenEXR headers, right or wrong: what they claim need not be there.
+/// Makes OpenEXR headers, right or wrong: what they claim need not be there.
 struct ExrClaims {
     int32_t right = 3, bottom = 3; // the data window begins at (0, 0)
     int32_t channels = 3;
@@ -51,7 +51,7 @@ struct ExrClaims {
         if (!type.empty()) out += attribute("type", "string", type);
         return out + more + '\0';
     }
-    /// A whole file; `behind` is what follows the header.
+    /// Returns a whole file; `behind` is what follows the header.
     std::string bytes(const std::string& behind = "") const {
         const uint32_t tiled = tileWidth > 0 ? 0x200u : 0u;
         return raw(20000630) + raw(version | tiled) + header() + behind;

@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// Warnings logged while it lives.
+/// Collects the warnings that are logged while it lives.
 class LogCapture {
 public:
     LogCapture() : old_(spdlog::default_logger()) {

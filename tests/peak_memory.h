@@ -12,7 +12,7 @@ namespace relume::test {
 
 constexpr int64_t kLittleMemory = 100 << 20; // [bytes]; the sanitizers' own included
 
-/// A line of /proc/self/status [bytes], as "VmHWM": the most memory that was in use.
+/// Returns a line of /proc/self/status [bytes], such as "VmHWM", the most memory that was in use.
 inline uint64_t memoryStatus(const std::string& name) {
     std::ifstream status("/proc/self/status");
     uint64_t kib = 0;
@@ -21,8 +21,8 @@ inline uint64_t memoryStatus(const std::string& name) {
     return kib << 10;
 }
 
-/// By how much `action` raises the memory in use at its peak [bytes], in a process of its own; -1 where that
-/// does not end well.
+/// Returns by how much `action` raises the memory in use at its peak [bytes], in a process of its own; -1
+/// where that does not end well.
 inline int64_t peakGrowth(const std::function<void()>& action) {
     int ends[2];
     if (pipe(ends) != 0) return -1;

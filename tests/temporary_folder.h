@@ -11,8 +11,8 @@
 
 namespace relume {
 
-/// A new folder under the system's temporary one; removed with all that is in it. No two are the same, as
-/// ctest runs tests of one fixture side by side.
+/// Makes a new folder under the system's temporary one and removes it with all that is in it. No two are the
+/// same, as ctest runs tests of one fixture side by side.
 class TemporaryFolder {
 public:
     TemporaryFolder() {
@@ -30,7 +30,7 @@ public:
 
     const std::string& path() const { return path_; }
     std::string path(const std::string& name) const { return path_ + "/" + name; }
-    /// Names of the files in it, sorted.
+    /// Returns the names of the files in it, sorted.
     std::vector<std::string> files() const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(path_))

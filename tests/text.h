@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Of a file; empty where there is none.
+/// Returns the bytes of a file, or nothing where there is none.
 inline std::string bytesOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

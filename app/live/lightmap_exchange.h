@@ -41,6 +41,7 @@ struct PublishedMap {
     uint32_t slot = 0;
     uint32_t set = 0; // of slots, see MapOffer::set
     MapContent content = MapContent::Light;
+    LightKey light = {};     // of a content Layer: the light
     uint64_t bake = 0;       // number of the bake that it comes from, see LiveBake::start()
     bool complete = false;   // a solution with all bounces
     float unit = 1;          // [cd/m^2], [m], ...: a texel's 1.0

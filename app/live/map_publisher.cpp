@@ -204,6 +204,7 @@ bool MapPublisher::publishInspected(const InspectRequest& request) {
     inspected_.bake = bake_->number; // edits change the number
     write(inspected_, *slot,
           {.content = request.content,
+           .light = request.light,
            .complete = live.complete,
            .unit = unit,
            .ambient = inspected_.publisher->mean(),

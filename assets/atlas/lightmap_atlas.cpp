@@ -23,7 +23,7 @@ constexpr double kMinUvExtent = 1e-6;  // below it a set is a point, as of a mes
 constexpr uint32_t kMeshGutter = 2;    // [texels]
 constexpr uint32_t kAtlasCells = 2048; // to a side of the grid that measures whole atlases
 
-/// What one UV set of one mesh is worth as a lightmap atlas.
+/// Tells what one UV set of one mesh is worth as a lightmap atlas.
 struct SetQuality {
     bool usable = false;
     bool complete = false; // every primitive has the set
@@ -33,7 +33,7 @@ struct SetQuality {
     uint64_t visits = 0; // of cells, to find overlaps
 };
 
-/// The set chosen for a mesh; texCoord -1: none.
+/// Holds the set chosen for a mesh; texCoord -1: none.
 struct MeshChoice {
     int texCoord = -1;
     SetQuality quality;
@@ -152,7 +152,7 @@ double worldArea(const Instance& instance, const Mesh& mesh, int set) {
     return std::isfinite(area) ? area : 0.0;
 }
 
-/// Whether all instances' UVs, as they are, make one atlas.
+/// Tells whether all instances' UVs, as they are, make one atlas.
 bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
     std::vector<bool> seen(scene.meshes.size());
     for (size_t i = 0; i < scene.instances.size(); ++i) {
@@ -170,7 +170,7 @@ bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
     return !grid.overlaps(kMaxOverlap);
 }
 
-/// An instance's UV bounds and how many metres one unit of UV is.
+/// Holds an instance's UV bounds and how many metres one unit of UV is.
 struct Footprint {
     size_t instance;
     glm::dvec2 low, extent; // [UV]
@@ -192,7 +192,7 @@ bool packAt(const std::vector<Footprint>& footprints, double density, uint32_t s
     return packRects(rects, size, size, kMeshGutter);
 }
 
-/// The highest common density [texels/m] at which all rectangles fit, found by bisection.
+/// Packs the rectangles at the highest common density [texels/m] at which all fit, found by bisection.
 std::vector<PackedRect> packDensest(const Scene& scene, const std::vector<Footprint>& footprints,
                                     uint32_t size) {
     std::vector<PackedRect> rects(footprints.size()), best;
@@ -229,7 +229,7 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
     }
     const std::vector<PackedRect> rects = packDensest(scene, footprints, size);
     for (size_t i = 0; i < footprints.size(); ++i) {
-        // Bounds on whole texels: charts aligned to texels inside the mesh's own rectangle stay so.
+        // The bounds lie on whole texels: charts aligned to texels inside the mesh's own rectangle stay so.
         AtlasRect& rect = atlas.instances[footprints[i].instance];
         const glm::dvec2 extent(rects[i].width, rects[i].height), corner(rects[i].x, rects[i].y);
         const glm::dvec2 scale = extent / footprints[i].extent / double(size);

@@ -115,8 +115,8 @@ std::array<glm::dvec2, 3> Cutter::project(uint32_t triangle) const {
     return uv;
 }
 
-/// The connected triangles around the seed that face along the axis; with a grid, only those that find free
-/// cells.
+/// Returns the connected triangles around the seed that face along the axis; with a grid, only those that
+/// find free cells.
 std::vector<uint32_t> Cutter::grow(uint32_t seed, UvGrid* grid) {
     std::vector<uint32_t> chart = {seed};
     visited_[seed] = ++growth_;
@@ -137,7 +137,7 @@ std::vector<uint32_t> Cutter::grow(uint32_t seed, UvGrid* grid) {
     return chart;
 }
 
-/// Whether the projected chart covers itself; also gives its bounds and the grid size that found it.
+/// Tells whether the projected chart covers itself; also gives its bounds and the grid size that found it.
 bool Cutter::overlaps(const std::vector<uint32_t>& chart, glm::dvec2& low, glm::dvec2& high,
                       uint32_t& cells) const {
     low = glm::dvec2(std::numeric_limits<double>::max());

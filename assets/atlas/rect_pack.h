@@ -10,8 +10,8 @@ struct PackedRect {
     uint32_t x = 0, y = 0;          // [texels], found
 };
 
-/// Places the rectangles in width x height texels with `gutter` empty texels between any two. False: they do
-/// not fit, and the places are meaningless.
+/// Places the rectangles in width x height texels with `gutter` empty texels between any two. Returns false
+/// where they do not fit; then the places are meaningless.
 [[nodiscard]] bool packRects(std::vector<PackedRect>& rects, uint32_t width, uint32_t height,
                              uint32_t gutter);
 

@@ -26,13 +26,13 @@ constexpr int kSearchSteps = 8;        // of the density; one packing each
 constexpr size_t kManyCharts = 20000;  // above it a packing takes long and the search is cut short
 constexpr double kMaxTexels = 65536.0; // [texels] to a side of one mesh
 
-/// UVs of a mesh's triangle corners, and which chart each triangle belongs to.
+/// Holds the UVs of a mesh's triangle corners, and which chart each triangle belongs to.
 struct Layout {
     std::vector<glm::vec2> uv;   // 3 per triangle
     std::vector<uint32_t> chart; // per triangle, kNoNumber: no area
 };
 
-/// A mesh to unwrap.
+/// Holds a mesh to unwrap.
 struct Job {
     size_t mesh;
     std::vector<glm::dvec3> corners; // 3 per triangle [m], as the largest instance stands in the world
@@ -40,7 +40,7 @@ struct Job {
     double instances = 0.0; // world area of all instances over that of the largest one
 };
 
-/// Charts in their places.
+/// Holds charts in their places.
 struct Packing {
     std::vector<PackedRect> rects;
     uint32_t side = 1; // of the square that holds them all [texels]
@@ -50,8 +50,8 @@ double areaScale(const glm::dmat3& linear) {
     return std::pow(std::abs(glm::determinant(linear)), 2.0 / 3.0);
 }
 
-/// The linear part of the largest instance of each mesh: its charts are measured as that one stands in the
-/// world.
+/// Returns the linear part of the largest instance of each mesh; its charts are measured as that one stands
+/// in the world.
 std::vector<glm::dmat3> largestTransforms(const Scene& scene) {
     std::vector<glm::dmat3> transforms(scene.meshes.size(), glm::dmat3(0.0));
     for (const Instance& instance : scene.instances) {
@@ -84,7 +84,8 @@ glm::dvec2 texelsOf(const PlanarChart& chart, double density) {
     return glm::max(glm::round(chart.extent * density), glm::dvec2(1.0));
 }
 
-/// Of all charts with their gutters [texels]; nothing where a mesh would need more texels than one can have.
+/// Returns the area of all charts with their gutters [texels], or nothing where a mesh would need more texels
+/// than one can have.
 std::optional<double> chartArea(const std::vector<PlanarChart>& charts, double density) {
     double area = 0.0;
     for (const PlanarChart& chart : charts) {
@@ -118,13 +119,13 @@ Packing packCharts(const std::vector<PlanarChart>& charts, double density) {
     return packing;
 }
 
-/// UVs of the packed charts; `side` texels are one unit.
+/// Returns the UVs of the packed charts; `side` texels are one unit.
 Layout layOut(const Job& job, const Packing& packing, uint32_t side) {
     Layout layout;
     layout.uv.resize(job.corners.size());
     layout.chart.assign(job.corners.size() / 3, kNoNumber);
     for (size_t i = 0; i < job.charts.size(); ++i) {
-        // Stretched to fill its texels, so that straight borders run along texel edges.
+        // The chart is stretched to fill its texels, so that straight borders run along texel edges.
         const PlanarChart& chart = job.charts[i];
         const PackedRect& rect = packing.rects[i];
         const glm::dvec2 corner(rect.x, rect.y), texels(rect.width, rect.height);
@@ -238,7 +239,7 @@ std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) 
     return jobs;
 }
 
-/// The jobs' share of the scene's area: meshes that keep their UVs need the rest.
+/// Returns the jobs' share of the scene's area; meshes that keep their UVs need the rest.
 double shareOf(const Scene& scene, const std::vector<Job>& jobs) {
     double own = 0.0, all = 0.0;
     for (const Job& job : jobs)
@@ -249,7 +250,7 @@ double shareOf(const Scene& scene, const std::vector<Job>& jobs) {
     return own > 0.0 && own < all ? own / all : 1.0;
 }
 
-/// Texels that all instances need together at a density, gutters included.
+/// Returns how many texels all instances need together at a density, gutters included.
 double texelsAt(const std::vector<Job>& jobs, double density) {
     double texels = 0.0;
     for (const Job& job : jobs) {
@@ -259,8 +260,8 @@ double texelsAt(const std::vector<Job>& jobs, double density) {
     return texels;
 }
 
-/// The density, or the next lower one by halves at which no mesh needs more texels than it can have: one may
-/// be far longer than its area tells. No density helps where there are too many charts.
+/// Returns the density, or the next lower one by halves at which no mesh needs more texels than it can have;
+/// a mesh may be far longer than its area tells. No density helps where there are too many charts.
 double allowedDensity(const std::vector<Job>& jobs, double density) {
     const auto allowed = [&] {
         return std::all_of(jobs.begin(), jobs.end(),
@@ -280,7 +281,8 @@ void warnAboutLongest(const Scene& scene, const std::vector<Job>& jobs, double d
         nameOf(scene, *longest));
 }
 
-/// The density at which `texels` texels hold the instances of all jobs, with their gutters at full width.
+/// Returns the density at which `texels` texels hold the instances of all jobs, with their gutters at full
+/// width.
 double densityThatFits(const Scene& scene, const std::vector<Job>& jobs, double texels) {
     double area = 0.0;
     size_t charts = 0;
@@ -296,7 +298,7 @@ double densityThatFits(const Scene& scene, const std::vector<Job>& jobs, double 
         const double need = texelsAt(jobs, density);
         if (need <= texels) best = std::max(best, density);
         density *= std::sqrt(texels / need);
-        // Packings jump: creep up on the limit from below once it has been met.
+        // Packings jump, so the density creeps up on the limit from below once one has been met.
         if (best > 0.0 && density <= best) density = best * 1.01;
         density = allowedDensity(jobs, density);
     }

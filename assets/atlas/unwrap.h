@@ -24,7 +24,7 @@ struct UnwrapResult {
 /// absurdly many texels.
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc);
 
-/// Throws Error for a scene of points and lines: no lightmap UVs would help it.
+/// Throws Error for a scene of points and lines, which no lightmap UVs would help.
 void requireArea(const Scene& scene);
 
 } // namespace relume

@@ -40,7 +40,7 @@ bool hasSet(const Primitive& primitive, int set) {
     return uvSet(primitive, set).size() == primitive.positions.size();
 }
 
-/// Three welded vertices per triangle of all primitives that have the set.
+/// Returns three welded vertices per triangle of all primitives that have the set.
 std::vector<uint32_t> weld(const Mesh& mesh, int set) {
     size_t vertices = 0;
     for (const Primitive& primitive : mesh.primitives)

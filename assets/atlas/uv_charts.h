@@ -7,14 +7,14 @@
 
 namespace relume {
 
-/// The charts of one UV set of a mesh.
+/// Holds the charts of one UV set of a mesh.
 struct UvCharts {
     std::vector<std::vector<uint32_t>> chart; // [primitive][triangle]; empty for primitives without the set
     uint32_t count = 0;
 };
 
 /// Connects triangles through edges whose two ends have exactly equal positions and UVs, across primitives
-/// too. set: 0 or 1.
+/// too. `set` is 0 or 1.
 UvCharts findCharts(const Mesh& mesh, int set);
 
 } // namespace relume

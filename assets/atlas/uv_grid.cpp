@@ -47,8 +47,8 @@ bool UvGrid::forEachSpan(glm::dvec2 pa, glm::dvec2 pb, glm::dvec2 pc, const Visi
         for (int e = 0; e < 3 && begin < end; ++e) {
             const Point &a = p[e], &b = p[(e + 1) % 3];
             const int64_t dx = b.x - a.x, dy = b.y - a.y;
-            // Inside where dx (y - a.y) - dy (x - a.x) > 0; a centre on an edge belongs to one of its two
-            // triangles.
+            // A cell is inside where dx (y - a.y) - dy (x - a.x) > 0; a centre on an edge belongs to one of
+            // its two triangles.
             const bool owns = dy < 0 || (dy == 0 && dx > 0);
             const int64_t rest =
                 dx * (y - a.y) + dy * a.x - dy * (kSub / 2) - (owns ? 0 : 1); // >= dy * kSub * i
@@ -90,7 +90,7 @@ bool UvGrid::addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
 }
 
 uint32_t UvGrid::sizeFor(size_t triangles) {
-    // About 16 cells per triangle; the least resolves 1 % of a single quad into 160 cells.
+    // There are about 16 cells per triangle; the smallest grid resolves 1 % of a single quad into 160 cells.
     uint32_t size = 128;
     while (size < 2048 && size_t(size) * size < 16 * triangles)
         size *= 2;

@@ -7,14 +7,14 @@
 
 namespace relume {
 
-/// Counts how many triangles cover the centres of a grid's cells: measures coverage and overlap of UVs.
+/// Counts how many triangles cover the centres of a grid's cells, which measures coverage and overlap of UVs.
 /// Triangles that share an edge never count twice along it.
 class UvGrid {
 public:
-    /// size x size cells over [low, high].
+    /// Makes size x size cells over [low, high].
     UvGrid(uint32_t size, glm::dvec2 low, glm::dvec2 high);
 
-    /// Either winding; parts outside the grid are ignored.
+    /// Adds a triangle of either winding; parts outside the grid are ignored.
     void add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
     /// Adds the triangle unless it covers a cell that another one covers; tells whether it was added.
@@ -25,17 +25,18 @@ public:
     uint64_t cells() const { return counts_.size(); }
     uint64_t visits() const { return visits_; } // cells of all triangles so far: what adding them has cost
 
-    /// Whether more than this share of the covered cells is overlapped.
+    /// Tells whether more than this share of the covered cells is overlapped.
     bool overlaps(double share) const {
         return static_cast<double>(overlapped_) > share * static_cast<double>(covered_);
     }
-    /// Whether it will be, even if what follows covers all other cells once: then the rest need not be added.
+    /// Tells whether that will be so even if what follows covers all other cells once: then the rest need not
+    /// be added.
     bool mustOverlap(double share) const {
         return static_cast<double>(overlapped_) > share * static_cast<double>(cells());
     }
     uint8_t count(uint32_t x, uint32_t y) const { return counts_[size_t(y) * size_ + x]; } // stops at 255
 
-    /// Cells to a side that resolve the overlap of so many triangles to well below 1 %.
+    /// Returns how many cells to a side resolve the overlap of so many triangles to well below 1 %.
     static uint32_t sizeFor(size_t triangles);
 
 private:

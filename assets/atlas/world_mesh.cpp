@@ -16,7 +16,7 @@ namespace relume {
 
 namespace {
 
-/// One primitive of one instance on its way into the list.
+/// Holds one primitive of one instance on its way into the list.
 struct Part {
     const Scene* scene;
     const Primitive* primitive;
@@ -30,8 +30,8 @@ bool isMasked(const Scene& scene, int material) {
     return material >= 0 && scene.materials[static_cast<size_t>(material)].alphaMode == AlphaMode::Mask;
 }
 
-/// Cofactors of the linear part: the inverse transpose times the determinant, which also serves singular
-/// ones.
+/// Returns the cofactors of the linear part: the inverse transpose times the determinant, which also serves
+/// singular ones.
 glm::mat3 normalMatrix(const glm::mat4& transform) {
     const glm::dvec3 x(transform[0]), y(transform[1]), z(transform[2]);
     const glm::dmat3 cofactors(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
@@ -48,7 +48,7 @@ public:
     void reserve(size_t triangles);
     void add(const Part& part);
     size_t dropped() const { return dropped_; }
-    /// Triangles that reach beyond kFarthest, by mesh.
+    /// Returns the number of triangles that reach beyond kFarthest, by mesh.
     const std::map<int, size_t>& far() const { return far_; }
 
 private:
@@ -138,7 +138,7 @@ void Flattener::add(const Part& part) {
         }
         const glm::vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
         const float square = glm::dot(face, face);
-        // Below FLT_MIN normalizing is no longer exact.
+        // Normalizing is no longer exact below FLT_MIN.
         if (!(square > FLT_MIN) || !std::isfinite(square)) {
             ++dropped_;
             continue;
@@ -151,7 +151,7 @@ void Flattener::add(const Part& part) {
     }
 }
 
-/// The parts of all instances in file order; charts of a mesh are found once for all its instances.
+/// Lists the parts of all instances in file order; charts of a mesh are found once for all its instances.
 class PartList {
 public:
     PartList(const Scene& scene, const LightmapAtlas& atlas, std::span<const uint32_t> instances)

@@ -11,10 +11,10 @@ namespace relume {
 
 constexpr uint32_t kNoChart = 0xffffffffu;
 
-/// All instances of a scene as one list of world-space triangles: what the solver bakes and every tracer
-/// traces. Opaque triangles come first, those of alpha-masked materials behind them; within each part in file
-/// order. Corner arrays hold three entries per triangle. Counter-clockwise is the front, mirrored instances
-/// included, so cross(p1 - p0, p2 - p0) points to the front. No triangle has zero area or a corner
+/// Holds all instances of a scene as one list of world-space triangles: what the solver bakes and every
+/// tracer traces. Opaque triangles come first, those of alpha-masked materials behind them; each part is in
+/// file order. Corner arrays hold three entries per triangle. Counter-clockwise is the front, mirrored
+/// instances included, so cross(p1 - p0, p2 - p0) points to the front. No triangle has zero area or a corner
 /// beyond kFarthest (scene_limits.h).
 struct WorldMesh {
     std::vector<glm::vec3> positions;  // [m]
@@ -33,10 +33,10 @@ struct WorldMesh {
 };
 
 /// Flattens a scene with the atlas it was given. Drops triangles of no area, those that reach too far, and
-/// hidden instances. Throws Error when nothing is left.
+/// hidden instances. Throws Error where nothing is left.
 WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas);
-/// The same of these instances alone, hidden or not, in ascending order; charts are counted among them. May
-/// be empty.
+/// Flattens these instances alone, hidden or not, in ascending order; charts are counted among them. The
+/// result may be empty.
 WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
                            std::span<const uint32_t> instances);
 

@@ -6,7 +6,7 @@ namespace relume {
 
 using Clock = std::chrono::steady_clock;
 
-/// [s]
+/// Returns the time since `start` [s].
 inline double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }

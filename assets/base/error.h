@@ -5,14 +5,14 @@
 
 namespace relume {
 
-/// Something in the world is wrong: a file, a driver, a shader, what the user typed. Thrown anywhere, caught
-/// once in main. The message is one line and names the file, the thing and the mend.
+/// Tells that something in the world is wrong: a file, a driver, a shader, what the user typed. It is thrown
+/// anywhere and caught once, in main. The message is one line and names the file, the thing and the remedy.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// The command line itself is wrong: exit status 2.
+/// Tells that the command line itself is wrong; the exit status is 2.
 class UsageError : public Error {
 public:
     using Error::Error;
@@ -24,7 +24,8 @@ namespace detail {
 
 } // namespace relume
 
-/// A bug in Relume when false. Stays on in release builds: a wrong lightmap is worse than an abort.
+/// Aborts where the condition is false, which is a bug in Relume. It stays on in release builds: a wrong
+/// lightmap is worse than an abort.
 #define ASSERT(condition)                                                                                    \
     do {                                                                                                     \
         if (!(condition)) ::relume::detail::assertFailed(#condition, __FILE__, __LINE__);                    \

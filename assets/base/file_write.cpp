@@ -33,7 +33,7 @@ std::string systemFolder() {
     return code ? "/tmp" : folder.string();
 }
 
-// Where content waits: the folder of what it replaces, else wherever there is room.
+// Makes the file where content waits: in the folder of what it replaces, else wherever there is room.
 Spool spoolFor(const WriteTarget& target, WriteWay way) {
     const bool exists = target.kind != WriteTarget::Kind::Missing;
     const uint32_t mode = exists ? 0600 : 0666; // nobody else reads a private file's content meanwhile
@@ -45,7 +45,8 @@ Spool spoolFor(const WriteTarget& target, WriteWay way) {
     return elsewhere.error() == 0 ? std::move(elsewhere) : Spool::inMemory();
 }
 
-// A reader of a FIFO that goes away is an error like others: SIGPIPE would take a viewer's edits along.
+// Blocks SIGPIPE, which would take a viewer's edits along: a reader of a FIFO that goes away is an error like
+// others.
 class PipeSignalBlock {
 public:
     PipeSignalBlock() {
@@ -66,7 +67,8 @@ private:
     sigset_t pipe_{}, before_{};
 };
 
-// Rights beyond those of owner, group and others. False where there are some that cannot be handed down.
+// Copies rights beyond those of owner, group and others. Returns false where there are some that cannot be
+// handed down.
 bool copyAccessList(const std::string& from, int to) {
     constexpr const char* kName = "system.posix_acl_access";
     const ssize_t size = getxattr(from.c_str(), kName, nullptr, 0);
@@ -76,7 +78,7 @@ bool copyAccessList(const std::string& from, int to) {
     return read > 0 && fsetxattr(to, kName, list.data(), static_cast<size_t>(read), 0) == 0;
 }
 
-// The name of a result that is kept, "" where none could be given.
+// Gives a result that is kept its name and returns it, or "" where none could be given.
 std::string giveSavedName(Spool& spool, const std::string& path) {
     constexpr uint32_t kMostNames = 1000;
     for (uint32_t number = 1; number <= kMostNames; ++number) {
@@ -93,7 +95,8 @@ std::string giveSavedName(Spool& spool, const std::string& path) {
 AtomicFile::AtomicFile(const std::string& path, OnFailure onFailure)
     : target_(lookAtTarget(path)), onFailure_(onFailure) {
     const WritePlan plan = planWrite(target_);
-    // What could be written when it was checked may have changed since: the content has a place all the same.
+    // What could be written when it was checked may have changed since; the content gets a place all the
+    // same.
     if (plan.way == WriteWay::Refuse && onFailure == OnFailure::Drop) throw Error(path + ": " + plan.problem);
     way_ = plan.way;
     problem_ = plan.problem;
@@ -127,7 +130,7 @@ bool AtomicFile::takeRefuge(std::string_view rest) {
     return true;
 }
 
-// Rights that its group had are not for another group.
+// Hands down the rights. Those that the former group had are not for another group.
 void AtomicFile::keepRights() const {
     if (target_.kind != WriteTarget::Kind::Regular) return;
     const int file = spool_.descriptor();
@@ -139,7 +142,8 @@ void AtomicFile::keepRights() const {
     if (!copyAccessList(target_.real, file)) fchmod(file, narrow);
 }
 
-// In place of a file that is there. Room is asked for first, while all of it is still there.
+// Writes the content over that of a file that is there. Room is asked for first, while the old content is
+// still whole.
 int AtomicFile::overwrite() const {
     const int file = open(target_.real.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
     if (file < 0) return errno;
@@ -193,7 +197,8 @@ void AtomicFile::commit() {
     spool_ = Spool();
 }
 
-// Beside what could not be written, or where the system keeps such files; "" where neither goes.
+// Saves the content beside what could not be written, or where the system keeps such files. Returns "" where
+// neither works.
 std::string AtomicFile::saveElsewhere() {
     std::string name = giveSavedName(spool_, target_.path);
     if (!name.empty()) return name;

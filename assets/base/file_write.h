@@ -9,16 +9,17 @@
 
 namespace relume {
 
-/// What becomes of content that is whole and cannot get its name: a disk is full, rights have changed.
+/// Says what becomes of content that is whole and cannot get its name, because a disk is full or rights have
+/// changed.
 enum class OnFailure {
     Drop, // there is more where that came from
     Keep, // it is saved under another name, beside it or in the system's temporary folder, which the Error
           // tells
 };
 
-/// A file that is written piece by piece, unseen, and takes its name when it is whole: until then, and if
-/// anything fails, `path` holds what it held before. A symbolic link is followed, and what is replaced hands
-/// down its rights, and its owner and group where the user may give them.
+/// Writes a file piece by piece, unseen; it takes its name when it is whole: until then, and if anything
+/// fails, `path` holds what it held before. A symbolic link is followed, and what is replaced hands down its
+/// rights, and its owner and group where the user may give them.
 ///
 /// A file with several names, one on which another file system's is mounted, and one whose folder the user
 /// may not change, stays and gets its new content in place, once that is whole and the disk has room for it:
@@ -32,7 +33,7 @@ public:
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     void write(std::string_view bytes);
-    /// What is written so far, for another program to write to.
+    /// Returns the descriptor of what is written so far, for another program to write to.
     int descriptor() const { return spool_.descriptor(); }
     /// Flushes to the disk and gives the file its name.
     void commit();
@@ -54,16 +55,16 @@ private:
     int noRoom_ = 0; // errno of the folder in which the content was to wait, when it waits in another one
 };
 
-/// The same in one go. Throws Error, leaving no temporary file.
+/// Writes a file as AtomicFile does, in one go. Throws Error, leaving no temporary file.
 void writeFileAtomically(const std::string& path, std::string_view bytes,
                          OnFailure onFailure = OnFailure::Keep);
 
-/// Throws Error where writing `path` is sure to fail: see planWrite(); or there is no space for `bytes`.
-/// Changes nothing.
+/// Throws Error where writing `path` is sure to fail (see planWrite()), or where there is no space for
+/// `bytes`. Changes nothing.
 void checkFileWritable(const std::string& path, uint64_t bytes);
 
-/// The name under which a result is kept that cannot be written to `path`, in `folder`: "o.saved.exr", from
-/// number 2 on "o.saved-2.exr".
+/// Returns the name under which a result that cannot be written to `path` is kept in `folder`: "o.saved.exr",
+/// from number 2 on "o.saved-2.exr".
 std::string savedName(const std::string& folder, const std::string& path, uint32_t number);
 
 } // namespace relume

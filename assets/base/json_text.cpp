@@ -12,12 +12,12 @@ bool isSpace(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';
 }
 
-/// Names that a user gave may be no valid UTF-8, which would throw.
+/// Returns the JSON as text. Names that a user gave may be no valid UTF-8, which would throw otherwise.
 std::string dumped(const Json& value, int step = -1, char indent = ' ') {
     return value.dump(step, indent, false, Json::error_handler_t::replace);
 }
 
-/// One member of an object or element of an array, as places in the text; `key` is empty in an array.
+/// Holds one member of an object or element of an array, as places in the text; `key` is empty in an array.
 struct Item {
     size_t begin = 0;                // of the white space in front of it
     size_t keyBegin = 0, keyEnd = 0; // quotes included
@@ -120,14 +120,14 @@ Container Patcher::items(size_t at) const {
     return container;
 }
 
-/// The indentation at the end of a stretch of white space, behind its last line break.
+/// Returns the indentation at the end of a stretch of white space, behind its last line break.
 std::string Patcher::indentOf(size_t begin, size_t end) const {
     const std::string_view space = text_.substr(begin, end - begin);
     const size_t line = space.rfind('\n');
     return line == std::string_view::npos ? std::string() : std::string(space.substr(line + 1));
 }
 
-/// The indentation of the line that a place is in.
+/// Returns the indentation of the line that a place is in.
 std::string Patcher::lineIndent(size_t at) const {
     if (!lines_) return {}; // all of the file may be one line
     const size_t line = text_.rfind('\n', at);
@@ -135,7 +135,7 @@ std::string Patcher::lineIndent(size_t at) const {
     return std::string(text_.substr(begin, skipSpace(begin) - begin));
 }
 
-/// How the file is laid out is read from its first member.
+/// Finds how the file is laid out; its first member shows it.
 void Patcher::findUnit(size_t root) {
     if (text_[root] != '{' && text_[root] != '[') return;
     const size_t first = skipSpace(root + 1);
@@ -162,7 +162,8 @@ void Patcher::value(Span span, const Json& before, const Json& after, std::strin
     const size_t size = out.size();
     if (before.type() == after.type() && before.is_structured() && !before.empty() && !after.empty()) {
         const Container old = items(span.begin);
-        // Fewer in the JSON: a key stands twice in the text, so that places and values do not match.
+        // There may be fewer in the JSON: then a key stands twice in the text, and places and values do not
+        // match.
         if (old.items.size() == before.size()) {
             out += text_[span.begin];
             if (before.is_array()) {

@@ -8,7 +8,7 @@
 namespace relume {
 namespace {
 
-// "warning: " and "error: " stand in front of what the user must read, nothing in front of the rest.
+// Writes "warning: " or "error: " in front of what the user must read, and nothing in front of the rest.
 class LevelPrefix final : public spdlog::custom_flag_formatter {
 public:
     void format(const spdlog::details::log_msg& message, const std::tm&,

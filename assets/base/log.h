@@ -4,7 +4,8 @@
 
 namespace relume {
 
-/// Sends spdlog's messages to stderr, one per line, the level shown only from warning up. Call once, in main.
+/// Sends spdlog's messages to stderr, one per line; the level is shown only from warning up. Call it once, in
+/// main.
 void setupLog(bool quiet);
 
 } // namespace relume

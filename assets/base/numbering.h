@@ -8,7 +8,8 @@ namespace relume {
 
 constexpr uint32_t kNoNumber = std::numeric_limits<uint32_t>::max();
 
-/// Finalizer of a multiplicative hash: every bit of the input reaches the low bits.
+/// Mixes a hash: it is the finalizer of a multiplicative hash, by which every bit of the input reaches the
+/// low bits.
 inline uint64_t mixBits(uint64_t h) {
     h ^= h >> 32;
     h *= 0xd6e8feb86659fd93ull;
@@ -17,8 +18,8 @@ inline uint64_t mixBits(uint64_t h) {
     return h ^ (h >> 32);
 }
 
-/// Numbers keys from 0 on in the order of their first appearance; open addressing, for at most so many
-/// insertions.
+/// Numbers keys from 0 on in the order of their first appearance. It uses open addressing, for at most so
+/// many insertions.
 template<typename Key>
 class Numbering {
 public:
@@ -28,7 +29,7 @@ public:
             slots *= 2;
         slots_.assign(slots, kNoNumber);
     }
-    /// The number of `key`, the next free one where it has none yet.
+    /// Returns the number of `key`, or the next free one where it has none yet.
     uint32_t operator()(const Key& key, uint64_t hash) {
         size_t slot = hash & (slots_.size() - 1);
         while (slots_[slot] != kNoNumber && !(keys_[slots_[slot]] == key))

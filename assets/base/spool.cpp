@@ -21,7 +21,7 @@ std::string nameOfDescriptor(int descriptor) {
     return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
-// A new file in the folder without a name; -1 where it could not be given one later.
+// Opens a new file without a name in the folder; returns -1 where it could not be given one later.
 int openUnnamed(const std::string& folder, uint32_t mode) {
     if (access("/proc/self/fd", F_OK) != 0) return -1;
     return open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, mode);
@@ -42,7 +42,7 @@ int writeAll(int descriptor, std::string_view bytes) {
 Spool::Spool(const std::string& folder, uint32_t mode) : folder_(folder) {
     descriptor_ = openUnnamed(folder, mode);
     if (descriptor_ >= 0) return;
-    // Not mkstemp: it makes the file private, while a result is to get the usual permissions.
+    // This is not mkstemp, which makes the file private, while a result is to get the usual permissions.
     do {
         temporary_ = temporaryName(folder);
         descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
@@ -92,11 +92,11 @@ int Spool::copyTo(int descriptor) const {
 }
 
 int Spool::flush() const {
-    // EINVAL: a file system that cannot flush has nothing to wait for.
+    // EINVAL means a file system that cannot flush; there is nothing to wait for.
     return fsync(descriptor_) != 0 && errno != EINVAL ? errno : 0;
 }
 
-// A link cannot replace a file, a rename can.
+// Gives the file a temporary name, since a link cannot replace a file while a rename can.
 int Spool::giveTemporaryName() {
     std::string name;
     int failed = 0;

@@ -6,14 +6,15 @@
 
 namespace relume {
 
-/// A file where content waits, unseen, until it is whole; move-only. Where the file system can have files
-/// without a name, not even a killed process leaves one behind. Functions return errno, 0 for success.
+/// Holds a file where content waits, unseen, until it is whole; move-only. Where the file system can have
+/// files without a name, not even a killed process leaves one behind. Functions return errno, or 0 for
+/// success.
 class Spool {
 public:
     Spool() = default; // none
-    /// A new file in a folder. error() tells whether there is one.
+    /// Makes a new file in a folder. error() tells whether there is one.
     Spool(const std::string& folder, uint32_t mode);
-    /// In memory, for where no folder can hold it. It cannot be given a name.
+    /// Makes one in memory, for where no folder can hold it. It cannot be given a name.
     static Spool inMemory();
     ~Spool();
     Spool(Spool&& other) noexcept;
@@ -24,13 +25,13 @@ public:
     const std::string& folder() const { return folder_; } // "" in memory
 
     int write(std::string_view bytes);
-    /// Appends what this one has to a file that is open.
+    /// Appends what this one holds to a file that is open.
     int copyTo(int descriptor) const;
-    /// Flushes to the disk.
+    /// Flushes the content to the disk.
     int flush() const;
-    /// Takes a name in its folder's file system that nothing has, else EEXIST.
+    /// Takes a name in its folder's file system that nothing has; else returns EEXIST.
     int take(const std::string& name);
-    /// Takes a name from whatever has it.
+    /// Takes a name, also from whatever has it.
     int replace(const std::string& name);
 
 private:
@@ -41,7 +42,7 @@ private:
     int error_ = 0;
 };
 
-/// Writes all bytes to an open file. Returns errno, 0 for success.
+/// Writes all bytes to an open file. Returns errno, or 0 for success.
 int writeAll(int descriptor, std::string_view bytes);
 
 } // namespace relume

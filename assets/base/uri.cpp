@@ -16,7 +16,7 @@ int hexDigit(char c) {
     return found == digits + 16 ? -1 : static_cast<int>(found - digits);
 }
 
-// Bytes that follow the first one of a letter, -1 where it begins none.
+// Returns how many bytes follow the first one of a letter, or -1 where it begins none.
 int followersOf(unsigned char first) {
     if (first < 0x80) return 0;
     if (first >= 0xc2 && first < 0xe0) return 1;
@@ -38,7 +38,7 @@ bool isUtf8(std::string_view text) {
             if ((next & 0xc0) != 0x80) return false;
             letter = letter << 6 | (next & 0x3fu);
         }
-        // Shorter spellings, halves of UTF-16 pairs and what lies beyond Unicode are none.
+        // Spellings that are too long, halves of UTF-16 pairs and what lies beyond Unicode are no letters.
         const bool tooLong = (followers == 2 && letter < 0x800) || (followers == 3 && letter < 0x10000);
         if (tooLong || (letter >= 0xd800 && letter < 0xe000) || letter > 0x10ffff) return false;
     }

@@ -5,14 +5,15 @@
 
 namespace relume {
 
-/// Whether JSON and other text may hold it as it is. Names of files need not be UTF-8.
+/// Tells whether JSON and other text may hold `text` as it is. Names of files need not be UTF-8.
 bool isUtf8(std::string_view text);
 
-/// With %XX as the bytes they stand for.
+/// Returns the URI with each %XX replaced by the byte that it stands for.
 std::string decodedUri(std::string_view uri);
-/// A path as a URI has it: what is not plain as %XX. Letters beyond ASCII stay, unless they are no UTF-8.
+/// Returns a path as a URI has it: what is not plain becomes %XX. Letters beyond ASCII stay, unless they are
+/// no UTF-8.
 std::string encodedUri(std::string_view path);
-/// Relative to the file that has it: not data, a web address or a path from the root.
+/// Tells whether a URI is relative to the file that has it: not data, a web address or a path from the root.
 bool isRelativeUri(std::string_view uri);
 
 } // namespace relume

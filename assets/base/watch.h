@@ -6,13 +6,13 @@ namespace relume {
 class Watch {
 public:
     virtual ~Watch() = default;
-    /// Comes every few milliseconds where that can be, on the thread that does the job. `done`: the share of
-    /// this phase, negative where it is not known. What it throws ends the job, of which nothing is left
-    /// then.
+    /// Is called every few milliseconds where that can be, on the thread that does the job. `done` is the
+    /// share of this phase, negative where it is not known. What it throws ends the job, of which nothing is
+    /// left then.
     virtual void hear(const char* phase, double done) = 0;
 };
 
-/// While it exists, the watch hears of all jobs on this thread; the one before hears of them again
+/// Lets the watch hear of all jobs on this thread while it exists; the one before hears of them again
 /// afterwards.
 class WatchScope {
 public:
@@ -28,10 +28,10 @@ private:
 /// Tells this thread's watch, if there is one, how a job stands.
 void tellWatch(const char* phase, double done = -1.0);
 
-/// The same of a loop, some times between its steps.
+/// Tells this thread's watch how a loop stands, now and then between its steps.
 class WatchedLoop {
 public:
-    /// `often`: a step in so many is worth a look at the clock.
+    /// Watches a loop; the watch is told at every `often`-th step.
     WatchedLoop(const char* phase, double steps, unsigned often = 1)
         : phase_(phase), steps_(steps), often_(often) {}
     void step() {

@@ -23,7 +23,7 @@ WritePlan refuse(const std::string& problem) {
     return {WriteWay::Refuse, problem};
 }
 
-// Why the look itself failed.
+// Refuses, telling why the look itself failed.
 WritePlan refuseUnseen(const WriteTarget& target) {
     if (target.error == ENAMETOOLONG)
         return refuse("cannot write: its name is too long for the file system: choose a shorter one");
@@ -97,7 +97,7 @@ void followLinks(WriteTarget& target) {
     target.folder = parentOf(path);
 }
 
-// Attributes of the inode that stat() does not tell; 0 where there are none to be told.
+// Returns the attributes of the inode that stat() does not tell, or 0 where none can be told.
 uint64_t attributesOf(const std::string& path) {
     struct statx facts {};
     if (statx(AT_FDCWD, path.c_str(), AT_NO_AUTOMOUNT, STATX_TYPE, &facts) != 0) return 0;
@@ -128,7 +128,8 @@ void lookAtFile(WriteTarget& target) {
     target.immutable = (attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND)) != 0;
 }
 
-// Making a file tells more than bits of rights: read-only mounts, quotas, /proc.
+// Returns why no file can be made in the folder, or 0. Making one tells more than bits of rights do:
+// read-only mounts, quotas, /proc.
 int errorOfNewFile(const std::string& folder) {
     int descriptor = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0600);
     if (descriptor < 0 && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {

@@ -5,7 +5,7 @@
 
 namespace relume {
 
-/// What the file system tells of a path that is to be written, symbolic links followed.
+/// Holds what the file system tells of a path that is to be written, with symbolic links followed.
 struct WriteTarget {
     enum class Kind { Missing, Regular, Folder, Stream, Socket }; // Stream: a device or a FIFO
 
@@ -28,7 +28,7 @@ struct WriteTarget {
     uint32_t owner = 0, group = 0, folderOwner = 0, user = 0; // user: who writes
 };
 
-/// How a file gets its new content.
+/// Says how a file gets its new content.
 enum class WriteWay {
     Refuse,  // it cannot
     Replace, // a new file takes the name
@@ -41,16 +41,17 @@ struct WritePlan {
     std::string problem; // of Refuse: "is a folder: name a file in it"
 };
 
-/// The decision, of what is told alone.
+/// Decides how to write, from what `target` tells alone.
 WritePlan planWrite(const WriteTarget& target);
 
 /// Looks at a path. Changes nothing, and opens nothing of what is there: a FIFO without a reader would wait.
 WriteTarget lookAtTarget(const std::string& path);
 
-/// Where symbolic links lead, up to what is there or would be.
+/// Returns where symbolic links lead, up to what is there or would be.
 std::string whereLinksLead(const std::string& path);
 
-/// "needs 3 MiB, its disk has 2 MiB left": figures that differ wherever `needed` is more than `left` [bytes].
+/// Returns "needs 3 MiB, its disk has 2 MiB left"; the figures differ wherever `needed` is more than `left`
+/// [bytes].
 std::string lackOfSpace(uint64_t needed, uint64_t left);
 
 } // namespace relume

@@ -12,12 +12,13 @@ struct SceneName {
     std::string description; // one line
 };
 
-/// The scenes the program can make, those in assets/scenes and "lamps", in the order to list them.
+/// Returns the scenes that the program can make, those in assets/scenes and "lamps", in the order to list
+/// them.
 std::vector<SceneName> generatedSceneNames();
 
-/// Makes a scene: real-world metres, TEXCOORD_1 of all instances together one lightmap atlas, at least one
-/// camera. The same name gives the same scene to the last bit on every platform. Throws Error listing the
-/// names when there is none of that name.
+/// Makes a scene in real-world metres, with at least one camera, in which TEXCOORD_1 of all instances
+/// together is one lightmap atlas. The same name gives the same scene to the last bit on every platform.
+/// Throws Error listing the names where there is none of that name.
 Scene generateScene(const std::string& name);
 
 } // namespace relume

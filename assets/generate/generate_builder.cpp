@@ -22,7 +22,7 @@ Corner cornerOf(const glm::dvec3& p) {
     return {p.x, p.y, p.z};
 }
 
-// The triangles of a solid with snapped corners, degenerate ones left out.
+// A face is a triangle of a solid with snapped corners; degenerate ones are left out.
 struct Face {
     size_t chart;
     uint32_t vertex[3];
@@ -56,8 +56,8 @@ std::vector<Face> facesOf(const Solid& solid) {
     return faces;
 }
 
-// Shading normal of each face's corners: the area-weighted mean of the faces around the corner on this side
-// of a crease.
+// Returns the shading normal of each face's corners: the area-weighted mean of the faces around the corner on
+// this side of a crease.
 std::vector<glm::vec3> cornerNormals(const std::vector<Face>& faces) {
     std::map<int, std::vector<int>> around;
     for (size_t f = 0; f < faces.size(); ++f)
@@ -87,8 +87,8 @@ bool isTurned(const Chart& chart, Orientation orientation) {
     return orientation == Orientation::Wide ? chart.size.y > chart.size.x : chart.size.x > chart.size.y;
 }
 
-// Packs whole cells. Rectangles of one size share out their places in their own order: the packer sorts with
-// qsort, which leaves the order of equals to the C library.
+// Packs whole cells. Rectangles of one size get their places in their own order: the packer sorts with qsort,
+// which leaves the order of equals to the C library.
 bool packCells(std::vector<PackedRect>& rects) {
     if (!packRects(rects, kAtlasCells, kAtlasCells, 1)) return false;
     using Place = std::pair<uint32_t, uint32_t>;
@@ -105,7 +105,7 @@ bool packCells(std::vector<PackedRect>& rects) {
     return true;
 }
 
-/// At `eye`, -Z towards `target`, X horizontal.
+/// Returns a transform that stands at `eye`, with -Z towards `target` and X horizontal.
 glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 back = glm::normalize(eye - target);
     const bool isVertical = back.x == 0.0f && back.z == 0.0f;
@@ -165,7 +165,7 @@ void SceneBuilder::sky(const glm::vec3& radiance) {
     scene_.sky.radiance = radiance;
 }
 
-// Finds the highest density at which all charts fit, turns their places into atlas coordinates.
+// Finds the highest density at which all charts fit and turns their places into atlas coordinates.
 void SceneBuilder::layOut() {
     std::vector<Chart*> charts;
     double area = 0.0;
@@ -177,7 +177,7 @@ void SceneBuilder::layOut() {
     ASSERT(!charts.empty());
 
     std::vector<PackedRect> rects(charts.size());
-    // Steps of 0.3 %: below one cell for the largest chart.
+    // Steps of 0.3 % are below one cell for the largest chart.
     for (double density = kAtlasCells / std::sqrt(area);; density *= 0.997) {
         ASSERT(density * std::sqrt(area) > 1.0); // otherwise there are more charts than cells
         bool fits = false;
@@ -234,7 +234,7 @@ Mesh SceneBuilder::makeMesh(const Part& part) const {
             primitive->normals.push_back(n);
             primitive->texCoord1.emplace_back(vertex.place);
             const glm::dvec2& tile = tiles_[chart.material];
-            // Snapped for the same reason as positions.
+            // They are snapped for the same reason as positions.
             if (tile.x > 0.0)
                 primitive->texCoord0.emplace_back(glm::dvec2(snap(glm::dvec3(vertex.texCoord / tile, 0.0))));
         }

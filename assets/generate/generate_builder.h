@@ -10,18 +10,18 @@
 
 namespace relume::generate {
 
-/// Chart edges fall on multiples of 1 / kAtlasCells of the atlas, charts are one cell apart: at 128, 256,
+/// Chart edges fall on multiples of 1 / kAtlasCells of the atlas, and charts are one cell apart: at 128, 256,
 /// 512, ... texels no texel is covered by half and patch areas are exact.
 constexpr int kAtlasCells = 128;
 
 /// Collects solids, lays their charts out in one lightmap atlas and turns all into a Scene.
 class SceneBuilder {
 public:
-    /// Returns the material's number. color: linear.
+    /// Adds a material of a linear colour and returns its number.
     int paint(const std::string& name, const glm::vec3& color);
-    /// A material that emits radiance `emission` [cd/m^2] and is light grey by itself.
+    /// Adds a material that emits radiance `emission` [cd/m^2] and is light grey by itself.
     int lamp(const std::string& name, const glm::vec3& emission);
-    /// A material whose picture repeats every `tile` metres of ChartVertex::texCoord.
+    /// Adds a material whose picture repeats every `tile` metres of ChartVertex::texCoord.
     int textured(const std::string& name, Image image, const glm::dvec2& tile);
 
     /// Adds an instance with a mesh of its own. Its origin, where an editor would grab it, is `position` [m].
@@ -29,11 +29,11 @@ public:
 
     void camera(const std::string& name, const glm::vec3& eye, const glm::vec3& target, float yfovDegrees);
 
-    /// A light at `position` that shines towards `target`; a rectangle's X axis is horizontal.
+    /// Adds a light at `position` that shines towards `target`; a rectangle's X axis is horizontal.
     void light(Light light, const glm::vec3& position, const glm::vec3& target);
     void sky(const glm::vec3& radiance); // [cd/m^2]
 
-    /// The scene. Call once, last.
+    /// Returns the scene. Call it once, last.
     Scene build();
 
 private:

@@ -20,7 +20,7 @@ Solid framedPicture(const glm::dvec2& size, int picture, int frame) {
 Solid ceilingLight(const glm::dvec2& size, double depth, int lit, int collar) {
     const glm::dvec3 corner(-size.x / 2, -depth, size.y / 2);
     Solid light = quad(corner, {size.x, 0, 0}, {0, 0, -size.y}).paint(lit).denser(2.0);
-    // Turned over: the moulding faces down.
+    // It is turned over: the moulding faces down.
     Solid rim = moulding(size / 2.0, {{0.0, 0.0}, {0.02, 0.004}, {0.02, -depth - kSunk}});
     rim.turn(glm::dmat3({1, 0, 0}, {0, -1, 0}, {0, 0, -1})).move({0, -depth, 0});
     return light.add(rim.paint(collar));

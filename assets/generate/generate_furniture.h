@@ -2,25 +2,25 @@
 
 #include "assets/generate/generate_shapes.h"
 
-// Things that stand and hang in more than one generated scene. They point up or stand on the ground like all
+// These things stand or hang in more than one generated scene. They point up or stand on the ground like all
 // shapes.
 namespace relume::generate {
 
 /// Objects stand this far inside what they stand on, so that no two faces share a plane [m].
 constexpr double kSunk = 0.0121;
 
-/// A globe in one chart, for lamps: from pole to pole.
+/// Makes a globe for lamps in one chart, from pole to pole.
 Solid globe(double radius, int segments, int rows);
 
-/// A picture in a frame, its back at y = 0 and its upper edge towards -Z: lay it on a wall. size: of the
-/// picture [m].
+/// Makes a picture in a frame, its back at y = 0 and its upper edge towards -Z: lay it on a wall. `size` is
+/// that of the picture [m].
 Solid framedPicture(const glm::dvec2& size, int picture, int frame);
 
-/// A lit rectangle in a collar, facing down from `depth` below the ceiling; the origin is in the ceiling's
-/// plane.
+/// Makes a lit rectangle in a collar, facing down from `depth` below the ceiling; the origin is in the
+/// ceiling's plane.
 Solid ceilingLight(const glm::dvec2& size, double depth, int lit, int collar);
 
-/// A square plinth with foot and cornice, top at `height`. halfWidth: of the shaft.
+/// Makes a square plinth with foot and cornice, its top at `height`. `halfWidth` is that of the shaft.
 Solid plinth(double halfWidth, double height);
 
 } // namespace relume::generate

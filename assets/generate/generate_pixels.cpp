@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kPeriod = 6.283185307179586; // of a sine
 
-// color by place in the picture, [0,1] from the top left corner, sRGB encoded as a painter mixes it.
+// Returns a colour by place in the picture, [0,1] from the top left corner, sRGB encoded as a painter mixes
+// it.
 using Painter = std::function<glm::dvec3(glm::dvec2 place)>;
 
 Image paintImage(const std::string& name, uint32_t width, uint32_t height, const Painter& painter) {
@@ -28,7 +29,7 @@ Image paintImage(const std::string& name, uint32_t width, uint32_t height, const
     return image;
 }
 
-// Integer hash to [0,1); xor, shift and multiply rounds after the usual 32-bit finalizers.
+// Hashes integers to [0,1); its rounds of xor, shift and multiply follow the usual 32-bit finalizers.
 double random(uint32_t x, uint32_t y, uint32_t seed) {
     uint32_t h = x * 0x8da6b343u ^ y * 0xd8163841u ^ seed * 0xcb1ab31fu;
     h = (h ^ (h >> 15)) * 0x2c1b3c6du;
@@ -36,7 +37,7 @@ double random(uint32_t x, uint32_t y, uint32_t seed) {
     return (h ^ (h >> 15)) / 4294967296.0;
 }
 
-// Smooth noise on a lattice of periodX by periodY cells, p in cells.
+// Returns smooth noise on a lattice of periodX by periodY cells; p is in cells.
 double noise(const glm::dvec2& p, uint32_t periodX, uint32_t periodY, uint32_t seed) {
     const glm::dvec2 cell = glm::floor(p);
     const glm::dvec2 f = p - cell;
@@ -53,7 +54,7 @@ double step(double low, double high, double x) {
     return t * t * (3.0 - 2.0 * t);
 }
 
-// 1 inside, 0 outside, over one or two pixels in between.
+// Returns 1 inside and 0 outside; the step goes over one or two pixels.
 double inside(double distance) {
     return step(0.008, -0.008, distance);
 }
@@ -171,7 +172,7 @@ Image floorTiles() {
 
 Image woodPanelling() {
     return paintImage("Wood panelling", 256, 256, [](glm::dvec2 p) {
-        // Distance to the panel's rim; the bevel is lit from above by the painter.
+        // This is the distance to the panel's rim; the painter lights the bevel from above.
         const glm::dvec2 f = glm::abs(p - 0.5);
         const double rim = std::min(0.40 - f.x, 0.38 - f.y);
         const glm::dvec3 wood = grain(rim > 0.0 ? glm::dvec2(p.x, p.y) : glm::dvec2(p.y, p.x));

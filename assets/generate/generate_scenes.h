@@ -2,7 +2,7 @@
 
 #include "assets/model/scene.h"
 
-// One function per generated scene, in assets/generate/scene_<name>.cpp.
+// There is one function per generated scene, in assets/generate/scene_<name>.cpp.
 namespace relume::generate {
 
 Scene cornellSmall();

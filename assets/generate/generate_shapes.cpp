@@ -10,14 +10,14 @@
 namespace relume::generate {
 namespace {
 
-// Places in a chart are multiples of 2^-20: they follow lengths, which come from the library's sines and
-// cosines.
+// Rounds places in a chart to multiples of 2^-20: they follow lengths, which come from the library's sines
+// and cosines.
 double steadyPlace(double x) {
     constexpr double kSteps = 1048576.0;
     return roundSteadily(x * kSteps) / kSteps;
 }
 
-// Running sums of the mean distance between neighbouring lines of a grid, starting with 0.
+// Holds running sums of the mean distance between neighbouring lines of a grid, starting with 0.
 struct Lengths {
     std::vector<double> columns, rows;
 };
@@ -125,7 +125,7 @@ Solid polygon(const std::vector<glm::dvec3>& points, const glm::dvec3& right, co
         const glm::dvec2 place = (flat - low) / chart.size;
         chart.vertices.push_back({p, {steadyPlace(place.x), steadyPlace(place.y)}, flat - low});
     }
-    // A zigzag, not a fan: triangles of even size instead of slivers.
+    // A zigzag gives triangles of even size; a fan would give slivers.
     const auto count = static_cast<uint32_t>(points.size());
     uint32_t low0 = 0, high0 = count - 1;
     for (bool fromLow = true; high0 - low0 > 1; fromLow = !fromLow) {
@@ -224,7 +224,7 @@ Solid ball(int n, const std::function<glm::dvec3(const glm::dvec3& direction)>& 
     const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     const std::array<std::array<glm::dvec3, 3>, 6> faces = {
         {{z, x, -y}, {-z, -x, -y}, {x, -z, -y}, {-x, z, -y}, {y, x, z}, {-y, x, -z}}};
-    // Equal angles instead of equal steps on the cube: quads of nearly one size.
+    // Equal angles instead of equal steps on the cube give quads of nearly one size.
     const auto warp = [](double a) {
         return std::abs(a) == 1.0 ? a : std::tan(a * glm::quarter_pi<double>());
     };

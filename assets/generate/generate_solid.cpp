@@ -45,7 +45,8 @@ Solid& Solid::denser(double factor) {
 }
 
 double roundSteadily(double x) {
-    // Not quite one half: a value computed as an exact half must not fall to either side by its last bit.
+    // This is not quite one half: a value computed as an exact half must not fall to either side by its last
+    // bit.
     return std::floor(x + 0.4971);
 }
 

@@ -13,8 +13,8 @@ struct ChartVertex {
     glm::dvec2 texCoord{0.0}; // [m] on the surface; the material knows how large a tile is
 };
 
-/// A piece of surface with its own rectangle in the lightmap atlas. Fronts are counter-clockwise; seen from
-/// the front place.x grows to the right and place.y downwards.
+/// A chart is a piece of surface with its own rectangle in the lightmap atlas. Fronts are counter-clockwise;
+/// seen from the front place.x grows to the right and place.y downwards.
 struct Chart {
     std::vector<ChartVertex> vertices;
     std::vector<uint32_t> indices; // 3 per triangle; one with two equal corners is dropped later
@@ -36,8 +36,8 @@ struct Solid {
     Solid& denser(double factor);
 };
 
-/// Coordinates are multiples of 2^-14 m (0.06 mm): the libraries' sines and cosines differ in the last bits,
-/// scenes must not, and corners that should meet do so exactly.
+/// Rounds coordinates to multiples of 2^-14 m (0.06 mm). The libraries' sines and cosines differ in the last
+/// bits, which scenes must not, and corners that should meet do so exactly.
 glm::dvec3 snap(const glm::dvec3& position);
 
 /// Rounds to the nearest whole number; exact halves, which symmetric shapes make, are kept off the edge.

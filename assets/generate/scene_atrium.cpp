@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-// A court of five by three bays with an arcade around it on two storeys, behind each a gallery, above all a
-// skylight.
+// The atrium is a court of five by three bays with an arcade around it on two storeys, a gallery behind each
+// and a skylight above all.
 namespace relume::generate {
 namespace {
 
@@ -26,7 +26,7 @@ struct AtriumPaints {
     int stone, shaft, plaster, lowerWall, upperWall, floor, galleryFloor, upperFloor, metal;
 };
 
-// One ring of a column. square: 0 round, 1 a square of half side `radius`.
+// This is one ring of a column. `square` is 0 for a round one and 1 for a square of half side `radius`.
 struct Ring {
     double radius, height;
     bool square = false;
@@ -37,7 +37,8 @@ struct ColumnDesc {
     int flutes, shaftRows;
 };
 
-// From the abacus down to the plinth; measures in shaft radii below and above the shaft.
+// Returns the rings from the abacus down to the plinth; below and above the shaft, measures are in shaft
+// radii.
 std::vector<Ring> columnRings(const ColumnDesc& desc) {
     const double r = desc.radius, h = desc.height;
     std::vector<Ring> rings = {{0.0, h + kSunk},
@@ -56,7 +57,7 @@ std::vector<Ring> columnRings(const ColumnDesc& desc) {
     const double low = 1.02 * r, high = neck - 0.36 * r;
     for (int i = 0; i <= desc.shaftRows; ++i) {
         const double t = static_cast<double>(i) / desc.shaftRows;
-        // Entasis: the shaft narrows by 15 %, faster towards the top.
+        // The shaft has entasis: it narrows by 15 %, faster towards the top.
         rings.push_back({r * (1.0 - 0.15 * std::pow(1.0 - t, 1.6)), high + (low - high) * t});
     }
     add(arc({1.08 * r, 0.84 * r}, 0.10 * r, 75.0, -75.0, 2)); // the foot: two rolls and a hollow
@@ -84,7 +85,8 @@ Solid column(const ColumnDesc& desc) {
     });
 }
 
-// The lower edge of an arcade: corners in x on the court's side and on the gallery's, and the height of each.
+// Holds the lower edge of an arcade: corners in x on the court's side and on the gallery's, and the height of
+// each.
 struct Edge {
     std::vector<double> court, outer, height;
 };
@@ -110,8 +112,8 @@ Edge arcadeEdge(int bays, double springing, int steps) {
     return edge;
 }
 
-// A wall on arches along X, the court towards +Z; its axis is the origin's. Ends are open: four of them close
-// a ring.
+// Makes a wall on arches along X through the origin, with the court towards +Z. Its ends are open: four of
+// them close a ring.
 Solid arcade(int bays, double springing, double top) {
     const Edge edge = arcadeEdge(bays, springing, 20);
     const int columns = static_cast<int>(edge.height.size()) - 1;
@@ -130,8 +132,8 @@ Solid arcade(int bays, double springing, double top) {
     }));
 }
 
-// The raised bands around the arches of one side, towards the court. Their ends rest inside the columns'
-// heads.
+// Makes the raised bands around the arches of one side, towards the court. Their ends rest inside the
+// columns' heads.
 Solid archivolts(int bays, double springing) {
     const std::vector<glm::dvec2> profile = {{1.163, 0.241}, {1.163, 0.287}, {1.131, 0.298},
                                              {1.107, 0.279}, {1.027, 0.284}, {1.019, 0.241}};

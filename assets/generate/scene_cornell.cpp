@@ -18,7 +18,7 @@ Solid coneOnGround(double radius, double height, int segments) {
     return lathe(profile, segments);
 }
 
-// Twenty triangles: the flat facets show one tone each.
+// Makes a solid of twenty triangles, whose flat facets show one tone each.
 Solid icosahedron(double radius, int material) {
     const double g = (1.0 + std::sqrt(5.0)) / 2.0;
     const std::vector<glm::dvec3> v = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
@@ -117,8 +117,8 @@ Scene cornellLayers() {
     addWalls(builder, room({-2.0, 0.0, -2.1}, {2.0, 3.2, 2.3}), white, red, green);
     builder.add("Light", ceilingLight({1.5, 0.9}, 0.05, lit, dark), {0.0, 3.2, -0.7});
 
-    // The wedge lies across the room, broad at the back wall, an edge in front; what light there is below
-    // comes around the edge. It runs through three walls: its open ends are outside.
+    // The wedge lies across the room, broad at the back wall and with an edge in front; what light there is
+    // below comes around the edge. It runs through three walls, so its open ends are outside.
     const glm::dvec3 top(-2.06, 1.813, -2.16), edge(-2.06, 1.493, 0.871), base(-2.06, 1.281, -2.16);
     const glm::dvec3 across(4.12, 0, 0);
     Solid wedge = quad(top, across, edge - top);
@@ -128,7 +128,7 @@ Scene cornellLayers() {
     // A thin wall divides the lower layer; it ends inside the wedge, whose underside slopes.
     builder.add("Inner wall", box({0.043, 1.53, 2.17}).turnY(3.1).paint(grey), {0.417, -kSunk, -1.057});
 
-    // The cell: light must not get in. Its inside has charts of its own.
+    // Light must not get into the cell. Its inside has charts of its own.
     const glm::dvec3 inside(0.93, 0.67, 0.89);
     const double wall = 0.061;
     Solid outer = box({inside.x + 2 * wall, inside.y + 2 * wall + kSunk, inside.z + 2 * wall}).paint(blue);

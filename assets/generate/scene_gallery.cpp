@@ -8,8 +8,8 @@
 #include <array>
 #include <cmath>
 
-// A hall with an aisle and three bays on either side. Each bay has a light, an object and pictures of its
-// own.
+// The gallery is a hall with an aisle and three bays on either side. Each bay has a light, an object and
+// pictures of its own.
 namespace relume::generate {
 namespace {
 
@@ -48,8 +48,8 @@ void addHall(SceneBuilder& builder, const GalleryPaints& paints) {
     builder.add("South wall", hall.front.paint(paints.wall));
     builder.add("West wall", hall.left.paint(paints.wall));
     builder.add("East wall", hall.right.paint(paints.wall));
-    // Partitions begin inside the long walls. Two reach the ceiling and carry a lintel over the aisle, a
-    // doorway; over the other two light passes.
+    // Partitions begin inside the long walls. Two reach the ceiling and carry a lintel over the aisle, which
+    // makes a doorway; light passes over the other two.
     for (int i = 0; i < 4; ++i) {
         const double x = i < 2 ? -kPartitionX : kPartitionX;
         const double side = i % 2 == 0 ? -1.0 : 1.0;
@@ -97,7 +97,7 @@ void addPictures(SceneBuilder& builder, const GalleryPaints& paints) {
 }
 
 Solid knot(double radius, double tube) {
-    // Trefoil: p = 2 turns about the axis, q = 3 about the core.
+    // This is a trefoil knot: p = 2 turns about the axis, q = 3 about the core.
     const auto centre = [&](double a) {
         const double r = radius * (0.62 + 0.27 * std::cos(3.0 * a));
         return glm::dvec3(r * std::sin(2.0 * a), 0.31 * radius * std::sin(3.0 * a), r * std::cos(2.0 * a));
@@ -178,7 +178,7 @@ void addObjects(SceneBuilder& builder, const GalleryPaints& paints) {
     exhibits.push_back({"Stack", stack(), porcelain, -kSunk});
     for (size_t i = 0; i < exhibits.size(); ++i) {
         const Bay& bay = bays()[i];
-        // A little off the light's axis towards the aisle.
+        // It stands a little off the light's axis, towards the aisle.
         const glm::dvec3 place(bay.middle.x + 0.09, 0.0, bay.middle.y + 0.53 * bay.towardsAisle);
         const double turn = 17.0 + 23.0 * static_cast<double>(i);
         builder.add("Plinth " + std::to_string(i + 1), plinth(0.233, top).turnY(turn).paint(paints.stone),
@@ -208,7 +208,7 @@ void addLights(SceneBuilder& builder, const GalleryPaints& paints) {
         lamp(bay.colorName, bay.light, {bay.middle.x, kHallHeight, bay.middle.y}, 0.271);
     for (double x : {-5.93, -3.51, -1.13, 1.17, 3.61, 5.89})
         lamp("warm white", {109.2f, 94.5f, 73.5f}, {x, kHallHeight, 0.0}, 0.157);
-    // Two small ones above the pictures at the ends.
+    // Two small ones hang above the pictures at the ends.
     lamp("pink", {147.0f, 71.4f, 92.4f}, {-6.71, kHallHeight, 0.03}, 0.133);
     lamp("mint", {63.0f, 151.2f, 105.0f}, {6.73, kHallHeight, -0.03}, 0.133);
 }

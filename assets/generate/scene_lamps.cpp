@@ -6,9 +6,9 @@
 namespace relume::generate {
 namespace {
 
-// Half the room; its floor is at 0 [m].
+// These are half the room's edges and its height; its floor is at 0 [m].
 constexpr double kRoomHalfX = 3.0, kRoomHalfZ = 2.0, kRoomHeight = 3.0;
-// The window in the left wall, as parts of the wall from its front upper corner.
+// The window in the left wall is given in parts of the wall from its front upper corner.
 constexpr double kWindowFromZ = 0.3, kWindowToZ = 0.7, kWindowFromY = 0.2, kWindowToY = 0.65;
 
 void addWindowedRoom(SceneBuilder& builder) {
@@ -39,7 +39,7 @@ void addThings(SceneBuilder& builder) {
         {0.61, 0.0, -0.57});
 }
 
-// An emissive tube along the back wall, as a fluorescent lamp: 1.4 klm from 0.11 m^2.
+// Adds an emissive tube along the back wall, like a fluorescent lamp: 1.4 klm from 0.11 m^2.
 void addTube(SceneBuilder& builder) {
     const int lit = builder.lamp("Tube", {4000.0f, 4000.0f, 4000.0f});
     constexpr double kRadius = 0.02, kHalfLength = 0.45;
@@ -50,8 +50,8 @@ void addTube(SceneBuilder& builder) {
     builder.add("Tube", tube.paint(lit).denser(2.5), {-1.87, 2.23, -kRoomHalfZ + 0.07});
 }
 
-// Along its axis each gives 20 to 150 lux; the sun, low behind thin clouds, leaves a patch of 600 on the
-// floor. Comments: what such a lamp gives in all [lm].
+// Adds one light of every kind. Along its axis each gives 20 to 150 lux; the sun, low behind thin clouds,
+// leaves a patch of 600 lux on the floor. The comments in lm say what such a lamp gives in all.
 void addEveryKindOfLight(SceneBuilder& builder) {
     Light bulb{.name = "Bulb", .type = LightType::Point};
     bulb.color = {1.0f, 0.76f, 0.50f};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kApothem = 3.8, kWallHeight = 3.4, kPanelled = 0.93; // [m]
 
-// Eight corners between the compass points; the radius of a profile is the distance to the walls.
+// Puts eight corners between the compass points; the radius of a profile is the distance to the walls.
 glm::dvec3 eightSided(double angle, const glm::dvec2& radiusAndHeight) {
     return revolve(angle + kPi / 8.0, {radiusAndHeight.x / std::cos(kPi / 8.0), radiusAndHeight.y});
 }
@@ -26,7 +26,7 @@ void addShell(SceneBuilder& builder) {
     builder.add("Floor", cap({kApothem, 0.0}, 8, true, eightSided).paint(tiles));
     builder.add("Ceiling", cap({kApothem, kWallHeight}, 8, false, eightSided).paint(plaster));
     for (int i = 0; i < 8; ++i) {
-        // From inside the corners run from right to left.
+        // As seen from inside, the corners run from right to left.
         const glm::dvec3 left = eightSided(kPi / 4.0 * (i + 1), {kApothem, kWallHeight});
         const glm::dvec3 right = eightSided(kPi / 4.0 * ((i + 1) % 8 - 1), {kApothem, kWallHeight});
         const glm::dvec3 across = snap(right) - snap(left);
@@ -76,7 +76,8 @@ Solid cornerColumn() {
                  20);
 }
 
-// A vessel with walls of its own thickness, from the inner bottom over the rim down the outside.
+// Makes a vessel whose walls have a thickness; its profile goes from the inner bottom over the rim down the
+// outside.
 Solid bowl() {
     std::vector<glm::dvec2> profile = {
         {0.0, 0.655},   {0.13, 0.662},  {0.25, 0.693},  {0.35, 0.751},  {0.42, 0.842},  {0.452, 0.951},
@@ -93,7 +94,7 @@ Solid bench(int wood) {
     return solid.paint(wood);
 }
 
-// A lit globe on an arm from the wall; the origin lies in the wall, the arm reaches towards +Z.
+// Makes a lit globe on an arm from the wall; the origin lies in the wall and the arm reaches towards +Z.
 Solid sconce(int lit, int metal) {
     Solid solid = globe(0.101, 20, 12).turnY(9.0).move({0, 0.177, 0.217}).paint(lit).denser(2.5);
     // The globe rests in a cup whose rim stays clear of it.
@@ -125,8 +126,7 @@ void addLamps(SceneBuilder& builder) {
     for (int i = 0; i < 4; ++i) {
         const std::string name = "Lamp " + std::to_string(i + 1);
         const int lit = builder.lamp(name + " (" + names[i] + ")", colors[i]);
-        // A quarter of a turn apart, on the walls that face the axes; degree steps keep them off exact
-        // symmetry.
+        // They are a quarter of a turn apart, on the walls that face the axes.
         const double angle = 90.0 * i;
         const glm::dvec3 wall =
             kApothem * glm::dvec3(std::sin(glm::radians(angle)), 0, std::cos(glm::radians(angle)));

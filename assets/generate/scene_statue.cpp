@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-// A winged figure after the idea of the thesis' Lucy: folds and feathers that shade each other.
+// The statue is a winged figure after the idea of the thesis' Lucy, with folds and feathers that shade each
+// other.
 namespace relume::generate {
 namespace {
 
-// Catmull-Rom curve through points, x from 0 to 1.
+// Returns a point of the Catmull-Rom curve through `points`; x goes from 0 to 1.
 template<class Vector>
 Vector through(const std::vector<Vector>& points, double x) {
     const int last = static_cast<int>(points.size()) - 1;
@@ -22,8 +23,8 @@ Vector through(const std::vector<Vector>& points, double x) {
     return b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)));
 }
 
-// Half width, half depth and the centre's drift to the side by height: hem, knees, hips, waist, chest,
-// shoulders, neck.
+// Returns half the width, half the depth and the centre's drift to the side at a height: hem, knees, hips,
+// waist, chest, shoulders, neck.
 glm::dvec3 girth(double height) {
     static const std::vector<glm::dvec3> kRings = {
         {0.335, 0.315, 0.0},   {0.285, 0.270, 0.006}, {0.250, 0.236, 0.016}, {0.230, 0.212, 0.028},
@@ -33,7 +34,8 @@ glm::dvec3 girth(double height) {
     return through(kRings, height / kTop);
 }
 
-// How far the cloth stands out: hanging folds that run into one another, deep at the hem, tight at the waist.
+// Returns how far the cloth stands out: its hanging folds run into one another, deep at the hem and tight at
+// the waist.
 double folds(double angle, double height) {
     const double hanging =
         0.040 * (1.0 - smooth(0.15, 1.0, height)) + 0.006 * (1.0 - smooth(1.20, 1.36, height));
@@ -41,7 +43,7 @@ double folds(double angle, double height) {
     const double wide = std::sin(9.0 * angle + 1.9 * height + 1.3 * std::sin(2.0 * angle + sway));
     const double narrow = std::sin(19.0 * angle - 3.1 * height + 1.1 * std::sin(3.0 * angle + 2.0 * sway));
     const double fine = std::sin(37.0 * angle + 5.3 * height);
-    // A sash: cloth gathered aslant around the hips.
+    // A sash is cloth gathered aslant around the hips.
     const double slant = height - 0.985 - 0.06 * std::sin(angle + 0.6);
     const double sash =
         0.021 * std::exp(-slant * slant / 0.0021) * (1.0 + 0.3 * std::sin(150.0 * slant + 2.0 * angle));
@@ -74,7 +76,7 @@ Solid head() {
         const double nose = bump(d.x, 0.15) * smooth(0.30, -0.2, d.y) * smooth(-0.40, -0.22, d.y);
         const double sockets = bump(std::abs(d.x) - 0.34, 0.24) * bump(d.y - 0.04, 0.15);
         p.z += face * (0.013 * nose - 0.006 * sockets);
-        // Hair in waves, parted in the middle, gathered to a knot behind.
+        // The hair falls in waves, parted in the middle and gathered to a knot behind.
         const double hair = smooth(0.60, 0.44, d.z - 0.42 * d.y) * smooth(-0.62, -0.35, d.y - 0.35 * d.z);
         const double waves = std::sin(16.0 * std::atan2(std::abs(d.x) + 0.05, 0.75 + d.y) + 5.0 * d.z);
         const double knot = bump(d.x, 0.34) * bump(d.y - 0.05, 0.34) * smooth(-0.4, -0.9, d.z);
@@ -87,7 +89,7 @@ struct Joint {
     double radius; // [m]
 };
 
-// A limb with round ends, one chart.
+// Makes a limb with round ends in one chart.
 Solid limb(const std::vector<Joint>& joints, int around, int along) {
     std::vector<glm::dvec4> points;
     for (const Joint& joint : joints)
@@ -107,8 +109,8 @@ Solid limb(const std::vector<Joint>& joints, int around, int along) {
     });
 }
 
-// side -1: the viewer's left. Span s runs from the shoulder to the tip, t once around from the leading edge
-// down the front to the trailing edge and up the back.
+// Makes a wing; `side` is -1 at the viewer's left. The span s runs from the shoulder to the tip, t once
+// around from the leading edge down the front to the trailing edge and up the back.
 Solid wing(double side) {
     static const std::vector<glm::dvec2> kLeading = {{0.02, 1.20}, {0.15, 1.45}, {0.27, 1.72}, {0.44, 1.92},
                                                      {0.63, 1.90}, {0.77, 1.66}, {0.88, 1.28}, {0.95, 0.80}};
@@ -119,7 +121,7 @@ Solid wing(double side) {
         const double span = side > 0 ? s : 1.0 - s;
         const double around = 2.0 * kPi * t;
         const double chord = 0.5 - 0.5 * std::cos(around); // 0 leading, 1 trailing edge
-        // Long feathers below, two rows of shorter ones over them, each a step thicker.
+        // There are long feathers below and two rows of shorter ones over them, each a step thicker.
         const double rib = std::abs(std::sin(kPi * kFeathers * span));
         const double cover = std::abs(std::sin(kPi * (1.5 * kFeathers * span + 0.5)));
         const double tip = 1.0 - smooth(0.9, 1.0, span);
@@ -180,7 +182,7 @@ Scene cornellStatue() {
     Solid figure = robe();
     figure.add(head());
     figure.add(wing(1.0)).add(wing(-1.0));
-    // Her right arm lifts the globe, the left one rests before the waist.
+    // Her right arm lifts the globe; the left one rests before the waist.
     figure.add(limb({{{-0.125, 1.325, 0.02}, 0.060},
                      {{-0.220, 1.255, 0.05}, 0.055},
                      {{-0.305, 1.215, 0.155}, 0.047},

@@ -6,18 +6,18 @@
 
 namespace relume {
 
-/// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming file, thing
-/// and mend.
+/// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming the file, the
+/// thing and the remedy.
 Scene loadGltf(const std::string& path);
 
 /// Writes a scene as one binary .glb: meshes shared by instances, one node per instance, materials, textures
 /// (PNG), cameras, lights (KHR_lights_punctual; extents, area lights and the sky as extras, see README.md),
 /// emission above 1 by KHR_materials_emissive_strength. The sky's picture stays where Sky::file is; one
-/// without a file is written beside the .glb as NAME_sky.exr. Temporary name, then rename. Loading the result
-/// gives the same scene. Throws Error.
+/// without a file is written beside the .glb as NAME_sky.exr. The file is written by a temporary name and
+/// then renamed. Loading the result gives the same scene. Throws Error.
 void saveGlb(const Scene& scene, const std::string& path);
 
-/// Throws the Error of a saveGlb() that is sure to fail for what the scene is. Changes nothing.
+/// Throws the Error of saveGlb() where the scene is such that it is sure to fail. Changes nothing.
 void checkGlb(const Scene& scene, const std::string& path);
 
 } // namespace relume

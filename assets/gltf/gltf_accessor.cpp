@@ -33,7 +33,7 @@ T load(const unsigned char* data) {
 }
 
 float component(const unsigned char* data, int type, bool normalized) {
-    // Normalized integers as in section 3.11 of the glTF 2.0 specification.
+    // Normalized integers are read as section 3.11 of the glTF 2.0 specification says.
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE: {
         const float value = load<int8_t>(data);

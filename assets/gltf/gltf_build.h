@@ -12,7 +12,7 @@
 
 namespace relume::gltf {
 
-/// What the builders share: the parsed file, already checked, and the scene made from it.
+/// Holds what the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
     tinygltf::Model model;        // without nodes, scenes and lights: the parser is slow for very many
@@ -24,8 +24,8 @@ struct Build {
     Warnings warnings;
 };
 
-/// Reads all elements of an accessor as floats, `components` per element, normalized integers to [0,1] or
-/// [-1,1], sparse parts applied. The accessor must have exactly that many components.
+/// Reads all elements of an accessor as floats, `components` per element. Normalized integers become [0,1] or
+/// [-1,1], and sparse parts are applied. The accessor must have exactly that many components.
 std::vector<float> readFloats(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
                               uint32_t components);
 
@@ -49,14 +49,14 @@ void addLights(Build& build, size_t node, const glm::mat4& world);
 /// Fills Scene::sky from the default scene's extras, its picture included. Throws Error.
 void buildSky(Build& build);
 
-/// An image of the file as 8-bit RGBA; the parsed file's bytes of it are dropped. Throws Error where it is
-/// missing, cannot be decoded or is too large; warns where it is damaged.
+/// Returns an image of the file as 8-bit RGBA and drops the parsed file's bytes of it. Throws Error where it
+/// is missing, cannot be decoded or is too large; warns where it is damaged.
 Image decodeImage(Build& build, int index);
 
-/// A numeric member of an extension's JSON, `fallback` where it is missing.
+/// Returns a numeric member of an extension's JSON, or `fallback` where it is missing.
 double numberOr(const tinygltf::Value& value, const char* key, double fallback);
 
-/// The image loader to hand to tinygltf: keeps the file's bytes, decodes nothing.
+/// Is the image loader to hand to tinygltf: it keeps the file's bytes and decodes nothing.
 bool keepImageBytes(tinygltf::Image* image, int index, std::string* error, std::string* warning, int width,
                     int height, const unsigned char* bytes, int size, void* user);
 

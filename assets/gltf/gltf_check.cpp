@@ -20,7 +20,7 @@ constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_materials_emissiv
 constexpr std::array kCompressions = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                       "MESHOPT_compression"};
 
-/// One file's JSON and the messages about it.
+/// Checks one file's JSON and makes the messages about it.
 class Checker {
 public:
     explicit Checker(const File& file) : file_(file), root_(file.json) {}
@@ -192,7 +192,7 @@ void Checker::view(const json& value, const std::string& where) const {
         fail(fmt::format("{}.byteStride is {}, not a multiple of 4 up to 252", where, stride));
 }
 
-/// `holder` names a view and an offset into it; the elements read from there must end inside the view.
+/// Checks that the elements read from the view and offset that `holder` names end inside the view.
 void Checker::range(const json& holder, const std::string& where, uint64_t stride, uint64_t elements,
                     uint64_t elementBytes) const {
     const int64_t viewIndex = index(holder, "bufferView", where, "bufferViews");
@@ -223,8 +223,8 @@ void Checker::accessor(const json& value, const std::string& where) const {
     if (member(value, "bufferView")) range(value, where, 0, static_cast<uint64_t>(elements), elementBytes);
     const json* sparsePart = member(value, "sparse");
     if (sparsePart) sparse(object(*sparsePart, where + ".sparse"), where + ".sparse", elements, elementBytes);
-    // Zeros without a buffer: nothing in the file bounds them, so a damaged count could ask for all memory.
-    // What several uses make of them is bounded by checkSizes.
+    // These are zeros without a buffer: nothing in the file bounds them, so a damaged count could ask for all
+    // memory. checkSizes bounds what several uses make of them.
     if (!member(value, "bufferView") && elements > int64_t(1) << 26)
         fail(where + ".count is far too large for an accessor without data");
 }
@@ -320,7 +320,8 @@ void Checker::lights() const {
     }
 }
 
-/// The member `key` of extras.relume. Others' extras may be anything; ours are objects, and hold objects.
+/// Returns the member `key` of extras.relume. Others' extras may be anything; ours are objects and hold
+/// objects.
 const json* Checker::own(const json& holder, const char* key, const std::string& where) const {
     const json* extras = member(holder, "extras");
     const json* ours = extras && extras->is_object() ? member(*extras, "relume") : nullptr;
@@ -377,13 +378,14 @@ void Checker::image(const json& value, const std::string& where) const {
     index(value, "bufferView", where, "bufferViews");
     text(value, "uri", where);
     text(value, "mimeType", where);
-    // The parser would hand these to the decoder as a wish; glTF does not have them.
+    // The parser would hand these to the decoder as the wanted size; glTF does not have them.
     if (member(value, "width") || member(value, "height")) fail(where + " has a width or height");
     if ((member(value, "bufferView") != nullptr) == (member(value, "uri") != nullptr))
         fail(where + " has neither or both of bufferView and uri");
 }
 
-/// With at most one parent per node a cycle cannot be reached from a root, so no walk can be endless.
+/// Checks that each node has at most one parent: then a cycle cannot be reached from a root, and no walk is
+/// endless.
 void Checker::parents() const {
     const json* nodes = member(root_, "nodes");
     if (!nodes) return;

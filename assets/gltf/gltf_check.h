@@ -13,10 +13,11 @@ namespace relume::gltf {
 /// nodes may be trusted.
 void check(const File& file);
 
-/// The optional extensions a file uses and Relume does not know.
+/// Returns the optional extensions that a file uses and Relume does not know.
 std::vector<std::string> unknownExtensions(const File& file);
 
-/// Bytes of one component (5121 ...: 1, 2 or 4), and the number of components ("VEC3": 3); 0 where unknown.
+/// Return the bytes of one component (5121 ...: 1, 2 or 4), and the number of components ("VEC3": 3); 0 where
+/// unknown.
 uint32_t componentBytes(int64_t componentType);
 uint32_t componentCount(const std::string& type);
 

@@ -110,7 +110,7 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
     std::string edited(text);
     if (edit.json != was) {
         edited = patchJsonText(text, was, edit.json);
-        // A GLB's padding, which is made anew.
+        // This takes away a GLB's padding, which is made anew.
         if (file.binary) edited.erase(edited.find_last_of('}') + 1);
     }
     writeFileAtomically(target, gltf::withJsonText(file, edited));

@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// Where the lights and instances of `after` are in the written file: their nodes, which `after` needs to be
-/// the `before` of the next edit.
+/// Tells where the lights and instances of `after` are in the written file: at these nodes, which `after`
+/// needs to be the `before` of the next edit.
 struct EditedNodes {
     std::vector<int> lights, instances;
 };
@@ -26,16 +26,16 @@ struct EditedNodes {
 /// light that several nodes share is copied for the one that changes. Where `target` is in another folder,
 /// relative URIs are written anew so that they lead to the same files.
 ///
-/// Temporary name, then rename. Throws Error, and leaves `target` as it was, where the source is no good
-/// file, is not the one that `before` came from, is a .glb and `target` a .gltf or the other way round, or
-/// where an edited value is not finite or out of glTF's range.
+/// The file is written by a temporary name and then renamed. Throws Error, and leaves `target` as it was,
+/// where the source is no good file, is not the one that `before` came from, is a .glb and `target` a .gltf
+/// or the other way round, or where an edited value is not finite or out of glTF's range.
 ///
-/// Of the two scenes nothing but materials, instances, lights, sky and path is looked at: partsOfEdits will
+/// Nothing but materials, instances, lights, sky and path of the two scenes is looked at: partsOfEdits will
 /// do.
 EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const Scene& after,
                            const std::string& target);
 
-/// A copy of what saveEditedGltf looks at, without meshes, textures and pixels.
+/// Returns a copy of what saveEditedGltf looks at, without meshes, textures and pixels.
 Scene partsOfEdits(const Scene& scene);
 
 } // namespace relume

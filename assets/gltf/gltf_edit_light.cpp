@@ -40,7 +40,7 @@ Carried carriedAs(const Light& light) {
     return isAreaLight(light.type) ? Carried::AreaLight : Carried::Light;
 }
 
-/// Whether only the places of two lights differ.
+/// Tells whether two lights differ at most in their places.
 bool alike(const Light& a, const Light& b) {
     return a.name == b.name && a.type == b.type && a.color == b.color && a.intensity == b.intensity &&
            a.range == b.range && a.innerConeAngle == b.innerConeAngle &&
@@ -48,7 +48,7 @@ bool alike(const Light& a, const Light& b) {
            a.size == b.size;
 }
 
-/// Cones of at most a right angle, the inner one inside the outer one as glTF has it.
+/// Writes cones of at most a right angle, the inner one inside the outer one, as glTF wants it.
 void writeCones(const FileEdit& edit, EditedJson& entry, const Light& light, const Light* before) {
     const std::string where = "light " + inQuotes(light.name);
     const bool opened = !before || before->outerConeAngle != light.outerConeAngle;
@@ -162,7 +162,7 @@ void LightEdit::writeArea(int index, const Light& light, const Light* before) co
     }
 }
 
-/// The entry of a node's light, a copy where other nodes use it too.
+/// Returns the entry of a node's light, or a copy of it where other nodes use it too.
 EditedJson& LightEdit::ownLight(int node) {
     EditedJson& use =
         *find(edit_.json["nodes"][static_cast<size_t>(node)], {"extensions", kPunctual, "light"});
@@ -209,9 +209,9 @@ void LightEdit::remove(const Light& light) {
     emptied_.push_back(light.node);
 }
 
-/// Where among the default scene's nodes a new one has to be, so that its light comes before those that are
-/// behind it in the list: one that was deleted, saved and brought back. The last place where they are in one
-/// tree with those before it, and for a light that is the last.
+/// Returns where among the default scene's nodes a new one has to be so that its light comes before those
+/// that follow it in the list, as one does that was deleted, saved and brought back. It is the last place
+/// where those are in one tree with the lights before it, and for a light that is the last.
 size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
     EditedJson* scenes = find(edit_.json, {"scenes"});
     if (!scenes || scenes->empty()) return kLastPlace;
@@ -230,7 +230,8 @@ size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
     return last == nodes.rend() || placeOf(*last) < place ? place : kLastPlace;
 }
 
-/// A light that the file has not goes to the node it had once, if nothing else took that, else to a new one.
+/// Gives a light that the file lacks a node: the one that it had once, if nothing else took that, else a new
+/// one.
 int LightEdit::adopt(const Light& light, size_t rootPlace, Moves& moves) {
     const bool known = light.node >= 0 && static_cast<size_t>(light.node) < tree_.size() &&
                        tree_.inScene(light.node) && !holds(light.node, isAreaLight(light.type));

@@ -10,15 +10,15 @@ namespace relume::gltf {
 /// Edits a file's lights, except that those that stay are not moved yet.
 class LightEdit {
 public:
-    /// All must outlive it. `target` is named in messages.
+    /// Keeps its arguments, which must all outlive it. `target` is named in messages.
     LightEdit(FileEdit& edit, const NodeTree& tree, const std::string& target);
 
     /// Writes what differs; what has to move is added to `moves`. Returns the node of each light of `after`.
     std::vector<int> apply(const std::vector<Light>& before, const std::vector<Light>& after, Moves& moves);
 
-    /// Once all has moved: drops the entries of lights that no node uses any more.
+    /// Drops the entries of lights that no node uses any more; call it once all has moved.
     void dropUnused();
-    /// Nodes whose light was deleted.
+    /// Returns the nodes whose light was deleted.
     const std::vector<int>& emptied() const { return emptied_; }
 
 private:

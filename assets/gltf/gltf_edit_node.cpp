@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What a node carries is one of its members, or several that belong together.
+/// Returns the members of a node that are what it carries: one, or several that belong together.
 std::vector<JsonPath> membersOf(Carried carried) {
     switch (carried) {
     case Carried::Instance:
@@ -42,8 +42,8 @@ bool carries(EditedJson& node, Carried carried) {
     return false;
 }
 
-/// Whether two things go to the same place. Of a light only place and direction count: its transform need
-/// not have the scale of the node.
+/// Tells whether two things go to the same place. Only place and direction of a light count: its transform
+/// need not have the scale of the node.
 bool together(const Move& a, const Move& b) {
     if (a.to == b.to) return true;
     constexpr double kNear = 1e-6; // relative, of floats that went through a few products
@@ -53,7 +53,7 @@ bool together(const Move& a, const Move& b) {
     return glm::length(from[0] - to[0]) <= kNear && glm::length(from[2] - to[2]) <= kNear;
 }
 
-/// Whether all that a node carries moves, and to the same place, so that the node itself can.
+/// Tells whether all that a node carries moves, and to the same place, so that the node itself can move.
 bool movesWhole(EditedJson& node, const std::map<Carried, Move>& moves) {
     if (node.contains("camera")) return false;
     if (const EditedJson* children = find(node, {"children"}); children && !children->empty()) return false;
@@ -85,8 +85,8 @@ bool isAnimated(FileEdit& edit, int node) {
     return found;
 }
 
-/// A light has no size, so that its node keeps its scale; a rectangle's corners tell where the parent is
-/// scaled unevenly.
+/// Tells whether a node keeps its scale when it moves. A light's does, since a light has no size; that of an
+/// area light does unless its parent is scaled unevenly, which a rectangle's corners show.
 bool isRigid(Carried carried, const glm::dmat4& parent) {
     if (carried == Carried::Light) return true;
     if (carried == Carried::Instance) return false;
@@ -106,7 +106,8 @@ void requireInvertible(const FileEdit& edit, const glm::dmat4& transform, const 
                                 edit.file.path, inQuotes(move.name)));
 }
 
-/// What leaves its node for a new child, and the place that this gets among the node's children.
+/// Describes a thing that leaves its node for a new child, and the place that this child gets among the
+/// node's children.
 struct Leaving {
     int node;
     Carried carried;
@@ -121,7 +122,7 @@ int moveToChild(FileEdit& edit, const NodeTree& tree, const Leaving& leaving, co
     const int child = addNode(edit, move.name, index, leaving.place);
     EditedJson& nodes = edit.json["nodes"];
     EditedJson &from = nodes[static_cast<size_t>(index)], &to = nodes[static_cast<size_t>(child)];
-    // Coming from where the node is, as though the child had been there all along.
+    // The child comes from where the node is, as though it had been there all along.
     TransformEdit transform{world, glm::mat4(world), move.to, isRigid(carried, world), true};
     if (!editTransform(to, json::object(), transform)) edit.fail(fmt::format("nodes[{}]", index));
     for (const JsonPath& path : membersOf(carried)) {
@@ -138,8 +139,9 @@ int moveToChild(FileEdit& edit, const NodeTree& tree, const Leaving& leaving, co
     return child;
 }
 
-/// All that has to go to children of a node where these moves are made by children. A node's light of
-/// KHR_lights_punctual comes before its area light, which follows it where it stands, or it would come first.
+/// Returns all that has to go to children of a node where these moves are made by children. A node's light of
+/// KHR_lights_punctual comes before its area light; so the area light follows it into a child and stays where
+/// it stands, or it would come first.
 std::map<Carried, Move> withFollower(EditedJson& node, const glm::mat4& world,
                                      std::map<Carried, Move> moves) {
     if (moves.contains(Carried::Light) && !moves.contains(Carried::AreaLight) &&
@@ -148,7 +150,7 @@ std::map<Carried, Move> withFollower(EditedJson& node, const glm::mat4& world,
     return moves;
 }
 
-/// Whether a node may be named by a number that nothing here knows of.
+/// Tells whether a node may be named by a number that nothing here knows of.
 bool hasUnknownExtensions(const FileEdit& edit) {
     constexpr std::array kNamesNoNode = {"KHR_materials_", "KHR_texture_",        "KHR_mesh_",
                                          "KHR_draco_",     "KHR_lights_punctual", "EXT_texture_"};
@@ -219,7 +221,8 @@ glm::dmat4 NodeTree::world(int index) const {
 }
 
 glm::dmat4 NodeTree::parentWorld(int index) const {
-    // From the root down, in the importer's order: the same roundings give the same transform.
+    // This multiplies from the root down, in the importer's order: the same roundings give the same
+    // transform.
     std::vector<int> chain;
     while ((index = parents_[static_cast<size_t>(index)]) >= 0)
         chain.push_back(index);

@@ -11,7 +11,7 @@
 
 namespace relume::gltf {
 
-/// What a node may carry and an edit may move.
+/// Names what a node may carry and an edit may move.
 enum class Carried { Instance, Light, AreaLight };
 
 struct Move {
@@ -20,22 +20,24 @@ struct Move {
     glm::mat4 to{1.0f};
 };
 
-/// By node and what it carries.
+/// Holds moves by node and by what it carries.
 using Moves = std::map<int, std::map<Carried, Move>>;
 
-/// Where the nodes of a file are. Made from the file as it was: an edit moves no node that has children.
+/// Tells where the nodes of a file are. It is made from the file as it was: an edit moves no node that has
+/// children.
 class NodeTree {
 public:
     explicit NodeTree(const File& file); // `file` must outlive it
 
     size_t size() const { return parents_.size(); }
     const nlohmann::json& node(int index) const;
-    /// Of a node of the default scene, or of any without scenes.
+    /// Tells whether a node is in the default scene, or, where there are no scenes, whether it is a node at
+    /// all.
     bool inScene(int index) const;
-    /// The node at the top of the tree that a node is in.
+    /// Returns the node at the top of the tree that a node is in.
     int root(int index) const;
     glm::dmat4 world(int index) const;
-    /// The world transform of a node's parent.
+    /// Returns the world transform of a node's parent.
     glm::dmat4 parentWorld(int index) const;
 
 private:
@@ -46,24 +48,24 @@ private:
 
 constexpr size_t kLastPlace = static_cast<size_t>(-1);
 
-/// The index of a new node of this name, a child of `parent` or, at -1, a root of the default scene. `place`:
-/// among these, as far as the file has a list of them.
+/// Adds a node of this name and returns its index; it is a child of `parent` or, at -1, a root of the default
+/// scene. `place` is its place among these, as far as the file has a list of them.
 int addNode(FileEdit& edit, const std::string& name, int parent, size_t place = kLastPlace);
 
-/// Moves what nodes carry, each by its node where nothing else would move along, else by a new child of the
-/// node, which carries it from now on. Returns those children by what they carry. A scene is read from each
-/// node down, children in their order, and users tell things of one name apart by that: such a child is the
-/// first of its node, so that objects and lights keep their order. Throws Error.
+/// Moves what nodes carry: each thing by its node where nothing else would move along, else by a new child of
+/// the node, which carries it from now on. Returns those children by what they carry. A scene is read from
+/// each node down, children in their order, and users tell things of one name apart by that; so such a child
+/// is the first of its node, and objects and lights keep their order. Throws Error.
 std::map<std::pair<int, Carried>, int> moveCarried(FileEdit& edit, const NodeTree& tree, const Moves& moves);
 
 /// Takes away the last nodes of the file as far as they are among `candidates`, carry nothing and are named
 /// by nothing but their parent and scenes: adding and deleting a light leaves no trace.
 void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates);
 
-/// Whether a node carries nothing at all, not even children.
+/// Tells whether a node carries nothing at all, not even children.
 bool carriesNothing(const EditedJson& node);
 
-/// The default scene, which is made where the file has no scene.
+/// Returns the default scene, which is made where the file has no scene.
 EditedJson& defaultScene(FileEdit& edit);
 
 } // namespace relume::gltf

@@ -23,7 +23,7 @@ float largest(const glm::vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// Whether a colour became brighter or darker and is the same one otherwise.
+/// Tells whether a colour became brighter or darker and is the same one otherwise.
 bool sameHue(const glm::vec3& before, const glm::vec3& after) {
     const float from = largest(before), to = largest(after);
     if (!(from > 0.0f) || !(to > 0.0f)) return false;
@@ -31,7 +31,7 @@ bool sameHue(const glm::vec3& before, const glm::vec3& after) {
     return largest(difference) <= 1e-6f; // what floats round
 }
 
-/// Three factors that give `color` when multiplied with `strength`, in as few digits as that takes.
+/// Returns three factors that give `color` when multiplied by `strength`, in as few digits as that takes.
 EditedJson factors(const glm::vec3& color, double strength) {
     EditedJson list = EditedJson::array();
     for (int c = 0; c < 3; ++c)
@@ -41,7 +41,8 @@ EditedJson factors(const glm::vec3& color, double strength) {
     return list;
 }
 
-/// What the importer makes of a sky's intensity; that of an emission's strength it keeps.
+/// Returns what the importer makes of a sky's intensity: a float, while it keeps an emission's strength a
+/// double.
 double asFloat(double strength) {
     return static_cast<float>(strength);
 }
@@ -50,8 +51,8 @@ double asIs(double strength) {
     return strength;
 }
 
-/// A strength that gives `color` with the factors there are, once it is read; none where roundings leave no
-/// such number.
+/// Returns a strength that gives `color` with the factors there are, once it is read, or none where roundings
+/// leave no such number.
 std::optional<double> strengthFor(const glm::vec3& color, const EditedJson& factors, double guess,
                                   double (*read)(double)) {
     const auto good = [&](double strength) {
@@ -76,8 +77,8 @@ void requireFinite(const std::string& target, const std::string& thing, const gl
                                     value[c]));
 }
 
-/// Emission up to 1 is a plain factor. Above it the factor is a colour and the extension has the strength;
-/// the split that a file has stays where only the brightness changed.
+/// Writes an emission. Up to 1 it is a plain factor; above it, the factor is a colour and the extension has
+/// the strength. The split that a file has stays where only the brightness changed.
 void editEmission(FileEdit& edit, EditedJson& material, const glm::vec3& before, const glm::vec3& after,
                   const std::string& where) {
     const JsonPath path = {"extensions", kStrength, "emissiveStrength"};

@@ -9,7 +9,7 @@
 
 namespace relume::gltf {
 
-/// Writes emission and base colour where they differ. Throws Error, as all of these, naming `target`.
+/// Writes emission and base colour where they differ. Throws Error naming `target`, as all of these do.
 void editMaterials(FileEdit& edit, const std::vector<Material>& before, const std::vector<Material>& after,
                    const std::string& target);
 
@@ -19,10 +19,11 @@ void editSky(FileEdit& edit, const Sky& before, const Sky& after, const std::str
 /// Lets relative URIs lead from the folder of `target` to where they lead now.
 void moveUris(FileEdit& edit, const std::string& target);
 
-/// A path as it is written in a file in another folder: relative, absolute where there is no way.
+/// Returns a path as it is written in a file in another folder: relative, or absolute where that is
+/// impossible.
 std::string pathFrom(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// The folder a file is in, without links and "..".
+/// Returns the folder that a file is in, without links and "..".
 std::filesystem::path folderOf(const std::string& path);
 
 } // namespace relume::gltf

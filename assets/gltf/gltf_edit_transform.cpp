@@ -12,18 +12,17 @@ namespace relume::gltf {
 
 namespace {
 
-// What is nearer than this, relative to the whole, is the same: world transforms are floats.
+// What differs by less than this, relative to the whole, is the same: world transforms are floats.
 constexpr double kFloatStep = 1.2e-7;
-// Axes that are that far from perpendicular [cosine] are sheared; below it is what floats and exporters
-// round.
+// Axes that are that far from perpendicular [cosine] are sheared; less is what floats and exporters round.
 constexpr double kShear = 1e-5;
 
-/// Whether node coordinates give the world position to the last bit.
+/// Tells whether node coordinates give the world position to the last bit.
 bool reaches(const TransformEdit& edit, const glm::dvec3& local) {
     return glm::vec3(edit.parent * glm::dvec4(local, 1.0)) == glm::vec3(edit.to[3]);
 }
 
-/// The new translation, in numbers as short as the world position allows; what does not change stays.
+/// Returns the new translation, in numbers as short as the world position allows; what does not change stays.
 glm::dvec3 translationOf(const TransformEdit& edit, const glm::dvec3& was) {
     const glm::dmat4 toLocal = glm::inverse(edit.parent);
     const glm::dvec3 whole = glm::dvec3(toLocal * glm::dvec4(edit.to[3]));
@@ -91,7 +90,8 @@ glm::dvec3 scaleOf(const nlohmann::json& was) {
     return scale;
 }
 
-/// Rotation and scale whose product is `linear`, with the signs of `scale`; nothing for a shear.
+/// Splits `linear` into a rotation and a scale whose product it is, with the signs of `scale`. Returns false
+/// for a shear.
 bool split(const glm::dmat3& linear, glm::dmat3& rotation, glm::dvec3& scale) {
     glm::dvec3 lengths;
     for (int i = 0; i < 3; ++i) {
@@ -135,7 +135,7 @@ void writeMatrix(EditedJson& node, const glm::dmat4& local) {
 bool invertible(const glm::dmat4& transform) {
     const glm::dmat3 linear(transform);
     const double volume = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
-    // Axes flatter than this leave no digits of a float.
+    // Flatter axes than this leave no digits of a float.
     return volume > 0.0 && std::isfinite(volume) && std::abs(glm::determinant(linear)) > 1e-9 * volume;
 }
 

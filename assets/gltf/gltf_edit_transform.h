@@ -15,14 +15,14 @@ struct TransformEdit {
 };
 
 /// Writes a node's transform, in the form it has: `was` is the node as it was. Numbers that stay keep their
-/// spelling. False, and nothing is written, where the node would have to get a matrix and may not.
+/// spelling. Returns false and writes nothing where the node would have to get a matrix and may not.
 [[nodiscard]] bool editTransform(EditedJson& node, const nlohmann::json& was, const TransformEdit& edit);
 
-/// Whether a transform can be undone, so that nodes below it can be placed.
+/// Tells whether a transform can be inverted, so that nodes below it can be placed.
 bool invertible(const glm::dmat4& transform);
 
-/// A rotation that keeps the Z axis of `axes` and, as far as that goes, the X axis; identity where there is
-/// no Z axis.
+/// Returns a rotation that keeps the Z axis of `axes` and, as far as that goes, the X axis; identity where
+/// there is no Z axis.
 glm::dmat3 frame(const glm::dmat3& axes);
 
 /// Writes translation and rotation, leaving out those that change nothing.

@@ -17,7 +17,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
-// Private to this file: tinygltf and others may bring the same functions.
+// These functions are private to this file: tinygltf and others may bring the same ones.
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>
@@ -31,7 +31,7 @@ using gltf::jsonArray;
 static_assert(std::endian::native == std::endian::little,
               "glTF buffers are little-endian and written by memcpy");
 
-// Values of the glTF 2.0 specification.
+// These values are those of the glTF 2.0 specification.
 constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kNearest = 9728, kLinear = 9729, kLinearMipmapLinear = 9987;
@@ -39,8 +39,8 @@ constexpr uint32_t kGlbMagic = 0x46546C67, kChunkJson = 0x4E4F534A, kChunkBin = 
 // 0xffff is the primitive restart value and must not appear as an index.
 constexpr size_t kMaxShortIndexedVertices = 65535;
 
-// All arrays of one kind go into one buffer view; accessors differ by offset. Keeps the JSON of a scene with
-// hundreds of meshes small.
+// All arrays of one kind go into one buffer view, and accessors differ by offset. This keeps the JSON of a
+// scene with hundreds of meshes small.
 struct Stream {
     std::vector<uint8_t> bytes;
     int stride = 0; // 0: tightly packed, no byteStride in the file
@@ -51,7 +51,7 @@ enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIn
 
 class GlbWriter {
 public:
-    /// skyFile: of the sky's picture, from the folder of the file to be written.
+    /// Takes as `skyFile` the path of the sky's picture from the folder of the file to be written.
     GlbWriter(const Scene& scene, std::string skyFile) : scene_(scene), skyFile_(std::move(skyFile)) {
         const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
@@ -60,7 +60,7 @@ public:
         }
     }
 
-    /// The whole file.
+    /// Returns the whole file.
     std::vector<uint8_t> write();
 
 private:
@@ -187,8 +187,8 @@ Json GlbWriter::textureInfo(const TextureRef& ref, const std::string& materialNa
     if (ref.texCoord != 0) info["texCoord"] = ref.texCoord;
     if (ref.transform == glm::mat3(1.0f)) return info;
 
-    // transform = translation * rotation * scale with rotation columns (c, -s), (s, c): counter-clockwise in
-    // an image whose v points down.
+    // The transform is translation * rotation * scale with rotation columns (c, -s), (s, c):
+    // counter-clockwise in an image whose v points down.
     const glm::vec2 columnU(ref.transform[0]), columnV(ref.transform[1]);
     float scaleU = glm::length(columnU);
     float scaleV = glm::length(columnV);
@@ -220,7 +220,8 @@ Json GlbWriter::material(const Material& m) {
 
     const float brightest = std::max({m.emission.r, m.emission.g, m.emission.b});
     if (brightest > 0.0f) {
-        // A power of two as strength: factor times strength is the emission again, to the last bit.
+        // The strength is a power of two, so that factor times strength is the emission again, to the last
+        // bit.
         int exponent = 0;
         std::frexp(brightest, &exponent);
         const float strength = brightest > 1.0f ? std::ldexp(1.0f, exponent) : 1.0f;
@@ -304,7 +305,8 @@ Json GlbWriter::addCamera(const Camera& camera) {
         out["type"] = "orthographic";
         lens["xmag"] = camera.ymag * (camera.aspect > 0.0f ? camera.aspect : 1.0f);
         lens["ymag"] = camera.ymag;
-        // glTF wants a far plane here; without one, far enough for anything that stands on a planet.
+        // glTF wants a far plane here; where there is none, it is far enough for anything that stands on a
+        // planet.
         lens["zfar"] = camera.zfar > camera.znear ? camera.zfar : camera.znear + 1e6f;
         lens["znear"] = camera.znear;
         out["orthographic"] = std::move(lens);
@@ -353,7 +355,7 @@ void GlbWriter::addNodes() {
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);
 }
 
-// Lays the streams and pictures behind each other, as the file's only buffer.
+// Lays the streams and pictures one behind the other, as the file's only buffer.
 void GlbWriter::addBuffers() {
     int viewOf[kStreamCount];
     size_t offset = 0;
@@ -389,7 +391,7 @@ void GlbWriter::addBuffers() {
 }
 
 std::vector<uint8_t> GlbWriter::write() {
-    // No version here: the same scene is the same file, whichever release wrote it.
+    // No version stands here: the same scene is the same file, whichever release wrote it.
     json_["asset"]["version"] = "2.0";
     json_["asset"]["generator"] = "Relume";
     addMeshes();
@@ -434,14 +436,14 @@ std::vector<uint8_t> GlbWriter::write() {
     return out;
 }
 
-// Whether the picture is in memory alone, so that it needs a file.
+// Tells whether the picture is only in memory, so that it needs a file.
 bool skyIsHomeless(const Sky& sky) {
     std::error_code code;
     return !sky.pixels.empty() && (sky.file.empty() || !std::filesystem::exists(sky.file, code));
 }
 
-// Where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to hold
-// it.
+// Returns where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to
+// hold it.
 std::string skyPathFrom(const Sky& sky, const std::string& path) {
     namespace fs = std::filesystem;
     std::string file;

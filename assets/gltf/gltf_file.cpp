@@ -130,7 +130,7 @@ std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json) {
     if (!file.binary) return {text.begin(), text.end()};
     while (text.size() % 4 != 0)
         text += ' ';
-    // The parser wants whole words of data, where some exporters pad nothing.
+    // The parser wants whole words of data, but some exporters do not pad it.
     const uint64_t chunkBytes = (file.chunkBytes + 3) / 4 * 4;
     uint64_t length = kHeaderBytes + kChunkHeaderBytes + text.size();
     if (chunkBytes > 0) length += kChunkHeaderBytes + chunkBytes;

@@ -9,7 +9,7 @@
 
 namespace relume::gltf {
 
-/// A glTF file as bytes and as JSON, its container already checked.
+/// Holds a glTF file as bytes and as JSON; its container is already checked.
 struct File {
     std::string path;           // as given by the user
     std::vector<uint8_t> bytes; // the whole file
@@ -25,19 +25,19 @@ struct File {
 /// glTF 2.0, nested too deeply or no JSON.
 File readFile(const std::string& path);
 
-/// The file's bytes with another JSON text in place of its own, same container; of a GLB's chunks only those
-/// that the parser wants.
+/// Returns the file's bytes with another JSON text in place of its own, in the same container; of a GLB's
+/// chunks, only those that the parser wants are kept.
 std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json);
 
-/// The member `key` of extras.relume, where files hold what glTF has no word for; nullptr where there is
-/// none.
+/// Returns the member `key` of extras.relume, where files hold what glTF has no word for, or nullptr where
+/// there is none.
 const nlohmann::json* ownExtra(const nlohmann::json& holder, const char* key);
 
-/// The file's JSON text. Lives as long as the file's bytes.
+/// Returns the file's JSON text, which lives as long as the file's bytes.
 std::string_view jsonText(const File& file);
 
-/// The file's bytes with another JSON text in place of its own, all else in it to the byte as it was. Throws
-/// Error where it gets too large.
+/// Returns the file's bytes with another JSON text in place of its own; all else stays as it was, to the
+/// byte. Throws Error where it gets too large.
 std::string withJsonText(const File& file, std::string_view text);
 
 } // namespace relume::gltf

@@ -3,9 +3,9 @@
 #include "assets/gltf/gltf_build.h"
 #include "assets/images/png_check.h"
 
-// Our own static copy, of which only the sizes of pictures are asked; the parser's decodes. glTF knows PNG
-// and JPEG alone: what else stb would read is refused here, its other readers count beyond their numbers'
-// ends.
+// This is our own static copy, which is asked for the sizes of pictures only; the parser's copy decodes. glTF
+// knows only PNG and JPEG; what else stb would read is refused here, since integers overflow in its other
+// readers.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -28,11 +28,12 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-// Pixels per byte. JPEG has at least two bits for 64 pixels of one channel, or one in a progressive file.
-// PNG's DEFLATE makes 1032 bytes of one, each of eight pixels.
+// These bound the pixels per byte. JPEG has at least two bits for 64 pixels of one channel, or one in a
+// progressive file. PNG's DEFLATE makes 1032 bytes of one, each of eight pixels.
 constexpr uint64_t kMostJpegPacking = 1024, kMostPngPacking = 8 * 1040;
 
-/// Where a JPEG's segments begin, behind its first marker, which may be filled up; 0: it is none.
+/// Returns where a JPEG's segments begin, behind its first marker, which fill bytes may precede; 0 where it
+/// is no JPEG.
 size_t jpegBegin(const Bytes& bytes) {
     size_t at = 0;
     while (at < bytes.size() && bytes[at] == 0xff)
@@ -40,8 +41,8 @@ size_t jpegBegin(const Bytes& bytes) {
     return at > 0 && at < bytes.size() && bytes[at] == 0xd8 ? at + 1 : 0;
 }
 
-/// Whether a table of Huffman codes begins at `at` (its class and number, then 16 counts) that has more codes
-/// than there are bytes; the next one's place goes there.
+/// Tells whether the table of Huffman codes at `at` (its class and number, then 16 counts) has more codes
+/// than there are byte values; moves `at` to the next table.
 bool hasTooManyCodes(const Bytes& bytes, size_t& at, size_t end) {
     size_t codes = 0;
     for (size_t i = at + 1; i < std::min(at + 17, end); ++i)
@@ -50,9 +51,9 @@ bool hasTooManyCodes(const Bytes& bytes, size_t& at, size_t end) {
     return codes > 256;
 }
 
-/// stb (2.27) writes codes beyond its table's end where a file has more than 256 of them. Tables that the
-/// file's segments hold are looked at, and behind the first pixels whatever may be one: there stb goes on at
-/// any byte.
+/// Tells whether stb can read the tables: it (2.27) writes codes beyond its table's end where a file has more
+/// than 256 of them. The tables in the file's segments are looked at, and behind the first pixels whatever
+/// may be one: there stb goes on at any byte.
 bool hasSafeTables(const Bytes& bytes, size_t begin) {
     constexpr uint8_t kTables = 0xc4, kEnd = 0xd9, kPixels = 0xda;
     bool segments = true;
@@ -73,8 +74,8 @@ bool hasSafeTables(const Bytes& bytes, size_t begin) {
     return true;
 }
 
-/// Counts the pixels before a decoder takes memory for them; false where the bytes cannot be a picture of the
-/// size that they tell.
+/// Counts the pixels before a decoder takes memory for them. Returns false where the bytes cannot be a
+/// picture of the size that they tell.
 bool countTexels(SizeLimit& limit, const Bytes& bytes) {
     if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return false;
     const size_t jpeg = jpegBegin(bytes);
@@ -88,7 +89,7 @@ bool countTexels(SizeLimit& limit, const Bytes& bytes) {
     return true;
 }
 
-/// To 8-bit RGBA; false where the bytes are no such image.
+/// Decodes to 8-bit RGBA. Returns false where the bytes are no such image.
 bool decode(const Bytes& bytes, int index, Image& image) {
     tinygltf::Image decoded;
     std::string error, warning;
@@ -111,7 +112,7 @@ bool decode(const Bytes& bytes, int index, Image& image) {
     return true;
 }
 
-/// Why there are no bytes of an image.
+/// Tells why there are no bytes of an image.
 std::string absence(const std::string& gltfPath, const tinygltf::Image& source) {
     const std::string path = source.uri.empty() ? "" : pathOfUri(gltfPath, source.uri);
     const std::string kind = path.empty() ? "" : oddKindOf(path);

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The parser's messages are several lines long and quote whole data URIs.
+/// Returns the first line of a message: the parser's are several lines long and quote whole data URIs.
 std::string firstLine(const std::string& text) {
     return inQuotes(text.substr(0, text.find('\n')));
 }
@@ -41,7 +41,8 @@ json takeLights(json& document) {
     return lights;
 }
 
-/// Regular files only, by their name alone: the parser's own would wait for pipes.
+/// Tells whether a path names a regular file, by its name alone; the parser's own function would wait for
+/// pipes.
 bool isFile(const std::string& path, void*) {
     std::error_code code;
     return std::filesystem::is_regular_file(path, code);
@@ -63,7 +64,7 @@ bool readAll(std::vector<unsigned char>* out, std::string* error, const std::str
     }
 }
 
-/// Hands the parser all but what the checked JSON already tells as well.
+/// Hands the parser all but what the checked JSON tells already.
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
@@ -104,7 +105,7 @@ void warnUnsupported(const File& file, Build& build) {
         build.warnings.add("animations", "are not supported, the scene stands as stored");
 }
 
-/// Of all instances.
+/// Returns the number of triangles of all instances.
 double triangleCount(const Scene& scene) {
     std::vector<double> ofMesh;
     for (const Mesh& mesh : scene.meshes) {

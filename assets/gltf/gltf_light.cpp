@@ -25,7 +25,7 @@ constexpr double kTransformTolerance = 1e-3; // of a unit axis [1], for what is 
 constexpr double kSameTransform = 1e-6;      // of a unit axis [1], for what is kept as it is
 constexpr double kParallel = 1e-5;           // sine of the angle between axes that tell no plane
 
-/// Reads the numbers of one light or sky. What is wrong with them is mended and warned about.
+/// Reads the numbers of one light or sky. What is wrong with them is corrected and warned about.
 class Numbers {
 public:
     Numbers(const json& object, std::string thing, Warnings& warnings)
@@ -62,7 +62,8 @@ public:
         return glm::max(color, 0.0);
     }
 
-    /// `count` lengths of an array, or one number for 1; nothing where one of them is no length.
+    /// Returns the `count` lengths of an array, or one number where `count` is 1; nothing where one of them
+    /// is no length.
     std::vector<float> lengths(const char* key, size_t count) const {
         const auto found = object_.find(key);
         if (found == object_.end()) return {};
@@ -83,7 +84,7 @@ private:
     Warnings& warnings_;
 };
 
-/// One light's place in the file.
+/// Holds one light's place in the file.
 struct Source {
     const json& object;
     int node;
@@ -100,7 +101,7 @@ std::string textOr(const json& object, const char* key, const std::string& fallb
     return text.empty() ? fallback : text;
 }
 
-/// `v` to unit length; false where it has no direction.
+/// Brings `v` to unit length. Returns false where it has no direction.
 bool normalize(glm::dvec3& v, double shortest = 0.0) {
     const double length = glm::length(v);
     if (!(length > shortest) || !std::isfinite(length)) return false;
@@ -108,8 +109,8 @@ bool normalize(glm::dvec3& v, double shortest = 0.0) {
     return true;
 }
 
-/// The axes without scale: Z and Y keep their directions, X becomes what makes them right-handed. nullopt
-/// where they tell no Z.
+/// Returns the axes without scale: Z and Y keep their directions, X becomes what makes them right-handed.
+/// Returns nullopt where they tell no Z.
 std::optional<glm::dmat3> rigidAxes(const glm::dmat3& world) {
     glm::dvec3 x = world[0], y = world[1], z = world[2];
     const bool hasX = normalize(x), hasY = normalize(y);
@@ -142,7 +143,7 @@ void warnAboutAxes(const glm::dmat3& world, LightType type, const Numbers& numbe
         numbers.warn("its node is scaled, its size stays as it is written");
 }
 
-/// The transform that a light gets from its node; nullopt where it does not know where to shine.
+/// Returns the transform that a light gets from its node, or nullopt where this does not tell where to shine.
 std::optional<glm::mat4> lightTransform(const glm::mat4& world, LightType type, const Numbers& numbers) {
     const glm::dmat3 given{glm::mat3(world)};
     std::optional<glm::dmat3> axes = rigidAxes(given);

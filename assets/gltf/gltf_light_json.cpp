@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What all lights have.
+/// Returns what all lights have.
 Json lightJson(const Light& light, const char* type) {
     Json out;
     if (!light.name.empty()) out["name"] = light.name;
@@ -55,7 +55,8 @@ Json areaLightJson(const Light& light) {
 }
 
 Json skyJson(const Sky& sky, const std::string& file) {
-    // In double precision, in which colour times intensity rounds to the radiance again, to the last bit.
+    // This is in double precision, in which colour times intensity rounds to the radiance again, to the last
+    // bit.
     const glm::dvec3 radiance(sky.radiance);
     const double intensity = std::max({radiance.r, radiance.g, radiance.b});
     Json out;

@@ -16,7 +16,7 @@ using LinksJson = nlohmann::json;
 
 constexpr int kMostLevels = 64; // as those who load it allow
 
-// The JSON of the file: of a GLB the first chunk alone, as the rest may be gigabytes.
+// Returns the JSON of the file; of a GLB, only the first chunk is read, since the rest may be gigabytes.
 std::string jsonOfFile(const std::string& path) {
     constexpr size_t kHeader = 20;
     std::error_code code;

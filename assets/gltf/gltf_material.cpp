@@ -50,8 +50,8 @@ glm::vec2 pairOr(const tinygltf::Value& value, const char* key, glm::vec2 fallba
             static_cast<float>(array.Get(1).GetNumberAsDouble())};
 }
 
-/// KHR_texture_transform: translation * rotation * scale, the rotation counter-clockwise with v pointing
-/// down.
+/// Returns the matrix of KHR_texture_transform: translation * rotation * scale, the rotation
+/// counter-clockwise with v pointing down.
 glm::mat3 transformMatrix(const tinygltf::Value& extension) {
     const glm::vec2 offset = pairOr(extension, "offset", glm::vec2(0.0f));
     const glm::vec2 scale = pairOr(extension, "scale", glm::vec2(1.0f));

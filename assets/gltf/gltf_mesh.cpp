@@ -12,7 +12,7 @@ namespace relume::gltf {
 
 namespace {
 
-/// Reads one primitive; mends what can be mended and warns about it.
+/// Reads one primitive; corrects what can be corrected and warns about it.
 class PrimitiveBuilder {
 public:
     PrimitiveBuilder(Build& build, std::string where, const tinygltf::Primitive& source)
@@ -131,7 +131,7 @@ void PrimitiveBuilder::readIndices(Primitive& primitive) const {
         out = std::move(order);
         return;
     }
-    // Strips repeat indices to jump: such triangles are no faults of the file.
+    // Strips repeat indices to jump; such triangles are no faults of the file.
     for (size_t i = 0; i + 2 < order.size(); ++i) {
         const uint32_t a = source_.mode == TINYGLTF_MODE_TRIANGLE_FAN ? order[0] : order[i];
         uint32_t b = order[i + 1], c = order[i + 2];
@@ -178,7 +178,8 @@ void gather(std::vector<T>& values, const std::vector<uint32_t>& indices) {
     values = std::move(out);
 }
 
-/// glTF: without normals, each triangle is flat. That needs vertices of its own for each corner.
+/// Makes each triangle flat, as glTF wants where there are no normals. That needs vertices of its own for
+/// each corner.
 void makeFlat(Primitive& primitive) {
     gather(primitive.positions, primitive.indices);
     gather(primitive.texCoord0, primitive.indices);

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A node's member, nullptr where it has none.
+/// Returns a node's member, or nullptr where it has none.
 const json* member(const json& node, const char* key) {
     const auto found = node.find(key);
     return found == node.end() ? nullptr : &*found;
@@ -100,7 +100,7 @@ glm::dmat4 localTransform(const json& node) {
     if (const json* matrix = member(node, "matrix")) {
         for (int i = 0; i < 16; ++i)
             local[i / 4][i % 4] = at(*matrix, i);
-        // An affine transform's last row; exporters round it.
+        // This is an affine transform's last row, which exporters round.
         for (int c = 0; c < 4; ++c)
             local[c][3] = c == 3 ? 1.0 : 0.0;
         return local;

@@ -26,9 +26,9 @@ struct Bound {
     bool isCount;
 };
 
-// Vertices: a hundred primitives may share 100,000 vertices, each of which takes 56 bytes here and 20 to 40
-// in the file. Texels: JPEG's best case, a picture of one colour, makes 1400 of one; photographs make 10
-// to 60. Triangles: a forest is thousands of instances of few trees.
+// The bounds allow for these cases. Vertices: a hundred primitives may share 100,000 vertices, each of which
+// takes 56 bytes here and 20 to 40 in the file. Texels: JPEG's best case, a picture of one colour, makes 1400
+// bytes of one; photographs make 10 to 60. Triangles: a forest is thousands of instances of few trees.
 constexpr std::array<Bound, 5> kBounds = {{{"buffers", kGi, 16, false},
                                            {"vertices", kGi, 64, false},
                                            {"pixels", 2 * kGi, 256, false},
@@ -57,7 +57,7 @@ uint64_t numberOf(const json& object, const char* key) {
     return value ? value->get<uint64_t>() : 0;
 }
 
-/// The entry of a section that a member of `object` names, nullptr where it has none.
+/// Returns the entry of a section that a member of `object` names, or nullptr where it has none.
 const json* entry(const json& root, const json& object, const char* key, const char* section) {
     const json* index = find(object, key);
     return index ? &root[section][index->get<size_t>()] : nullptr;
@@ -72,8 +72,8 @@ double countOf(const json& accessor) {
     return static_cast<double>(accessor["count"].get<uint64_t>());
 }
 
-/// What the importer makes of a primitive [bytes]: floats of what it uses, and corners of their own where it
-/// has no normals.
+/// Returns what the importer makes of a primitive [bytes]: floats of what it uses, and vertices for each
+/// corner where it has no normals.
 double primitiveBytes(const json& root, const json& primitive) {
     constexpr double kNormal = 12, kIndex = 4;
     constexpr std::array<std::pair<const char*, double>, 5> kUsed = {
@@ -104,7 +104,8 @@ double vertexBytes(const json& root) {
     return bytes;
 }
 
-/// Of objects, lights and cameras, which have that of their mesh or node where they have none [bytes].
+/// Returns the size of the names of objects, lights and cameras, which have that of their mesh or node where
+/// they have none [bytes].
 double nameBytes(const json& root) {
     const json::json_pointer use("/extensions/KHR_lights_punctual/light");
     const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
@@ -121,7 +122,8 @@ class StoredBytes {
 public:
     explicit StoredBytes(const File& file) : file_(file) {}
 
-    /// Of a file that a URI names, which is read once for each use; 0 for data and where none can be read.
+    /// Returns the size of a file that a URI names, which is read once for each use; 0 for data and where
+    /// none can be read.
     double external(const json& holder) {
         const json* uri = find(holder, "uri");
         const std::string path = uri ? pathOfUri(file_, uri->get<std::string>()) : "";

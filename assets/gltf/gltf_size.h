@@ -7,21 +7,21 @@
 
 namespace relume::gltf {
 
-/// What a scene is made of, each bounded by itself.
+/// Names what a scene is made of, each bounded by itself.
 enum class Made { Buffers, Vertices, Texels, Names, Triangles };
 
-/// How much a file may make of its bytes: a few of them can name the same vertices, images or meshes any
-/// number of times, or vertices that are nowhere. So much for each byte, and for every file what small ones
-/// that are meant well need.
+/// Limits how much a file may make of its bytes: a few of them can name the same vertices, images or meshes
+/// any number of times, or vertices that are nowhere. So much is allowed for each byte, and for every file
+/// what well-meant small ones need.
 class SizeLimit {
 public:
     SizeLimit() = default;
-    /// `bytes`: of the file and of all that its URIs name.
+    /// Makes a limit; `bytes` is the size of the file and of all that its URIs name.
     SizeLimit(std::string path, uint64_t bytes) : path_(std::move(path)), bytes_(bytes) {}
 
-    /// Throws Error where it is too much: triangles, or bytes of all else.
+    /// Throws Error where `amount` is too much; it counts triangles, or bytes of anything else.
     void require(Made made, double amount) const;
-    /// Counts decoded pixels [bytes]. Throws Error where all of them are too much.
+    /// Counts decoded pixels [bytes]. Throws Error where all of them together are too much.
     void addTexels(uint64_t bytes);
 
 private:
@@ -31,10 +31,10 @@ private:
 };
 
 /// Throws Error where a checked file (see check) makes too much of its bytes, as far as its JSON tells, and
-/// where a buffer's URI names what is no file. The limit is for what is only found out later.
+/// where a buffer's URI names what is no file. Returns the limit for what is only found out later.
 SizeLimit checkSizes(const File& file);
 
-/// The path that a URI of this file names; "" for data that is in the URI.
+/// Returns the path that a URI of this file names, or "" for data that is in the URI.
 std::string pathOfUri(const File& file, const std::string& uri);
 std::string pathOfUri(const std::string& gltfPath, const std::string& uri);
 

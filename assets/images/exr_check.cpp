@@ -1,4 +1,4 @@
-// The layout: "OpenEXR File Layout" and "Technical Introduction to OpenEXR", openexr.com.
+// The layout is told by "OpenEXR File Layout" and "Technical Introduction to OpenEXR", openexr.com.
 #include "assets/images/exr_check.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -15,7 +15,7 @@ constexpr uint32_t kMagic = 20000630;
 constexpr uint32_t kTiledFlag = 0x200, kDeepFlag = 0x800, kPartsFlag = 0x1000;
 constexpr size_t kLongestName = 255; // [bytes]
 
-// No picture is longer: tables with entries for each line stay below 32 MiB.
+// No picture is longer than this; tables with entries for each line stay below 32 MiB.
 constexpr int64_t kMostEdge = 1 << 20;   // [pixels]
 constexpr int64_t kMostPixels = 1 << 30; // as in kMostImagePixels; keeps the products below within 64 bits
 // Lines of 32768 pixels with four float channels make 134 MB of DWAB's 256 lines.
@@ -29,9 +29,9 @@ struct Codec {
     uint32_t lines;   // of a chunk
     uint64_t packing; // bytes that a byte unfolds to at best
 };
-// In the order of their numbers: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB. DEFLATE makes 1032
-// of 1; PXR24 drops a byte of four before, PIZ writes a run of 256 values of two bytes in ten bits, and DWA
-// leaves out all but one of 64 values before.
+// The codecs are in the order of their numbers: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+// DEFLATE makes 1032 of 1; PXR24 drops a byte of four before, PIZ writes a run of 256 values of two bytes in
+// ten bits, and DWA leaves out all but one of 64 values before.
 constexpr std::array<Codec, 10> kCodecs = {{{1, 1},
                                             {1, 64},
                                             {1, 1040},
@@ -69,7 +69,7 @@ constexpr std::array<std::pair<std::string_view, size_t>, 24> kTypes = {{{"box2f
                                                                          {"v3f", 12},
                                                                          {"v3i", 12}}};
 
-/// What a part's header claims.
+/// Holds what a part's header claims.
 struct Part {
     int64_t width = 0, height = 0;
     uint64_t pixelBytes = 0; // of all channels
@@ -151,7 +151,7 @@ void readType(std::string_view type, Part& part) {
     if (type.starts_with("tiled")) part.tiled = true;
 }
 
-/// Sizes that OpenEXR knows of an attribute's type, or takes from inside it.
+/// Checks the sizes that OpenEXR knows from an attribute's type, or takes from inside it.
 void checkValue(std::string_view type, Reader value) {
     const auto known =
         std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& t) { return t.first == type; });
@@ -214,14 +214,14 @@ uint64_t ceilDivide(uint64_t a, uint64_t b) {
     return (a + b - 1) / b;
 }
 
-/// Entries in the part's table of chunks, at least.
+/// Returns how many entries the part's table of chunks has at least.
 uint64_t chunksOf(const Part& part) {
     const auto width = static_cast<uint64_t>(part.width), height = static_cast<uint64_t>(part.height);
     if (!part.tiled) return std::max(part.chunks, ceilDivide(height, kCodecs[part.compression].lines));
     return std::max(part.chunks, ceilDivide(width, part.tileWidth) * ceilDivide(height, part.tileHeight));
 }
 
-/// What a part unfolds to [bytes].
+/// Returns what a part unfolds to [bytes].
 uint64_t unfolded(const Part& part) {
     return static_cast<uint64_t>(part.width) * static_cast<uint64_t>(part.height) * part.pixelBytes;
 }

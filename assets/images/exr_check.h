@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-// What OpenEXR is not asked: it takes memory for whatever a header claims before it reads on.
+// These checks come before OpenEXR, which takes memory for whatever a header claims before it reads on.
 namespace relume::exr {
 
 /// Checks the headers of an OpenEXR file against its size: what they say of pixels, channels, tiles, chunks

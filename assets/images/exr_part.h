@@ -12,8 +12,8 @@
 #include "assets/base/watch.h"
 #include "assets/images/float_image.h"
 
-// What readers and writers of OpenEXR files have in common, be they of one part or of several. Whatever is
-// wrong with a file is thrown as std::exception.
+// Here is what readers and writers of OpenEXR files of one part and of several parts have in common. Whatever
+// is wrong with a file is thrown as std::exception.
 namespace relume::exr {
 
 class MemoryInput : public Imf::IStream {
@@ -41,17 +41,17 @@ private:
     uint64_t at_ = 0;
 };
 
-/// All of a file.
+/// Reads the whole file.
 std::string readBytes(const std::string& path);
 
 /// Throws Error, naming the file, where an image has more than `mostPixels`.
 void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint64_t mostPixels);
 
-/// The image that a header tells of, without its pixels; channels R, G, B, A first, then by name. Throws
-/// Error where it has more than `mostPixels`.
+/// Returns the image that a header tells of, without its pixels; channels are R, G, B, A first, then by name.
+/// Throws Error where it has more than `mostPixels`.
 FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t mostPixels);
 
-/// The header that an image is written with.
+/// Returns the header that an image is written with.
 Imf::Header headerOf(const FloatImage& image, ExrType type);
 
 /// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
@@ -78,7 +78,7 @@ FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
     return image;
 }
 
-/// Rounds to half, cutting what is beyond its range; `cut` counts that.
+/// Rounds to half and cuts what is beyond its range; `cut` counts that.
 std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
 
 /// Writes the pixels of an Imf::OutputFile or Imf::OutputPart.
@@ -93,7 +93,8 @@ void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
         frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, part.header().dataWindow()));
     }
     part.setFrameBuffer(frame);
-    // In portions, between which a job can be told how far it is, and ended.
+    // The rows are written in portions, between which the watch can be told how far the job is, and can end
+    // it.
     constexpr int kRows = 64;
     for (int left = int(image.height); left > 0; left -= kRows) {
         tellWatch("writing", 1.0 - double(left) / image.height);

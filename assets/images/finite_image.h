@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Throws Error naming the first texel that is not a finite number: no result is written with such.
+/// Throws Error, naming the first texel that is not a finite number: no result is written with such a texel.
 void requireFinite(const FloatImage& image, const std::string& name);
 
 } // namespace relume

@@ -18,7 +18,8 @@ glm::dvec3 fromChromaticity(double x, double y) {
     return {x / y, 1.0, (1.0 - x - y) / y};
 }
 
-// Linear RGB of sRGB's primaries and D65 white [IEC 61966-2-1] to XYZ divided by that white.
+// Returns the matrix from linear RGB of sRGB's primaries and D65 white [IEC 61966-2-1] to XYZ divided by that
+// white.
 glm::dmat3 rgbToWhiteRelativeXyz() {
     const glm::dmat3 primaries(fromChromaticity(0.64, 0.33), fromChromaticity(0.30, 0.60),
                                fromChromaticity(0.15, 0.06));
@@ -33,7 +34,8 @@ glm::dmat3 rgbToWhiteRelativeXyz() {
 struct Colours {
     glm::dmat3 toXyz = rgbToWhiteRelativeXyz(), fromXyz = glm::inverse(toXyz);
 
-    // The linear opponent space YyCxCz, in which contrast sensitivities are known [section 4.1.1].
+    // Converts to the linear opponent space YyCxCz, in which contrast sensitivities are known [section
+    // 4.1.1].
     glm::dvec3 opponent(const glm::dvec3& rgb) const {
         const glm::dvec3 xyz = toXyz * rgb;
         return {116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)};
@@ -42,7 +44,7 @@ struct Colours {
         const double y = (ycc.x + 16.0) / 116.0;
         return fromXyz * glm::dvec3(y + ycc.y / 500.0, y, y - ycc.z / 200.0);
     }
-    // CIELAB with the Hunt effect: colours look paler where it is dark [equation 8].
+    // Converts to CIELAB with the Hunt effect: colours look paler where it is dark [equation 8].
     glm::dvec3 hunt(const glm::dvec3& rgb) const {
         const glm::dvec3 xyz = toXyz * rgb;
         const auto f = [](double t) {
@@ -55,7 +57,7 @@ struct Colours {
     }
 };
 
-// HyAB: city block between lightness and chroma [equation 9].
+// Returns the distance HyAB: city block between lightness and chroma [equation 9].
 double hyab(const glm::dvec3& a, const glm::dvec3& b) {
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
@@ -81,7 +83,7 @@ struct Frame {
 
     size_t at(int x, int y) const { return static_cast<size_t>(y) * width + x; }
 
-    // Rows filtered by `across`, then columns by `down`; beyond the border its texels go on.
+    // Filters the rows by `across`, then the columns by `down`; beyond the border its texels go on.
     Plane filtered(const Plane& plane, const Kernel& across, const Kernel& down) const {
         const int radius = static_cast<int>(across.size() / 2);
         Plane rows(plane.size()), result(plane.size(), 0.0f), padded(static_cast<size_t>(width) + 2 * radius);
@@ -109,7 +111,8 @@ struct Frame {
     }
 };
 
-// A sum of Gaussians a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees [equation 3, table 1].
+// A contrast sensitivity is a sum of Gaussians a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees [equation 3,
+// table 1].
 struct Sensitivity {
     std::array<double, 2> a, b;
 };
@@ -117,9 +120,9 @@ constexpr Sensitivity kAchromatic{{1.0, 0.0}, {0.0047, 1e-5}};
 constexpr Sensitivity kRedGreen{{1.0, 0.0}, {0.0053, 1e-5}};
 constexpr Sensitivity kBlueYellow{{34.1, 13.5}, {0.04, 0.025}};
 
-// Adds to `sum` the plane filtered by a sensitivity, scaled so that its weights sum to 1.
+// Returns the plane filtered by a sensitivity, scaled so that its weights sum to 1.
 Plane sensed(const Frame& frame, const Plane& plane, const Sensitivity& sensitivity, double pixelsPerDegree) {
-    // Three standard deviations of the widest, for all: sigma^2 = b / (2 pi^2).
+    // All filters reach three standard deviations of the widest one: sigma^2 = b / (2 pi^2).
     const double widest = kBlueYellow.b[0];
     const int radius =
         static_cast<int>(std::ceil(3.0 * std::sqrt(widest / 2.0) / std::numbers::pi * pixelsPerDegree));
@@ -151,7 +154,8 @@ Plane sensed(const Frame& frame, const Plane& plane, const Sensitivity& sensitiv
     return result;
 }
 
-// The colour pipeline [section 4.1]: what is left of a picture at this distance, in Hunt-adjusted CIELAB.
+// Runs the colour pipeline [section 4.1]: it returns what is left of a picture at this distance, in
+// Hunt-adjusted CIELAB.
 std::vector<glm::vec3> perceived(const FlipInput& input, const std::vector<glm::vec3>& picture,
                                  const Colours& colours, double pixelsPerDegree) {
     const Frame frame{static_cast<int>(input.width), static_cast<int>(input.height)};
@@ -182,7 +186,8 @@ std::vector<glm::vec3> perceived(const FlipInput& input, const std::vector<glm::
     return result;
 }
 
-// Gaussian and its first or second derivative; positive weights sum to 1, negative ones to -1 [section 4.2].
+// Holds a Gaussian and its first and second derivatives; positive weights sum to 1, negative ones to -1
+// [section 4.2].
 struct FeatureKernels {
     Kernel smooth, edge, point;
 };
@@ -212,8 +217,8 @@ FeatureKernels featureKernels(double pixelsPerDegree) {
     return kernels;
 }
 
-// How strong an edge (or point) each texel has: the length of the filter's answers across and down. The
-// filters sum to 0, so a texel left out counts as one like the centre.
+// Returns how strong an edge (or point) each texel has: the length of the filter's answers across and down.
+// The filters sum to 0, so a texel left out counts as one like the centre.
 Plane features(const FlipInput& input, const Plane& luminance, const Kernel& kernel, const Kernel& smooth) {
     const Frame frame{static_cast<int>(input.width), static_cast<int>(input.height)};
     Plane weight(luminance.size());
@@ -233,7 +238,7 @@ Plane features(const FlipInput& input, const Plane& luminance, const Kernel& ker
     return result;
 }
 
-// Achromatic channel of the unfiltered picture, 0 to 1; 0 where nothing is covered.
+// Returns the achromatic channel of the unfiltered picture, 0 to 1; it is 0 where nothing is covered.
 Plane luminanceOf(const FlipInput& input, const std::vector<glm::vec3>& picture, const Colours& colours) {
     Plane result(picture.size(), 0.0f);
     for (size_t i = 0; i < result.size(); ++i)

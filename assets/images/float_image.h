@@ -7,26 +7,26 @@
 
 namespace relume {
 
-/// Planes of 32-bit floats, row 0 on top = v 0.
+/// Holds planes of 32-bit floats; row 0 is on top, at v = 0.
 struct FloatImage {
     uint32_t width = 0, height = 0;
     std::vector<std::string> channels;             // e.g. "R", "G", "B", "coverage"
     std::vector<std::vector<float>> planes;        // one per channel, [width * height]
     std::map<std::string, std::string> attributes; // strings written into the EXR header
 
-    /// The plane of a channel, nullptr where there is none.
+    /// Returns the plane of a channel, or nullptr where there is none.
     const std::vector<float>* find(const std::string& channel) const;
     std::vector<float>& add(const std::string& channel); // a new plane of zeros
 };
 
 enum class ExrType { Float, Half };
 
-/// The transfer function of sRGB [IEC 61966-2-1], exact; values outside [0, 1] follow the same curve,
+/// Applies the exact transfer function of sRGB [IEC 61966-2-1]; values outside [0, 1] follow the same curve,
 /// mirrored below 0.
 double srgbFromLinear(double linear);
 double linearFromSrgb(double encoded);
 
-/// 32768^2 pixels: a header that claims more is a broken file's.
+/// These are 32768^2 pixels; a header that claims more is that of a broken file.
 constexpr uint64_t kMostImagePixels = uint64_t(1) << 30;
 
 } // namespace relume

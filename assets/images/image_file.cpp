@@ -11,7 +11,7 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 
-// Our own static copies: other libraries carry theirs under the same names.
+// These are our own static copies; other libraries carry theirs under the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -35,7 +35,7 @@
 namespace relume {
 namespace {
 
-// Pixels per byte: DEFLATE makes 1032 bytes of one at best, each of eight pixels.
+// This bounds the pixels per byte: DEFLATE makes 1032 bytes of one at best, each of eight pixels.
 constexpr uint64_t kMostPngPacking = 8 * 1040;
 
 enum class Format { Exr, Png, Hdr };
@@ -76,7 +76,7 @@ FloatImage readHdr(const std::string& path, const std::string& bytes, uint64_t m
     return decodeRadiance(bytes, header);
 }
 
-/// What is missing of a PNG's end is given to it, for stb knows no picture without.
+/// Gives a PNG the end that it may lack, since stb reads no picture without it.
 std::string mendedPng(const std::string& path, std::string bytes) {
     PngDamage damage = findPngDamage(bytes);
     if (!damage.problem.empty())
@@ -95,7 +95,7 @@ FloatImage readPng(const std::string& path, std::string bytes, uint64_t mostPixe
         if (uint64_t(width) * uint64_t(height) / kMostPngPacking > bytes.size())
             throw std::runtime_error(fmt::format("its header claims {} x {} pixels", width, height));
     }
-    // 16 bits for all: stb widens 8-bit values v to 257 v, which is exact.
+    // All are read with 16 bits: stb widens 8-bit values v to 257 v, which is exact.
     const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
     if (!pixels) throw std::runtime_error(stbi_failure_reason());

@@ -9,19 +9,21 @@ namespace relume {
 
 /// Reads an OpenEXR (all channels as float, the data window, string attributes; R, G, B, A first, then by
 /// name), PNG (R, G, B decoded from sRGB to linear) or Radiance picture (.hdr; R, G, B). Throws Error, also
-/// where it has more than `mostPixels`.
+/// where the picture has more than `mostPixels`.
 FloatImage readImage(const std::string& path, uint64_t mostPixels = kMostImagePixels);
 
-/// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. Goes to a temporary
-/// name in the same folder first and is renamed, so an existing file is replaced whole or not at all. Equal
-/// images give equal bytes. Half cuts values beyond its range (65504) with a warning. Throws Error.
+/// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. The file gets a
+/// temporary name in the same folder first and is renamed, so an existing one is replaced whole or not at
+/// all. Equal images give equal bytes. ExrType::Half cuts values beyond its range (65504) with a warning.
+/// Throws Error.
 void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
 
-/// R, G and B of each pixel as writeImage writes them to a .png: 8 bits, sRGB encoded. Throws Error, naming
-/// the image `name`, without these channels.
+/// Returns R, G and B of each pixel as writeImage writes them to a .png: 8 bits, sRGB encoded. Throws Error,
+/// naming the image `name`, without these channels.
 std::string encodeSrgb(const FloatImage& image, const std::string& name);
 
-/// The bytes that writeImage writes for a .png. Throws Error, naming the image `name`, without R, G and B.
+/// Returns the bytes that writeImage writes for a .png. Throws Error, naming the image `name`, without R, G
+/// and B.
 std::string encodePng(const FloatImage& image, const std::string& name);
 
 /// Throws Error where writing `path` is sure to fail (folder missing or unwritable, unknown ending, too

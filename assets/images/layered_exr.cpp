@@ -103,7 +103,7 @@ LayeredImage::Layer readLayer(const std::string& path, Imf::MultiPartInputFile& 
     return layer;
 }
 
-/// Before pixels are read, which may take long.
+/// Checks the parts before pixels are read, which may take long.
 void checkParts(const std::string& path, const Imf::MultiPartInputFile& file) {
     const auto* layers = file.header(0).findTypedAttribute<Imf::IntAttribute>(kLayers);
     if (!layers) throw Error(path + ": has no layers: name a file that 'relume bake --layers' wrote");

@@ -14,16 +14,16 @@ namespace relume {
 namespace layer_attribute {
 constexpr const char* kType = "relume:type"; // "point", ..., "emitter", "sky", "group"
 constexpr const char* kUnit = "relume:unit"; // of the intensity
-// The light as its scene has it, in that unit and linear, as texts ("40", "1,0.5,0.2"): what `weight` was
-// made of, also where that is 0 because the light is off. Missing: the weight's brightest channel, and weight
-// / that.
+// These two hold the light as its scene has it, in that unit and linear, as texts ("40", "1,0.5,0.2"): what
+// `weight` was made of, also where that is 0 because the light is off. Where they are missing, the intensity
+// is the weight's brightest channel, and the colour is weight / intensity.
 constexpr const char* kIntensity = "relume:intensity";
 constexpr const char* kColor = "relume:color";
 constexpr const char* kStale = "relume:stale";     // why the layer does not show the scene any more, one line
 constexpr const char* kMembers = "relume:members"; // of a group: the names of its lights, one per line
 } // namespace layer_attribute
 
-/// A lightmap light by light: composite = sum of weight x layer.
+/// Holds a lightmap light by light: composite = sum of weight x layer.
 struct LayeredImage {
     struct Layer {
         std::string name;                              // unlike that of any other layer
@@ -36,12 +36,12 @@ struct LayeredImage {
 };
 
 /// Writes an OpenEXR file of several parts: the composite, which readers of one image take, then one part per
-/// layer, named as the layer is, with the attributes relume:name and relume:weight. ZIP, by a temporary name
-/// as writeImage does. Equal images give equal bytes. Throws Error.
+/// layer, named as the layer is, with the attributes relume:name and relume:weight. It compresses with ZIP
+/// and writes by a temporary name, as writeImage does. Equal images give equal bytes. Throws Error.
 void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float);
 
-/// Reads such a file. Throws Error where it has no layers, parts are missing or differ in size, a channel or
-/// a weight is missing or a weight is not finite.
+/// Reads a file that writeLayeredExr wrote. Throws Error where it has no layers, parts are missing or differ
+/// in size, a channel or a weight is missing or a weight is not finite.
 LayeredImage readLayeredExr(const std::string& path);
 
 } // namespace relume

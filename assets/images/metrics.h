@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// How far image a is from the reference b, over R, G and B of the texels that count.
+/// Tells how far image a is from the reference b, over R, G and B of the texels that count.
 struct Metrics {
     double relRmse = 0; // rmse / mean(b); 0 for equal images; infinite where only b is black
     double rmse = 0;    // sqrt(mean((a - b)^2))
@@ -22,18 +22,18 @@ struct Metrics {
     uint64_t masked = 0;           // covered in both, left out by the mask
 };
 
-/// An image and what messages call it.
+/// Holds an image and what messages call it.
 struct NamedImage {
     const FloatImage& image;
     std::string name;
 };
 
-/// Two images of one size, checked, and the texels in which they can be compared: those covered in both, a
-/// texel being covered where `coverage` is 1, or everywhere in an image without that channel; with a mask
-/// only those where its `coverage` (else R, else its first channel) is above 0.5.
+/// Holds two checked images of one size and the texels in which they can be compared: those covered in both,
+/// a texel being covered where `coverage` is 1, or everywhere in an image without that channel. With a mask,
+/// only those count where its `coverage` (else R, else its first channel) is above 0.5.
 class ImagePair {
 public:
-    /// Throws Error, naming the images, when sizes differ, R, G or B is missing, nothing is left to compare
+    /// Throws Error, naming the images, where sizes differ, R, G or B is missing, nothing is left to compare
     /// or a value to be compared is not finite. The images must outlive this.
     ImagePair(const NamedImage& a, const NamedImage& b, const NamedImage* mask = nullptr);
 
@@ -43,16 +43,16 @@ public:
     float a(size_t texel, size_t channel) const { return planesA_[channel][texel]; }
     float b(size_t texel, size_t channel) const { return planesB_[channel][texel]; }
 
-    /// Sums are doubles in texel order.
+    /// Returns the metrics. Sums are doubles in texel order.
     Metrics measure() const;
 
-    /// Difference of each texel, 0 where nothing is compared: root of the mean square over the channels; as
-    /// displayed (DFPR's summand); as somebody flipping between the pictures sees it (FLIP,
+    /// Return the difference of each texel, 0 where nothing is compared: the root of the mean square over the
+    /// channels; as displayed (DFPR's summand); as somebody flipping between the pictures sees it (FLIP,
     /// assets/images/flip.h).
     std::vector<float> differences() const;
     std::vector<float> displayedDifferences() const;
     std::vector<float> flipDifferences(double pixelsPerDegree) const;
-    /// The mean of such a map over the texels compared.
+    /// Returns the mean of such a map over the texels compared.
     double mean(const std::vector<float>& map) const;
 
 private:
@@ -68,7 +68,7 @@ private:
     uint64_t texels_ = 0, onlyA_ = 0, onlyB_ = 0, masked_ = 0;
 };
 
-/// ImagePair's metrics of two images.
+/// Returns ImagePair's metrics of two images.
 Metrics compareImages(const FloatImage& a, const std::string& nameA, const FloatImage& b,
                       const std::string& nameB);
 

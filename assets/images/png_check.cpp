@@ -1,4 +1,5 @@
-// The container: W3C, "Portable Network Graphics (PNG) Specification (Second Edition)", 2003, section 5.
+// The container is specified in: W3C, "Portable Network Graphics (PNG) Specification (Second Edition)", 2003,
+// section 5.
 #include "assets/images/png_check.h"
 
 #include "assets/base/warnings.h"

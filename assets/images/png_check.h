@@ -5,7 +5,7 @@
 
 namespace relume {
 
-/// What is damaged of a PNG though its pixels may be read.
+/// Tells what is damaged in a PNG whose pixels may be readable all the same.
 struct PngDamage {
     std::string problem; // "its chunk 'IDAT' has a wrong checksum"; "": none is found, or it is no PNG
     std::string mended;  // where its end is missing: all whole chunks and an end, to be decoded instead

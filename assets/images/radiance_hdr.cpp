@@ -1,5 +1,6 @@
-// The format: G. Ward, "Real Pixels", Graphics Gems II, 1991, and Radiance's manual "File Formats", 1997.
-// Not by stb_image: its decoder never ends on a file that ends inside a run.
+// The format is described in: G. Ward, "Real Pixels", Graphics Gems II, 1991, and Radiance's manual "File
+// Formats", 1997. stb_image does not read it here, since its decoder never ends on a file that ends inside a
+// run.
 #include "assets/images/radiance_hdr.h"
 
 #include <array>
@@ -30,7 +31,7 @@ std::string_view takeLine(std::string_view bytes, size_t& at) {
     return line;
 }
 
-/// The number behind `axis` ("-Y "), taken off the line's front.
+/// Takes `axis` ("-Y ") and the number behind it off the line's front and returns the number.
 uint32_t takeExtent(std::string_view& line, std::string_view axis) {
     uint32_t extent = 0;
     if (line.starts_with(axis)) {
@@ -85,7 +86,8 @@ private:
             }
     }
 
-    // Pixel by pixel; (1, 1, 1, n) repeats the pixel before n times, further ones are higher digits of n.
+    // Reads a row stored pixel by pixel; (1, 1, 1, n) repeats the pixel before n times, further ones are
+    // higher digits of n.
     void pixelRow(std::vector<Rgbe>& row, size_t width) {
         int shift = 0;
         while (row.size() < width) {

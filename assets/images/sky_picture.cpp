@@ -16,7 +16,8 @@
 namespace relume {
 namespace {
 
-// 11585 x 5793: 0.03 degrees a pixel, a seventeenth of the sun's disc, for 768 MiB of pixels.
+// This allows 11585 x 5793 pixels: 0.03 degrees a pixel, a seventeenth of the sun's disc, for 768 MiB of
+// pixels.
 constexpr uint64_t kMostSkyPixels = uint64_t(64) << 20;
 
 bool isFloatFormat(const std::string& path) {
@@ -26,7 +27,7 @@ bool isFloatFormat(const std::string& path) {
     return ending == ".exr" || ending == ".hdr";
 }
 
-/// Returns how many pixels had to be mended.
+/// Makes all pixels finite and not negative, and returns how many had to be corrected.
 size_t mend(std::vector<glm::vec3>& pixels) {
     float largest = 0.0f;
     for (const glm::vec3& pixel : pixels)

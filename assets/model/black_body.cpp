@@ -6,8 +6,8 @@
 namespace relume {
 namespace {
 
-// Chromaticity (u, v) of CIE 1960 [Krystek 1985, An algorithm to calculate correlated colour temperature],
-// good to 9e-5 from 1000 to 15000 K.
+// Returns the chromaticity (u, v) of CIE 1960 at a temperature t [K] [Krystek 1985, An algorithm to calculate
+// correlated colour temperature], good to 9e-5 from 1000 to 15000 K.
 glm::dvec2 planckianLocus(double t) {
     return {(0.860117757 + 1.54118254e-4 * t + 1.28641212e-7 * t * t) /
                 (1.0 + 8.42420235e-4 * t + 7.08145163e-7 * t * t),
@@ -22,7 +22,7 @@ glm::vec3 blackBody(float kelvin) {
     const double scale = 2.0 * uv.x - 8.0 * uv.y + 4.0;
     const double x = 3.0 * uv.x / scale, y = 2.0 * uv.y / scale;
     const glm::dvec3 xyz(x / y, 1.0, (1.0 - x - y) / y);
-    // IEC 61966-2-1.
+    // This matrix is that of IEC 61966-2-1.
     const glm::dvec3 rgb(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
                          -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
                          0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z);
@@ -34,8 +34,8 @@ std::optional<NearestBody> nearestBlackBody(const glm::vec3& color) {
     if (!(most > 0.0f) || !std::isfinite(color.r + color.g + color.b)) return std::nullopt;
     const glm::vec3 wanted = glm::max(color, 0.0f) / most;
     const auto difference = [&](float reciprocal) { return blackBody(1.0f / reciprocal) - wanted; };
-    // Along the reciprocal temperature colours change evenly [Judd 1936]; between a red and a blue there is
-    // one nearest place, to be had by thirds.
+    // Colours change evenly along the reciprocal temperature [Judd 1936]; between a red and a blue there is
+    // one nearest place, which a ternary search finds.
     float low = 1.0f / kHighestTemperature, high = 1.0f / kLowestTemperature;
     constexpr float kExact = 1e-9f; // [1/K], 0.04 K at 6500 K
     while (high - low > kExact) {

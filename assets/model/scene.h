@@ -8,8 +8,8 @@
 
 namespace relume {
 
-/// Pixels of a texture as the file has them: 8 bits, 4 channels, row 0 first. Colour is sRGB encoded or
-/// linear according to its use (base colour and emission: sRGB; metallic-roughness: linear).
+/// Holds the pixels of a texture as the file has them: 8 bits, 4 channels, row 0 first. Colour is sRGB
+/// encoded or linear, according to its use (base colour and emission: sRGB; metallic-roughness: linear).
 struct Image {
     std::string name;
     uint32_t width = 0, height = 0;
@@ -24,7 +24,8 @@ struct Texture {
     bool nearest = false; // magnification filter
 };
 
-/// A material's use of a texture: uv = (transform * (TEXCOORD_n, 1)).xy, KHR_texture_transform included.
+/// Describes a material's use of a texture: uv = (transform * (TEXCOORD_n, 1)).xy, KHR_texture_transform
+/// included.
 struct TextureRef {
     int texture = -1; // index into Scene::textures, -1 for none
     int texCoord = 0; // 0 or 1
@@ -46,8 +47,8 @@ struct Material {
     bool doubleSided = false;
 };
 
-/// Triangles of one material. Arrays other than positions may be empty where the file has none; normals never
-/// are after import (flat where missing, which splits vertices).
+/// Holds triangles of one material. Arrays other than positions may be empty where the file has none. Normals
+/// never are after import: where they are missing, the triangles become flat, which splits vertices.
 struct Primitive {
     std::vector<glm::vec3> positions; // [m], object space
     std::vector<glm::vec3> normals;   // unit
@@ -57,7 +58,7 @@ struct Primitive {
     int material = -1;             // index into Scene::materials, -1 for glTF's default material
 };
 
-/// TEXCOORD_0 or TEXCOORD_1.
+/// Returns TEXCOORD_0 or TEXCOORD_1.
 inline const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
     return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
 }
@@ -87,10 +88,10 @@ struct Camera {
 
 enum class LightType : uint32_t { Point, Spot, Directional, Rectangle, Disc };
 
-/// A light without geometry, which nothing sees and which blocks nothing. Point, spot and directional lights
-/// are those of KHR_lights_punctual, shining along the transform's -Z, with an extent that softens their
-/// shadows. Rectangles and discs lie in the transform's XY plane around its origin and shine from the side of
-/// its -Z, alike in all directions.
+/// An analytic light has no geometry: nothing sees it and it blocks nothing. Point, spot and directional
+/// lights are those of KHR_lights_punctual, shining along the transform's -Z, with an extent that softens
+/// their shadows. Rectangles and discs lie in the transform's XY plane around its origin and shine from the
+/// side of its -Z, alike in all directions.
 struct Light {
     std::string name;
     LightType type = LightType::Point;
@@ -107,7 +108,7 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
-/// What users set of a sky.
+/// Holds what users set of a sky.
 struct SkySettings {
     glm::vec3 radiance{0.0f}; // [cd/m^2]; of a picture: factor on it
     float rotation = 0.0f;    // of the picture about +Y, counter-clockwise from above [rad]
@@ -116,8 +117,8 @@ struct SkySettings {
     bool operator==(const SkySettings&) const = default;
 };
 
-/// What is seen where nothing else is: one radiance, or an equirectangular picture. Its row 0 is the zenith
-/// (+Y), and its middle column lies in -Z, so that +X is to the right of it.
+/// The sky is seen where nothing else is: one radiance, or an equirectangular picture. Its row 0 is the
+/// zenith (+Y), and its middle column lies in -Z, so that +X is to the right of it.
 struct Sky : SkySettings {
     uint32_t width = 0, height = 0; // of the picture
     std::vector<glm::vec3> pixels;  // [height][width] [cd/m^2], linear
@@ -125,8 +126,8 @@ struct Sky : SkySettings {
     bool shines() const { return radiance != glm::vec3(0.0f); }
 };
 
-/// A scene as the file tells it, with the node hierarchy resolved to world transforms. No GPU, no lightmap
-/// decisions.
+/// Holds a scene as the file tells it, with the node hierarchy resolved to world transforms. It knows of no
+/// GPU and decides nothing about lightmaps.
 struct Scene {
     std::string path; // as given by the user; "" for a generated scene
     std::vector<Image> images;
@@ -137,7 +138,7 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     Sky sky;
-    std::vector<std::string> warnings; // what of the file is not supported or was mended, one line each
+    std::vector<std::string> warnings; // what of the file is unsupported or was corrected, one line each
 };
 
 } // namespace relume

@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// Where an instance stands.
+/// Says where an instance stands.
 struct Placement {
     glm::mat4 transform{1.0f}; // object to world
     bool hidden = false;
@@ -14,7 +14,7 @@ struct Placement {
     bool operator==(const Placement&) const = default;
 };
 
-/// What of a scene users edit live; all else stays as its file has it.
+/// Holds the parts of a scene that users edit live; all else stays as its file has it.
 struct SceneEdits {
     std::vector<Material> materials; // as many as the scene's
     std::vector<Light> lights;
@@ -22,10 +22,10 @@ struct SceneEdits {
     std::vector<Placement> placements; // of the scene's instances
 };
 
-/// As the scene has it.
+/// Returns these parts as the scene has them.
 SceneEdits editsOf(const Scene& scene);
-/// Makes the scene as the edits say. `scene` has the materials and instances that they began with. Of another
-/// sky picture than its own it takes nothing but the name (readEditedPicture).
+/// Changes the scene as the edits say. `scene` has the materials and instances that they began with. Where
+/// the sky has another picture than before, only its name is taken (see readEditedPicture).
 void applyEdits(Scene& scene, const SceneEdits& edits);
 
 } // namespace relume

@@ -39,7 +39,7 @@ bool isFar(const glm::mat4& transform, const glm::vec3& position) {
     return !isWithinReach(glm::vec3(transform * glm::vec4(position, 1.0f)));
 }
 
-/// Whether a triangle's corner is far.
+/// Tells whether a corner of a triangle is far.
 bool reachesFar(const Primitive& primitive, size_t first, const glm::mat4& transform) {
     const auto far = [&](size_t k) {
         return isFar(transform, primitive.positions[primitive.indices[first + k]]);
@@ -72,7 +72,7 @@ float brightestOf(const glm::vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// Returns whether it was cut.
+/// Cuts a value to at most `most` and returns whether it changed.
 template<typename Vec>
 bool cut(Vec& value, float most) {
     const Vec before = value;
@@ -145,7 +145,7 @@ std::vector<std::string> limitLight(Light& light) {
     std::vector<std::string> mended;
     if (cut(light.size, kFarthest)) mended.push_back(tooFar("size"));
     if (cut(light.radius, kFarthest)) mended.push_back(tooFar("radius"));
-    // Where the colour's channels are above 1, the intensity is not the whole of it.
+    // Where the colour's channels are above 1, the intensity alone does not tell the brightness.
     const double brightest = std::max(brightestOf(light.color), 1.0f);
     if (light.intensity * brightest > kBrightest * (1.0 + std::numeric_limits<float>::epsilon())) {
         light.intensity = static_cast<float>(kBrightest / brightest);

@@ -7,40 +7,41 @@
 #include "assets/model/scene.h"
 #include "assets/model/scene_edits.h"
 
-// How far and how bright a scene may be. All arithmetic behind it is in 32-bit floats, which end at 3.4e38;
-// what is within these bounds leads to no infinity there.
+// This header says how far and how bright a scene may be. All arithmetic behind it is in 32-bit floats, which
+// end at 3.4e38; what is within these bounds leads to no infinity there.
 namespace relume {
 
-/// The largest coordinate, and the largest size of a light [m]: a hundred thousand kilometres. Form factors
-/// and areas multiply four lengths with each other, and a length in such a scene, light and rays to the sun
-/// included, is 7e8 m at most, which leaves a factor of a thousand. They are only right up to 1e9 m
+/// This is the largest coordinate, and the largest size of a light [m]: a hundred thousand kilometres. Form
+/// factors and areas multiply four lengths with each other, and a length in such a scene, light and rays to
+/// the sun included, is 7e8 m at most, which leaves a factor of a thousand. They are only right up to 1e9 m
 /// (shaders/lib/form_factor.glsl); Embree aborts at rays that begin or end beyond 1.8e18 m.
 constexpr float kFarthest = 1e8f;
 
-/// The brightest channel of what shines, whichever it is [cd], [lux], [cd/m^2]: a thousand times the sun's
-/// disc. Bounces gather fifty times as much at most (albedo ends at 0.98), and errors are sums of squares of
-/// it over all patches, of which a float holds those of 1e17.
+/// This is the brightest channel of anything that shines, whatever its unit is ([cd], [lux], [cd/m^2]): a
+/// thousand times the sun's disc. Bounces gather fifty times as much at most (albedo ends at 0.98), and
+/// errors are sums of squares of it over all patches, of which a float holds those of 1e17.
 constexpr float kBrightest = 1e12f;
 
-/// Whether no coordinate is beyond kFarthest (or not a number).
+/// Tells whether no coordinate is beyond kFarthest (or not a number).
 bool isWithinReach(const glm::vec3& point);
-/// Whether no triangle of the mesh reaches beyond, as it stands with this transform.
+/// Tells whether no triangle of the mesh, placed with this transform, reaches beyond kFarthest.
 bool isWithinReach(const Mesh& mesh, const glm::mat4& transform);
 
-/// Drops triangles that reach beyond kFarthest as an instance stands, and instances of which nothing is left.
-/// A mesh that another instance has whole is copied. One warning for each mesh.
+/// Drops triangles that reach beyond kFarthest where an instance stands, and instances of which nothing is
+/// left. A mesh that another instance has whole is copied. There is one warning for each mesh.
 void dropFarTriangles(Scene& scene, Warnings& warnings);
-/// What such a warning says of so many triangles.
+/// Returns what such a warning says of `count` triangles.
 std::string farTriangles(size_t count);
 
-/// Brings a light, a material, the sky within the bounds; returns what was wrong with it, a sentence without
-/// its subject for each thing that was mended. A light may stand too far away for that: isWithinReach.
+/// Brings a light, a material or the sky within the bounds. Returns what was wrong with it: for each thing
+/// that was corrected, a sentence without its subject. A light may stand too far away for that: see
+/// isWithinReach.
 std::vector<std::string> limitLight(Light& light);
 std::vector<std::string> limitMaterial(Material& material);
 std::vector<std::string> limitSky(Sky& sky);
 
-/// Brings edits within the bounds: what would stand too far away stays where it was. `before`: the edits that
-/// these follow.
+/// Brings edits within the bounds: what would stand too far away stays where it was. `before` are the edits
+/// that these follow.
 void limitEdits(const Scene& scene, const SceneEdits& before, SceneEdits& edits);
 
 } // namespace relume

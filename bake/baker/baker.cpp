@@ -16,7 +16,7 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
-// Share of the free memory that a bake may take: the driver needs some of its own.
+// A bake may take this share of the free memory: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
 
 class PhaseClock {
@@ -115,7 +115,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
 
 Baker::~Baker() = default;
 
-// Whether a patch lies inside something is told by triangles: a voxel knows no inside.
+// Makes the tracers. Triangles tell whether a patch lies inside something: a voxel knows no inside.
 void Baker::makeTracers() {
     std::string why = "as asked for";
     TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
@@ -145,7 +145,7 @@ void Baker::makeTracers() {
     clock.end("voxels");
 }
 
-// Patches inside something are found once, before the first pass.
+// Finds the patches inside something, once, before the first pass.
 void Baker::findInvalid() {
     InsideSearch search{.device = device_,
                         .tracer = *tracer_,

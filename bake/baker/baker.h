@@ -27,7 +27,7 @@ struct BakeSettings {
     SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
 };
 
-/// Seconds of one named phase.
+/// The seconds of one named phase.
 struct PhaseTime {
     std::string name;
     double seconds = 0;
@@ -40,44 +40,45 @@ public:
     /// The largest lightmap edge.
     static constexpr uint32_t kMaxSize = kMaxLightmapSize;
 
-    /// Throws Error when the size does not fit the device's memory (before anything is allocated), no texel
-    /// is covered or the tracer cannot run. Device and scene must outlive it.
-    /// phaseHook hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends
-    /// the preparation, as does what this thread's watch throws.
+    /// Prepares everything. Throws Error when the size does not fit the device's memory (before anything is
+    /// allocated), no texel is covered or the tracer cannot run. Device and scene must outlive it. phaseHook
+    /// hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends the
+    /// preparation, as does what this thread's watch throws.
     using PhaseHook = std::function<void(const char* phase)>;
     Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
           PhaseHook phaseHook = {});
     ~Baker();
 
     Solver& solver() { return *solver_; }
-    /// Another solver of the same patches, which starts from no light; `transport` must stay as it is. Throws
-    /// Error when its method cannot run: then there is none any more.
+    /// Makes another solver of the same patches, which starts from no light; `transport` must stay as it is.
+    /// Throws Error when its method cannot run: then there is no solver any more.
     void resetSolver(const SolverSettings& settings);
-    /// Colours and strengths of materials as the scene has them now; not whether they are masked or emit at
-    /// all. For a solver that follows edits, which is to be told afterwards.
+    /// Takes over colours and strengths of materials as the scene has them now; not whether they are masked
+    /// or emit at all. This is for a solver that follows edits, which must be told afterwards.
     void updateMaterials();
-    /// Objects stand, or are hidden, as the scene has them now: for a solver that follows edits
-    /// (LayerSolver::moveObjects is to be told of what comes back). Nothing: that cannot be followed, and all
-    /// is as it was; another Baker is needed. The atlas is the one that the mesh was made with.
+    /// Moves, hides and shows objects as the scene has them now: for a solver that follows edits
+    /// (LayerSolver::moveObjects must be told of what comes back). Returns nothing where that cannot be
+    /// followed; then all is as it was, and another Baker is needed. The atlas is the one that the mesh was
+    /// made with.
     std::optional<ObjectMove> moveObjects(const LightmapAtlas& atlas);
     Tracer& tracer() { return *tracer_; }
-    /// Its name and why it was taken: "embree (software device)".
+    /// Returns the tracer's name and why it was taken: "embree (software device)".
     const std::string& tracerChoice() const { return tracerChoice_; }
     const PatchSet& patches() const { return patches_; }
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }
     uint32_t invalidPatches() const { return invalid_; }
-    /// The lightmap of the last finished pass.
+    /// Returns the lightmap of the last finished pass.
     FloatImage lightmap(LightmapDesc desc) const;
-    /// Solver::errors() as a grey image in lighting's unit; texels beside charts stay empty. Throws Error
-    /// when there is nothing to tell yet.
+    /// Returns Solver::errors() as a grey image in lighting's unit; texels beside charts stay empty. Throws
+    /// Error when there is nothing to tell yet.
     FloatImage errorMap() const;
 
-    /// What is wrong with the size where `limit` bytes may be taken, and which one fits; "" when it fits
-    /// itself.
+    /// Returns what is wrong with the size where `limit` bytes may be taken, and which one fits; "" when it
+    /// fits itself.
     static std::string sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
                                    uint64_t limit);
-    /// Device bytes a bake of this size takes when every texel is covered.
+    /// Returns the device bytes that a bake of this size takes when every texel is covered.
     static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
 
 private:

@@ -12,15 +12,16 @@ namespace {
 
 using shader::kChunk;
 
-// Aim of one submit [ms]; a wish to stop waits for as long.
+// The aim of one submit [ms]; a wish to stop waits for as long.
 constexpr double kInsideBatchMs = 20.0;
-// Chunks of a batch at most, whose links are 8 MiB. On a device that does a billion rays a second these are 2
-// ms.
+// A batch has at most so many chunks, whose links are 8 MiB. On a device that does a billion rays a second
+// these are 2 ms.
 constexpr uint32_t kMostInsideChunks = 1024;
-// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters do.
+// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
+// needed.
 constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
 
-/// What the directions of one patch have met so far.
+/// The backs and sky that the directions of one patch have met so far.
 struct Met {
     uint16_t backs = 0, sky = 0;
 };
@@ -85,7 +86,7 @@ private:
                     }
     }
 
-    /// Chunks of these of which a patch could still turn out to lie inside.
+    /// Returns those of these chunks of which a patch could still turn out to lie inside something.
     std::vector<ChunkRange> undecided(const std::vector<ChunkRange>& ranges, uint32_t traced) const {
         std::vector<ChunkRange> left;
         const uint32_t rest = search_.samples - traced;

@@ -9,19 +9,20 @@
 
 namespace relume {
 
-/// What a search for patches that lie inside something works with.
+/// The things that a search for patches that lie inside something works with.
 struct InsideSearch {
     const vk::Device& device;
     Tracer& tracer;
     const PatchSet& patches;
     uint32_t samples; // directions of each patch, a multiple of 8
     // Hears what all directions of some chunks meet, links[chunk][sample][64], in the order of the chunks;
-    // where nobody does, patches whose first directions have told enough are not asked further.
+    // where nobody hears it, patches whose first directions have told enough are not asked further.
     std::function<void(uint32_t firstChunk, std::span<const uint32_t> links)> onLinks;
     std::function<void(double done)> onBatch; // before each batch; what it throws ends the search
 };
 
-/// Patches that lie inside something (liesInside), ascending. In short batches of closest hits.
+/// Returns the patches that lie inside something (liesInside), ascending. It works in short batches of
+/// closest hits.
 std::vector<uint32_t> findInside(const InsideSearch& search);
 
 } // namespace relume

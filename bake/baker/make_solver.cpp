@@ -8,9 +8,9 @@
 namespace relume {
 namespace {
 
-// Of the free device memory that bits and links may take if nothing else is said.
+// Bits and links may take this share of the free device memory if nothing else is said.
 constexpr double kLinkMemoryShare = 1.0 / 3.0;
-// And layers.
+// Layers may take this share.
 constexpr double kLayerShare = 1.0 / 3.0;
 
 } // namespace

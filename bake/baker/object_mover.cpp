@@ -15,15 +15,15 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-// Of a coordinate, what rays and boxes may round off together, with room.
+// Rays and boxes together may round off this share of a coordinate, with room.
 constexpr float kBoxRounding = 1e-5f;
-// Where objects were, or are: each is a test per ray. An object of many parts is one.
+// So many boxes tell where objects were, or are: each is a test per ray. An object of many parts is one.
 constexpr size_t kMostMoveBoxes = 4;
-// A link that was not traced again, where none are listed.
+// This marks a link that was not traced again, where none are listed.
 constexpr uint32_t kKept = 0xfffffff0u;
 static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
 
-// Of ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
+// A bit in ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
 constexpr uint32_t kHome = 0x80000000u;
 static_assert(kHome > kMaxLightmapSize * kMaxLightmapSize);
 
@@ -64,7 +64,7 @@ struct ObjectMover::Buffers {
     vk::Buffer links, list, listed, rays;
     vk::Commands commands;
 
-    // As Baker::findInvalid has them, but that few rays are traced of each batch.
+    // The batches are those of Baker::findInvalid, but few rays of each are traced.
     Buffers(const vk::Device& device, uint32_t chunkCount)
         : chunks(std::min(device.info().software() ? 64u : 1024u, chunkCount)),
           links(
@@ -76,7 +76,8 @@ struct ObjectMover::Buffers {
           rays(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}), commands(device) {}
 
     uint64_t words() const { return uint64_t{chunks} * kInsideSamples * kChunk; }
-    // What comes back with the batch of its list: more is seldom listed, and read afterwards.
+    // Returns the bytes of the list that come back with its batch: more is seldom listed, and read
+    // afterwards.
     VkDeviceSize listedBytes() const {
         constexpr uint64_t kAtOnce = 16383; // with their number 64 KiB
         return (1 + std::min(kAtOnce, words())) * sizeof(uint32_t);
@@ -134,7 +135,7 @@ void ObjectMover::noteInside(uint32_t firstChunk, std::span<const uint32_t> link
     }
 }
 
-// Nothing: some of them were hidden from the beginning.
+// Returns the objects that have moved, or nothing where some of them were hidden from the beginning.
 std::optional<ObjectMover::Moved> ObjectMover::moved() const {
     Moved moved;
     for (uint32_t i = 0; i < placed_.size(); ++i) {
@@ -148,7 +149,7 @@ std::optional<ObjectMover::Moved> ObjectMover::moved() const {
     return moved;
 }
 
-// Tiles around their texels; one of what has none.
+// Returns the tiles around the texels of these patches; one tile where there are none.
 TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
     const uint32_t size = on_.patches.scene.size;
     glm::uvec2 first(slots.empty() ? 0 : size), last(0);
@@ -163,7 +164,8 @@ TexelWindow ObjectMover::windowOf(const std::vector<uint32_t>& slots) const {
     return {first.x, first.y, last.x - first.x, last.y - first.y};
 }
 
-// An object that is dragged is drawn again and again: what that takes stays, but for large textures.
+// Draws the moved mesh. An object that is dragged is drawn again and again: what that takes stays, but for
+// large textures.
 TextureGroup ObjectMover::rasterize(const WorldMesh& mesh, const TexelWindow& window) {
     constexpr uint64_t kMostKept = uint64_t{64} << 20; // [bytes]
     if (!cit_ || !cit_->serves(mesh)) {
@@ -176,7 +178,8 @@ TextureGroup ObjectMover::rasterize(const WorldMesh& mesh, const TexelWindow& wi
     return group;
 }
 
-// Nothing: their triangles or patches are not those that were there.
+// Makes the patches of what has moved, or nothing where its triangles or patches are not those that were
+// there.
 std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const LightmapAtlas& atlas) {
     const TraceScene& all = on_.patches.scene;
     Part part;
@@ -192,7 +195,7 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
     const TexelWindow window = windowOf(part.slots);
     TextureGroup group = rasterize(mesh, window);
     const auto place = [&](uint32_t texel) { return window.index(texel % all.size, texel / all.size); };
-    // Texels that charts share are whose they were.
+    // Texels that charts share stay with the chart that had them.
     std::vector<uint32_t> triangle(group.triangle.size(), 0);
     for (const uint32_t slot : part.slots) {
         const size_t at = place(texels_[slot] & ~kHome);
@@ -209,7 +212,7 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
     return part;
 }
 
-// Of each instance that is there, one box; of many one around all.
+// Returns one box for each instance that is there; where they are many, one around all.
 std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
     const std::vector<glm::vec3>& positions = on_.patches.scene.mesh.positions;
     const shader::TraceBox none{glm::vec3(1e30f), glm::vec3(-1e30f)};
@@ -233,7 +236,8 @@ std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
     return {around};
 }
 
-// Those of what is hidden go to where other triangles are: the scene's bounds are not theirs.
+// Puts the triangles into the scene. Those of hidden objects go to where other triangles are: the scene's
+// bounds are not theirs.
 void ObjectMover::putTriangles(const Part& part) {
     TraceScene& all = on_.patches.scene;
     const TraceScene& own = part.patches.scene;
@@ -259,7 +263,8 @@ void ObjectMover::putTriangles(const Part& part) {
         std::fill_n(all.mesh.positions.begin() + std::ptrdiff_t{t} * 3, 3, point);
 }
 
-// As they would be before any was found to lie inside something. Returns the texels that have another patch.
+// Puts the patches into the scene as they would be before any was found to lie inside something. Returns the
+// texels that have another patch.
 std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move) {
     PatchSet& all = on_.patches;
     std::vector<uint32_t> texels;
@@ -306,8 +311,8 @@ void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::
     if (bits != before) others.push_back(patch);
 }
 
-// Directions that may meet what has moved are followed again, those of patches inside something, too. Returns
-// whose meet something else now.
+// Follows directions again that may meet what has moved, those of patches inside something, too. Returns the
+// patches whose directions meet something else now.
 std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
     const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideSamples * kChunk;
     if (!buffers_) buffers_ = std::make_unique<Buffers>(on_.device, chunks);
@@ -359,7 +364,8 @@ std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove&
     return others;
 }
 
-// Of these patches. Returns those that were not and are, or the other way round.
+// Tells again which of these patches lie inside something. Returns those that were not and are, or the other
+// way round.
 std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patches, ObjectMove& move) {
     std::vector<uint32_t> others;
     for (const uint32_t i : patches) {

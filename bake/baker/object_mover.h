@@ -19,30 +19,32 @@ namespace relume {
 /// that hidden objects keep their places among patches, as padding, and among triangles, shrunk to a point.
 class ObjectMover {
 public:
-    /// What it works on; all must outlive it.
+    /// The things that it works on; all must outlive it.
     struct On {
         const vk::Device& device;
         const Scene& scene;
         PatchSet& patches;
         LightBuffers& light;
     };
-    /// Of how many directions each patch was told whether it lies inside something.
+    /// So many directions of each patch told whether it lies inside something.
     static constexpr uint32_t kInsideSamples = 32;
     ObjectMover(const On& on, bool conservative);
     ~ObjectMover();
 
-    /// What the directions of these chunks meet: links as findInside tells them. All chunks come once.
+    /// Takes note of what the directions of these chunks meet: links as findInside tells them. All chunks
+    /// come once.
     void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
-    /// Objects stand as the scene has them now. Nothing: that cannot be followed (an object that was hidden
-    /// from the beginning, triangles that have lost their area), and nothing has changed.
+    /// Follows objects to where the scene has them now. Returns nothing where that cannot be followed (an
+    /// object that was hidden from the beginning, triangles that have lost their area); then nothing has
+    /// changed.
     std::optional<ObjectMove> follow(const LightmapAtlas& atlas, Tracer& tracer);
-    /// Whether albedo or emission patterns of patches have changed in the last move.
+    /// Tells whether albedo or emission patterns of patches have changed in the last move.
     bool repainted() const { return repainted_; }
-    /// Patches that lie inside something.
+    /// Returns how many patches lie inside something.
     uint32_t invalidPatches() const { return invalid_; }
 
 private:
-    /// Of each instance its triangles, or its patches.
+    /// The triangles, or the patches, of each instance.
     class Members {
     public:
         Members(const std::vector<uint32_t>& instanceOf, size_t instances);
@@ -54,7 +56,7 @@ private:
     struct Moved {
         std::vector<uint32_t> shown, gone; // instances
     };
-    struct Part;    // of the scene, as new patches and triangles have it
+    struct Part;    // part of the scene, as new patches and triangles have it
     struct Buffers; // to ask whether patches lie inside something
     std::optional<Moved> moved() const;
     std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas);
@@ -72,7 +74,7 @@ private:
     bool conservative_;
     bool repainted_ = false;
     uint32_t invalid_ = 0;
-    std::vector<Placement> placed_;    // that patches are of
+    std::vector<Placement> placed_;    // where the patches' instances stand
     std::vector<uint8_t> known_;       // per instance: it was there from the beginning
     Members triangles_, slots_;        // slots: places among patches
     std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown

@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// One workgroup per chunk, or whatever there are so many of, for kernels that count them in y, too.
+/// Dispatches one workgroup per chunk, or per item of any list, for kernels that count workgroups in y, too.
 template<typename Push>
 void dispatchChunks(const vk::ComputeProgram& program, VkCommandBuffer cmd, const Push& push,
                     uint32_t chunks) {

@@ -5,13 +5,13 @@
 
 namespace relume {
 
-/// What kernels told chunk by chunk, summed on the device: a few bytes are read back, not many for each
-/// chunk.
+/// Sums on the device what kernels tell chunk by chunk: a few bytes are read back, not many for each chunk.
 class ChunkSumPass {
 public:
     explicit ChunkSumPass(const vk::Device& device) : program_(device, "sum_chunks") {}
 
-    /// values: float[groups][chunkCount][width]; sums: float[groups][width]. Barriers are the caller's.
+    /// Values are float[groups][chunkCount][width], sums float[groups][width]. The caller writes the
+    /// barriers.
     struct Work {
         VkDeviceAddress values = 0, sums = 0;
         uint32_t chunkCount = 0, width = 0, groups = 1;

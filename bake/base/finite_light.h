@@ -6,9 +6,9 @@
 
 namespace relume {
 
-/// Throws Error where sums over all patches, of their light or of its squares, are not finite: no error could
-/// be told, and what is there is no result. Bounds of what shines (assets/model/scene_limits.h) leave one way
-/// there: a lamp of no extent right at a surface.
+/// Throws Error where the sums over all patches of their light or of its squares are not finite: then no
+/// error can be told, and the light is no result. The bounds on lights (assets/model/scene_limits.h) leave
+/// one cause: an analytic light of no extent right at a surface.
 inline void requireFiniteLight(double light, double squares) {
     if (std::isfinite(light) && std::isfinite(squares)) return;
     throw Error(

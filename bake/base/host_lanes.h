@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// Numbers side by side, for loops of the CPU's; compilers turn them into as many vector registers as it
-/// takes. By reference into functions: passed by value they would depend on the instruction set.
+/// Numbers side by side, for loops on the CPU; compilers turn them into as many vector registers as it takes.
+/// Functions take them by reference: passed by value they would depend on the instruction set.
 constexpr uint32_t kLanes = 8;
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));

@@ -4,19 +4,19 @@
 
 namespace relume {
 
-/// Of the error that is asked for, what bounces may leave.
+/// Bounces may leave this share of the error that is asked for.
 constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
 
-/// How much of the mean light is still to come, if what each bounce adds goes on as a geometric series. Of
-/// the mean, for the root mean square says little while a few bright texels make most of it.
+/// Tells how much of the mean light is still to come, if what each bounce adds goes on as a geometric series.
+/// It goes by the mean, for the root mean square says little while a few bright texels make most of it.
 struct Settling {
     double mean = -1; // after the last bounce; negative: none yet
-    double gain = 0;  // of the last bounce
-    double ratio = 0; // of the last two gains
+    double gain = 0;  // what the last bounce added
+    double ratio = 0; // the last gain over the one before
     double left = 1;  // relative to the mean; 1 until it can be told
 
-    /// The mean light before the first bounce, then after each.
+    /// Takes the mean light before the first bounce, then after each.
     void add(double now) {
         const double added = mean >= 0 ? now - mean : 0.0;
         if (mean >= 0 && added <= 0.0) {
@@ -28,9 +28,10 @@ struct Settling {
         gain = added;
         mean = now;
     }
-    /// A bounce more, of the same light.
+    /// Counts one more bounce of the same light.
     void bounce() { left *= ratio; }
-    /// The same of new samples from the mean light of so many rounds; the mean of all is the light then.
+    /// Counts one more bounce by new samples, from the mean light of so many sample passes; the mean of all
+    /// is the light then.
     void round(double rounds) { left *= (rounds + ratio) / (rounds + 1.0); }
 };
 

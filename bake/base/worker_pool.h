@@ -11,10 +11,10 @@
 namespace relume {
 
 /// Threads that wait for loops to share. The caller works too, so a pool of n has n - 1 threads of its own.
-/// Which thread does what is open: work must write to places that its index alone decides.
+/// It is open which thread does what: work must write to places that its index alone decides.
 class WorkerPool {
 public:
-    /// threads 0: one per core, or what the environment variable RELUME_THREADS says.
+    /// Starts the threads; 0 means one per core, or what the environment variable RELUME_THREADS says.
     explicit WorkerPool(uint32_t threads);
     ~WorkerPool();
     WorkerPool(const WorkerPool&) = delete;
@@ -33,8 +33,8 @@ private:
     std::condition_variable start_, done_;
     const std::function<void(uint32_t)>* work_ = nullptr;
     uint32_t count_ = 0;
-    uint32_t busy_ = 0;  // threads that have not finished this round
-    uint64_t round_ = 0; // of work, to wake each thread once
+    uint32_t busy_ = 0;  // threads that have not finished this loop
+    uint64_t round_ = 0; // counts the loops, to wake each thread once for each
     bool stop_ = false;
     std::atomic<uint32_t> next_{0};
     std::vector<std::thread> threads_;

@@ -8,11 +8,11 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// So few emitters are all sampled by every patch; of more, each patch picks some in every round.
+// Every patch samples all of so few mesh lights; of more, each patch picks some in every sample pass.
 constexpr uint32_t kAllEmitters = 4;
 constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
-constexpr uint32_t kLeastLinks = 16;   // of a round
-// Chunks of one batch: their targets are 16 KiB each for 16 points.
+constexpr uint32_t kLeastLinks = 16;   // of a sample pass
+// A batch has so many chunks: their targets are 16 KiB each for 16 points.
 constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
 
 uint32_t mostChunks(uint32_t chunkCount, bool software) {
@@ -53,7 +53,8 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     bits_ = vk::Buffer(device_, {.size = places * words * sizeof(uint32_t), .name = "seen points"});
 }
 
-// Of the largest round where few links are made: what a small scene takes does not matter.
+// Counts the bytes of the largest sample pass where few directions are taken: what a small scene takes does
+// not matter.
 uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software) {
     constexpr uint64_t kPickBytes = 128; // and bits
     return uint64_t{mostChunks(chunkCount, software)} * kChunk *

@@ -16,7 +16,7 @@ using shader::Patch;
 constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
 constexpr uint32_t kLightBits = 32;      // lib/penumbra.glsl
 
-// lib/penumbra_rounds.glsl
+// Does what lib/penumbra_rounds.glsl does.
 bool leftOut(const HostLamps& work, size_t index) {
     if (!work.penumbra || work.round % shader::kPenumbraRounds == 0) return false;
     const glm::uvec2& lights = work.penumbra[work.parts[index]];
@@ -39,15 +39,15 @@ struct TargetLanes {
     PatchLanes::Lane x, y, z, w;
 };
 
-// Which of the samples, and of what.
+// Says which of the samples is made, and of what.
 struct SampleDesc {
     Lamp lamp;
-    uint32_t number; // in all rounds
+    uint32_t number; // among those of all sample passes
     float reach;
 };
 
-// One sample of all patches, in a form that compilers turn into vector code; the lamp's type is known to
-// them. Always inlined, to be compiled once for each instruction set.
+// Makes one sample of all patches, in a form that compilers turn into vector code; the light's type is known
+// to them. It is always inlined, to be compiled once for each instruction set.
 template<uint32_t kType>
 [[gnu::always_inline]] inline void sampleLanes(const PatchLanes& lanes, const SampleDesc& desc,
                                                TargetLanes& out) {
@@ -105,7 +105,7 @@ SampleLamp chooseSampleLamp() {
 }
 #endif
 
-// Returns whether any of them takes part.
+// Loads a chunk's patches and returns whether any of them takes part.
 bool load(const HostLamps& work, size_t first, PatchLanes& lanes) {
     bool any = false;
     for (uint32_t i = 0; i < kChunk; ++i) {
@@ -141,11 +141,11 @@ void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
     }
 }
 
-// Of one lamp, and what its samples have reached.
+// The light of one analytic light, and what its samples have reached.
 struct Gathered {
-    std::array<float, kReplicates> light{}; // per unit of the lamp's colour, of each replicate
+    std::array<float, kReplicates> light{}; // per unit of the light's colour, of each replicate
     bool reached = false, hidden = false;
-    bool shareless = false; // no share of the whole lamp can be known
+    bool shareless = false; // no share of the whole light can be known
 };
 
 Gathered gatherLamp(const Lamp& lamp, const Patch& p, const glm::vec4* targets, const uint32_t* bits) {

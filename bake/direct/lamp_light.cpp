@@ -12,9 +12,9 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// Rays of one group, per patch: two words of bits. A lamp with more is a group by itself.
+// A group has so many rays per patch: two words of bits. A light with more is a group by itself.
 constexpr uint32_t kGroupRays = 64;
-// Chunks of one batch of such groups, whose targets are 64 KiB each; of smaller groups more.
+// A batch of such groups has so many chunks, whose targets are 64 KiB each; of smaller groups it has more.
 constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
 constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
 
@@ -83,7 +83,7 @@ void LampLight::group(const std::vector<uint32_t>& sets) {
         rays_ += lamp.samples;
         most = std::max(most, group.targets);
     }
-    // A light that is dragged changes what is in it many times a second.
+    // A light that is dragged changes the buffer's content many times a second.
     const std::span<const shader::Lamp> lamps(set_.lamps);
     if (lamps_ && lamps_.size() >= lamps.size_bytes())
         vk::upload(device_, lamps_, lamps.data(), lamps.size_bytes());

@@ -12,15 +12,15 @@
 
 namespace relume {
 
-/// A lamp of those that are sampled.
+/// One of the analytic lights that are sampled.
 struct LampChoice {
     uint32_t lamp = 0;     // of Scene::lights; as many as these: the sky
     glm::vec3 color{1.0f}; // in place of its own
-    uint32_t set = 0;      // lamps of one set, one behind the other, share groups
+    uint32_t set = 0;      // lights of one set, one behind the other, share groups
 };
 
-/// Direct light of lamps (bake/lights/lamps.h), by rays to points on them. Lamps take turns in groups that
-/// share a batch of rays: for each group record samples, trace segments(), then gather.
+/// Direct light of analytic lights (bake/lights/lamps.h), by rays to points on them. They take turns in
+/// groups that share a batch of rays: for each group record samples, trace segments(), then gather.
 class LampLight {
 public:
     struct Desc {
@@ -29,17 +29,18 @@ public:
     };
     LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc);
 
-    /// With Desc::chosen: lamps as they are now; sky picture and patches are the same as before. No batch may
-    /// be under way.
+    /// Takes the analytic lights as they are now, with Desc::chosen; sky picture and patches are the same as
+    /// before. No batch may be under way.
     void update(const Scene& scene, std::span<const LampChoice> choices);
-    /// Of a LampChoice::set.
+    /// Returns the groups of a LampChoice::set.
     std::vector<uint32_t> groupsOf(uint32_t set) const;
-    /// Triangles stand elsewhere now. Whether rays to the sky and to suns end elsewhere, too.
+    /// Follows triangles that stand elsewhere now. Returns whether rays to the sky and to suns end elsewhere,
+    /// too.
     bool updateReach(const WorldMesh& mesh);
 
     bool empty() const { return groups_.empty(); }
     uint32_t groups() const { return static_cast<uint32_t>(groups_.size()); }
-    uint32_t rays() const { return rays_; } // per patch and round, of all groups
+    uint32_t rays() const { return rays_; } // per patch and sample pass, of all groups
     uint32_t rays(uint32_t group) const { return groups_[group].targets; }
     float reach() const { return set_.reach; } // how far away rays to the sky and to suns end [m]
     bool hasSky() const { return !set_.empty() && set_.lamps.back().type == shader::kLampSky; }
@@ -48,34 +49,35 @@ public:
         uint32_t group = 0;
         uint32_t round = 0;
         ChunkRange range; // count: at most batchChunks()
-        // Found by the first round, heeded by later ones; nullptr: all patches take part in every round.
+        // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
+        // every pass.
         const Penumbra* penumbra = nullptr;
     };
-    /// Barriers are the caller's, here and below.
+    /// Records the samples. The caller writes the barriers, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
-    /// Whether the CPU can do both, where it traces: of all lamps but the sky.
+    /// Tells whether the CPU can do both, where it traces: this holds for all analytic lights but the sky.
     bool onCpu(uint32_t group) const;
     void sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const;
-    /// As recordGather, at once. newSums: there is nothing in them yet.
+    /// Does what recordGather does, at once. newSums says that nothing is in the sums yet.
     void gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
                      const vk::Buffer& sums, const vk::Buffer& direct) const;
-    /// rays: as SegmentWork.
+    /// Returns the segments to the points; `rays` is as in SegmentWork.
     SegmentWork segments(const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after round +
-    /// 1 rounds.
+    /// 1 sample passes.
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 
-    /// Of its buffers, for a scene with lamps.
+    /// Returns the bytes of its buffers, for a scene with analytic lights.
     static uint64_t bytes(uint32_t chunkCount, bool software);
 
 private:
     struct Group {
-        uint32_t first = 0, count = 0; // lamps
+        uint32_t first = 0, count = 0; // lights
         uint32_t targets = 0;          // per patch
         uint32_t set = 0;
     };
-    void group(const std::vector<uint32_t>& sets); // of each lamp
+    void group(const std::vector<uint32_t>& sets); // of each light
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
     HostLamps host(const LightBuffers& light, const Work& work) const;
 

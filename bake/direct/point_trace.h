@@ -7,26 +7,26 @@
 
 namespace relume {
 
-/// What one batch of rays to points on lights runs on.
+/// The means by which one batch of rays to points on lights runs.
 struct PointTracer {
     vk::Commands& commands;
     vk::Timestamps& timestamps; // three marks
     Tracer& tracer;
 };
 
-/// [s]
+/// The times of one batch [s].
 struct PointTimes {
     double trace = 0, gather = 0;
 };
 
-/// Draws points, traces rays to them and gathers their light: recorded only, with a tracer that records.
-/// Barriers between the three and behind are its own; marks: three from `mark` on, between which tracing and
+/// Records to draw points, trace rays to them and gather their light, with a tracer that records. It writes
+/// the barriers between the three and behind them, and three marks from `mark` on, between which tracing and
 /// gathering lie.
 void recordPoints(VkCommandBuffer cmd, const PointTracer& on, const SegmentWork& work,
                   const std::function<void(VkCommandBuffer)>& samples,
                   const std::function<void(VkCommandBuffer)>& gather, uint32_t mark = 0);
-/// Draws points, traces rays to them and gathers their light, waited for. Barriers around what samples and
-/// gather record are its own.
+/// Draws points, traces rays to them, gathers their light and waits. It writes the barriers around what
+/// samples and gather record.
 PointTimes tracePoints(const PointTracer& on, const SegmentWork& work,
                        const std::function<void(VkCommandBuffer)>& samples,
                        const std::function<void(VkCommandBuffer)>& gather);

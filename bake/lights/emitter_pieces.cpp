@@ -13,7 +13,7 @@ namespace relume {
 namespace shader {
 namespace {
 
-// The tracers' alpha test for one image.
+// Applies the tracers' alpha test to one image.
 struct MaskTexels {
     const Image* image;
     float alphaTexel(uint texel) { return float(image->rgba[size_t{texel} * 4 + 3]) / 255.0f; }
@@ -58,7 +58,7 @@ public:
                  static_cast<uint32_t>(base.wrapT)};
     }
 
-    /// [cd/m^2]; black in a hole.
+    /// Returns the emission at (s, t) [cd/m^2]; black in a hole.
     glm::dvec3 at(const EmitterSurface& surface, glm::dvec2 st) {
         const auto on = [&](const auto* value) { return value[0] + st.x * value[1] + st.y * value[2]; };
         if (isMasked_) {
@@ -68,7 +68,7 @@ public:
         }
         return image_ ? factor_ * sample(on(surface.emissionUv)) : factor_;
     }
-    /// Texels that an edge of the surface's (s, t) spans, of the finer texture.
+    /// Returns how many texels an edge in the surface's (s, t) spans, of the finer texture.
     double texels(const EmitterSurface& surface, glm::dvec2 edge) const {
         const auto span = [&](const glm::dvec2* uv, double width, double height) {
             return glm::length((edge.x * uv[1] + edge.y * uv[2]) * glm::dvec2(width, height));
@@ -76,7 +76,7 @@ public:
         double most = 0;
         if (image_) most = span(surface.emissionUv, image_->width, image_->height);
         if (maskTexels_.image) most = std::max(most, span(surface.baseUv, mask_.width, mask_.height));
-        // Alpha of the corners alone has no texels: as if it had some.
+        // The alpha of the corners alone has no texels: it counts as if it had some.
         constexpr double kAlphaTexels = 64;
         if (isMasked_) most = std::max(most, kAlphaTexels * glm::length(edge));
         return most;
@@ -193,7 +193,7 @@ bool Splitter::isWhole(const Sampled& s) const {
     return s.spread <= kSpread * brightest_ || std::max(s.texels0, s.texels1) < kLeastTexels;
 }
 
-// Across its longest edge, in texels.
+// Cuts a triangle across its longest edge, in texels.
 std::array<EmitterPiece, 2> Splitter::triangleHalves(const EmitterPiece& p) const {
     const EmissionTexture& texture = textures_[texture_[p.surface]];
     std::array<glm::dvec2, 3> corner = {p.origin, p.origin + p.along0, p.origin + p.along1};
@@ -212,7 +212,8 @@ std::array<EmitterPiece, 2> Splitter::triangleHalves(const EmitterPiece& p) cons
     return parts;
 }
 
-// Across the edge that leaves less variance in the halves, as long as pieces keep a decent shape.
+// Tells whether to cut across the first edge: the one that leaves less variance in the halves, as long as
+// pieces keep a decent shape.
 bool Splitter::cutsFirstEdge(const Sampled& s) const {
     const double stretch = s.texels0 / std::max(s.texels1, 1e-9);
     if (s.texels1 < kLeastTexels || stretch > kMostStretch) return true;
@@ -222,7 +223,7 @@ bool Splitter::cutsFirstEdge(const Sampled& s) const {
         return s.square[q] + s.square[r] - sum * sum / (2 * s.quarter);
     };
     const double first = variance(0, 2) + variance(1, 3), second = variance(0, 1) + variance(2, 3);
-    // Nearly equal: a pattern finer than the cut. Then the longer edge.
+    // Where both are nearly equal, the pattern is finer than the cut: then the longer edge is cut.
     if (std::abs(first - second) <= 0.01 * std::max(first, second)) return stretch >= 1;
     return first < second;
 }
@@ -251,7 +252,7 @@ PieceList Splitter::split(uint32_t maxPieces) {
         items.push_back(sampled(piece));
         brightest_ = std::max(brightest_, items.back().brightest);
     }
-    // The largest first; among equals the one made first.
+    // The largest comes first; among equals the one made first.
     const auto isBehind = [&](uint32_t a, uint32_t b) {
         const double pa = items[a].priority(), pb = items[b].priority();
         return pa != pb ? pa < pb : a > b;

@@ -6,8 +6,8 @@
 
 namespace relume {
 
-/// A triangle or parallelogram of the mesh with all that varies linearly over it: at (s, t) a quantity is
-/// [0] + s [1] + t [2], s and t in [0, 1], of a triangle s + t <= 1.
+/// A triangle or parallelogram of the mesh with all that varies linearly over it: at (s, t) a quantity is [0]
+/// + s [1] + t [2], with s and t in [0, 1], and s + t <= 1 for a triangle.
 struct EmitterSurface {
     glm::dvec3 position[3];
     glm::dvec2 emissionUv[3], baseUv[3];
@@ -35,12 +35,12 @@ struct PieceList {
 /// Splits surfaces whose emission a texture or a mask varies into pieces of about one radiance: until it
 /// spreads by less than 3 % of the brightest radiance of all, or the piece is smaller than two texels; the
 /// coarsest first. Emission is sampled from the full-size texture, bilinear unless the texture says nearest;
-/// holes of masks as the tracers' alpha test has them. The mean is right for each piece. unit: as if all
-/// emission factors were 1.
+/// masks have the holes of the tracers' alpha test. The mean is right for each piece. With `unit` all
+/// emission factors count as 1.
 PieceList splitEmission(const Scene& scene, const std::vector<EmitterSurface>& surfaces, uint32_t maxPieces,
                         bool unit = false);
 
-/// Whether the emission of this material may differ from place to place.
+/// Tells whether the emission of this material may differ from place to place.
 bool variesOverSurface(const Material& material);
 
 } // namespace relume

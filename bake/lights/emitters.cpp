@@ -64,7 +64,7 @@ private:
     EmitterSet set_;
 };
 
-// nullptr: it is not among them.
+// Returns the choice that the triangle belongs to, or nullptr where there is none.
 const EmitterChoice* EmitterBuilder::choiceOf(uint32_t triangle) const {
     const LightKey key{LightKey::Kind::Emitter, mesh_.instance[triangle], mesh_.material[triangle]};
     const auto found = std::lower_bound(
@@ -86,7 +86,8 @@ glm::dvec3 EmitterBuilder::front(uint32_t triangle) const {
     return glm::cross(at(i + 1) - at(i), at(i + 2) - at(i));
 }
 
-// [m]; never more than the triangle is wide, as a patch that stands for a whole small chart has it.
+// Returns the size of a triangle's texel [m]; it is never more than the triangle is wide, as for a patch that
+// stands for a whole small chart.
 double EmitterBuilder::texelSize(uint32_t triangle) const {
     const double area = 0.5 * glm::length(front(triangle));
     double texel = meanTexel_;
@@ -106,9 +107,9 @@ float EmitterBuilder::offsetOf(const EmitterPolygon& p) const {
     return static_cast<float>(kEmitterOffset * texelSize(p.triangle) + kCornerError * reach);
 }
 
-// Whether what varies over the two triangles does so as over one parallelogram.
+// Tells whether what varies over the two triangles does so as over one parallelogram.
 bool EmitterBuilder::variesLinearly(const Pair& pair) const {
-    // The edge's corners as the other triangle has them.
+    // Returns an edge's corner as the other triangle has it.
     const auto twin = [&](uint32_t corner) {
         for (uint32_t k = 0; k < 3; ++k)
             if (mesh_.positions[3 * pair.triangle1 + k] == mesh_.positions[corner])
@@ -129,7 +130,8 @@ bool EmitterBuilder::variesLinearly(const Pair& pair) const {
     return material.alphaMode != AlphaMode::Mask || (isLinear(mesh_.baseUv) && isLinear(mesh_.colors));
 }
 
-// Of triangles whose edges k0 and k1 (corner k to the next) are the same in opposite directions.
+// Makes the pair of two triangles whose edges k0 and k1 (corner k to the next) are the same in opposite
+// directions; returns false where they cannot become one.
 bool EmitterBuilder::makePair(uint32_t t0, uint32_t k0, uint32_t t1, uint32_t k1, Pair& pair) const {
     if (mesh_.material[t0] != mesh_.material[t1]) return false;
     pair = {t0, t1, 3 * t0 + (k0 + 2) % 3, 3 * t0 + k0, 3 * t1 + (k1 + 2) % 3, 3 * t0 + (k0 + 1) % 3};
@@ -141,7 +143,7 @@ bool EmitterBuilder::makePair(uint32_t t0, uint32_t k0, uint32_t t1, uint32_t k1
     const double reach = std::max({glm::length(a), glm::length(b), glm::length(c), glm::length(d)});
     const double error = kFlat * size + kCornerError * reach;
     if (glm::dot(n0, n1) < 0.999 || std::abs(glm::dot(n0, c - b)) > error) return false;
-    // Convex where the two meet, by enough that rounding does not matter.
+    // The quadrilateral is convex where the two meet, by enough that rounding does not matter.
     const double least = kFlat * size * size;
     if (glm::dot(n0, glm::cross(b - a, c - b)) < least || glm::dot(n0, glm::cross(d - c, a - d)) < least)
         return false;
@@ -150,7 +152,8 @@ bool EmitterBuilder::makePair(uint32_t t0, uint32_t k0, uint32_t t1, uint32_t k1
     return !variesOverSurface(material) || (pair.isParallelogram && variesLinearly(pair));
 }
 
-// Parallelograms first, then those that lose the longer edge: of a grid's triangles that gives its squares.
+// Returns the pairs: parallelograms first, then those that lose the longer edge. A grid's triangles become
+// its squares.
 std::vector<Pair> EmitterBuilder::findPairs() const {
     using Coordinates = std::array<float, 3>;
     std::map<std::pair<Coordinates, Coordinates>, std::pair<uint32_t, uint32_t>>
@@ -193,7 +196,7 @@ void EmitterBuilder::add(EmitterPolygon polygon) {
     set_.power += emitterPower(polygon);
 }
 
-// corners: of (0, 0), (1, 0) and (0, 1).
+// Adds a surface with these corners at (0, 0), (1, 0) and (0, 1).
 void EmitterBuilder::addSurface(const std::array<uint32_t, 3>& corners, uint32_t triangle, bool isTriangle) {
     EmitterSurface s;
     const auto fill = [&](auto* out, const auto& values) {

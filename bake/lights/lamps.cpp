@@ -7,7 +7,7 @@
 namespace relume {
 namespace {
 
-// KHR_lights_punctual's own: the softest edge of a spot is no sharper [difference of cosines].
+// The softest edge of a spot is no sharper than KHR_lights_punctual has it [difference of cosines].
 constexpr float kLeastEdge = 0.001f;
 
 bool hasExtent(const shader::Lamp& lamp) {
@@ -38,7 +38,7 @@ shader::Lamp makeLamp(const Light& light) {
         lamp.type = shader::kLampSun;
         lamp.radius = std::sin(0.5f * light.angle);
         break;
-    // The right way round for edgeU x edgeV to lie along -Z.
+    // The edges are the right way round for edgeU x edgeV to lie along -Z.
     case LightType::Rectangle:
         lamp.type = shader::kLampRectangle;
         lamp.edgeU = light.size.y * glm::normalize(y);
@@ -53,8 +53,8 @@ shader::Lamp makeLamp(const Light& light) {
     return lamp;
 }
 
-// What is drawn by brightness: of each pixel times its solid angle the running share of its row, of the rows
-// theirs. Whether the picture shines at all.
+// Adds the tables to draw pixels by brightness: for each pixel the running share of its row, times solid
+// angles for the rows. Returns whether the picture shines at all.
 bool addPicture(LampSet& set, const Sky& sky) {
     set.skyPixels.reserve(sky.pixels.size());
     std::vector<double> rows;
@@ -107,8 +107,8 @@ std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const Lamp
     }
     for (shader::Lamp& lamp : lamps) {
         lamp.samples = hasExtent(lamp) ? desc.samples : 1;
-        // Kinds have numbers of their own. Lamps of a kind share them: a lamp's light must not depend on what
-        // other lamps there are.
+        // Kinds have numbers of their own. Lights of a kind share them: one's light must not depend on what
+        // other lights there are.
         lamp.seed = lamp.type + 1;
     }
     return lamps;

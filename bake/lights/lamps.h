@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// All that shines without geometry, as shaders/lib/lamps.glsl and sky.glsl sample it. Lights of no intensity
-/// are left out.
+/// All analytic lights, as shaders/lib/lamps.glsl and sky.glsl sample them. Lights of no intensity are left
+/// out.
 struct LampSet {
     std::vector<shader::Lamp> lamps; // the sky, where it shines, is the last one
     std::vector<glm::vec4>
@@ -22,14 +22,14 @@ struct LampSet {
 };
 
 struct LampDesc {
-    uint32_t samples = 16; // rays to each lamp that has an extent, per patch and round; a multiple of 2 *
-                           // shader::kReplicates
-    bool unit = false;     // every lamp shines with colour 1, those of no intensity too
+    uint32_t samples = 16; // rays to each light that has an extent, per patch and sample pass; a multiple of
+                           // 2 * shader::kReplicates
+    bool unit = false;     // every light shines with colour 1, those of no intensity too
 };
 LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc);
-/// LampSet::reach of these triangles.
+/// Returns LampSet::reach for these triangles.
 float reachOf(const WorldMesh& mesh);
-/// The lamps of such a set alone, whose sky is as it was made.
+/// Returns only the analytic lights of such a set, whose sky is as it was made.
 std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const LampDesc& desc);
 
 } // namespace relume

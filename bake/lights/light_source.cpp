@@ -8,7 +8,7 @@ namespace {
 
 using Kind = LightKey::Kind;
 
-// Of an instance's mesh, each once, in ascending order.
+// Returns the emitting materials of an instance's mesh, each once, in ascending order.
 std::set<uint32_t> emittingMaterials(const Scene& scene, const Instance& instance) {
     std::set<uint32_t> found;
     if (instance.mesh < 0) return found;
@@ -24,7 +24,7 @@ std::string orElse(const std::string& name, const char* kind, size_t index) {
     return name.empty() ? std::string(kind) + " " + std::to_string(index) : name;
 }
 
-// "Lamp", "Lamp 2", "Lamp 3".
+// Gives each light a name of its own: "Lamp", "Lamp 2", "Lamp 3".
 void tellApart(std::vector<LightSource>& sources) {
     std::set<std::string> taken;
     for (LightSource& source : sources) {

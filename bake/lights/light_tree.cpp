@@ -38,14 +38,14 @@ Cone unite(const Cone& a, const Cone& b) {
     if (between + slim.angle <= wide.angle) return wide;
     const double angle = 0.5 * (wide.angle + between + slim.angle);
     if (angle >= kPi || glm::length(turn) == 0) return {wide.axis, kPi};
-    // Turned about `turn` from the wide cone's axis until both are covered [Rodrigues].
+    // The axis is turned about `turn` from the wide cone's axis until both are covered [Rodrigues].
     const glm::dvec3 k = glm::normalize(turn);
     const double by = angle - wide.angle;
     return {glm::normalize(wide.axis * std::cos(by) + glm::cross(k, wide.axis) * std::sin(by)), angle};
 }
 
-/// Solid angle that a cone of Lambertian emitters shines into, weighted by cosine: M_omega of the paper for
-/// emission within 90 degrees of each normal.
+/// Returns the solid angle that a cone of Lambertian emitters shines into, weighted by cosine: M_omega of the
+/// paper for emission within 90 degrees of each normal.
 double coneMeasure(const Cone& cone) {
     if (cone.angle < 0) return 0;
     const double o = cone.angle, w = std::min(o + kPi / 2, kPi);
@@ -84,7 +84,7 @@ private:
     uint32_t divideByCost(const Range& range);
     void finish(EmitterNode& node, const Bounds& bounds) const;
     glm::dvec3 centre(uint32_t i) const { return 0.5 * (items_[i].lo + items_[i].hi); }
-    /// The box of the centres of a range.
+    /// Returns the box of the centres of a range.
     Bounds centresOf(const Range& range) const;
 
     std::vector<Bounds> items_;
@@ -160,7 +160,7 @@ uint32_t TreeBuilder::divideByCost(const Range& range) {
     return static_cast<uint32_t>(middle - order_.begin());
 }
 
-// Where the second child's polygons begin.
+// Divides a range and returns where the second child's polygons begin.
 uint32_t TreeBuilder::divide(const Range& range) {
     if (range.depth < kCostDepth) {
         const uint32_t middle = divideByCost(range);
@@ -179,7 +179,7 @@ void TreeBuilder::finish(EmitterNode& node, const Bounds& bounds) const {
     node.lo = glm::vec3(bounds.lo), node.hi = glm::vec3(bounds.hi); // the corners' own floats: exact
     node.power = power_ > 0 ? static_cast<float>(bounds.power / power_) : 0.0f;
     node.axis = glm::vec3(bounds.cone.axis);
-    // Rounded so that the cone never gets narrower.
+    // The cosine is rounded so that the cone never gets narrower.
     node.cosCone = bounds.cone.angle > 0
                        ? std::min(static_cast<float>(std::cos(bounds.cone.angle)) - 1e-6f, 1.0f - 1e-6f)
                        : 1.0f;

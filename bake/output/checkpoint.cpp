@@ -17,17 +17,17 @@
 namespace relume {
 namespace {
 
-// The file: magic, then sections, each behind its number of bytes as 64 bits: version, settings, scene,
-// counters, pass times, the solver's own struct and its parts; last the hash of all before it.
+// The file has a magic, then sections, each behind its number of bytes as 64 bits: version, settings, scene,
+// counters, pass times, the solver's own struct and its parts; last comes the hash of all before it.
 constexpr std::string_view kMagic = "relume checkpoint 2\n", kMagicName = "relume checkpoint ";
 static_assert(std::endian::native == std::endian::little, "files are little endian");
 static_assert(std::is_trivially_copyable_v<SolverCounters>);
 
 constexpr uint64_t kPiece = 8u << 20; // [bytes] read or written at a time
 
-// [Fowler, Noll and Vo]'s hash over words of eight bytes, the last one padded by zeros: pieces whose size is
-// a multiple of eight may be added one by one. A step can be undone, so two texts that differ in one word
-// never have the same hash.
+// This is [Fowler, Noll and Vo]'s hash over words of eight bytes, the last one padded by zeros: pieces whose
+// size is a multiple of eight may be added one by one. A step can be undone, so two texts that differ in one
+// word never have the same hash.
 class Hash {
 public:
     void add(const void* data, size_t size) {
@@ -57,7 +57,7 @@ private:
     uint64_t value_ = 0xcbf29ce484222325ull;
 };
 
-// Hashes what it writes, in pieces of whole words.
+// Writes a file in pieces of whole words, and hashes them.
 class Writer {
 public:
     Writer(const std::string& path, OnFailure onFailure) : file_(path, onFailure) {
@@ -86,7 +86,7 @@ public:
             bytes(piece.data(), count);
         }
     }
-    /// Returns the file's size.
+    /// Writes the hash and returns the file's size.
     uint64_t finish() {
         flush();
         const uint64_t hash = hash_.value();
@@ -108,7 +108,7 @@ private:
     uint64_t size_ = 0;
 };
 
-// "samples=64 there, samples=32 here": the first pair that differs, or that only one of them has.
+// Returns "samples=64 there, samples=32 here": the first pair that differs, or that only one of them has.
 std::string difference(std::string_view mine, std::string_view theirs) {
     std::istringstream a{std::string(mine)}, b{std::string(theirs)};
     std::string x, y;
@@ -213,7 +213,7 @@ Checkpoint::Checkpoint(const std::string& path, const std::string& version) : pa
     readHeader(version);
 }
 
-// Magic and hash: beyond this point every size in the file is what was written.
+// Checks magic and hash: beyond this point every size in the file is what was written.
 void Checkpoint::check() {
     file_.seekg(0, std::ios::end);
     const auto size = static_cast<uint64_t>(file_.tellg());
@@ -282,7 +282,7 @@ void Checkpoint::read(uint64_t offset, void* data, uint64_t size) {
     if (!file_) fail("cannot be read to its end: bake from the start");
 }
 
-// What the file says of itself may hold anything: messages stay on one line.
+// Throws Error. What the file says of itself may hold anything: messages stay on one line.
 void Checkpoint::fail(std::string why) const {
     std::replace_if(
         why.begin(), why.end(), [](unsigned char c) { return c < 0x20; }, ' ');

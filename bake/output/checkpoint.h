@@ -11,14 +11,15 @@
 
 namespace relume {
 
-/// What a checkpoint belongs to: it is refused where any of these differ.
+/// The bake that a checkpoint belongs to: it is refused where any of these differ.
 struct CheckpointKey {
     std::string version;  // of the program
     std::string settings; // "name=value" pairs, separated by spaces
     uint64_t scene = 0;   // sceneFingerprint
 };
 
-/// A 64-bit hash of all that a bake reads from its scene: patches, triangles, materials, images and lights.
+/// Returns a 64-bit hash of all that a bake reads from its scene: patches, triangles, materials, images and
+/// lights.
 uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches);
 
 /// Writes where the solver stands, through a temporary file and piece by piece: memory for another copy of
@@ -26,13 +27,14 @@ uint64_t sceneFingerprint(const Scene& scene, const PatchSet& patches);
 uint64_t saveCheckpoint(const std::string& path, const CheckpointKey& key, Solver& solver,
                         OnFailure onFailure = OnFailure::Keep);
 
-/// What a checkpoint ends with, of all bytes before: for tests, which change what a damaged file could not.
+/// Returns the hash of all bytes before that a checkpoint ends with: for tests, which change what a damaged
+/// file could not.
 uint64_t checkpointHash(std::string_view bytes);
 
-/// A checkpoint that was found to be whole. Holds the file open, not its light.
+/// A checkpoint that was found to be whole. It holds the file open, not its light.
 class Checkpoint {
 public:
-    /// Reads all of the file once. Throws Error when it cannot be read, is damaged, or was written by another
+    /// Reads the whole file once. Throws Error when it cannot be read, is damaged, or was written by another
     /// version.
     Checkpoint(const std::string& path, const std::string& version);
 

@@ -29,8 +29,8 @@ struct Fill {
     glm::vec3 color;
 };
 
-// What the covered ones of a texel's 8 neighbours give: their mean, or RTRad's choice, the darkest. False
-// without any.
+// Takes the colour that the covered ones of a texel's 8 neighbours give: their mean, or RTRad's choice, the
+// darkest. Returns false without any.
 bool fromNeighbours(const Planes& image, uint32_t x, uint32_t y, bool darkest, glm::vec3& color) {
     glm::vec3 sum(0.0f), low(0.0f);
     int count = 0;

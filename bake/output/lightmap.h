@@ -19,8 +19,8 @@ struct LightmapDesc {
 };
 
 /// Scatters the patches' light [one vec4 each] to their texels and fills seams (SewSeams): texels beside a
-/// chart, and those inside something, take the mean of their filled neighbours, ring by ring. Channels R, G,
-/// B and coverage: 1 a patch, 0.5 filled, 0 empty.
+/// chart, and those inside something, take the mean of their filled neighbours, ring by ring. The channels
+/// are R, G, B and coverage: 1 a patch, 0.5 filled, 0 empty.
 FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& light,
                         const LightmapDesc& desc);
 

@@ -28,7 +28,7 @@ uint32_t patchOfTexel(const PatchSet& set, glm::ivec2 texel) {
     return set.scene.texelToPatch[static_cast<size_t>(texel.y * size + texel.x)];
 }
 
-// Length of the diagonal of the scene's bounds [m].
+// Returns the length of the diagonal of the scene's bounds [m].
 float sceneSize(const PatchSet& set) {
     glm::vec3 lo = set.bounds[0].lo, hi = set.bounds[0].hi;
     for (const shader::ChunkBounds& b : set.bounds) {
@@ -38,12 +38,12 @@ float sceneSize(const PatchSet& set) {
     return glm::distance(lo, hi);
 }
 
-// In the device's own memory: kernels add to them atomically.
+// Makes counters in the device's own memory: kernels add to them atomically.
 vk::Buffer rayCounters(const vk::Device& device) {
     return vk::makeBuffer(device, std::vector<uint32_t>(2 * shader::kRayCounters, 0u), "ray counters");
 }
 
-// Marks where a texel beside a patch's belongs to another leaf.
+// Marks texels beside which a patch belongs to another leaf.
 void markBorders(const PatchSet& set, const std::vector<uint32_t>& leaf, PatchValues& values) {
     constexpr glm::ivec2 kBeside[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (uint32_t i = 0; i < set.count; ++i) {
@@ -55,7 +55,8 @@ void markBorders(const PatchSet& set, const std::vector<uint32_t>& leaf, PatchVa
     }
 }
 
-// Which sender of RTRad's list holds each patch: one of weight w covers a square of w texels from its own on.
+// Returns which sender of RTRad's list holds each patch: one of weight w covers a square of w texels from its
+// own on.
 std::vector<uint32_t> rtradLeaves(const PatchSet& set, const SenderList& list) {
     std::vector<uint32_t> leaf(set.scene.patches.size(), kNoPatch);
     for (uint32_t s = 0; s < list.count; ++s) {
@@ -177,7 +178,7 @@ uint32_t PatchInspector::patchAt(uint32_t x, uint32_t y) const {
     return best;
 }
 
-// What `from` gets of `to` if it sees it, as the gather has it.
+// Returns what `from` gets of `to` if it sees it, as the gather has it.
 float PatchInspector::formFactor(uint32_t from, uint32_t to) const {
     const shader::Patch &r = input_.patches.scene.patches[from], &s = input_.patches.scene.patches[to];
     const glm::vec3 d = s.position - r.position;
@@ -206,10 +207,10 @@ PatchValues PatchInspector::seenFrom(uint32_t patch) {
     return values;
 }
 
-// Per patch: 1 when nothing is between it and the one that is asked about.
+// Returns per patch 1 when nothing is between it and the one that is asked about.
 std::vector<uint32_t> PatchInspector::seeingBits(uint32_t patch) {
     const PatchSet& set = input_.patches;
-    // 65,536 rays on a GPU, 4,096 on the CPU: a few milliseconds.
+    // A batch has 65,536 rays on a GPU, 4,096 on the CPU: a few milliseconds.
     const uint32_t atOnce = std::min(input_.device.info().software() ? 64u : 1024u, set.chunkCount());
     const uint64_t count = uint64_t{atOnce} * kChunk;
     const auto hostBuffer = [&](uint64_t size, const char* name) {
@@ -243,8 +244,8 @@ std::vector<uint32_t> PatchInspector::seeingBits(uint32_t patch) {
     return seen;
 }
 
-// The preset's ray intervals are known to occlusion() alone: all of the patch's chunk are asked, block by
-// block, those of some super-blocks at a time.
+// Does the same in the preset, whose ray intervals are known to occlusion() alone: all of the patch's chunk
+// are asked, block by block, those of some super-blocks at a time.
 std::vector<uint32_t> PatchInspector::seeingBitsRtrad(uint32_t patch) {
     using shader::kSuper;
     constexpr uint32_t kAtOnce = 16; // super-blocks, 2 MiB of bits; 256 blocks of them are asked
@@ -338,7 +339,7 @@ std::vector<PatchInspector::Link> PatchInspector::links(uint32_t patch, uint32_t
                 ? shader::aroundPatch(p, shader::discDirection(points[shader::discPoint(k, discCount, seed)],
                                                                discCount, seed))
                 : shader::patchDirection(p, key, k);
-        // How far away what is no patch was hit nobody has kept: a short stroke says only where to.
+        // Nobody has kept how far away a hit was that is no patch: a short stroke says only where to.
         constexpr float kStroke = 0.05f; // of the scene
         result.push_back({id, p.position + direction * size * (id == shader::kLinkSky ? 1.0f : kStroke)});
     }

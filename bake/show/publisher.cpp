@@ -13,17 +13,19 @@ namespace {
 
 using shader::kRegion;
 
-// Chunks per submit: a million patches on a GPU, a quarter of that, some 10 ms, where the CPU does it.
+// A submit takes so many chunks: a million patches on a GPU, a quarter of that, some 10 ms, where the CPU
+// does it.
 constexpr uint32_t kChunksPerSubmit = 16384, kChunksPerSubmitSoftware = 4096;
-// Texels copied per submit: 32 MiB of them, below 20 ms through host memory on every device measured.
+// A submit copies so many texels: 32 MiB of them, below 20 ms through host memory on every device measured.
 constexpr uint64_t kTexelsPerSubmit = uint64_t{1} << 22;
 
-// One workgroup for each of push.count.
+// Dispatches one workgroup for each of push.count chunks.
 void dispatchGroups(const vk::ComputeProgram& program, VkCommandBuffer cmd, const shader::PublishPush& push) {
     if (push.count > 0) dispatchChunks(program, cmd, push, push.count);
 }
 
-// Light that bounces for ever between patches of albedo a is at most what the brightest one emits over 1 - a.
+// Returns the brightest lighting: light that bounces for ever between patches of albedo a is at most what the
+// brightest one emits over 1 - a.
 float brightestLighting(const PatchSet& set, float reflectivity) {
     constexpr float kMostAlbedo = 0.98f; // the RTRad preset has no bound of its own
     float emission = 0.0f, albedo = 0.0f;
@@ -35,7 +37,7 @@ float brightestLighting(const PatchSet& set, float reflectivity) {
     return emission / (1.0f - std::min(reflectivity * albedo, kMostAlbedo));
 }
 
-// Areas in portions of so many texels that a submit stays short.
+// Calls f with portions of areas, of so many texels that a submit stays short.
 template<typename F>
 void forPortions(const std::vector<TexelArea>& areas, const F& f) {
     for (size_t first = 0; first < areas.size();) {
@@ -138,7 +140,7 @@ void Publisher::update(const Update& update) {
     updated_ = true;
 }
 
-// Chunks beside no empty texel, most of them, are left out where it is about fills.
+// Records an update. Chunks beside no empty texel, most of them, are left out of the fills.
 void Publisher::recordUpdate(VkCommandBuffer cmd, shader::PublishPush push,
                              std::span<const uint32_t> chunks) {
     auto* list = chunks_.as<uint32_t>();
@@ -175,7 +177,7 @@ void Publisher::forget() {
         std::fill(slot.begin(), slot.end(), uint8_t{1});
 }
 
-// Runs of regions side by side; what lies right below a run of the same columns is added to it.
+// Returns runs of regions side by side; what lies right below a run of the same columns is added to it.
 std::vector<TexelArea> Publisher::changedAreas(uint32_t slot) const {
     const uint32_t row = regionsPerRow();
     std::vector<TexelArea> areas;
@@ -230,7 +232,7 @@ std::vector<TexelArea> Publisher::publish(const vk::SharedImage& image, uint32_t
     return areas;
 }
 
-// The device's own memory where the host sees it, else a copy: whole rows, which are contiguous.
+// Returns the device's own memory where the host sees it, else a copy of whole rows, which are contiguous.
 const std::byte* Publisher::hostTexels(const std::vector<TexelArea>& areas) {
     if (texels_.mapped() != nullptr) return texels_.as<std::byte>();
     if (!staging_) {

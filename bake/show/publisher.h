@@ -17,8 +17,8 @@ struct TexelArea {
     uint32_t x = 0, y = 0, width = 0, height = 0; // [texels]
 };
 
-/// A power of two, Update::unit for values up to this one: below half of what a half holds, with all bits of
-/// values 2^28 times smaller. 1 for 0.
+/// Returns a power of two, Update::unit for values up to this one: below half of what a half holds, with all
+/// bits of values 2^28 times smaller. It is 1 for 0.
 float unitFor(float largest);
 
 /// Turns what patches hold (lighting, or anything else with three channels) into texels for display, seams
@@ -34,16 +34,16 @@ public:
         uint32_t rings = 4;        // of texels filled around charts
         float reflectivity = 1.0f; // of the bake, for unit()
     };
-    /// patches: with those inside something marked (InsideSearch). In the RTRad preset one ring is filled
-    /// with the darkest neighbour. Throws Error.
+    /// Takes patches of which those inside something are marked (InsideSearch). In the RTRad preset one ring
+    /// is filled with the darkest neighbour. Throws Error.
     Publisher(const vk::Device& device, const PatchSet& patches, const Desc& desc);
 
     uint32_t size() const { return size_; } // [texels]
-    /// For lighting, however often it bounces between these patches [cd/m^2].
+    /// Returns the unit for lighting, however often it bounces between these patches [cd/m^2].
     float unit() const { return unit_; }
-    /// The same patches emit or reflect otherwise now.
+    /// Updates the unit for the same patches, which emit or reflect otherwise now.
     void updateUnit(const PatchSet& patches);
-    /// Every chunk, for Update::chunks.
+    /// Returns every chunk, for Update::chunks.
     std::span<const uint32_t> allChunks() const { return allChunks_; }
 
     struct Update {
@@ -54,17 +54,17 @@ public:
     };
     /// Brings the texels up to date. Nothing may write the values meanwhile.
     void update(const Update& update);
-    /// Mean of the values of all patches that are shown, as of the last update.
+    /// Returns the mean of the values of all patches that are shown, as of the last update.
     glm::vec3 mean() const { return mean_; }
 
-    /// Brings what was written for `slot` before up to date and returns what had to be copied, at least a
-    /// region of shader::kRegion texels squared for each one that changed; nothing where nothing did. The
-    /// first time all of it is copied. An image must not be read meanwhile.
+    /// Brings what was written for `slot` before up to date and returns what had to be copied: at least a
+    /// region of shader::kRegion texels squared for each one that changed, nothing where nothing did. The
+    /// first time all of it is copied. The image must not be read meanwhile.
     std::vector<TexelArea> publish(const vk::SharedImage& image, uint32_t slot);
-    /// The same into size * size * kTexelBytes bytes of memory.
+    /// Does the same into size * size * kTexelBytes bytes of memory.
     std::vector<TexelArea> publish(std::span<std::byte> texels, uint32_t slot);
 
-    /// All slots count as never written: they hold something else now.
+    /// Lets all slots count as never written: they hold something else now.
     void forget();
 
 private:

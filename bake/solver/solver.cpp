@@ -39,7 +39,7 @@ const char* methodName(Method method) {
     return "";
 }
 
-// What the caches hold is this process' own.
+// The counters of the caches stay, since what these hold is this process' own.
 void Solver::takeState(const SolverState& state, void* own, size_t size) {
     if (state.own.size() != size) throw Error("this state is not of such a solver: bake from the start");
     std::memcpy(own, state.own.data(), size);

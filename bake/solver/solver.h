@@ -14,7 +14,7 @@
 
 namespace relume {
 
-/// How the senders of light are chosen.
+/// The ways to choose the senders of light.
 enum class Method {
     Pure,        // every patch sends to every other one
     Static,      // one patch of every window stands for it
@@ -22,7 +22,7 @@ enum class Method {
     Mipmapped,   // one sender with the mean of every window
     Adaptive,    // leaves of a quad-tree over ligIn
     Directional, // what cosine-distributed directions hit
-    Hybrid,      // points on emitters for direct light, directions for the rest
+    Hybrid,      // points on lights for direct light, directions for the rest
 };
 
 /// Throws UsageError for an unknown name.
@@ -33,7 +33,7 @@ inline bool isPairMethod(Method method) {
     return method != Method::Directional && method != Method::Hybrid;
 }
 
-/// Of the pair methods.
+/// The settings of the pair methods.
 struct PairSettings {
     uint32_t window = 1;     // static, Monte-Carlo, mipmapped: edge of a window [texels], a power of two
     double threshold = 0.05; // adaptive: difference up to which nodes are merged, relative to the mean light
@@ -41,27 +41,27 @@ struct PairSettings {
     double thresholdRamp = 1.0; // adaptive: factor on the threshold from pass to pass
 };
 
-/// Where link methods take their directions from.
+/// The sources of link methods' directions.
 enum class DirectionSet {
     Sobol, // the Owen-scrambled Sobol sequence
     Lec    // the thesis' insertion into the largest empty circle (bake/links/directions.h)
 };
 
-/// Of directional and hybrid.
+/// The settings of directional and hybrid.
 struct LinkSettings {
     DirectionSet directions = DirectionSet::Sobol;
     Rotation rotation = Rotation::Patch;
-    uint32_t samples = 0; // directions per patch, rounded up to whole rounds; 0: as many as the error needs
+    uint32_t samples = 0; // directions per patch, in whole sample passes; 0: as many as the error needs
     bool smooth = true;   // hybrid: the indirect part is smoothed for display and output
-    // 2, 4: links are followed from one patch of every so many by so many texels of a chart, and their light
-    // is interpolated between these.
+    // With 2 or 4, links are followed from one patch of every so many by so many texels of a chart, and their
+    // light is interpolated between these.
     uint32_t indirectScale = 1;
     // Links read the mean light over the part of a chart that their direction stands for
     // (bake/links/footprint.h).
     bool footprint = false;
 };
 
-/// Memory that bits and links may take for later passes. Without a cache they trace the same rays again.
+/// The memory that bits and links may take for later bounces. Without a cache the same rays are traced again.
 struct CacheSettings {
     enum class Kind { Auto, None, Bits, Links };
     Kind kind = Kind::Auto; // Auto: bits or links, as the method has them
@@ -71,10 +71,10 @@ struct CacheSettings {
     bool keepsLinks() const { return kind == Kind::Auto || kind == Kind::Links; }
 };
 
-/// Of hybrid: one layer per light (bake/layers/layer_solver.h).
+/// The settings of hybrid with one layer per light (bake/layers/layer_solver.h).
 struct LayerSettings {
     bool on = false;
-    uint64_t bytes = 0;    // of layers, at most; 0: a third of the free device memory
+    uint64_t bytes = 0;    // for layers, at most; 0: a third of the free device memory
     bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
 };
 
@@ -85,17 +85,17 @@ struct SolverSettings {
     LinkSettings links;
     CacheSettings cache;
     TransportSettings transport;
-    uint32_t passes = 0; // pair methods: stop after this many; link methods: bounces of each round; 0: by
-                         // error alone
+    uint32_t passes = 0; // pair methods: stop after this many; link methods: bounces of each sample pass; 0:
+                         // by error alone
     double error =
         0.01; // stop when the remaining error (relRMSE) is below this; 0: by passes and samples alone
     double batchMs = 20.0; // aim of one submit
     bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
 };
 
-/// Where a bake stands, and what it has cost.
+/// The state of a bake, and what it has cost.
 struct SolverCounters {
-    uint32_t passes = 0;     // finished; link methods: bounces of all rounds
+    uint32_t passes = 0;     // finished; link methods: bounces of all sample passes
     uint32_t samples = 0;    // link methods: directions per patch (with a coarser grid: of that) so far
     double passFraction = 0; // of the current pass
     double error = 1.0;      // remaining error, relRMSE; 1 until it can be told
@@ -109,14 +109,14 @@ struct SolverCounters {
     bool converged = false;  // error below the aim (else the number of passes or samples ended it)
     uint64_t cacheBytes = 0; // memory that bits or links are kept in
     double cachedShare = 0;  // of the pairs or links of a pass
-    uint64_t raysSaved = 0;  // that a later pass found in the cache
+    uint64_t raysSaved = 0;  // rays that a later pass found in the cache
 };
 struct SolverProgress : SolverCounters {
     std::vector<double> passSeconds; // inside step(), of each finished pass
 };
 
-/// Where a solver stands between two steps, as plain data. With what stateParts() hold it is all that a
-/// solver needs to go on as if it had never stopped. Bits and links are not among it: they are traced again.
+/// A solver's state between two steps, as plain data. With the stateParts() it is all that a solver needs to
+/// go on as if it had never stopped. Bits and links are not part of it: they are traced again.
 struct SolverState {
     SolverCounters counters;
     std::vector<double> passSeconds;
@@ -131,14 +131,14 @@ struct StatePart {
     std::function<void(const void* from, uint64_t offset, uint64_t size)> write;
 };
 
-/// What can be shown between two steps.
+/// The light that can be shown between two steps.
 struct LiveLight {
     const vk::Buffer* light = nullptr; // vec4 per patch, on the device: lighting, w means nothing
     uint64_t version = 0;              // changes when the light does
-    // The light has all bounces, so that it is at most some percent dimmer than the result will be. Before,
-    // it is what there is: direct light as it arrives, then bounce by bounce. Stays true.
+    // True once the light has all bounces, so that it is at most some percent dimmer than the result will be;
+    // it stays true. Before, the light is what there is: direct light as it arrives, then bounce by bounce.
     bool complete = false;
-    std::vector<ChunkRange> changed; // since the call before, merged()
+    std::vector<ChunkRange> changed; // chunks changed since the call before, merged()
 };
 
 /// Progressive radiosity, resumable: each step() does one batch. Neither batch sizes nor timing change a byte
@@ -149,47 +149,47 @@ public:
 
     virtual ~Solver() = default;
     bool done() const { return done_; }
-    /// One batch, waited for. Call until done(). Throws Error on device loss.
+    /// Does one batch and waits for it. Call it until done(). Throws Error on device loss.
     virtual void step() = 0;
     const SolverProgress& progress() const { return progress_; }
-    /// progress().rays and those of the current pass; may ask the device.
+    /// Returns progress().rays plus those of the current pass; may ask the device.
     virtual uint64_t raysSoFar() { return progress_.rays; }
-    /// From the next step on.
+    /// Sets the aim of one submit, from the next step on.
     void setBatchMs(double ms) { batchMs_ = ms; }
-    /// Patches in chunks that are not 0 (one per chunk; empty: none) come first wherever the order is free:
-    /// within a bounce of link methods, which changes no byte, and in rows of super-blocks of pair methods
-    /// that have not begun, where sums then agree to 1e-5.
+    /// Lets patches in chunks that are not 0 (one entry per chunk; empty: none) come first wherever the order
+    /// is free: within a bounce of link methods, which changes no byte, and in rows of super-blocks of pair
+    /// methods that have not begun, where sums then agree to 1e-5.
     virtual void setPriority(std::vector<uint8_t> chunkSeen) = 0;
-    /// Whether the next step() begins a pass (link methods: a round), or nothing is left.
+    /// Tells whether the next step() begins a pass (link methods: a sample pass), or nothing is left.
     virtual bool passBoundary() const = 0;
-    /// Forgets the pass that has begun: what follows has the bytes of an undisturbed bake. counters keep what
-    /// it has cost. Right after a restore() within a pass that adds to sums, that pass is done to its end
-    /// instead.
+    /// Forgets the pass that has begun: what follows has the bytes of an undisturbed bake. The counters keep
+    /// what it has cost. Right after a restore() within a pass that adds to sums, that pass is done to its
+    /// end instead.
     virtual void abortPass() = 0;
-    /// Needs SolverSettings::live. Its buffer holds until the next step(), restore() or abortPass(). Asking
-    /// changes no byte of the result.
+    /// Returns the light so far; needs SolverSettings::live. Its buffer holds until the next step(),
+    /// restore() or abortPass(). Asking changes no byte of the result.
     virtual LiveLight liveLight() = 0;
-    /// Light of the last finished pass (link methods: round) for display and output, one vec4 per patch.
-    /// Looking at it in between changes no byte of the result.
+    /// Returns the light of the last finished pass (link methods: sample pass) for display and output, one
+    /// vec4 per patch. Looking at it in between changes no byte of the result.
     virtual const std::vector<glm::vec4>& light() = 0;
-    /// How far each patch's light may still be off, one number per patch in light()'s unit; empty when that
-    /// cannot be told yet.
+    /// Returns how far each patch's light may still be off, one number per patch in light()'s unit; empty
+    /// when that cannot be told yet.
     virtual std::vector<float> errors() = 0;
 
-    /// Not once it is done().
+    /// Returns where it stands; not once it is done().
     virtual SolverState state() = 0;
-    /// In the solver's own order; as long as no step() is made.
+    /// Returns the state's arrays in the solver's own order; they hold as long as no step() is made.
     virtual std::vector<StatePart> stateParts() = 0;
     /// Goes on from a state of a solver with the same input and settings; batches and caches may differ. The
-    /// parts are to be written before. Throws Error when the state is not this kind of solver's.
+    /// parts must be written before. Throws Error when the state is not this kind of solver's.
     virtual void restore(const SolverState& state) = 0;
 
 protected:
-    /// What may be missing of the mean light of what is called complete, as Settling tells it: ratios of the
-    /// first bounces are too small, so that it is up to twice as much, which one does not see come.
+    /// This share of the mean light may be missing from light that is called complete, as Settling tells it:
+    /// ratios of the first bounces are too small, so it may be twice as much, which cannot be foreseen.
     static constexpr double kMostDimmer = 0.01;
 
-    /// The state with a solver's own plain struct, and back.
+    /// Make the state with a solver's own plain struct, and take it back.
     template<typename Own>
     SolverState makeState(const Own& own) const {
         static_assert(std::is_trivially_copyable_v<Own>);
@@ -204,7 +204,7 @@ protected:
     }
     static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
     static StatePart part(ChunkOrder& order);
-    /// Of vec4 per patch.
+    /// Copies ranges of a buffer of one vec4 per patch.
     static void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
                            const std::vector<ChunkRange>& ranges);
 
@@ -216,7 +216,7 @@ private:
     void takeState(const SolverState& state, void* own, size_t size);
 };
 
-/// What a solver works on; all must outlive it.
+/// A solver's input; all of it must outlive the solver.
 struct SolverInput {
     const vk::Device& device;
     const Scene& scene;

@@ -17,7 +17,7 @@ class TextureArray {
 public:
     TextureArray(const vk::Device& device, const Scene& scene) : device_(device), scene_(scene) {}
 
-    // Index into bound(), -1 for none.
+    // Adds a texture and returns its index into bound(), -1 for none.
     int add(const TextureRef& ref, bool srgb) {
         if (ref.texture < 0) return -1;
         const auto [it, isNew] = indices_.try_emplace({ref.texture, srgb}, static_cast<int>(bound_.size()));
@@ -28,7 +28,7 @@ public:
         bound_.push_back({image(texture.image, srgb), samplers_.back().handle()});
         return it->second;
     }
-    // Never empty, so that the array can be bound.
+    // Returns the texture array, which is never empty, so that it can be bound.
     const std::vector<vk::RasterProgram::BoundTexture>& bound() {
         if (bound_.empty()) {
             const uint32_t white = 0xffffffffu;
@@ -88,7 +88,7 @@ const std::vector<VkFormat> kFormats = {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT
                                         VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
                                         VK_FORMAT_R32_UINT};
 
-// Ascending; glTF's default one needs none of what is kept.
+// Returns the mesh's materials, ascending; glTF's default one among them needs no texture.
 std::vector<uint32_t> materialsOf(const WorldMesh& mesh) {
     std::vector<uint32_t> used = mesh.material;
     std::sort(used.begin(), used.end());
@@ -110,7 +110,7 @@ std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector
     return images;
 }
 
-// Copies an image in TRANSFER_SRC_OPTIMAL to the host, one row of values per texel row.
+// Copies an image in TRANSFER_SRC_OPTIMAL to the host and returns one row of values per texel row.
 template<typename T>
 std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image,
                          const TexelWindow& window) {
@@ -159,7 +159,7 @@ struct CitPass::Impl {
                         bound);
     }
 
-    // Those that are not used stay as glTF's default one.
+    // Returns all materials as the shader has them; those that are not used stay as glTF's default one.
     std::vector<shader::CitMaterial> citMaterials(const Scene& scene) const {
         const auto citMaterial = [](const Material& m, const Textures& t) {
             return shader::CitMaterial{.baseColor =
@@ -182,7 +182,7 @@ struct CitPass::Impl {
     const vk::Device& device;
     TextureArray array;
     std::vector<uint32_t> materials;
-    std::vector<Textures> textures; // of these
+    std::vector<Textures> textures; // one for each of these
     std::optional<vk::RasterProgram> program;
 };
 
@@ -203,7 +203,8 @@ TextureGroup CitPass::draw(const Scene& scene, const WorldMesh& mesh, const CitD
     const TexelWindow window = desc.window.value_or(TexelWindow{0, 0, desc.size, desc.size});
     ASSERT(window.size() > 0);
     const vk::Buffer materials = vk::makeBuffer(device, impl_->citMaterials(scene), "materials");
-    // No pixel moves, so that all get what they would in the whole lightmap, to the bit.
+    // The window's pixels stay in their places, so that all get what they would in the whole lightmap, to the
+    // bit.
     const std::vector<vk::Image2D> images =
         makeTargets(device, kFormats, {window.column + window.columns, window.row + window.rows});
     std::vector<const vk::Image2D*> targets;

@@ -12,15 +12,15 @@ namespace relume {
 /// The CIT pass of meshes that share materials: program and textures stay from one drawing to the next.
 class CitPass {
 public:
-    /// Of the materials that the mesh has. The device must outlive it. Throws Error.
+    /// Makes what the mesh's materials need. The device must outlive it. Throws Error.
     CitPass(const vk::Device& device, const Scene& scene, const WorldMesh& mesh);
     ~CitPass();
 
-    /// Whether this mesh has just these materials.
+    /// Tells whether this mesh has just these materials.
     bool serves(const WorldMesh& mesh) const;
-    /// As rasterizeTextureGroup(). Factors of materials may be others than before, their textures not.
+    /// Draws as rasterizeTextureGroup() does. Factors of materials may have changed, their textures not.
     TextureGroup draw(const Scene& scene, const WorldMesh& mesh, const CitDesc& desc);
-    /// On the device, of textures.
+    /// Returns the device bytes of the textures.
     uint64_t bytes() const;
 
 private:
@@ -28,7 +28,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Draws the mesh into its lightmap; the triangle drawn last wins. A window's texels are those of the whole
+/// Draws the mesh into its lightmap; the triangle drawn last wins. A window has the texels of the whole
 /// lightmap. Throws Error.
 TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
                                    const CitDesc& desc);

@@ -7,10 +7,10 @@
 
 namespace relume {
 
-/// Albedo and emission of one patch by its material. Returns whether the albedo had to be made less.
+/// Sets one patch's albedo and emission from its material. Returns whether the albedo had to be clamped.
 bool applyMaterial(PatchSet& patches, size_t patch, const Material& material);
 
-/// Sets albedo and emission to these factors times the patterns.
+/// Sets all patches' albedo and emission to these factors times the patterns.
 void applyMaterials(PatchSet& patches, const std::vector<Material>& materials);
 
 } // namespace relume

@@ -12,10 +12,10 @@ constexpr uint32_t kTileTexels = 8; // along an edge
 constexpr uint32_t kMaxLightmapSize = 4096;
 
 /// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
-/// one entry per patch, padding included. Patches of
-/// objects that were hidden later are as padding. Besides one patch per covered texel there is one for each
-/// chart that covers no texel centre, and one for the back of every texel of a double-sided emitter (flag
-/// kPatchBackSide); neither is in scene.texelToPatch.
+/// one entry per patch, padding included. Patches of objects that were hidden later look like padding.
+/// Besides one patch per covered texel there is one for each chart that covers no texel centre, and one for
+/// the back of every texel of a double-sided mesh light (flag kPatchBackSide); neither is in
+/// scene.texelToPatch.
 struct PatchSet {
     TraceScene scene;
     std::vector<shader::PatchEdges> edges;
@@ -25,7 +25,7 @@ struct PatchSet {
     std::vector<glm::vec4> albedoPattern, emissionPattern; // the same for factors of 1
     std::vector<uint32_t> material; // into Scene::materials; materials.size(): the default one
     std::vector<uint32_t> instance; // into Scene::instances; of padding instances.size()
-    float maxAlbedo = 1.0f;         // that albedo is clamped to
+    float maxAlbedo = 1.0f;         // albedo is clamped to it
     uint32_t count = 0;             // patches without padding
     uint32_t clampedAlbedo = 0;     // patches whose albedo times reflectivity was above 0.98
 

@@ -23,7 +23,7 @@ constexpr float kFloatError =
 // texels wide may catch one centre in each direction; where more is missing another chart was drawn over it.
 constexpr float kMaxAreaCorrection = 4.0f;
 
-// What is told of building patches, after so many triangles each.
+// A watch hears of this phase, each time after so many triangles.
 constexpr const char* kPatchesPhase = "patches";
 constexpr unsigned kPatchesOften = 4096;
 
@@ -108,14 +108,15 @@ public:
     }
 
 private:
-    // How much each chart's texels must be scaled to have its area, and which charts no texel centre hits.
+    // Finds how much each chart's texels must be scaled to have its area, and which charts no texel centre
+    // hits.
     void surveyCharts() {
         const WorldMesh& m = set_.scene.mesh;
         std::vector<double> area(m.chartCount, 0.0), texels(m.chartCount, 0.0);
         std::vector<uint32_t> largest(m.chartCount, kNoPatch);
         for (uint32_t t = 0; t < m.triangleCount(); ++t) {
             const uint32_t chart = m.chart[t];
-            // Of a masked chart the holes are no patches, and how much is hole only its texels tell.
+            // The holes of a masked chart are no patches, and only its texels tell how much of it is hole.
             if (chart == kNoChart || (!rtrad_ && t >= m.opaqueCount)) continue;
             area[chart] += frames_[t].area;
             if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
@@ -141,7 +142,7 @@ private:
         chartPatches_.resize(m.chartCount);
     }
 
-    // Among the window's.
+    // Counts the window's tiles along a row.
     uint32_t tileColumns() const { return (group_.window.columns + kTileTexels - 1) / kTileTexels; }
     size_t tileOf(uint32_t x, uint32_t y) const {
         const TexelWindow& w = group_.window;
@@ -168,7 +169,7 @@ private:
         set_.instance.push_back(p.instance);
     }
 
-    // The tile that begins there.
+    // Adds the patches of the tile that begins there.
     void addTile(uint32_t firstX, uint32_t firstY) {
         const TexelWindow& w = group_.window;
         std::vector<NewPatch> backs;
@@ -210,8 +211,8 @@ private:
         return p;
     }
 
-    // A chart that covers no texel centre: one patch at the centroid of its largest triangle with the whole
-    // chart's area and the colour in its middle.
+    // Makes the one patch of a chart that covers no texel centre: at the centroid of its largest triangle,
+    // with the whole chart's area and the colour in the triangle's middle.
     NewPatch thinPatch(const ThinChart& thin) {
         const WorldMesh& m = set_.scene.mesh;
         const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
@@ -239,7 +240,8 @@ private:
         return result;
     }
 
-    // The texel in the middle of a triangle, repeated beyond the edges; white without a texture.
+    // Returns the texture's texel in the middle of a triangle, repeated beyond the edges; white without a
+    // texture.
     glm::vec4 textureAt(const TextureRef& ref, const std::vector<glm::vec2>& uvs, uint32_t triangle,
                         bool srgb) const {
         if (ref.texture < 0) return glm::vec4(1.0f);
@@ -304,8 +306,8 @@ private:
         }
     }
 
-    // The patch of the triangle's chart nearest to its centre, among those within a few texels, else any of
-    // the chart.
+    // Returns the patch of the triangle's chart nearest to the triangle's centre, among those within a few
+    // texels, else any of the chart.
     uint32_t representative(uint32_t triangle) const {
         constexpr int kReach = 4; // texels
         const uint32_t chart = set_.scene.mesh.chart[triangle];

@@ -11,19 +11,20 @@ namespace relume {
 struct PatchDesc {
     float reflectivity = 1.0f; // scales the albedo later; their product is clamped to 0.98
     bool rtrad = false;
-    // Of a scene: it may cover no texel, and scene.texelToPatch is of the group's window.
+    // The mesh is part of a scene: it may cover no texel, and scene.texelToPatch covers the group's window.
     bool part = false;
 };
 
-/// Takes over the mesh. The group's window begins with a tile. rtrad: shading normals for everything, no
-/// offsets, no back sides, no area correction, albedo as it is. Throws Error when no texel is covered.
+/// Builds the patches of the mesh, which it takes over. The group's window begins with a tile. rtrad means
+/// shading normals for everything, no offsets, no back sides, no area correction and albedo as it is. Throws
+/// Error when no texel is covered, unless desc.part.
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc);
 
-/// Of a chunk's patches that are there.
+/// Returns the bounds of a chunk's patches, without padding.
 shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk);
 
-/// Whether a patch lies inside something, by what so many of its directions meet: two of five backs at least,
-/// and more of them than fronts.
+/// Tells whether a patch lies inside something by what so many of its directions meet: at least two in five
+/// meet backs, and more meet backs than fronts.
 bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount);
 
 } // namespace relume

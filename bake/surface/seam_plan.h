@@ -7,25 +7,27 @@
 
 namespace relume {
 
-/// Which texels SewSeams (bake/output/lightmap.h) fills, and from which neighbours, sorted by whose light
-/// they depend on: what has to be filled again when the light of some chunks of patches changes.
+/// Tells which texels SewSeams (bake/output/lightmap.h) fills and from which neighbours, sorted by the chunks
+/// whose light they depend on: what has to be filled again when the light of some chunks changes.
 struct SeamPlan {
-    uint32_t rings = 0;      // that texels are filled in, one after the other
+    uint32_t rings = 0;      // filled one after the other
     uint32_t chunkCount = 0; // of patches
-    // texel << 8 | bits of its neighbours that are filled before it (shader::seamOffset); its light is their
-    // mean. Those of ring r (from 1 on) that depend on chunk c, through other fills or at once, are
-    // fills[starts[at(r, c)]] .. fills[starts[at(r, c) + 1]]; a texel that depends on several is in each.
+    // An entry is texel << 8 | bits of its neighbours that are filled before it (shader::seamOffset); its
+    // light is their mean. The entries of ring r (from 1 on) that depend on chunk c, through other fills or
+    // at once, are fills[starts[at(r, c)]] .. fills[starts[at(r, c) + 1]]; a texel that depends on several
+    // chunks is listed with each.
     std::vector<uint32_t> fills;
     std::vector<uint32_t> starts;
 
     size_t at(uint32_t ring, uint32_t chunk) const { return size_t{ring - 1} * chunkCount + chunk; }
 };
 
-/// Of all texels that makeLightmap fills.
+/// Plans the fills of all texels that makeLightmap fills.
 SeamPlan buildSeamPlan(const PatchSet& patches, uint32_t rings);
 
-/// The texel that shows each patch, padding included; shader::kNoTexel where none does: patches that send
-/// nothing because they lie inside something, back sides, those of charts that cover no texel, padding.
+/// Returns the texel that shows each patch, padding included; shader::kNoTexel where none does: for patches
+/// that send nothing because they lie inside something, back sides, patches of charts that cover no texel,
+/// and padding.
 std::vector<uint32_t> shownTexels(const PatchSet& patches);
 
 } // namespace relume

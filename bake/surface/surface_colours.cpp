@@ -10,7 +10,7 @@
 namespace relume {
 namespace {
 
-// Patches that go to the device together: 256 KiB, which take no longer to copy than to ask for.
+// So many patches go to the device together: their 256 KiB take no longer to copy than to ask for.
 constexpr size_t kBlock = 16384;
 
 void upload(const vk::Device& device, const vk::Buffer& buffer, const std::vector<glm::vec4>& values,
@@ -50,8 +50,8 @@ std::vector<SurfaceColours::Changed> SurfaceColours::changesTo(const std::vector
     return changed;
 }
 
-// Returns whether any of its patches shines otherwise now; clamped: how many more have their albedo made
-// less.
+// Updates a block of patches and returns whether any of them shines otherwise now; `clamped` gets how many
+// more have their albedo clamped.
 bool SurfaceColours::updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
                                  PatchSet& patches, size_t block, int64_t& clamped) const {
     bool dirty = false;
@@ -91,7 +91,7 @@ void SurfaceColours::update(const vk::Device& device, const std::vector<Material
     applied_ = std::move(now);
 }
 
-// As applyBaseColor does on the host.
+// Does on the device what applyBaseColor does on the host.
 void SurfaceColours::recolour(const vk::Device& device, const std::vector<Material>& materials,
                               const std::vector<Changed>& changed, const PatchSet& patches,
                               const LightBuffers& light) {

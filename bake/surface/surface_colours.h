@@ -11,16 +11,15 @@
 
 namespace relume {
 
-/// Follows colours and strengths of materials: patches of those that changed are others, and so is the
-/// device's copy. That of the albedo is made there, of 20 bytes per patch: a large material's would take
-/// longer to send.
+/// Follows changes of materials' colours and strengths, in the patches and in the device's copy of them. The
+/// device makes its albedo itself, from 20 bytes per patch: a large material's would take longer to send.
 class SurfaceColours {
 public:
-    /// materials: those that the patches were made with.
+    /// Takes the materials that the patches were made with.
     explicit SurfaceColours(std::vector<Material> materials);
     void update(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
                 LightBuffers& light);
-    /// The same of all patches, whose patterns may be others.
+    /// Updates all patches, also where their patterns have changed.
     void updateAll(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
                    LightBuffers& light);
 
@@ -32,7 +31,7 @@ private:
     bool updateBlock(const std::vector<Material>& materials, const std::vector<Changed>& changed,
                      PatchSet& patches, size_t block, int64_t& clamped) const;
 
-    /// What the device needs to follow base colours, from the first update on.
+    /// The device's data to follow base colours, made in the first update.
     struct OnDevice {
         vk::Buffer materials, pattern, baseColors; // as RecolourPush has them
         vk::ComputeProgram recolour;
@@ -43,7 +42,7 @@ private:
     void recolour(const vk::Device& device, const std::vector<Material>& materials,
                   const std::vector<Changed>& changed, const PatchSet& patches, const LightBuffers& light);
 
-    std::vector<Material> applied_;    // and glTF's default material
+    std::vector<Material> applied_;    // with glTF's default material as the last one
     std::unique_ptr<WorkerPool> pool_; // from the first update on
     std::unique_ptr<OnDevice> onDevice_;
 };

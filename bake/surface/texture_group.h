@@ -15,15 +15,15 @@ struct TexelWindow {
     bool has(uint32_t x, uint32_t y) const { // wraps below the first one
         return x - column < columns && y - row < rows;
     }
-    /// Of a texel of the lightmap that is in here: its place among them, row by row.
+    /// Returns the place of a texel of the lightmap, which is in here, among the window's texels, row by row.
     size_t index(uint32_t x, uint32_t y) const { return size_t{y - row} * columns + (x - column); }
 };
 
-/// What the CIT pass (calculate initial textures: UV-space rasterization) leaves in every texel, row 0 = v 0.
-/// Texels without a surface are zero.
+/// The result of the CIT pass (calculate initial textures: UV-space rasterization) in every texel, row 0 = v
+/// 0. Texels without a surface are zero.
 struct TextureGroup {
     uint32_t size = 0;               // of the lightmap [texels]
-    TexelWindow window;              // of its texels, those that are here
+    TexelWindow window;              // the texels that are here
     std::vector<glm::vec4> pos;      // [m], a = 1: a patch
     std::vector<glm::vec4> nrm;      // unit, shading
     std::vector<glm::vec4> mat;      // albedo for a base colour factor of 1
@@ -35,7 +35,7 @@ struct CitDesc {
     uint32_t size = 512;
     bool conservative = false;              // every texel that a triangle touches becomes a patch
     bool rtrad = false;                     // albedo = base colour, whatever the metallic factor
-    std::optional<TexelWindow> window = {}; // texels that are asked for; nothing: all
+    std::optional<TexelWindow> window = {}; // the texels that are asked for; nothing: all
 };
 
 } // namespace relume

@@ -9,8 +9,8 @@
 
 namespace relume {
 
-/// What every tracer is built from, on the CPU: triangles, patches in tile order and the tables that turn a
-/// hit into a patch. Immutable once built; outlives its tracers.
+/// The data on the CPU that every tracer is built from: triangles, patches in tile order and the tables that
+/// turn a hit into a patch. It outlives its tracers, which Tracer::update() tells when it changes.
 struct TraceScene {
     WorldMesh mesh;
     uint32_t size = 0;                  // lightmap edge [texels]
@@ -19,7 +19,7 @@ struct TraceScene {
     std::vector<uint32_t> patchChart;   // per patch; kNoChart for padding and back sides
     std::vector<uint32_t> texelToPatch; // [size * size], kNoPatch where empty
     std::vector<shader::HitTriangle> hitTriangles; // per triangle of mesh
-    // Of the masked triangles, in order: triangle t has entry t - mesh.opaqueCount.
+    // The masked triangles in order: triangle t has entry t - mesh.opaqueCount.
     std::vector<shader::AlphaTriangle> alphaTriangles;
     std::vector<shader::AlphaMaterial> alphaMaterials;
     std::vector<uint8_t> alphaTexels; // 8-bit alpha of all masked textures

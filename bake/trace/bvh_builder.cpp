@@ -37,7 +37,7 @@ struct Split {
     uint32_t bin = 0; // first one of the right side
 };
 
-// Maps centres to bins, alike when counting and when parting.
+// Maps centres to bins, alike for counting and for parting.
 struct Binning {
     glm::vec3 origin, scale;
     uint32_t bins;
@@ -65,17 +65,18 @@ void add(BvhContent& content, const BvhItem& item) {
     content.box.add(item.box), content.area += item.area;
 }
 
-// Whether a ray that enters this box is stopped there more likely: by the triangles' share of its surface.
+// Tells whether a ray that enters this box is stopped there more likely than in the other, by the triangles'
+// share of the box's surface.
 bool stopsMoreThan(const BvhContent& content, const BvhContent& other) {
     return content.area * other.box.halfArea() > other.area * content.box.halfArea();
 }
 
-// Half of an extent as the upper half of a float: always above, by less than a hundredth.
+// Returns half of a box's extent as the upper half of a float: always above it, by less than a hundredth.
 uint32_t halfFloatAbove(double extent) {
     return (std::bit_cast<uint32_t>(float(extent)) >> 16) + 1;
 }
 
-// Nodes of a subtree, their indices counted from its own root.
+// The nodes of a subtree; their indices are counted from its own root.
 struct Piece {
     std::vector<BvhNode> nodes;
     uint32_t depth = 0;
@@ -145,7 +146,7 @@ uint32_t BvhBuilder::part(uint32_t first, uint32_t last, uint32_t level) {
         box.add(item.box);
         centres.add(item.twiceCentre());
     }
-    // Halving from here on must still end within the traversal's stack.
+    // Halving the list from here on must still end within the traversal's stack.
     const bool deep = level + uint32_t(std::bit_width(count)) >= shader::kBvhDepth;
     const Binning binning(centres, count);
     const Split split = deep ? Split{} : bestSplit(items, binning);
@@ -173,7 +174,7 @@ BvhContent BvhBuilder::contentOf(uint32_t first, uint32_t last) const {
     return content;
 }
 
-// Puts a subtree built elsewhere behind what `piece` has.
+// Puts a subtree that was built elsewhere behind what `piece` has.
 int append(Piece& piece, const Piece& subtree, int root) {
     if (root < 0) return root;
     const int base = int(piece.nodes.size());
@@ -218,7 +219,7 @@ std::vector<BvhItem> itemsOf(const WorldMesh& mesh, std::span<const uint32_t> tr
     return items;
 }
 
-// Of what no ray may enter: its far side comes before its near one, wherever a ray begins.
+// The extent of what no ray may enter: its far side comes before its near one, wherever a ray begins.
 constexpr float kNothing = -1e30f; // [m]
 
 } // namespace
@@ -261,8 +262,8 @@ float bvhReach(const WorldMesh& mesh) {
 
 // The traversal multiplies centre and origin by 1 / direction before it subtracts, so both lose half an ulp
 // of the largest coordinate, and the triangle's test takes rays that pass by as closely: making the boxes
-// larger by more makes up for it. Not by much more: rays start close to surfaces, whose flat boxes are then
-// entered in vain.
+// larger by more makes up for it. It is not much more: rays start close to surfaces, whose flat boxes are
+// then entered in vain.
 float bvhMargin(float reach) {
     return 4 * std::numeric_limits<float>::epsilon() * reach;
 }

@@ -10,7 +10,7 @@
 
 namespace relume {
 
-/// Fewer than so many: the shaders count bytes in 32 bits.
+/// A tree has fewer triangles than this: the shaders count bytes in 32 bits.
 constexpr uint32_t kMostBvhTriangles = 1u << 26;
 
 /// The tree that shaders/lib/bvh_traverse.glsl walks.
@@ -20,7 +20,7 @@ struct Bvh {
     uint32_t depth = 0;                         // inner nodes on the longest way down, <= shader::kBvhDepth
 };
 
-/// [m]; nothing is in it before anything was added.
+/// A box [m]; nothing is in it before anything was added.
 struct BvhBox {
     glm::vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};
 
@@ -32,28 +32,29 @@ struct BvhBox {
         return d.x >= 0 ? d.x * d.y + d.y * d.z + d.z * d.x : 0.0f;
     }
 };
-/// The box of a node's child 0 or 1: a little larger than what the child holds, empty where that is nothing.
+/// Returns the box of a node's child 0 or 1: a little larger than what the child holds, empty where that is
+/// nothing.
 BvhBox childBox(const shader::BvhNode& node, int child);
-/// As that of a child that holds this, with so much [m] around it (bvhMargin).
+/// Sets the box of a child that holds `box`, with `margin` [m] around it (bvhMargin).
 void setChildBox(shader::BvhNode& node, int child, const BvhBox& box, float margin);
 
-/// What a child of a node holds.
+/// The content of a node's child.
 struct BvhContent {
     BvhBox box;
     float area = 0; // of the triangles [m^2], twice
 };
-/// A node of two children, the one that more likely stops a ray as its child 0.
+/// Makes a node of two children; child 0 is the one that more likely stops a ray.
 shader::BvhNode bvhNode(const BvhContent& content0, int child0, const BvhContent& content1, int child1,
                         float margin);
 
-/// The largest coordinate, either way [m].
+/// Returns the largest coordinate, either way [m].
 float bvhReach(const WorldMesh& mesh);
-/// What boxes are larger by for rays among coordinates up to `reach` [m].
+/// Returns by how much boxes are larger for rays among coordinates up to `reach` [m].
 float bvhMargin(float reach);
 
-/// Binary tree over all triangles by the surface area heuristic, at most 4 triangles to a leaf; masked ones
-/// carry bit 31 in their id. The same mesh gives the same tree on any machine. At least one triangle, fewer
-/// than kMostBvhTriangles.
+/// Builds a binary tree over all triangles by the surface area heuristic, with at most 4 triangles to a leaf;
+/// masked ones carry bit 31 in their id. The same mesh gives the same tree on any machine. It must have at
+/// least one triangle, and fewer than kMostBvhTriangles.
 Bvh buildBvh(const WorldMesh& mesh);
 
 struct BvhDesc {
@@ -61,11 +62,11 @@ struct BvhDesc {
     float margin = 0;                    // bvhMargin()
     uint32_t level = 0;                  // nodes above its root
 };
-/// The same over some triangles; `depth` counts the nodes above, too.
+/// Builds the same over some triangles; `depth` counts the nodes above, too.
 Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc);
 
-/// Expected cost of a ray through the root's box: nodes visited plus triangles tested, by the surface area
-/// heuristic.
+/// Returns the expected cost of a ray through the root's box: nodes visited plus triangles tested, by the
+/// surface area heuristic.
 double bvhCost(const Bvh& bvh);
 
 } // namespace relume

@@ -1,8 +1,8 @@
 #pragma once
 
-// Embree 3 and 4 behind one set of names: where the two differ, and nothing else.
-// All rays go as incoherent ones: with rays further apart than the triangles are large, Embree's way for
-// coherent packets costs 1.2 to 1.6 times as much, and it gains at most 5 % elsewhere.
+// This puts Embree 3 and 4 behind one set of names: where the two differ, and nothing else. All rays go as
+// incoherent ones: with rays further apart than the triangles are large, Embree's way for coherent packets
+// costs 1.2 to 1.6 times as much, and it gains at most 5 % elsewhere.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

@@ -24,7 +24,7 @@ struct Pyramid {
     std::array<float, 4> limit;
 };
 
-// False if the origin lies in the triangle's plane, as near as rounding lets tell.
+// Makes the pyramid; returns false if the origin lies in the triangle's plane, as near as rounding lets tell.
 bool makePyramid(const glm::vec3* corner, const glm::vec3& origin, Pyramid& pyramid) {
     constexpr float kPyramidRounding = 16 * std::numeric_limits<float>::epsilon();
     const glm::vec3 a = corner[0] - origin, b = corner[1] - origin, c = corner[2] - origin;

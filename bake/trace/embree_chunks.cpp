@@ -52,7 +52,8 @@ void boundEnds(PatchChunk& chunk) {
         chunk.quarterEnds[q] = bound(chunk.sends & kQuarter[q]);
 }
 
-// All of b at or below the plane of all of a, with room for the rounding of pairFaces itself.
+// Tells whether all of b is at or below the plane of all of a, with room for the rounding of pairFaces
+// itself.
 bool belowPlane(const PatchChunk& a, const PatchChunk& b) {
     if (a.plane == glm::vec3(0)) return false;
     const glm::vec3 normal = glm::abs(a.plane);

@@ -29,22 +29,24 @@ struct alignas(64) PatchChunk {
     float margin;                      // smallest offset [m]
 };
 
-/// The patches of the quarters of a full tile of 8 x 8: boxes that are smaller all round.
+/// The patches of the quarters of a full tile of 8 x 8; their boxes are smaller all round.
 constexpr std::array<uint64_t, 4> kQuarter = {0x000000000f0f0f0full, 0x00000000f0f0f0f0ull,
                                               0x0f0f0f0f00000000ull, 0xf0f0f0f000000000ull};
 
 std::vector<PatchChunk> buildChunks(const std::vector<shader::Patch>& patches, bool rtrad);
-/// Of any 64 patches.
+/// Builds a chunk of any 64 patches.
 PatchChunk buildChunk(const shader::Patch* patches, bool rtrad);
 
-/// False only if no patch of a faces one of b (shader::pairFaces); cheap, may be true all the same.
+/// Returns false only if no patch of a faces one of b (shader::pairFaces); it is cheap, and may return true
+/// all the same.
 bool chunksMayFace(const PatchChunk& a, const PatchChunk& b);
 
-/// Bit j of the result: patch `row` of a and patch j of b face each other, exactly as shader::pairFaces has
-/// it.
+/// Returns a word whose bit j says that patch `row` of a and patch j of b face each other, exactly as
+/// shader::pairFaces has it.
 uint64_t facingRow(const PatchChunk& a, uint32_t row, const PatchChunk& b);
 
-/// The same for all 64 rows. Picks AVX at run time where the processor has it; the arithmetic is the same.
+/// Does the same for all 64 rows. It picks AVX at run time where the processor has it; the arithmetic is the
+/// same.
 void facingRows(const PatchChunk& a, const PatchChunk& b, std::array<uint64_t, shader::kChunk>& rows);
 
 } // namespace relume

@@ -26,7 +26,8 @@ void ChunkRays::setPatches(const shader::Patch* patches, uint32_t rotation, uint
 
 namespace {
 
-// One sample for a patch's seed, before it is turned to its normal. `cell` gets a place in the unit square.
+// Makes one sample for a patch's seed, before it is turned to its normal. `cell` gets a place in the unit
+// square.
 struct SobolLanes {
     uint32_t index;
     [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
@@ -47,8 +48,8 @@ struct DiscLanes {
 
 } // namespace
 
-// shader::aroundPatch for one sample of all patches, in a form that compilers turn into vector code.
-// Always inlined, to be compiled once for each instruction set.
+// Does what shader::aroundPatch does for one sample of all patches, in a form that compilers turn into vector
+// code. It is always inlined, to be compiled once for each instruction set.
 template<typename Lanes>
 [[gnu::always_inline]] static inline void fillLanes(const float* const* frames, const uint32_t* seed,
                                                     Lanes lanes, float* const* out, uint32_t* cell) {
@@ -61,7 +62,8 @@ template<typename Lanes>
     float* __restrict x = out[0];
     float* __restrict y = out[1];
     float* __restrict z = out[2];
-    // Inlined, __restrict is forgotten; run-time checks of all these pairs would be more than compilers take.
+    // When inlined, __restrict is forgotten; run-time checks of all these pairs would be more than compilers
+    // take.
 #pragma GCC ivdep
     for (uint32_t i = 0; i < kChunk; ++i) {
         glm::vec2 u;
@@ -72,7 +74,7 @@ template<typename Lanes>
         x[i] = d.x - mirror * nx[i];
         y[i] = d.y - mirror * ny[i];
         z[i] = d.z - mirror * nz[i];
-        // Cells in Morton order: neighbours in the list are mostly neighbours in the square.
+        // Cells are in Morton order: neighbours in the list are mostly neighbours in the square.
         uint32_t column = uint32_t(int(u.x * float(1u << kCellBits))),
                  row = uint32_t(int(u.y * float(1u << kCellBits)));
         column = (column | column << 2) & 0x33u, row = (row | row << 2) & 0x33u;
@@ -129,7 +131,7 @@ void ChunkRays::setSamples(uint32_t first, uint32_t count) {
     sort();
 }
 
-// A counting sort by cell.
+// Sorts by cell, by counting.
 void ChunkRays::sort() {
     std::array<uint16_t, kCells + 1> begin{};
     for (uint32_t i = 0; i < count_; ++i)

@@ -8,7 +8,7 @@
 namespace relume {
 
 /// The cosine-distributed rays of one chunk's patches for some consecutive samples, by component. Sample k of
-/// patch i is number k * 64 + i. Made to be reused: 30 KiB.
+/// patch i is number k * 64 + i. It takes 30 KiB, and is made to be reused.
 class ChunkRays {
 public:
     static constexpr uint32_t kSamplesMax = 16;
@@ -16,14 +16,14 @@ public:
     template<typename T>
     using Rays = std::array<T, kRaysMax>;
 
-    /// patches: the chunk's 64. rotation: shader::kRotate... size: lightmap edge [texels].
+    /// Takes the chunk's 64 patches, a rotation (shader::kRotate...) and the lightmap edge `size` [texels].
     void setPatches(const shader::Patch* patches, uint32_t rotation, uint32_t size);
     /// Takes the directions from these points of the disc (shader::discDirection); they stay the caller's.
     void setDisc(const glm::vec2* points, uint32_t count) { disc_ = points, discCount_ = count; }
-    /// Directions by shader::patchDirection, or of the disc, to the last bit or two.
+    /// Makes the directions of shader::patchDirection, or those of the disc, to the last bit or two.
     void setSamples(uint32_t first, uint32_t count);
-    /// The numbers of all rays, those that go the same way next to each other: what makes packets of them
-    /// worth while.
+    /// There are count() rays. order() has their numbers, those that go the same way next to each other: this
+    /// makes packets of them worth while.
     uint32_t count() const { return count_; }
     const Rays<uint16_t>& order() const { return order_; }
 
@@ -39,7 +39,7 @@ private:
         Lane nx, ny, nz; // geometric normals
         std::array<std::array<uint32_t, shader::kChunk>, shader::kReplicates> seed;
     } frames_;
-    alignas(64) Rays<uint32_t> cell_; // of the unit square that the sample's point lies in
+    alignas(64) Rays<uint32_t> cell_; // cell of the unit square that the sample's point lies in
     Rays<uint16_t> order_;
     uint32_t count_ = 0;
     const glm::vec2* disc_ = nullptr; // none: Sobol points

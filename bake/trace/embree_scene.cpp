@@ -25,7 +25,7 @@ using shader::Patch;
 namespace shader {
 namespace {
 
-// The shared alpha test and hit lookup, given this scene's tables.
+// Gives the shared alpha test and hit lookup this scene's tables.
 struct AlphaTables {
     const uint8_t* texels;
     float alphaTexel(uint offset) { return float(texels[offset]) / 255.0f; }
@@ -126,7 +126,7 @@ EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads) : scene(
     build();
 }
 
-// What only blocks need: made when they are asked for, by patches as they are marked by then.
+// Makes what only blocks need, when they are asked for, from patches as they are marked by then.
 void EmbreeScene::Impl::prepareBlocks() {
     chunks = buildChunks(scene.patches, scene.rtrad);
     bvh = buildBvh(scene.mesh);
@@ -151,7 +151,7 @@ void EmbreeScene::Impl::attach(uint32_t first, uint32_t last, bool masked) {
     if (first == last) return;
     const uint32_t count = last - first;
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree's own buffers: it reads 16 bytes at a 12-byte stride, past the end of ours.
+    // The buffers are Embree's own: it reads 16 bytes at a 12-byte stride, past the end of ours.
     void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                              sizeof(glm::vec3), size_t(count) * 3);
     void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -178,7 +178,7 @@ void EmbreeScene::Impl::attach(uint32_t first, uint32_t last, bool masked) {
 
 namespace {
 
-// Rays of one block on their way through Embree: filled lane by lane, traced when full.
+// The rays of one block on their way through Embree: filled lane by lane, traced when full.
 class OcclusionPacket {
 public:
     OcclusionPacket(RTCScene scene, Blockers& blockers, std::array<uint64_t, kChunk>& visible)
@@ -229,8 +229,8 @@ private:
 
 } // namespace
 
-// Pairs in open shafts see each other: clears them from `rows`, what is left needs rays. First the whole
-// block is tried, then the pairs of quarters.
+// Clears pairs in open shafts, which see each other, from `rows`; the pairs that are left need rays. First
+// the whole block is tried, then the pairs of quarters.
 void EmbreeScene::Impl::dropOpenPairs(const PatchChunk& a, const PatchChunk& b,
                                       std::array<uint64_t, kChunk>& rows) const {
     constexpr uint32_t kWorthwhile = 32; // rays that cost as much as one look at a shaft
@@ -246,7 +246,7 @@ void EmbreeScene::Impl::dropOpenPairs(const PatchChunk& a, const PatchChunk& b,
     }
 }
 
-// Returns the number of facing pairs.
+// Traces the rays of a block and returns the number of facing pairs.
 uint32_t EmbreeScene::Impl::trace(const Block& block, uint32_t* bits) const {
     const PatchChunk &a = block.a, &b = block.b;
     std::array<uint64_t, kChunk> visible{};
@@ -283,7 +283,7 @@ uint32_t EmbreeScene::Impl::trace(const Block& block, uint32_t* bits) const {
     return pairs;
 }
 
-// A chunk of patches before a chunk of a sender list.
+// Traces a chunk of patches against a chunk of a sender list.
 uint32_t EmbreeScene::Impl::listBlock(const OcclusionArrays& work, uint32_t row, uint32_t column,
                                       uint32_t* bits) const {
     std::array<Patch, kChunk> patches{};
@@ -297,7 +297,7 @@ uint32_t EmbreeScene::Impl::listBlock(const OcclusionArrays& work, uint32_t row,
     }
     const PatchChunk senders = buildChunk(patches.data(), scene.rtrad);
     Block block{.a = chunks[row], .b = senders};
-    // The lower index first, whichever end asks.
+    // A ray starts at the patch of the lower index, whichever end asks.
     for (uint32_t j = 0; j < kChunk; ++j)
         for (uint32_t i = 0; i < kChunk; ++i)
             block.turned[i] |= uint64_t{index[j] < row * kChunk + i} << j;
@@ -331,7 +331,7 @@ void EmbreeScene::occlusion(const OcclusionArrays& work) {
     });
 }
 
-// From a lane's hit to what the gather reads.
+// Turns a lane's hit into the link that the gather reads.
 uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     const RTCHit8& hit = rays.hit;
     if (hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return shader::kLinkSky;
@@ -345,7 +345,7 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
 }
 
-// Of the rays of these numbers.
+// Finds the links of the rays of these numbers.
 void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
                               std::span<const uint16_t> order, uint32_t* out, bool silent) const {
     EmbreeIntersectQuery query;
@@ -375,7 +375,7 @@ void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
     }
 }
 
-// Returns how many rays there were.
+// Traces those links again that a move may have changed, and returns how many rays there were.
 uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk, uint32_t piece) const {
     const ClosestArrays& c = work.closest;
     const Patch* patches = &scene.patches[size_t(c.firstChunk + chunk) * kChunk];
@@ -448,8 +448,8 @@ void EmbreeScene::closest(const ClosestArrays& work) {
     });
 }
 
-// One word for each of a chunk's patches. Rays of neighbouring patches to the same target fill a packet.
-// Returns their number.
+// Writes a word of bits for each of a chunk's patches and returns the number of rays. Rays of neighbouring
+// patches to the same target fill a packet.
 uint32_t EmbreeScene::Impl::targets(const Patch* patches, const glm::vec4* ends, uint32_t count,
                                     uint32_t* bits) const {
     std::array<uint64_t, kChunk> free{}; // per target, a bit for each patch

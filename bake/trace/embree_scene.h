@@ -13,7 +13,7 @@ namespace relume {
 /// OcclusionWork and ClosestWork (tracer.h) on plain memory.
 struct OcclusionArrays {
     std::span<const SuperBlock> supers = {};
-    std::span<uint32_t* const> bits = {}; // of each super-block
+    std::span<uint32_t* const> bits = {}; // the bits of each super-block
     uint32_t firstUnit = 0, unitCount = 0;
     const uint32_t* sends = nullptr;              // per column chunk
     std::span<const shader::Sender> senders = {}; // empty: columns are chunks of patches
@@ -48,21 +48,22 @@ struct RetraceArrays {
     bool silent = false;
 };
 
-/// The scene in Embree, traced in packets by all cores; needs no Vulkan. Borrows the TraceScene. Results do
-/// not depend on the number of threads.
+/// The scene in Embree, traced in packets by all cores; it needs no Vulkan. It borrows the TraceScene.
+/// Results do not depend on the number of threads.
 class EmbreeScene {
 public:
-    /// threads 0: one per core, or RELUME_THREADS. Throws Error when Embree cannot build.
+    /// Builds the scene; 0 threads means one per core, or RELUME_THREADS. Throws Error when Embree cannot
+    /// build.
     explicit EmbreeScene(const TraceScene& scene, uint32_t threads = 0);
     ~EmbreeScene();
 
-    /// As tracer.h has it. The bits of a skipped unit are left as they were, since nobody reads them; those
-    /// of a unit that merely has no facing pair are cleared.
+    /// Does what Tracer::occlusion does. The bits of a skipped unit are left as they were, since nobody reads
+    /// them; those of a unit that merely has no facing pair are cleared.
     void occlusion(const OcclusionArrays& work);
-    /// As tracer.h has it. A patch without kPatchSends gets kLinkDark for all samples.
+    /// Does what Tracer::closest does. A patch without kPatchSends gets kLinkDark for all samples.
     void closest(const ClosestArrays& work);
     void segments(const SegmentArrays& work);
-    /// As tracer.h has it.
+    /// Does what Tracer::retrace does.
     void retrace(const RetraceArrays& work);
     void update();
 

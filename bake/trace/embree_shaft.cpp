@@ -13,7 +13,7 @@ namespace {
 constexpr float kShaftRounding =
     16 * std::numeric_limits<float>::epsilon(); // of sums of a few products, times their reach
 
-// Nodes looked at before giving up: by then the search costs as much as the rays it could save.
+// So many nodes are looked at before giving up: by then the search costs as much as the rays it could save.
 constexpr uint32_t kVisitsMax = 256;
 
 float largest(const glm::vec3& v) {
@@ -30,8 +30,8 @@ Shaft::Shaft(const PatchChunk& a, const EndBox& endsA, const PatchChunk& b, cons
     addPlanes(endsA, endsB);
 }
 
-// Seen along an axis both boxes are rectangles. A line through the same corner of both bounds their hull if
-// its normal points the corner's way; there are at most two such lines.
+// Adds the hull's planes. Seen along an axis both boxes are rectangles. A line through the same corner of
+// both bounds their hull if its normal points the corner's way; there are at most two such lines.
 void Shaft::addPlanes(const EndBox& a, const EndBox& b) {
     uint32_t count = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,8 @@ void Shaft::addPlanes(const EndBox& a, const EndBox& b) {
     }
 }
 
-// A plane is missed by all of the box if it is by the box's corner deepest below.
+// Tells whether the hull misses a box: a plane is missed by all of the box if it is by the box's corner
+// deepest below.
 bool Shaft::missesBox(const glm::vec3& lo, const glm::vec3& hi) const {
     if (lo.x > bounds_.hi.x || lo.y > bounds_.hi.y || lo.z > bounds_.hi.z) return true;
     if (hi.x < bounds_.lo.x || hi.y < bounds_.lo.y || hi.z < bounds_.lo.z) return true;
@@ -76,8 +77,8 @@ bool Shaft::missesTriangle(const shader::BvhTriangle& t) const {
         outside |= std::min(h0, std::min(h1, h2)) > d_[k];
     }
     if (outside != 0) return true;
-    // All ends on one side of its plane, as for the wall that the patches themselves lie on: no ray crosses
-    // it.
+    // If all ends lie on one side of its plane, as for the wall that the patches themselves lie on, no ray
+    // crosses it.
     const glm::vec3 normal = glm::cross(t.p1 - t.p0, t.p2 - t.p0);
     const float height = glm::dot(normal, t.p0);
     const float size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);

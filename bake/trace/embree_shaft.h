@@ -12,10 +12,10 @@ namespace relume {
 /// no triangle reaches into it, all pairs see each other and no ray is needed [Haines and Wallace 1991].
 class Shaft {
 public:
-    /// Boxes of ends of (some) rays of chunks a and b.
+    /// Takes boxes of the ends of (some) rays of chunks a and b.
     Shaft(const PatchChunk& a, const EndBox& endsA, const PatchChunk& b, const EndBox& endsB);
-    /// True only if no triangle of the tree touches a segment between the two sets. May be false all the
-    /// same: it gives up early where there is much to look at.
+    /// Returns true only if no triangle of the tree touches a segment between the two sets. It may return
+    /// false all the same: it gives up early where there is much to look at.
     bool isOpen(const Bvh& bvh) const;
 
 private:
@@ -26,7 +26,7 @@ private:
     bool missesBox(const glm::vec3& lo, const glm::vec3& hi) const;
     bool missesTriangle(const shader::BvhTriangle& triangle) const;
 
-    // Planes through an edge of each box: the hull lies where n . p <= d.
+    // Each plane goes through an edge of each box: the hull lies where n . p <= d.
     alignas(32) Planes nx_, ny_, nz_, d_;
     EndBox bounds_; // of the hull
     float reach_;   // [m] largest coordinate, for rounding

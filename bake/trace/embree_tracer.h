@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// The tracer that runs on the CPU, by Embree.
+/// Makes the tracer that runs on the CPU, by Embree.
 std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene);
 
 } // namespace relume

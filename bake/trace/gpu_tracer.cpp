@@ -138,7 +138,7 @@ private:
     shader::TraceGeometry geometry_{};
 };
 
-// Lists the links that are to be traced again. Barriers around it are its own.
+// Lists the links that are to be traced again. It writes the barriers around that.
 class RetraceMarks {
 public:
     explicit RetraceMarks(const vk::Device& device) : mark_(device, "retrace_mark") {}
@@ -155,13 +155,13 @@ private:
     vk::ComputeProgram mark_;
 };
 
-// Invocations that share a list are as many as fill the device, in groups of a chunk.
+// So many groups of a chunk's invocations share a list, as many as fill the device.
 constexpr uint32_t kGpuRetraceGroups = 8192, kSoftwareRetraceGroups = 64;
 uint32_t retraceGroups(const vk::Device& device) {
     return device.info().software() ? kSoftwareRetraceGroups : kGpuRetraceGroups;
 }
 
-// All compute tracers; they differ in the acceleration structure and in the shaders' variant.
+// The base of all compute tracers; they differ in the acceleration structure and in the shaders' variant.
 class ComputeTracer : public Tracer {
 public:
     ComputeTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches,
@@ -230,7 +230,8 @@ public:
     }
 
 private:
-    // Those that changed, or all of them in a larger buffer: with room for the next object that moves.
+    // Uploads those that changed, or all of them into a larger buffer, with room for the next object that
+    // moves.
     template<typename T>
     void put(vk::Buffer& buffer, const std::vector<T>& values, std::span<const uint32_t> changed,
              const char* name) {

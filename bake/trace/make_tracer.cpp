@@ -54,7 +54,7 @@ TracerKind chooseTracer(const vk::DeviceInfo& info, std::string& why) {
 std::string tracerProblem(TracerKind kind, const vk::DeviceInfo& info) {
     if (kind == TracerKind::Rtp && !info.rayTracingPipeline) return "VK_KHR_ray_tracing_pipeline is missing";
     if (kind == TracerKind::Query && !info.rayQuery) return "VK_KHR_ray_query is missing";
-    // Bits and links are written by the CPU straight into the device's memory.
+    // The CPU writes bits and links straight into the device's memory.
     if (kind == TracerKind::Embree && !info.software())
         return "its results would have to cross the bus: embree goes with a software device";
     if (kind == TracerKind::Voxel && !info.fragmentStores) return "fragmentStoresAndAtomics is missing";

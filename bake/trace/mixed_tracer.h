@@ -6,9 +6,9 @@
 
 namespace relume {
 
-/// Two tracers at work on one question: `exact` answers all of it, then `voxels`, made with a ratio n above
-/// 1, replaces its share: the bits of senders whose texel (row * size + column) is a multiple of n, every
-/// n-th group of 8 samples of the links and every n-th target of segments. Rays are counted once.
+/// Makes a tracer of two that answer one question: `exact` answers all of it, then `voxels`, made with a
+/// ratio n above 1, replaces its share: the bits of senders whose texel (row * size + column) is a multiple
+/// of n, every n-th group of 8 samples of the links and every n-th target of segments. Rays are counted once.
 std::unique_ptr<Tracer> makeMixedTracer(const vk::Device& device, std::unique_ptr<Tracer> exact,
                                         std::unique_ptr<Tracer> voxels);
 

@@ -18,13 +18,13 @@ constexpr uint32_t kMasked = 0x80000000u; // of BvhTriangle::id
 constexpr int kNoTriangle = ~0;           // a leaf of nothing
 constexpr uint32_t kRoot = 0;             // whatever is below it
 
-// Of all triangles, how many may have a tree of their own. That is built anew for each move: one over more
-// than half of them saves nothing, and where many objects have moved one after the other the others of them
-// are better off in the tree of what stands still.
+// At most this share of all triangles has a tree of its own. That tree is built anew for each move: one over
+// more than half of them saves nothing, and where many objects have moved one after the other, the rest of
+// them are better off in the tree of what stands still.
 constexpr double kMostOutside = 0.5, kManyOutside = 0.125;
 constexpr size_t kManyTimesMoved = 4;
-// By how much more coordinates may grow before the next time that boxes are made anew for them: an object
-// that is dragged out of the scene would have it so in every frame else.
+// Boxes that are made anew allow for coordinates that grow by this factor: an object that is dragged out of
+// the scene would else have them made anew in every frame.
 constexpr float kRoom = 1.25f;
 
 int& childOf(BvhNode& node, uint32_t side) {
@@ -53,7 +53,7 @@ float reachOf(const WorldMesh& mesh, std::span<const uint32_t> triangles) {
     return reach;
 }
 
-// Twice.
+// Returns twice the triangle's area.
 float areaOf(const BvhTriangle& triangle) {
     return glm::length(glm::cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0));
 }
@@ -124,7 +124,8 @@ MovingBvh::Change MovingBvh::follow(const WorldMesh& mesh, std::span<const uint3
     return change;
 }
 
-// The root makes room for the node that joins: it becomes the last one.
+// Finds what each node holds and where each triangle is. The root makes room for the node that joins: it
+// becomes the last one.
 void MovingBvh::findPlaces() {
     bvh_.nodes.push_back(bvh_.nodes[kRoot]);
     parents_.assign(nodes_ + 1, kRoot);
@@ -157,7 +158,7 @@ BvhBox MovingBvh::boxOf(int child) const {
     return box;
 }
 
-// The last one of its leaf takes its place. Returns the leaf's node.
+// Removes a triangle, whose place the last one of its leaf takes. Returns the leaf's node.
 uint32_t MovingBvh::remove(uint32_t triangle, Change& change) {
     const uint32_t node = leaves_[triangle] >> 1;
     int& leaf = childOf(bvh_.nodes[node], leaves_[triangle] & 1u);
@@ -173,7 +174,7 @@ uint32_t MovingBvh::remove(uint32_t triangle, Change& change) {
     return node;
 }
 
-// From the nodes of these leaves up to the root.
+// Refits the boxes from the nodes of these leaves up to the root.
 void MovingBvh::refit(const std::vector<uint32_t>& leaves, Change& change) {
     std::vector<uint8_t> marked(nodes_ + 1, 0);
     for (uint32_t node : leaves)
@@ -181,7 +182,7 @@ void MovingBvh::refit(const std::vector<uint32_t>& leaves, Change& change) {
             marked[node] = 1;
             change.nodes.push_back(node);
         }
-    // Children first; the root of the tree stands behind all of them.
+    // Children come first; the root of the tree stands behind all of them.
     std::sort(change.nodes.begin(), change.nodes.end(), std::greater());
     if (!change.nodes.empty())
         std::rotate(change.nodes.begin(), change.nodes.begin() + 1, change.nodes.end());
@@ -196,7 +197,8 @@ void MovingBvh::refit(const std::vector<uint32_t>& leaves, Change& change) {
     }
 }
 
-// Triangles of what is hidden are points, which nothing hits.
+// Builds the moved triangles' own tree and joins it. Triangles of hidden objects are points, which nothing
+// hits.
 void MovingBvh::join(const WorldMesh& mesh) {
     std::vector<uint32_t> there;
     for (const uint32_t triangle : outside_)

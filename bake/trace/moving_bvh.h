@@ -15,17 +15,17 @@ class MovingBvh {
 public:
     explicit MovingBvh(const WorldMesh& mesh);
 
-    /// What the shaders walk. Nodes come before their children, but for the root of the tree that was built
-    /// first, once triangles have left it.
+    /// Returns the tree that the shaders walk. Nodes come before their children, but for the root of the tree
+    /// that was built first, once triangles have left it.
     const Bvh& bvh() const { return bvh_; }
 
-    /// Entries of bvh() that are others now, those that were added included: ascending.
+    /// The entries of bvh() that have changed, those that were added included, in ascending order.
     struct Change {
         bool all = false; // everything is: the lists are empty
         std::vector<uint32_t> nodes, triangles;
     };
-    /// The mesh's triangles of these indices, ascending, stand elsewhere now. It has as many as it was built
-    /// with.
+    /// Follows the mesh's triangles of these indices, ascending, which stand elsewhere now. The mesh has as
+    /// many as the tree was built with.
     Change follow(const WorldMesh& mesh, std::span<const uint32_t> moved);
 
 private:
@@ -38,12 +38,12 @@ private:
     void join(const WorldMesh& mesh);
 
     Bvh bvh_;
-    float reach_ = 0, margin_ = 0;   // [m], that boxes were made for
+    float reach_ = 0, margin_ = 0;   // [m], those that boxes were made for
     uint32_t nodes_ = 0, depth_ = 0; // of the tree of those that have not moved, the joining node not counted
     float area_ = 0;                 // of their triangles [m^2], twice
     std::vector<uint32_t> outside_;  // triangles that have a tree of their own, ascending
-    // Once something has moved, of the tree of the others: per node its parent and what it holds; per
-    // triangle of the mesh the node of its leaf and, in bit 0, which child that is.
+    // Once something has moved, these describe the tree of the other triangles: per node its parent and what
+    // it holds; per triangle of the mesh the node of its leaf and, in bit 0, which child that is.
     std::vector<uint32_t> parents_, leaves_;
     std::vector<BvhBox> boxes_;
 };

@@ -9,7 +9,7 @@ namespace relume {
 
 using SuperBlock = shader::SuperBlock;
 
-/// Senders other than the patches themselves, as tracers read them: on the host and on the device.
+/// Senders other than the patches themselves, as tracers read them, on the host and on the device.
 struct SenderRuns {
     std::span<const shader::Sender> senders = {}; // padded to whole chunks
     std::span<const uint32_t> members = {};       // patch indices
@@ -23,9 +23,9 @@ struct SenderRuns {
 /// super-block's: bit j % 32 of word i * 2 + j / 32 is set when patch i of the row chunk and sender j of the
 /// column chunk face and see each other. Columns are chunks of patches as rows are; then pairs are asked
 /// once, i < j, so units behind the diagonal are skipped, and in a block with itself only i < j is set. Or
-/// they are chunks of a sender list; then sender j is the patch shader::drawMember picks before the row
-/// chunk. Skipped are as well units whose chunks do not exist, those already known, and those of which no
-/// column chunk (without a list: neither chunk) sends.
+/// they are chunks of a sender list; then sender j is the patch that shader::drawMember picks for the row
+/// chunk. Units are also skipped whose chunks do not exist, that are already known, or of which no column
+/// chunk (without a list: neither chunk) sends.
 struct OcclusionWork {
     std::span<const SuperBlock> supers = {};
     const vk::Buffer* superBuffer = nullptr; // the same on the device
@@ -33,16 +33,16 @@ struct OcclusionWork {
     uint32_t firstUnit = 0, unitCount = 0;
     const vk::Buffer* sends = nullptr; // uint32_t per column chunk, mapped where the tracer runs on the CPU
     const SenderRuns* senders = nullptr;
-    // Without a list: rays start at the column's patches, bits go kSuperWords further: only RTRad's intervals
-    // tell the ends apart.
+    // Without a list, rays start at the column's patches and bits go kSuperWords further: only RTRad's
+    // intervals tell the ends apart.
     bool reversed = false;
-    // uint32_t[]: unit u adds its facing pairs to word SuperBlock::counters + u % kRayCounters, a ray each;
+    // A uint32_t[]: unit u adds its facing pairs to word SuperBlock::counters + u % kRayCounters, a ray each;
     // with embree some of these are settled for a whole block by an empty shaft.
     const vk::Buffer* rays = nullptr;
 };
 
-/// What neighbouring patches have in common of their directions: nothing; all, those in the same place of
-/// their 4 x 4 texels; all, those of one chunk.
+/// Says which neighbouring patches have all their directions in common: none; those in the same place of
+/// their 4 x 4 texels; those of one chunk.
 enum class Rotation : uint32_t {
     Patch = shader::kRotatePatch,
     Interleaved = shader::kRotateInterleaved,
@@ -53,7 +53,7 @@ enum class Rotation : uint32_t {
 /// of chunk c for sample k goes to links[linksOffset + ((c - firstChunk) * sampleCount + (k - firstSample)) *
 /// 64 + i].
 struct ClosestWork {
-    // Patch[] that stand in for the scene's patches, chunks counted in them; both or none.
+    // Patches that stand in for the scene's; chunks are counted in them. Both are set, or none.
     const vk::Buffer* receivers = nullptr;        // on the device
     const shader::Patch* receiversHost = nullptr; // the same, for tracers that run on the CPU
     uint32_t firstChunk = 0, chunkCount = 0;
@@ -84,7 +84,7 @@ struct SegmentWork {
 
 constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/segments.glsl
 
-/// Links of `closest` that were traced before objects moved: those of patches that are others now, and those
+/// Links of `closest` that were traced before objects moved: those of patches that have changed, and those
 /// whose ray meets a box in which an object was or is, are traced again; all others stay as they are.
 struct RetraceWork {
     ClosestWork closest; // of the scene's patches and the Sobol sequence
@@ -93,35 +93,36 @@ struct RetraceWork {
     uint32_t boxCount = 0;
     const vk::Buffer* changed = nullptr; // glm::uvec2 per chunk of all, a bit for each patch
     const vk::Buffer* list = nullptr;    // uint32_t[1 + chunkCount * sampleCount * 64], not on the CPU
-    const vk::Buffer* rays = nullptr;    // as of SegmentWork
-    bool silent = false;                 // of patches that send nothing, too, which get kLinkDark else
+    const vk::Buffer* rays = nullptr;    // as in SegmentWork
+    bool silent = false;                 // also of patches that send nothing, which get kLinkDark else
 };
 
-/// What of a TraceScene is another one than before, ascending.
+/// The entries of a TraceScene that have changed, in ascending order.
 struct SceneChange {
     std::span<const uint32_t> triangles; // that stand elsewhere: corners and hit table
     std::span<const uint32_t> texels;    // whose patch is there now, or no more
 };
 
-/// Answers geometric questions about patches: the only thing that differs between back-ends. One virtual call
-/// per batch. GPU tracers record into cmd; the CPU tracer runs at once and writes into host-visible buffers.
-/// Either way the result is there for what is recorded into cmd afterwards, behind a barrier that the caller
-/// writes.
+/// Answers geometric questions about patches: the only thing that differs between back-ends. There is one
+/// virtual call per batch. GPU tracers record into cmd; the CPU tracer runs at once and writes into
+/// host-visible buffers. Either way the result is there for what is recorded into cmd afterwards, behind a
+/// barrier that the caller writes.
 class Tracer {
 public:
     virtual ~Tracer() = default;
     virtual const char* name() const = 0;
     virtual bool onCpu() const = 0;
-    /// Whether anything goes into cmd: else it may be none at all.
+    /// Tells whether anything is recorded into cmd; where not, cmd may be null.
     virtual bool records() const { return !onCpu(); }
     virtual void occlusion(VkCommandBuffer cmd, const OcclusionWork& work) = 0;
     virtual void closest(VkCommandBuffer cmd, const ClosestWork& work) = 0;
-    /// Not for the RTRad preset. On the CPU the targets must be there when this is called.
+    /// Finds which targets are seen; not for the RTRad preset. On the CPU the targets must be there when this
+    /// is called.
     virtual void segments(VkCommandBuffer cmd, const SegmentWork& work) = 0;
 
-    /// Whether it follows objects that move: only then the calls below are for it.
+    /// Tells whether it follows objects that move: only then the calls below are for it.
     virtual bool follows() const { return false; }
-    /// The scene that it was made of has changed. Waits for the device.
+    /// Follows the scene that it was made of, which has changed. Waits for the device.
     virtual void update(const SceneChange& change);
     virtual void retrace(VkCommandBuffer cmd, const RetraceWork& work);
 };

@@ -12,7 +12,8 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kVerticesPerTriangle = 6; // cvm.vert draws a rectangle
-// Aim of one submit. A first one of few triangles is short on every device, then a batch may grow fourfold.
+// The aim of one submit. A first one of few triangles is short on every device, then a batch may grow
+// fourfold.
 constexpr double kBatchMs = 20.0;
 constexpr uint32_t kFirstBatch = 64; // triangles
 
@@ -36,7 +37,7 @@ shader::VoxelGrid makeGrid(const TraceScene& scene, const VoxelSettings& setting
         for (int axis = 0; axis < 3; ++axis)
             grid.scale[axis] = extent[axis] > 0 ? (resolution - 0.51f) / extent[axis] : 0.0f;
     } else {
-        // Half a voxel of margin: walls on the bounds then lie in the middle of one layer of voxels.
+        // Half a voxel of margin is added: walls on the bounds then lie in the middle of one layer of voxels.
         const float voxel = std::max(extent.x, std::max(extent.y, extent.z)) / (resolution - 1.0f);
         grid.origin -= 0.5f * voxel;
         grid.scale = glm::vec3(1.0f / voxel);
@@ -144,7 +145,7 @@ VoxelMap::VoxelMap(const vk::Device& device, const TraceScene& scene, const Voxe
     pass.draw(settings.resolution, true);
 }
 
-// How many bits are set before each word: where a set voxel's patches lie.
+// Counts how many bits are set before each word: there a set voxel's patches lie.
 void VoxelMap::rank(const vk::Device& device) {
     std::vector<uint32_t> ranks = readBits(device);
     uint32_t before = 0;

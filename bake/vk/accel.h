@@ -9,18 +9,19 @@
 namespace relume::vk {
 
 /// A bottom and a top level acceleration structure over world-space triangles: geometry 0 holds the opaque
-/// ones, geometry 1 the alpha-masked ones (left out where there are none). Built for fast trace, compacted;
-/// waits for the device.
+/// ones, geometry 1 the alpha-masked ones (left out where there are none). Both are built for fast tracing
+/// and compacted; building waits for the device.
 class Accel {
 public:
     Accel() = default;
-    /// positions: 3 per triangle [m]; the first opaqueCount triangles are opaque. Throws Error.
+    /// Builds it from positions [m], 3 per triangle, of which the first opaqueCount triangles are opaque.
+    /// Throws Error.
     Accel(const Device& device, std::span<const glm::vec3> positions, uint32_t opaqueCount);
     ~Accel();
     Accel(Accel&& other) noexcept;
     Accel& operator=(Accel&& other) noexcept;
 
-    /// Of the top level: for accelerationStructureEXT(address) in a shader.
+    /// Returns the top level's address, for accelerationStructureEXT(address) in a shader.
     VkDeviceAddress address() const { return topAddress_; }
     uint64_t bytes() const { return bytes_; }
 

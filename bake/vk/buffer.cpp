@@ -95,7 +95,7 @@ void upload(const Device& device, const Buffer& buffer, const void* data, VkDevi
 }
 
 std::vector<BufferPart> partsOf(std::span<const uint32_t> indices, VkDeviceSize each) {
-    // Bytes between two parts that are copied along: a region of its own costs as much.
+    // So many bytes between two parts are copied along: a region of its own costs as much.
     constexpr VkDeviceSize kGap = 512;
     std::vector<BufferPart> parts;
     for (const uint32_t index : indices) {

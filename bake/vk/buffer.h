@@ -12,8 +12,8 @@ enum class Memory {
     Host,   // host-visible, coherent, cached: staging, readback, results that the CPU writes
 };
 
-/// Owns a VkBuffer and its memory; move-only. Always usable as storage, transfer source and target, and by
-/// address.
+/// Owns a VkBuffer and its memory; move-only. A buffer is always usable as storage, as transfer source and
+/// target, and by address.
 class Buffer {
 public:
     struct Desc {
@@ -34,7 +34,7 @@ public:
     VkDeviceAddress address() const { return address_; }
     void* mapped() const { return mapped_; } // nullptr where the CPU cannot see it
     template<typename T>
-    T* as() const { // its contents, of a buffer that the CPU sees
+    T* as() const { // the contents of a buffer that the CPU sees
         ASSERT(mapped_);
         return static_cast<T*>(mapped_);
     }
@@ -51,19 +51,20 @@ private:
     void* mapped_ = nullptr;
 };
 
-/// Host to device and back, at once: waits for the device. Offsets and sizes in bytes.
+/// Copy from host to device and back, at once: both wait for the device. Offsets and sizes are in bytes.
 void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size,
             VkDeviceSize offset = 0);
 void download(const Device& device, const Buffer& buffer, void* data, VkDeviceSize size,
               VkDeviceSize offset = 0);
 
-/// Bytes of an array of which host and device have a copy each.
+/// A range of bytes in an array of which host and device have a copy each.
 struct BufferPart {
     VkDeviceSize offset = 0, size = 0;
 };
-/// Around elements of these indices, ascending, of so many bytes each; neighbours in one.
+/// Returns the parts around the elements of these indices (ascending), of so many bytes each; parts close to
+/// each other become one.
 std::vector<BufferPart> partsOf(std::span<const uint32_t> indices, VkDeviceSize each);
-/// As upload(), of these parts of what begins at `data`.
+/// Uploads, as upload() does, these parts of the array that begins at `data`.
 void uploadParts(const Device& device, const Buffer& buffer, const void* data,
                  std::span<const BufferPart> parts);
 template<typename T>
@@ -72,8 +73,8 @@ void uploadElements(const Device& device, const Buffer& buffer, const std::vecto
     uploadParts(device, buffer, values.data(), partsOf(indices, sizeof(T)));
 }
 
-/// A device buffer holding a copy of `values` (at least 16 bytes long, so that an empty list has an address
-/// too).
+/// Returns a device buffer with a copy of `values`; it has at least 16 bytes, so that an empty list has an
+/// address too.
 template<typename T>
 Buffer makeBuffer(const Device& device, std::span<const T> values, const char* name,
                   VkBufferUsageFlags extraUsage = 0) {

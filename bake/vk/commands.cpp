@@ -98,7 +98,8 @@ bool Commands::reached(uint64_t value) {
     return done >= value;
 }
 
-// All stages on both sides: the passes are few and long, and one queue runs them one after the other anyway.
+// All stages stand on both sides: the passes are few and long, and one queue runs them one after the other
+// anyway.
 void barrier(VkCommandBuffer cmd) {
     VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;

@@ -7,7 +7,8 @@
 
 namespace relume::vk {
 
-/// One thread's command buffers and a timeline semaphore: record, submit, wait for a value. Not thread-safe.
+/// One thread's command buffers and a timeline semaphore: record, submit, wait for a value. It is not
+/// thread-safe.
 class Commands {
 public:
     explicit Commands(const Device& device);
@@ -16,9 +17,9 @@ public:
     Commands& operator=(const Commands&) = delete;
 
     VkCommandBuffer begin();      // a command buffer in the recording state; one at a time
-    uint64_t submit();            // ends and submits it; the value its completion signals
+    uint64_t submit();            // ends and submits it; returns the value its completion signals
     void wait(uint64_t value);    // blocks; throws Error on device loss
-    bool reached(uint64_t value); // without blocking
+    bool reached(uint64_t value); // tells it without blocking
     void run() { wait(submit()); }
 
 private:
@@ -37,13 +38,13 @@ private:
     std::vector<VkCommandBuffer> free_;
 };
 
-/// All earlier shader and transfer writes (and host writes before the submit) become visible to later shaders
+/// Makes all earlier shader and transfer writes (and host writes before the submit) visible to later shaders
 /// and transfers.
 void barrier(VkCommandBuffer cmd);
-/// Earlier device writes become visible to the CPU after the submission is waited for.
+/// Makes earlier device writes visible to the CPU once the submission has been waited for.
 void hostBarrier(VkCommandBuffer cmd);
 
-/// Time between points of a command buffer, by GPU timestamps.
+/// Measures the time between points of a command buffer by GPU timestamps.
 class Timestamps {
 public:
     Timestamps(const Device& device, uint32_t capacity); // capacity: number of points
@@ -52,14 +53,15 @@ public:
     Timestamps& operator=(const Timestamps&) = delete;
     void reset(VkCommandBuffer cmd);
     void mark(VkCommandBuffer cmd, uint32_t point);
-    /// After the submission was waited for. 0 where the queue has no timestamps.
+    /// Returns the time between two points, once the submission has been waited for; 0 where the queue has no
+    /// timestamps.
     double milliseconds(uint32_t from, uint32_t to) const;
 
 private:
     const Device& device_;
     VkQueryPool pool_ = VK_NULL_HANDLE;
     uint32_t capacity_ = 0;
-    uint64_t mask_ = 0; // of the queue's valid timestamp bits
+    uint64_t mask_ = 0; // the queue's valid timestamp bits
 };
 
 } // namespace relume::vk

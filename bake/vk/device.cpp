@@ -65,7 +65,7 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-// The usable device of the highest rank, the first one among equals.
+// Returns the usable device of the highest rank, the first one among equals.
 const DeviceInfo& best(const std::vector<DeviceInfo>& infos, const std::string& select) {
     if (infos.empty()) throw Error("no Vulkan device: install mesa-vulkan-drivers or the GPU's driver");
     const DeviceInfo* found = nullptr;
@@ -165,7 +165,7 @@ void Device::createDevice() {
     const auto family = std::find_if(info_.queues.begin(), info_.queues.end(),
                                      [](const QueueFamily& f) { return f.graphics && f.compute; });
     queueFamily_ = static_cast<uint32_t>(family - info_.queues.begin());
-    // The last queue: a viewer in this process may use the first one.
+    // The last queue is taken, since a viewer in this process may use the first one.
     const std::vector<float> priorities(family->count, 1.0f);
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = queueFamily_;

@@ -15,9 +15,9 @@
 
 namespace relume::vk {
 
-/// "VK_ERROR_DEVICE_LOST" and so on.
+/// Returns the name of a result: "VK_ERROR_DEVICE_LOST" and so on.
 const char* resultName(VkResult result);
-/// Throws Error naming the call and the VkResult; stays on in release builds.
+/// Throws Error naming the call and the VkResult where that is a failure; release builds check it, too.
 void check(VkResult result, const char* call);
 #define VK_CHECK(call) ::relume::vk::check((call), #call)
 
@@ -26,7 +26,7 @@ struct QueueFamily {
     bool graphics = false, compute = false, transfer = false;
 };
 
-/// What `relume devices` prints and the choice of a tracer rests on.
+/// The properties of a device that `relume devices` prints and that the choice of a tracer rests on.
 struct DeviceInfo {
     uint32_t index = 0; // in vkEnumeratePhysicalDevices' order
     std::string name, driver;
@@ -47,15 +47,15 @@ struct DeviceInfo {
     bool integrated() const { return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU; }
 };
 
-/// "discrete", "integrated", "virtual", "software", "other".
+/// Returns "discrete", "integrated", "virtual", "software" or "other".
 const char* deviceTypeName(VkPhysicalDeviceType type);
 
-/// All Vulkan devices of this machine. Empty without a loader or driver.
+/// Returns all Vulkan devices of this machine; the list is empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
 class Staging;
 
-/// Instance, device and one queue with graphics and compute. Outlives everything made from it.
+/// An instance, a device and one queue with graphics and compute. It outlives everything made from it.
 class Device {
 public:
     struct Desc {
@@ -63,13 +63,13 @@ public:
                             // of the name
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
-        // Told before the logical device is made: a software driver's threads inherit the priority that the
+        // Called before the logical device is made: a software driver's threads inherit the priority that the
         // calling thread has then.
         std::function<void(const DeviceInfo&)> chosen = {};
     };
-    /// Throws Error: no loader, no driver, no such device, what it lacks. Devices alive at one time must
-    /// agree on `validation`, and none may be in use on another thread: the function pointers are per
-    /// process.
+    /// Throws Error where there is no loader, no driver or no such device, and names what a device lacks.
+    /// Devices alive at one time must agree on `validation`, and none may be in use on another thread: the
+    /// function pointers are per process.
     explicit Device(const Desc& desc);
     ~Device();
     Device(const Device&) = delete;
@@ -82,18 +82,18 @@ public:
     uint32_t queueFamily() const { return queueFamily_; }
     const DeviceInfo& info() const { return info_; }
     const VkPhysicalDeviceLimits& limits() const { return limits_; }
-    /// vkQueueSubmit, for any thread.
+    /// Calls vkQueueSubmit; any thread may call this.
     void submit(const VkSubmitInfo& info) const;
-    /// Zero where the device has no ray tracing pipeline.
+    /// Returns the properties of the ray tracing pipeline, all zero where the device has none.
     const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& rayTracing() const { return rayTracing_; }
     bool anisotropy() const { return anisotropy_; } // samplers may filter anisotropically
     uint32_t accelScratchAlignment() const { return accelScratchAlignment_; }
-    /// Free device-local memory now [bytes].
+    /// Returns the device-local memory that is free now [bytes].
     uint64_t freeMemory() const;
-    /// Index of a memory type with these properties among `typeBits`; ~0u if there is none.
+    /// Returns the index of a memory type with these properties among `typeBits`; ~0u if there is none.
     uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags properties) const;
-    /// Memory type for Memory::Device: on a discrete GPU not the one the CPU sees too (a small window into
-    /// it), on others one that the CPU can map where there is one. ~0u if there is none.
+    /// Returns the memory type for Memory::Device: on a discrete GPU not the one the CPU sees too (a small
+    /// window into it), on others one that the CPU can map where there is one; ~0u if there is none.
     uint32_t deviceMemoryType(uint32_t typeBits) const;
     VkDeviceSize heapSize(uint32_t memoryType) const {
         return memory_.memoryHeaps[memory_.memoryTypes[memoryType].heapIndex].size;
@@ -102,9 +102,9 @@ public:
         return memory_.memoryTypes[type].propertyFlags;
     }
     void setName(VkObjectType type, uint64_t handle, const char* name) const; // no-op without debug utils
-    /// Validation warnings and errors seen so far.
+    /// Returns how many validation warnings and errors have been seen so far.
     uint32_t validationMessages() const { return validationMessages_; }
-    /// Of all devices of this process, those destroyed as well.
+    /// Returns the same number for all devices of this process, those destroyed as well.
     static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
     Staging& staging() const { return *staging_; }

@@ -110,8 +110,8 @@ void enableFeatures(const FeatureChain& supported, FeatureChain& enabled) {
     VkPhysicalDeviceFeatures& on = enabled.core.features;
     on.shaderInt64 = VK_TRUE;
     on.samplerAnisotropy = has.samplerAnisotropy;
-    // Writable buffer references in a vertex or fragment shader need these, even where only read; the CVM
-    // pass writes.
+    // Writable buffer references in a vertex or fragment shader need these, even where they are only read;
+    // the CVM pass writes.
     on.vertexPipelineStoresAndAtomics = has.vertexPipelineStoresAndAtomics;
     on.fragmentStoresAndAtomics = has.fragmentStoresAndAtomics;
     enabled.accel.accelerationStructure = supported.accel.accelerationStructure;
@@ -158,7 +158,7 @@ DeviceInfo readDeviceInfo(VkPhysicalDevice physical) {
     info.type = properties.deviceType;
     info.queues = readQueues(physical);
     if (properties.apiVersion < VK_API_VERSION_1_2) {
-        // Its feature structs are unknown to such a driver: ask it nothing more.
+        // Such a driver does not know the feature structs of Vulkan 1.2, so it is asked nothing more.
         info.missing.push_back("Vulkan 1.2 (has " + versionText(properties.apiVersion) + ")");
         return info;
     }
@@ -201,7 +201,7 @@ std::vector<DeviceInfo> listDevices() {
     if (!openLoader()) return {};
     const Instance instance = createInstance({});
     if (instance.handle == VK_NULL_HANDLE) return {};
-    // Core functions are the loader's own and serve every instance: keep those of a living Device.
+    // Core functions are the loader's own and serve every instance, so those of a living Device are kept.
     if (volkGetLoadedInstance() == VK_NULL_HANDLE) volkLoadInstance(instance.handle);
     std::vector<DeviceInfo> infos;
     try {

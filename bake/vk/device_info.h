@@ -6,8 +6,8 @@
 
 namespace relume::vk {
 
-/// The feature structs that Relume asks about and switches on, chained. Not copyable: the chain points into
-/// itself.
+/// The feature structs that Relume asks about and switches on, chained. It is not copyable: the chain points
+/// into itself.
 struct FeatureChain {
     VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     VkPhysicalDeviceVulkan12Features vulkan12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
@@ -23,15 +23,15 @@ struct FeatureChain {
     FeatureChain& operator=(const FeatureChain&) = delete;
 };
 
-/// Switches on what Relume needs and, of what it likes, what `supported` has.
+/// Switches on the features that Relume needs and those of its optional ones that `supported` has.
 void enableFeatures(const FeatureChain& supported, FeatureChain& enabled);
-/// The device extensions to switch on.
+/// Returns the device extensions to switch on.
 std::vector<const char*> deviceExtensions(VkPhysicalDevice physical, const DeviceInfo& info);
 bool hasDeviceExtension(VkPhysicalDevice physical, const char* name);
 
-/// Everything but `index` of it.
+/// Reads everything about a device but its `index`.
 DeviceInfo readDeviceInfo(VkPhysicalDevice physical);
-/// Free bytes of the largest device-local heap, by VK_EXT_memory_budget, else its size.
+/// Returns the free bytes of the largest device-local heap, by VK_EXT_memory_budget, else its size.
 uint64_t freeDeviceMemory(VkPhysicalDevice physical, bool memoryBudget);
 
 } // namespace relume::vk

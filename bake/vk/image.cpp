@@ -32,7 +32,7 @@ void changeLayout(VkCommandBuffer cmd, const VkImageMemoryBarrier& change) {
                          nullptr, 0, nullptr, 1, &change);
 }
 
-// Each mip is the one above at half size; leaves every mip in TRANSFER_SRC_OPTIMAL.
+// Blits each mip from the one above, at half its size; leaves every mip in TRANSFER_SRC_OPTIMAL.
 void recordMips(VkCommandBuffer cmd, const Device& device, const Image2D& image) {
     VkFormatProperties format;
     vkGetPhysicalDeviceFormatProperties(device.physical(), image.format(), &format);

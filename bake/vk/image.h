@@ -4,8 +4,8 @@
 
 namespace relume::vk {
 
-/// Owns a 2D VkImage, its memory and a view of all its mips; move-only. Always usable as transfer source and
-/// target.
+/// Owns a 2D VkImage, its memory and a view of all its mips; move-only. It is always usable as transfer
+/// source and target.
 class Image2D {
 public:
     struct Desc {
@@ -40,7 +40,7 @@ private:
 };
 
 /// Uploads tightly packed pixels to mip 0, blits the other mips and leaves the image in
-/// SHADER_READ_ONLY_OPTIMAL. Waits.
+/// SHADER_READ_ONLY_OPTIMAL. Waits for the device.
 void uploadPixels(const Device& device, const Image2D& image, const void* pixels, VkDeviceSize size);
 
 } // namespace relume::vk

@@ -41,7 +41,7 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(const InstanceDesc& desc) {
     VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // Not GENERAL: there the loader complains about drivers that have nothing to do with us.
+    // GENERAL is left out: there the loader complains about drivers that have nothing to do with us.
     info.messageType =
         VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pfnUserCallback = desc.onMessage;

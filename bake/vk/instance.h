@@ -17,10 +17,10 @@ struct Instance {
     bool debugUtils = false;
 };
 
-/// Opens the loader; false if this machine has none.
+/// Opens the loader; returns false if this machine has none.
 [[nodiscard]] bool openLoader();
-/// Vulkan 1.2 instance. Throws Error when validation is asked for and its layer is missing. Needs
-/// openLoader().
+/// Makes a Vulkan 1.2 instance; needs openLoader(). Throws Error when validation is asked for and its layer
+/// is missing.
 Instance createInstance(const InstanceDesc& desc);
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(const InstanceDesc& desc);
 std::vector<VkPhysicalDevice> physicalDevices(VkInstance instance);

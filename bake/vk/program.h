@@ -20,14 +20,14 @@ public:
     ComputeProgram() = default;
     ComputeProgram(const Device& device, const std::string& shader,
                    const Constants& constants = {}); // throws Error
-    /// From SPIR-V; `name` is for messages.
+    /// Makes the program from SPIR-V; `name` is for messages.
     ComputeProgram(const Device& device, std::span<const uint32_t> code, const std::string& name,
                    const Constants& constants = {});
     ~ComputeProgram();
     ComputeProgram(ComputeProgram&& other) noexcept;
     ComputeProgram& operator=(ComputeProgram&& other) noexcept;
 
-    /// Binds, pushes, dispatches. Barriers are the caller's.
+    /// Binds, pushes and dispatches. The caller writes the barriers.
     template<typename Push>
     void dispatch(VkCommandBuffer cmd, const Push& push, uint32_t x, uint32_t y = 1, uint32_t z = 1) const {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
@@ -76,8 +76,8 @@ private:
 };
 
 /// A vertex and a fragment shader drawing triangles into colour images of one size: no depth, no culling, no
-/// blending, no vertex input (vertices are pulled by address). Textures: an array of combined image samplers
-/// at set 0, binding 0.
+/// blending, no vertex input (vertices are pulled by address). Textures are an array of combined image
+/// samplers at set 0, binding 0.
 class RasterProgram {
 public:
     struct Desc {
@@ -96,8 +96,7 @@ public:
     RasterProgram(const RasterProgram&) = delete;
     RasterProgram& operator=(const RasterProgram&) = delete;
 
-    /// Pixels as of an image of the viewport's size, of which those in `area` are drawn; targets need not
-    /// reach further.
+    /// The pixels in `area` of an image of the viewport's size are drawn; targets need not reach further.
     struct Window {
         VkExtent2D viewport{};
         VkRect2D area{};
@@ -112,7 +111,7 @@ public:
         ASSERT(!targets.empty());
         drawBytes(cmd, {&push, sizeof(Push)}, targets, window, vertexCount);
     }
-    /// The whole of the targets.
+    /// Draws over the whole of the targets.
     template<typename Push>
     void draw(VkCommandBuffer cmd, const Push& push, std::span<const Image2D* const> targets,
               uint32_t vertexCount) {
@@ -120,8 +119,8 @@ public:
         const VkExtent2D whole{targets[0]->width(), targets[0]->height()};
         draw(cmd, push, targets, vertexCount, {.viewport = whole, .area = {{0, 0}, whole}});
     }
-    /// Without colour attachments: draws over extent.width x extent.height pixels what the fragments write
-    /// into buffers. The barrier behind it is the caller's.
+    /// Draws without colour attachments over extent.width x extent.height pixels: the fragments write into
+    /// buffers. The caller writes the barrier behind it.
     template<typename Push>
     void draw(VkCommandBuffer cmd, const Push& push, VkExtent2D extent, uint32_t vertexCount) {
         static_assert(sizeof(Push) <= 128 && sizeof(Push) % 4 == 0);
@@ -150,7 +149,7 @@ private:
     VkFramebuffer framebuffer_ = VK_NULL_HANDLE;
 };
 
-/// Move-only VkSampler.
+/// Owns a VkSampler; move-only.
 class Sampler {
 public:
     Sampler() = default;

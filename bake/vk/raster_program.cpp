@@ -36,7 +36,7 @@ RasterProgram::RasterProgram(const Device& device, const Desc& desc, std::span<c
     }
 }
 
-// Partially bound: without textures the shader still declares the array.
+// The array is bound partially: without textures the shader still declares it.
 void RasterProgram::createDescriptors(uint32_t count, std::span<const BoundTexture> textures) {
     const VkDescriptorBindingFlags flag = VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
     VkDescriptorSetLayoutBindingFlagsCreateInfo flags{
@@ -95,7 +95,8 @@ void RasterProgram::createRenderPass(std::span<const VkFormat> formats) {
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
     subpass.colorAttachmentCount = static_cast<uint32_t>(references.size());
     subpass.pColorAttachments = references.data();
-    // Before: whatever read or wrote the targets. After: whatever copies or reads them.
+    // The draw waits for whatever read or wrote the targets before; whatever copies or reads them afterwards
+    // waits for the draw.
     const VkSubpassDependency dependencies[2] = {
         {VK_SUBPASS_EXTERNAL, 0, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
          VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_MEMORY_WRITE_BIT,

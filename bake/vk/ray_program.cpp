@@ -75,7 +75,7 @@ void RayProgram::create(const Desc& desc) {
     device_->setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(pipeline_), desc.raygen.c_str());
 }
 
-// The shader binding table: one record per group, each at a multiple of the base alignment.
+// Makes the shader binding table: one record per group, each at a multiple of the base alignment.
 void RayProgram::createTable() {
     const VkDeviceSize handleSize = device_->rayTracing().shaderGroupHandleSize;
     const VkDeviceSize base = device_->rayTracing().shaderGroupBaseAlignment;

@@ -13,7 +13,7 @@ public:
     ShaderStage(const ShaderStage&) = delete;
     ShaderStage& operator=(const ShaderStage&) = delete;
 
-    /// Points into this object.
+    /// Returns the stage's create info, which points into this object.
     VkPipelineShaderStageCreateInfo info() const;
 
 private:
@@ -25,7 +25,7 @@ private:
     VkSpecializationInfo specialization_{};
 };
 
-/// A layout with 128 bytes of push constants for `stages` and one descriptor set, if there is one.
+/// Makes a layout with 128 bytes of push constants for `stages` and one descriptor set, if there is one.
 VkPipelineLayout createLayout(const Device& device, VkShaderStageFlags stages,
                               VkDescriptorSetLayout setLayout = VK_NULL_HANDLE);
 

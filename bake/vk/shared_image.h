@@ -16,7 +16,7 @@ public:
     };
     static constexpr VkFormat kFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-    /// Whether this device can share images of this size at all.
+    /// Tells whether this device can share images of this size at all.
     [[nodiscard]] static bool possible(const Device& device, uint32_t width, uint32_t height);
 
     SharedImage() = default;
@@ -25,15 +25,16 @@ public:
     SharedImage(SharedImage&& other) noexcept;
     SharedImage& operator=(SharedImage&& other) noexcept;
 
-    /// A new descriptor of the memory, the caller's to close; a successful import takes it. Throws Error.
+    /// Returns a new descriptor of the memory, which is the caller's to close; a successful import takes it.
+    /// Throws Error.
     int exportFd() const;
-    /// What the importer must name as the memory's size [bytes].
+    /// Returns the size [bytes] that the importer must name for the memory.
     VkDeviceSize memorySize() const { return memorySize_; }
     VkImage handle() const { return image_; }
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
 
-    /// Takes the image over, in layout TRANSFER_DST_OPTIMAL; what is in it stays.
+    /// Takes the image over, in layout TRANSFER_DST_OPTIMAL; its content stays.
     void acquire(VkCommandBuffer cmd) const;
     /// Gives it back, from that layout: transfers recorded before are visible to the other API once the
     /// submission is waited for.

@@ -6,10 +6,10 @@
 namespace relume::vk {
 namespace {
 
-// What stays [bytes]: sums over chunks of the largest lightmap.
+// The window that stays [bytes] holds the sums over chunks of the largest lightmap.
 constexpr VkDeviceSize kKeptBytes = VkDeviceSize{4} << 20;
 // Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
-// had always.
+// always available.
 constexpr VkDeviceSize kLargeBytes = VkDeviceSize{32} << 20;
 
 void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, const Buffer& to,
@@ -20,7 +20,7 @@ void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, cons
 
 } // namespace
 
-// `large` is the one of a copy for which the one that stays is too small.
+// Returns the window that stays, or makes `large` for a copy for which that one is too small.
 const Buffer& Staging::windowFor(VkDeviceSize size, Buffer& large) {
     if (size <= kKeptBytes) {
         if (!window_)
@@ -53,7 +53,7 @@ void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, 
     }
 }
 
-// Through the window that stays, however much it is: few parts fill it.
+// Copies through the window that stays, however much it is: few parts fill it.
 void Staging::uploadParts(const Buffer& buffer, const void* data, std::span<const BufferPart> parts) {
     if (parts.empty()) return;
     const std::lock_guard lock(mutex_);

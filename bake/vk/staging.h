@@ -7,8 +7,8 @@
 
 namespace relume::vk {
 
-/// A device's way between memory of the CPU and buffers that it cannot see. Small copies go through a window
-/// that stays: to make one takes a driver longer than to copy. For any thread.
+/// Copies between host memory and a device's buffers. Where the CPU cannot see a buffer, small copies go
+/// through a window that stays: a driver takes longer to make one than to copy. Any thread may use it.
 class Staging {
 public:
     explicit Staging(const Device& device) : device_(device), commands_(device) {}

@@ -10,7 +10,7 @@ inline void deleteBuffer(GLuint name) {
     glDeleteBuffers(1, &name);
 }
 
-/// A buffer of immutable size; move-only.
+/// Owns a buffer of immutable size; move-only.
 class Buffer {
 public:
     struct Desc {

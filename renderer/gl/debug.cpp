@@ -44,7 +44,7 @@ void listenToDebugMessages() {
     glEnable(GL_DEBUG_OUTPUT);
     glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     glDebugMessageCallback(receive, nullptr);
-    // What is wrong with a shader is thrown, with file and line.
+    // Errors in a shader are thrown, with file and line.
     glDebugMessageControl(GL_DEBUG_SOURCE_SHADER_COMPILER, GL_DONT_CARE, GL_DONT_CARE, 0, nullptr, GL_FALSE);
     // Labelled groups of passes would come back as messages.
     glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_PUSH_GROUP, GL_DONT_CARE, 0, nullptr, GL_FALSE);

@@ -12,10 +12,10 @@ public:
     Fence(Fence&& other) noexcept;
     Fence& operator=(Fence&& other) noexcept;
 
-    /// Behind all commands issued so far in the current context.
+    /// Inserts a fence behind all commands issued so far in the current context.
     static Fence insert();
 
-    /// Never waits.
+    /// Tells whether the commands are done; never waits.
     [[nodiscard]] bool signalled();
     void wait();
 

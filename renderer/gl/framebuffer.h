@@ -11,7 +11,7 @@ inline void deleteFramebuffer(GLuint name) {
     glDeleteFramebuffers(1, &name);
 }
 
-/// A colour texture to draw into, with a depth texture where one is asked for; move-only.
+/// Owns a colour texture to draw into, with a depth texture where one is asked for; move-only.
 class Framebuffer {
 public:
     struct Desc {

@@ -10,7 +10,7 @@
 namespace relume::gl {
 namespace {
 
-// The path in `#include "path"`, "" where the line is none.
+// Returns the path in `#include "path"`, or "" where the line is no such line.
 std::string includedPath(const std::string& line) {
     static const std::regex pattern("^[ \t]*#[ \t]*include[ \t]*\"([^\"]+)\".*$");
     std::smatch match;
@@ -41,7 +41,7 @@ void append(GlslSource& source, const std::string& path) {
 
 GlslSource loadGlsl(const std::string& path, const std::vector<std::string>& definitions) {
     GlslSource source;
-    // What lib/*.glsl need to be GLSL: in C++ FUNCTION is `inline`.
+    // These make lib/*.glsl GLSL: in C++ FUNCTION is `inline`.
     source.text = "#version 450 core\n#define FUNCTION\n#define CONST const\n#define INOUT(T) inout T\n";
     for (std::string definition : definitions) {
         const size_t equals = definition.find('=');
@@ -53,7 +53,7 @@ GlslSource loadGlsl(const std::string& path, const std::vector<std::string>& def
 }
 
 std::string describeLog(const GlslSource& source, const std::string& log) {
-    // Mesa: "0:12(5): error: text"; NVIDIA: "0(12) : error C1008: text".
+    // Mesa writes "0:12(5): error: text"; NVIDIA writes "0(12) : error C1008: text".
     static const std::regex mesa("^([0-9]+):([0-9]+)\\([0-9]+\\): error: (.*)$");
     static const std::regex nvidia("^([0-9]+)\\(([0-9]+)\\) : error (.*)$");
     std::istringstream lines(log);

@@ -6,8 +6,8 @@
 
 namespace relume::gl {
 
-/// Owns the name of an OpenGL object; move-only. Made and destroyed with the context current that it belongs
-/// to.
+/// Owns the name of an OpenGL object; move-only. It is made and destroyed while the context that it belongs
+/// to is current.
 template<void (*Delete)(GLuint)>
 class Handle {
 public:
@@ -34,7 +34,7 @@ private:
     GLuint name_ = 0; // 0: none
 };
 
-/// Names an object for debug messages and captures. `kind`: GL_BUFFER, GL_TEXTURE, ...
+/// Names an object for debug messages and captures. `kind` is GL_BUFFER, GL_TEXTURE, ...
 inline void label(GLenum kind, GLuint object, const char* name) {
     if (name[0] != '\0') glObjectLabel(kind, object, -1, name);
 }

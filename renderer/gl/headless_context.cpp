@@ -31,13 +31,13 @@ bool has(const char* extensions, std::string_view name) {
     return false;
 }
 
-// Whether libEGL can be loaded: epoxy ends the program where it cannot.
+// Tells whether libEGL can be loaded: epoxy ends the program where it cannot.
 bool eglExists() {
     void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL);
     return library != nullptr; // stays loaded: epoxy takes the same
 }
 
-// A display for each EGL device; those of a GPU or of Mesa's software renderer.
+// Adds a display for each EGL device: those of GPUs, or those of Mesa's software renderer.
 void addDevices(bool software, std::vector<Display>& displays) {
     std::array<EGLDeviceEXT, 16> devices{};
     EGLint count = 0;
@@ -50,7 +50,8 @@ void addDevices(bool software, std::vector<Display>& displays) {
     }
 }
 
-// In the order to be tried: GPUs, then what Mesa finds by itself, then its software device.
+// Returns the displays in the order in which to try them: GPUs, then what Mesa finds by itself, then its
+// software device.
 std::vector<Display> findDisplays() {
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     std::vector<Display> displays;
@@ -66,7 +67,8 @@ std::vector<Display> findDisplays() {
     return displays;
 }
 
-// nullptr where the display has no configuration for OpenGL; not looked for where none is needed.
+// Returns a configuration for OpenGL, or nullptr where the display has none. It is not looked for where none
+// is needed.
 EGLConfig findConfig(EGLDisplay display) {
     if (has(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_no_config_context")) return EGL_NO_CONFIG_KHR;
     const std::array<EGLint, 5> wanted = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
@@ -77,7 +79,8 @@ EGLConfig findConfig(EGLDisplay display) {
     return count > 0 ? config : nullptr;
 }
 
-// Made current; EGL_NO_CONTEXT where this display cannot have one. version 0: any.
+// Makes a context and makes it current; returns EGL_NO_CONTEXT where this display cannot have one. Version 0
+// takes any.
 EGLContext makeContext(EGLDisplay display, EGLConfig config, int major, bool debug) {
     std::vector<EGLint> attributes;
     if (major > 0) {
@@ -94,7 +97,7 @@ EGLContext makeContext(EGLDisplay display, EGLConfig config, int major, bool deb
     return EGL_NO_CONTEXT;
 }
 
-// What the display's driver has instead of OpenGL 4.5, "" where it has nothing.
+// Returns what the display's driver has instead of OpenGL 4.5, or "" where it has nothing.
 std::string describeOlder(EGLDisplay display, EGLConfig config) {
     EGLContext context = makeContext(display, config, 0, false);
     if (context == EGL_NO_CONTEXT) return "";

@@ -7,8 +7,8 @@
 
 namespace relume::gl {
 
-/// Texels (GL_RGBA, half floats) on their way into a texture: memory of the driver that any thread may write,
-/// mapped as long as this lives; move-only. Who writes and who uploads when is up to its users.
+/// Holds texels (GL_RGBA, half floats) on their way into a texture: memory of the driver that any thread may
+/// write, mapped as long as this lives; move-only. Its users decide who writes and who uploads when.
 class PixelBuffer {
 public:
     struct Desc {
@@ -23,8 +23,8 @@ public:
     PixelBuffer() = default;
     explicit PixelBuffer(const Desc& desc); // throws Error when there is no memory
 
-    /// All rows, tightly packed, row 0 first. What is written is seen by uploads issued afterwards; it must
-    /// stay until a Fence behind the upload is signalled.
+    /// Returns all rows, tightly packed, row 0 first. What is written is seen by uploads issued afterwards;
+    /// it must stay until a Fence behind the upload is signalled.
     std::span<std::byte> bytes() const { return bytes_; }
 
     /// Copies to the same place of a texture at least as large; does not wait.

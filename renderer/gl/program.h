@@ -13,7 +13,7 @@ inline void deleteProgram(GLuint name) {
     glDeleteProgram(name);
 }
 
-/// A vertex and a fragment shader, linked; move-only. Uniforms are set by the locations their GLSL gives
+/// Owns a vertex and a fragment shader, linked; move-only. Uniforms are set by the locations their GLSL gives
 /// them.
 class Program {
 public:

@@ -7,10 +7,11 @@
 
 namespace relume::gl {
 
-/// Variants of programs by the caller's keys, each made when it is first asked for.
+/// Holds variants of programs by the caller's keys, each made when it is first asked for.
 class ProgramCache {
 public:
-    /// makeDesc() -> Program::Desc, called once per key. Throws Error as Program does.
+    /// Returns the program of a key. makeDesc() returns its Program::Desc and is called once per key. Throws
+    /// Error as Program does.
     template<typename MakeDesc>
     const Program& get(uint32_t key, MakeDesc makeDesc) {
         const auto found = entries_.find(key);
@@ -20,7 +21,8 @@ public:
         return entries_.emplace(key, Entry{std::move(desc), std::move(program)}).first->second.program;
     }
 
-    /// The same variants compiled from what the shaders are now; this one stays as it is. Throws Error.
+    /// Returns the same variants compiled from what the shaders are now; this cache stays as it is. Throws
+    /// Error.
     ProgramCache reloaded() const;
 
 private:

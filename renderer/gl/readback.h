@@ -24,9 +24,10 @@ public:
     /// What was asked for before and not fetched is forgotten.
     void request(const Framebuffer& framebuffer, GLenum layout, GLenum type);
     bool pending() const { return pending_; }
-    /// What was asked for, once, as soon as it is there; valid until the next request. Never waits.
+    /// Returns what was asked for, once, as soon as it is there; it is valid until the next request. Never
+    /// waits.
     std::optional<std::span<const std::byte>> poll();
-    /// The same at once; something was asked for.
+    /// Returns what was asked for, and waits for it; something must have been asked for.
     std::span<const std::byte> wait();
 
 private:

@@ -12,15 +12,15 @@ inline void deleteMemoryObject(GLuint name) {
     glDeleteMemoryObjectsEXT(1, &name);
 }
 
-/// Whether the current context can draw from memory of another API, and of which devices.
+/// Tells whether the current context can draw from memory of another API, and of which devices.
 struct GlSharing {
     bool memoryObject = false;                        // GL_EXT_memory_object_fd
     std::vector<std::array<uint8_t, 16>> deviceUuids; // what Vulkan calls deviceUUID
 };
 GlSharing querySharing();
 
-/// A texture in memory that Vulkan exported: OPTIMAL tiling, a dedicated allocation; move-only. Who writes it
-/// when is up to its users, it does not synchronise.
+/// Owns a texture in memory that Vulkan exported: OPTIMAL tiling, a dedicated allocation; move-only. Its
+/// users decide who writes it when; it does not synchronise.
 class SharedTexture {
 public:
     struct Desc {

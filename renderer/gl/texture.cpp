@@ -11,7 +11,7 @@
 namespace relume::gl {
 namespace {
 
-// Near enough for a message about memory.
+// Returns the bytes of a texel, exactly enough for a message about memory.
 double bytesPerTexel(GLenum format) {
     switch (format) {
     case GL_RGBA32F:

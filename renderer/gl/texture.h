@@ -10,8 +10,8 @@ inline void deleteTexture(GLuint name) {
     glDeleteTextures(1, &name);
 }
 
-/// A 2D texture of immutable size; move-only. Starts with linear filters (through the mips where it has them)
-/// and edges clamped.
+/// Owns a 2D texture of immutable size; move-only. It starts with linear filters (through the mips where it
+/// has them) and clamped edges.
 class Texture {
 public:
     struct Desc {
@@ -39,7 +39,7 @@ private:
     uint32_t width_ = 0, height_ = 0;
 };
 
-/// Levels of a whole chain of mips.
+/// Returns how many levels a whole chain of mips has.
 uint32_t mipCount(uint32_t width, uint32_t height);
 
 } // namespace relume::gl

@@ -15,7 +15,7 @@ Timer::Scope::Scope(Timer& timer, const char* name)
         glCreateQueries(GL_TIMESTAMP, 1, &query);
         frame.queries.emplace_back(query);
     }
-    // Time stamps, as GL_TIME_ELAPSED cannot nest.
+    // These are time stamps, since GL_TIME_ELAPSED cannot nest.
     glQueryCounter(frame.queries[2 * pass_].get(), GL_TIMESTAMP);
 }
 
@@ -41,7 +41,7 @@ void Timer::endFrame() {
     }
 }
 
-// False when the device is not there yet.
+// Takes a frame's times. Returns false where the device is not there yet.
 bool Timer::collect(Frame& frame) {
     for (size_t i = 0; i < 2 * frame.passes.size(); ++i) {
         GLuint available = GL_FALSE;

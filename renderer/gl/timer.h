@@ -38,7 +38,7 @@ public:
 
     /// Ends a frame, outside of all passes: what is measured from now on belongs to the next.
     void endFrame();
-    /// The passes, in the order of their starts, of the newest frame whose device times are known.
+    /// Returns the passes, in the order of their starts, of the newest frame whose device times are known.
     const std::vector<Pass>& passes() const { return passes_; }
 
 private:

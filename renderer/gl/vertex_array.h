@@ -10,14 +10,14 @@ inline void deleteVertexArray(GLuint name) {
     glDeleteVertexArrays(1, &name);
 }
 
-/// One attribute of a vertex, at the location of its place in the list.
+/// Describes one attribute of a vertex, at the location of its place in the list.
 struct VertexAttribute {
     GLint components = 3;
     GLenum type = GL_FLOAT; // GL_UNSIGNED_INT: an integer in the shader
     GLuint offset = 0;      // [bytes] in the vertex
 };
 
-/// How vertices and indices are read from two buffers, which must outlive it; move-only.
+/// Tells how vertices and indices are read from two buffers, which must outlive it; move-only.
 class VertexArray {
 public:
     struct Desc {

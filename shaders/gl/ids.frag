@@ -1,5 +1,6 @@
-// What the scene's fragment is, in place of its colour. OUTPUT 0: the lightmap tile, 1: instance, material and lightmap uv, 2: the
-// position. MASKED: the material has holes, BASE: its colour is a texture.
+// Tells what the scene's fragment is, in place of its colour. OUTPUT 0 is the lightmap tile, 1 instance,
+// material and lightmap uv, 2 the position. MASKED says that the material has holes, BASE that its colour is
+// a texture.
 
 #include "lib/scene_material.glsl"
 

@@ -1,10 +1,10 @@
-// Reading the lightmap: lighting or another quantity in RGB, coverage in A; empty texels (A 0) are left out of every filter, so
-// that a chart's edge stays as bright as its inside.
+// Reads the lightmap: lighting or another quantity in RGB, coverage in A; empty texels (A 0) are left out of
+// every filter, so that a chart's edge stays as bright as its inside.
 
 layout(binding = 3) uniform sampler2D lightmap;
 
-// RGB is premultiplied by A, the share of the weights that fell on texels with light. FILLED: no texel that a filter reaches is
-// empty, so nothing needs to look.
+// RGB is premultiplied by A, the share of the weights that fell on texels with light. With FILLED no texel
+// that a filter reaches is empty, so nothing needs to look.
 vec4 bilinearTap(vec2 uv) {
     vec3 light = textureLod(lightmap, uv, 0.0).rgb;
     if (FILLED != 0) return vec4(light, 1.0);
@@ -12,12 +12,12 @@ vec4 bilinearTap(vec2 uv) {
     vec4 filled = vec4(greaterThan(textureGather(lightmap, uv, 3), vec4(0.0)));
     if (all(equal(filled, vec4(1.0)))) return vec4(light, 1.0);
     vec2 f = fract(uv * size - 0.5);
-    vec4 weights = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y)); // gather's order
+    vec4 weights = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y)); // textureGather
     return vec4(light, dot(filled, weights));
 }
 
-// Cubic B-spline in four bilinear taps [Sigg and Hadwiger, GPU Gems 2, chapter 20]; reaches two texels, which is less than a
-// baker's dilation.
+// Filters by a cubic B-spline in four bilinear taps [Sigg and Hadwiger, GPU Gems 2, chapter 20]; it reaches
+// two texels, which is less than a baker's dilation.
 vec4 bicubicTap(vec2 uv) {
     vec2 size = vec2(textureSize(lightmap, 0));
     vec2 texel = uv * size - 0.5;
@@ -38,7 +38,7 @@ vec4 nearestTap(vec2 uv) {
     return texel.a > 0.0 ? vec4(texel.rgb, 1.0) : vec4(0.0);
 }
 
-// The quantity at uv; `otherwise` where no texel near has any.
+// Returns the quantity at uv; `otherwise` where no texel near has any.
 vec3 sampleLightmap(vec2 uv, uint filterKind, vec3 otherwise) {
     vec4 tap = filterKind == kFilterNearest    ? nearestTap(uv)
                : filterKind == kFilterBilinear ? bilinearTap(uv)

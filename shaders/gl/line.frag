@@ -1,4 +1,4 @@
-// A line's colour as displayed.
+// Draws a line's colour as displayed.
 
 layout(location = 1) uniform float opacity;
 

@@ -1,4 +1,4 @@
-// A vertex of a line, in world space.
+// Places a vertex of a line, in world space.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -10,6 +10,7 @@ out vec3 fragColor;
 void main() {
     fragColor = color;
     gl_Position = viewProjection * vec4(position, 1.0);
-    // Towards the eye by a share of the distance: lines lie on surfaces, and depth grows towards the eye.
+    // The line is moved towards the eye by a share of the distance: lines lie on surfaces, and depth grows
+    // towards the eye.
     gl_Position.z += 2e-4 * gl_Position.z;
 }

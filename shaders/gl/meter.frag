@@ -1,11 +1,13 @@
-// Measures the light of one cell of the picture: sum of log2(luminance), sum of luminance and number of pixels with light.
+// Measures the light of one cell of the picture: sum of log2(luminance), sum of luminance and number of
+// pixels with light.
 
 #include "lib/tone.glsl"
 #include "gl/picture.glsl"
 
 out vec4 result;
 
-// [pixels] in each row and column: a ninth of the work, and of large pictures still twenty in each cell.
+// A step in each row and column [pixels]: a ninth of the work, and of large pictures still twenty in each
+// cell.
 const int kStep = 3;
 
 void main() {

@@ -1,4 +1,4 @@
-// The picture as it was drawn, with SAMPLES samples in each pixel.
+// Reads the picture as it was drawn, with SAMPLES samples in each pixel.
 
 #if SAMPLES > 0
 layout(binding = 0) uniform sampler2DMS picture;

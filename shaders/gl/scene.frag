@@ -1,6 +1,6 @@
-// A fragment of the scene in view VIEW with lightmap filter FILTER and tone mapping TONE. What a material does not need is not
-// fetched: BASE, EMISSION, METALLIC say which textures it has, MASKED whether it has holes, MAPPED whether there are lightmap UVs;
-// SELECTED tints.
+// Shades a fragment of the scene in view VIEW with lightmap filter FILTER and tone mapping TONE. What a
+// material does not need is not fetched: BASE, EMISSION, METALLIC say which textures it has, MASKED whether
+// it has holes, MAPPED whether there are lightmap UVs; SELECTED tints.
 
 #include "lib/scene_material.glsl"
 #include "gl/light.glsl"
@@ -30,7 +30,7 @@ flat in uvec2 fragIds;
 
 out vec4 result; // as displayed; a: for the meter
 
-// Constants, not uniforms: a software device would go through all branches.
+// These are constants, not uniforms: a software device would go through all branches.
 const uint view = VIEW;
 const uint filterKind = FILTER;
 const vec3 kNoLightmap = vec3(0.35, 0.3, 0.4); // display; of geometry without lightmap UVs
@@ -40,7 +40,7 @@ bool mapped() {
     return MAPPED == kMappedAll || (MAPPED == kMappedSome && fragIds.y != 0u);
 }
 
-// Light from the viewer's side, so that shapes show where there is no other light.
+// Returns light from the viewer's side, so that shapes show where there is no other light.
 float headlight() {
     return 0.6 + 0.4 * abs(dot(normalize(fragNormal), normalize(eye - fragPosition)));
 }
@@ -66,7 +66,7 @@ vec3 emission(SceneMaterial m) {
     return EMISSION != 0 ? m.emission.rgb * texture(emissionTexture, fragEmissionUv).rgb : m.emission.rgb;
 }
 
-// Hues a golden angle apart: neighbours in number are far apart in colour.
+// Returns hues a golden angle apart: neighbours in number are far apart in colour.
 vec3 idColor(uint id) {
     float hue = fract(float(id) * 0.61803399 + 0.13);
     vec3 rgb = clamp(abs(fract(hue + vec3(0.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
@@ -82,7 +82,7 @@ vec3 checkerColor() {
     return tint * mix(0.55, 0.9, odd);
 }
 
-// Blue: fewer texels per metre than the median, red: more; full colour at a factor of 4.
+// Returns blue for fewer texels per metre than the median, red for more; full colour at a factor of 4.
 vec3 densityColor(vec2 tx, vec2 ty, vec3 px, vec3 py) {
     float texels = float(lightmapSize) * sqrt(abs(tx.x * ty.y - tx.y * ty.x));
     float metres = sqrt(length(cross(px, py)));
@@ -105,7 +105,7 @@ vec3 inspectColor() {
 }
 
 vec4 shown(SceneMaterial m, vec3 base) {
-    // Derivatives need all fragments of a quad: none in a branch.
+    // Derivatives need all fragments of a quad: none stands in a branch.
     vec3 px = dFdx(fragPosition), py = dFdy(fragPosition);
     vec2 tx = dFdx(fragLightmapUv), ty = dFdy(fragLightmapUv);
     switch (view) {
@@ -133,6 +133,6 @@ void main() {
     vec4 base = baseColor(m);
     vec4 color = shown(m, base.rgb);
     if (SELECTED != 0) color.rgb = mix(color.rgb, kSelected, 0.35);
-    if (MASKED != 0 && base.a < m.emission.a) discard; // behind all look-ups: mips need all fragments of a quad
+    if (MASKED != 0 && base.a < m.emission.a) discard; // behind all look-ups: mips need whole quads
     result = color;
 }

@@ -1,4 +1,4 @@
-// A vertex of the scene, in world space as it was loaded.
+// Places a vertex of the scene, in world space as it was loaded.
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

@@ -1,4 +1,5 @@
-// The sky, where nothing else is: one radiance or an equirectangular picture (PICTURE), exposed and tone mapped as the scene is.
+// Draws the sky, where nothing else is: one radiance or an equirectangular picture (PICTURE), exposed and
+// tone mapped as the scene is.
 
 #include "gl/light.glsl"
 #include "lib/sky_place.glsl"

@@ -1,4 +1,5 @@
-// The lightmap's texture itself, in view VIEW with filter FILTER and tone mapping TONE; row 0 on top, as images have it.
+// Draws the lightmap's texture itself, in view VIEW with filter FILTER and tone mapping TONE; row 0 is on
+// top, as images have it.
 
 #include "lib/scene_material.glsl"
 #include "gl/light.glsl"

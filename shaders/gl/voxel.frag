@@ -1,4 +1,4 @@
-// A box's face, brighter towards the viewer so that edges show.
+// Draws a box's face, brighter towards the viewer so that edges show.
 
 layout(location = 3) uniform vec4 eye; // point; w 0: the direction towards it
 

@@ -1,4 +1,4 @@
-// A corner of a box. Of each instance only the three faces towards the eye are made, six corners each.
+// Places a corner of a box. Of each instance only the three faces towards the eye are made, six corners each.
 
 layout(std430, binding = 1) readonly buffer Voxels { uvec4 voxels[]; }; // centre as floats [m], colour in 3 x 8 bits
 

@@ -1,4 +1,5 @@
-// Alpha test of masked triangles, alike for all tracers. Legal as GLSL and as C++; the includer supplies
+// The alpha test of masked triangles, alike for all tracers. It is legal as GLSL and as C++; the includer
+// supplies
 //   float alphaTexel(uint offset)   one 8-bit alpha / 255
 
 FUNCTION uint wrapTexel(float u, uint n, uint mode) {
@@ -11,7 +12,7 @@ FUNCTION uint wrapTexel(float u, uint n, uint mode) {
     return uint(k < m ? k : period - 1 - k);
 }
 
-// True where the hit is solid: alpha (nearest texel) >= cutoff.
+// Tells whether the hit is solid: alpha (nearest texel) >= cutoff.
 FUNCTION bool alphaSolid(AlphaTriangle t, AlphaMaterial m, float b1, float b2) {
     float b0 = 1.0f - b1 - b2;
     float alpha = m.factor * (t.a0 * b0 + t.a1 * b1 + t.a2 * b2);

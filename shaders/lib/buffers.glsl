@@ -1,4 +1,5 @@
-// Buffers by device address. Structs of whole 16-byte rows are read as rows of four words: one wide load each.
+// Buffers by device address. Structs of whole 16-byte rows are read as rows of four words: one wide load
+// each.
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Rows { uvec4 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Vec4s { vec4 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec3s { vec3 items[]; };

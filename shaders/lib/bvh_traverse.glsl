@@ -1,5 +1,5 @@
-// Traversal of our binary BVH, depth first with a stack. Legal as GLSL and as C++; needs lib/intersect.glsl, and the
-// includer supplies
+// Traverses our binary BVH, depth first with a stack. It is legal as GLSL and as C++; it needs
+// lib/intersect.glsl, and the includer supplies
 //   BvhNode bvhNode(uint index)
 //   BvhTriangle bvhTriangle(uint index)   in the builder's order; .id is the one in WorldMesh order
 //   bool solidHit(uint id, float b1, float b2)   the alpha test of a masked triangle
@@ -15,7 +15,7 @@ const uint kBvhMasked = 0x80000000u; // bit of BvhTriangle::id
 const uint kNoBlocker = 0xffffffffu;
 const int kStackEnd = 0x7fffffff; // below all that is on the stack: neither node nor leaf
 
-// Child 0's are read with child 1's bits below: a little larger.
+// Child 0's extents are read with child 1's bits below: they are a little larger.
 FUNCTION vec2 enterChild0(BvhNode node, BvhRay ray, float tMin, float tMax) {
     return boxRange(node.centre0, uintBitsToFloat(node.extents), ray, tMin, tMax);
 }
@@ -23,9 +23,10 @@ FUNCTION vec2 enterChild1(BvhNode node, BvhRay ray, float tMin, float tMax) {
     return boxRange(node.centre1, uintBitsToFloat(node.extents << 16u), ray, tMin, tMax);
 }
 
-// True if anything solid lies within [tMin, tMax], 0 <= tMin. `blocker` is the triangle that stopped this invocation's last
-// blocked ray, in the builder's order (kNoBlocker at first): rays to neighbouring patches are mostly stopped by the same
-// one. Children are taken in the tree's order, the likelier one first: sorting them by distance costs more than it saves.
+// Returns true if anything solid lies within [tMin, tMax], 0 <= tMin. `blocker` is the triangle that stopped
+// this invocation's last blocked ray, in the builder's order (kNoBlocker at first): rays to neighbouring
+// patches are mostly stopped by the same one. Children are taken in the tree's order, the likelier one first:
+// sorting them by distance costs more than it saves.
 FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax, INOUT(uint) blocker) {
     BvhRay ray = bvhRay(origin, direction);
     if (blocker != kNoBlocker && intersectTriangle(bvhTriangle(blocker), ray, tMin, tMax).hit) return true;
@@ -62,7 +63,7 @@ FUNCTION bool bvhAnyHit(vec3 origin, vec3 direction, float tMin, float tMax, INO
     }
 }
 
-// `best`, or what is nearer among a leaf's triangles.
+// Returns `best`, or what is nearer among a leaf's triangles.
 FUNCTION BvhHit nearerInLeaf(uint leaf, BvhRay ray, float tMin, BvhHit best) {
     uint end = (leaf >> 3) + (leaf & 7u);
     for (uint i = leaf >> 3; i < end; ++i) {
@@ -70,7 +71,7 @@ FUNCTION BvhHit nearerInLeaf(uint leaf, BvhRay ray, float tMin, BvhHit best) {
         TriangleHit h = intersectTriangle(triangle, ray, tMin, best.t);
         if (!h.hit) continue;
         uint id = triangle.id & ~kBvhMasked;
-        // Two triangles at one distance: the lower index, whatever the tree's order.
+        // The lower index counts where two triangles are at one distance, whatever the tree's order.
         if (h.t == best.t && id > best.triangle) continue;
         if ((triangle.id & kBvhMasked) != 0u && !solidHit(id, h.b1, h.b2)) continue;
         best.triangle = id;
@@ -81,8 +82,9 @@ FUNCTION BvhHit nearerInLeaf(uint leaf, BvhRay ray, float tMin, BvhHit best) {
     return best;
 }
 
-// The nearest solid hit within [tMin, tMax], 0 <= tMin. The first leaf that a ray comes to is held back while it goes on to
-// the next one, so that a GPU's lanes test triangles together [Aila and Laine 2009]. Any-hit rays would go on in vain.
+// Returns the nearest solid hit within [tMin, tMax], 0 <= tMin. The first leaf that a ray comes to is held
+// back while it goes on to the next one, so that a GPU's lanes test triangles together [Aila and Laine 2009].
+// Any-hit rays would go on in vain.
 FUNCTION BvhHit bvhClosestHit(vec3 origin, vec3 direction, float tMin, float tMax) {
     BvhRay ray = bvhRay(origin, direction);
     BvhHit best;

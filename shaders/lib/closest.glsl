@@ -1,4 +1,4 @@
-// Links of one patch for eight consecutive samples.
+// Traces the links of one patch for eight consecutive samples.
 #include "lib/link.glsl"
 
 vec3 discSample(uint key, uint index) {

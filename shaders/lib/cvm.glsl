@@ -1,5 +1,5 @@
-// Which voxels a triangle touches. Legal as GLSL and as C++. Points are in voxels, turned so that z is the axis that the
-// triangle faces most.
+// Tells which voxels a triangle touches. It is legal as GLSL and as C++. Points are in voxels, turned so that
+// z is the axis that the triangle faces most.
 
 FUNCTION uint dominantAxis(vec3 normal) {
     vec3 n = abs(normal);
@@ -14,7 +14,8 @@ FUNCTION vec3 fromAxis(vec3 p, uint axis) {
     return axis == 0u ? vec3(p.z, p.x, p.y) : axis == 1u ? vec3(p.y, p.z, p.x) : p;
 }
 
-// A voxel that is missed by less than this counts as touched: coordinates of up to 512 voxels are rounded to 1/32768.
+// A voxel that is missed by less than this counts as touched: coordinates of up to 512 voxels are rounded to
+// 1/32768.
 const float kVoxelSlack = 1.0f / 4096.0f; // voxels
 const float kHalfVoxel = 0.5f + 1.0f / 4096.0f;
 const float kProductError = 1e-6f; // relative error of a product of three lengths, a few roundings
@@ -38,7 +39,7 @@ FUNCTION VoxelTriangle voxelTriangle(vec3 a, vec3 b, vec3 c) {
 
 FUNCTION float distanceSum(vec3 d) { return abs(d.x) + abs(d.y) + abs(d.z); }
 
-// Lowest and highest z at which the triangle may lie inside the column of pixels around `centre`.
+// Returns the lowest and highest z at which the triangle may lie inside the column of pixels around `centre`.
 FUNCTION vec2 columnRange(VoxelTriangle t, vec2 centre) {
     float lo = min(t.a.z, min(t.b.z, t.c.z)) - kVoxelSlack, hi = max(t.a.z, max(t.b.z, t.c.z)) + kVoxelSlack;
     vec2 d = centre - vec2(t.a.x, t.a.y);
@@ -52,7 +53,8 @@ FUNCTION vec2 columnRange(VoxelTriangle t, vec2 centre) {
     return vec2(lo, hi);
 }
 
-// Whether the line through p and q and the third corner r, seen along one axis, leave the box around the origin aside.
+// Tells whether the line through p and q and the third corner r, seen along one axis, leave the box around
+// the origin aside.
 FUNCTION bool edgeSeparates(float px, float py, float qx, float qy, float rx, float ry) {
     float nx = py - qy, ny = qx - px;
     float onEdge = nx * px + ny * py, opposite = nx * rx + ny * ry;
@@ -60,7 +62,8 @@ FUNCTION bool edgeSeparates(float px, float py, float qx, float qy, float rx, fl
     return min(onEdge, opposite) > reach || max(onEdge, opposite) < -reach;
 }
 
-// Whether triangle and voxel have a point in common, by separating axes [Akenine-Moeller 2001]; the voxel slightly enlarged.
+// Tells whether triangle and voxel have a point in common, by separating axes [Akenine-Moeller 2001]; the
+// voxel is slightly enlarged.
 FUNCTION bool touchesVoxel(VoxelTriangle t, vec3 centre) {
     vec3 a = t.a - centre, b = t.b - centre, c = t.c - centre;
     vec3 lo = min(a, min(b, c)), hi = max(a, max(b, c));
@@ -74,7 +77,7 @@ FUNCTION bool touchesVoxel(VoxelTriangle t, vec3 centre) {
              edgeSeparates(c.z, c.x, a.z, a.x, b.z, b.x));
 }
 
-// Whether the triangle touches the pixel around `centre` in the picture.
+// Tells whether the triangle touches the pixel around `centre` in the picture.
 FUNCTION bool touchesPixel(VoxelTriangle t, vec2 centre) {
     VoxelTriangle flat_ = t;
     flat_.a = vec3(t.a.x - centre.x, t.a.y - centre.y, 0.0f);
@@ -84,7 +87,7 @@ FUNCTION bool touchesPixel(VoxelTriangle t, vec2 centre) {
     return touchesVoxel(flat_, vec3(0.0f));
 }
 
-// Weights of the corners b and c at a point of the picture, moved onto the triangle.
+// Returns the weights of the corners b and c at a point of the picture, moved onto the triangle.
 FUNCTION vec2 cornerWeights(VoxelTriangle t, vec2 at) {
     float ex = t.b.x - t.a.x, ey = t.b.y - t.a.y, fx = t.c.x - t.a.x, fy = t.c.y - t.a.y;
     float dx = at.x - t.a.x, dy = at.y - t.a.y, det = ex * fy - ey * fx;

@@ -1,15 +1,16 @@
-// Lights with an area, sampled as lights. Legal as GLSL and as C++ (namespace relume::shader); after lib/polygon_sample.glsl.
-// Occlusion is the caller's.
+// Lights with an area, sampled as lights. It is legal as GLSL and as C++ (namespace relume::shader); it comes
+// after lib/polygon_sample.glsl. Occlusion is left to the caller.
 
-// Exact, from a point p [m] of unit normal n to the whole polygon, clipped to the horizon of n. In [0, 1]; 0 behind it.
+// Returns the exact form factor from a point p [m] of unit normal n to the whole polygon, clipped to the
+// horizon of n. It is in [0, 1], and 0 behind the polygon.
 FUNCTION float emitterFormFactor(vec3 p, vec3 n, EmitterPolygon e) {
     return polygonFormFactor(p, n, e.c0, e.c1, e.c2, e.c3);
 }
 
-// Twice the area along the normal: the product of the diagonals, whichever shape it is.
+// Returns twice the area along the normal: the product of the diagonals, whichever shape it is.
 FUNCTION vec3 emitterFront(EmitterPolygon e) { return cross(e.c2 - e.c0, e.c3 - e.c1); }
 
-// Unit, where it shines; zero for a polygon whose corners have run together.
+// Returns the unit normal, where it shines; zero for a polygon whose corners have run together.
 FUNCTION vec3 emitterNormal(EmitterPolygon e) {
     vec3 front = emitterFront(e);
     float size = length(front);
@@ -27,11 +28,11 @@ FUNCTION PolygonPart emitterPart(EmitterPolygon e) {
     return q;
 }
 
-// A point on the polygon, uniform in area for uniform u in [0, 1)^2; stratified where u is.
+// Returns a point on the polygon, uniform in area for uniform u in [0, 1)^2; stratified where u is.
 FUNCTION vec3 emitterPoint(EmitterPolygon e, vec2 u) { return partPoint(emitterPart(e), u); }
 
-// What the point y of the polygon says about its form factor: cos cos A / (pi r^2), 0 below the horizon and behind. Its
-// mean over emitterPoint is emitterFormFactor.
+// Returns what the point y of the polygon says about its form factor: cos cos A / (pi r^2), 0 below the
+// horizon and behind. Its mean over emitterPoint is emitterFormFactor.
 FUNCTION float emitterPointFactor(vec3 p, vec3 n, EmitterPolygon e, vec3 y) {
     vec3 d = y - p;
     float d2 = dot(d, d);
@@ -45,7 +46,7 @@ struct EmitterSample {
     float factor; // its mean over u is emitterFormFactor
 };
 
-// As emitterPoint, but of an emitter that is near more points lie where most of its light comes from.
+// Samples as emitterPoint does, but on a near polygon more points lie where most of its light comes from.
 FUNCTION EmitterSample emitterSample(vec3 p, vec3 n, EmitterPolygon e, vec2 u) {
     PolygonPoint y = polygonPoint(p, n, emitterPart(e), u);
     EmitterSample s;
@@ -54,8 +55,9 @@ FUNCTION EmitterSample emitterSample(vec3 p, vec3 n, EmitterPolygon e, vec2 u) {
     return s;
 }
 
-// Largest cosine that a direction to p can have with a normal of the node's cone. cosAxis: with its axis, from the box's
-// centre; sinBox: of the angle that half the box's diagonal spans from p, 1 or more from inside.
+// Returns the largest cosine that a direction to p can have with a normal of the node's cone. cosAxis is that
+// with its axis, from the box's centre; sinBox the sine of the angle that half the box's diagonal spans from
+// p, 1 or more from inside.
 FUNCTION float coneCosine(float cosCone, float cosAxis, float sinBox) {
     if (!(sinBox < 1.0f)) return 1.0f;
     float cosBox = sqrt(1.0f - sinBox * sinBox);
@@ -65,13 +67,13 @@ FUNCTION float coneCosine(float cosCone, float cosAxis, float sinBox) {
     return cosAxis * cosSum + sqrt(max(0.0f, 1.0f - cosAxis * cosAxis)) * sinSum;
 }
 
-// About how much of the node's light p receives, in any one unit: power over distance^2, times for both ends the mean of the
-// cosine towards the box's centre and of a bound that no part of the box exceeds [after Conty Estevez and Kulla 2018]. The
-// bounds alone give what is turned away too much: with the means one pick among 1000 lamps has half the variance. 0
-// only where no emitter of the node can shine on p.
+// Estimates how much of the node's light p receives, in any one unit: power over distance^2, times for both
+// ends the mean of the cosine towards the box's centre and of a bound that no part of the box exceeds [after
+// Conty Estevez and Kulla 2018]. The bounds alone give what is turned away too much: with the means one pick
+// among 1000 lights has half the variance. It is 0 only where no polygon of the node can shine on p.
 FUNCTION float emitterImportance(EmitterNode e, vec3 p, vec3 n) {
     vec3 extent = 0.5f * (e.hi - e.lo), d = e.lo + extent - p;
-    // Rounding of coordinates; a node whose normals agree within 1e-5 rad counts as flat.
+    // This covers rounding of coordinates; a node whose normals agree within 1e-5 rad counts as flat.
     vec3 sizes = 1e-6f * (abs(p) + abs(d)) + 2e-5f * extent;
     float slack = sizes.x + sizes.y + sizes.z, height = dot(n, d);
     float highest = height + dot(abs(n), extent) + slack; // of the box, above p's horizon
@@ -85,14 +87,15 @@ FUNCTION float emitterImportance(EmitterNode e, vec3 p, vec3 n) {
     else sent = coneCosine(e.cosCone, cosAxis, sqrt(reach2) * away) + 1e-5f; // rounding
     if (sent <= 0.0f) return 0.0f;
     sent = min(sent, 1.0f);
-    sent += e.cosCone < 0.0f ? sent : max(0.0f, cosAxis); // of a wide cone the axis says little
+    sent += e.cosCone < 0.0f ? sent : max(0.0f, cosAxis); // the axis of a wide cone says little
     float received = min(highest * near, 1.0f) + max(0.0f, height * away);
     // Within half its reach a box is not one point any more.
     return e.power * received * sent / max(d2, 0.25f * reach2);
 }
 
-// The chance of going to the first of two children; negative when neither can shine on p. One that can is never given less
-// than a thousandth: importance is an estimate, and where it is far off this bounds the noise, at next to no cost.
+// Returns the chance of going to the first of two children; negative when neither can shine on p. One that
+// can is never given less than a thousandth: importance is an estimate, and where it is far off this bounds
+// the noise, at next to no cost.
 FUNCTION float emitterShare(EmitterNode first, EmitterNode second, vec3 p, vec3 n) {
     const float kLeast = 0.001f;
     float a = emitterImportance(first, p, n), b = emitterImportance(second, p, n);

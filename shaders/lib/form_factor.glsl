@@ -1,13 +1,15 @@
-// Form factors from a point to a patch. Legal as GLSL and as C++ (namespace relume::shader). Occlusion is the caller's.
-// Every function returns a number in [0, 1] for finite input, never NaN; lengths may be 1e-9 m to 1e9 m.
+// Form factors from a point to a patch. It is legal as GLSL and as C++ (namespace relume::shader). Occlusion
+// is left to the caller. Every function returns a number in [0, 1] for finite input, never NaN; lengths may
+// be 1e-9 m to 1e9 m.
 
 CONST float kInvPi = 0.318309886f;
-// Pairs nearer than this many patch sizes (sqrt of the area) take the exact form factor: beyond, the disc form is
-// within 2 % of it whatever the angle.
+// Pairs nearer than this many patch sizes (sqrt of the area) take the exact form factor: beyond, the disc
+// form is within 2 % of it whatever the angle.
 CONST float kClosePair = 4.0f;
 
-// From a point at r to a small patch at s, disc approximation [Wallace et al. 1989]: cos_r cos_s A / (pi d^2 + A).
-// r, s [m]; nr, ns unit; area [m^2]; returns [1], 0 if either faces away.
+// Returns the form factor from a point at r to a small patch at s by the disc approximation [Wallace et al.
+// 1989]: cos_r cos_s A / (pi d^2 + A). r, s [m]; nr, ns unit; area [m^2]; returns [1], 0 if either faces
+// away.
 FUNCTION float discFormFactor(vec3 r, vec3 nr, vec3 s, vec3 ns, float area) {
     vec3 d = s - r;
     float d2 = dot(d, d);
@@ -16,7 +18,8 @@ FUNCTION float discFormFactor(vec3 r, vec3 nr, vec3 s, vec3 ns, float area) {
     return min(1.0f, cr * cs / d2 * (area / (3.14159265f * d2 + area)));
 }
 
-// RTRad's: min(1, A cos_r cos_s / (pi (distanceFactor d)^2)). As above; not linear in the area where it clamps.
+// Returns RTRad's: min(1, A cos_r cos_s / (pi (distanceFactor d)^2)), with arguments as above; it is not
+// linear in the area where it clamps.
 FUNCTION float rtradFormFactor(vec3 r, vec3 nr, vec3 s, vec3 ns, float area, float distanceFactor) {
     vec3 d = s - r;
     float d2 = dot(d, d);
@@ -27,8 +30,9 @@ FUNCTION float rtradFormFactor(vec3 r, vec3 nr, vec3 s, vec3 ns, float area, flo
     return far > area * cosines ? area * cosines / far : 1.0f;
 }
 
-// The angle in [0, pi] with sine k s and cosine k c, s >= 0, any k > 0; 0 where both are 0. Own series because Vulkan
-// allows atan an error of 4096 units in the last place. Error 2e-8 rad [Abramowitz and Stegun, 4.4.49].
+// Returns the angle in [0, pi] with sine k s and cosine k c, s >= 0, any k > 0; 0 where both are 0. It has a
+// series of its own because Vulkan allows atan an error of 4096 units in the last place. Error 2e-8 rad
+// [Abramowitz and Stegun, 4.4.49].
 FUNCTION float arcAngle(float s, float c) {
     float a = abs(c);
     float high = max(s, a);
@@ -48,15 +52,16 @@ FUNCTION float arcAngle(float s, float c) {
     return c < 0.0f ? 3.14159265f - angle : angle;
 }
 
-// A plane convex quadrilateral seen from the origin: corners in order and the edges from each to the next. The edges are
-// kept because differences of far corners have lost their digits.
+// A plane convex quadrilateral seen from the origin: corners in order and the edges from each to the next.
+// The edges are kept because differences of far corners have lost their digits.
 struct SeenQuad {
     vec3 a, b, c, d;
     vec3 ab, bc, cd, da;
 };
 
-// One edge's term of Lambert's formula, of the part of the edge a .. a + e above the horizon: the angle it spans times
-// the cosine between n and the normal of its plane through the origin. za, zb: heights of its ends.
+// Returns one edge's term of Lambert's formula, for the part of the edge a .. a + e above the horizon: the
+// angle it spans times the cosine between n and the normal of its plane through the origin. za and zb are the
+// heights of its ends.
 FUNCTION float lambertEdge(vec3 n, vec3 a, vec3 e, float za, float zb) {
     if (za <= 0.0f && zb <= 0.0f) return 0.0f;
     vec3 m = cross(e, a);
@@ -67,9 +72,10 @@ FUNCTION float lambertEdge(vec3 n, vec3 a, vec3 e, float za, float zb) {
     return arcAngle((to - from) * sine, dot(a + from * e, a + to * e)) * (dot(n, m) / sine);
 }
 
-// Lambert's formula over the part of a front-facing quadrilateral above the horizon of n:
-// F = 1 / (2 pi) sum of the edges' terms [Lambert 1760; Baum et al. 1989]. A convex outline crosses the horizon at most
-// once downwards (at `sets`) and once upwards (at `rises`); the edge that joins these lies in the horizon itself.
+// Applies Lambert's formula to the part of a front-facing quadrilateral above the horizon of n: F = 1 / (2
+// pi) sum of the edges' terms [Lambert 1760; Baum et al. 1989]. A convex outline crosses the horizon at most
+// once downwards (at `sets`) and once upwards (at `rises`); the edge that joins these lies in the horizon
+// itself.
 FUNCTION float lambertQuad(vec3 n, SeenQuad q) {
     float za = dot(n, q.a), zb = dot(n, q.b), zc = dot(n, q.c), zd = dot(n, q.d);
     float sum = lambertEdge(n, q.a, q.ab, za, zb);
@@ -90,8 +96,9 @@ FUNCTION float lambertQuad(vec3 n, SeenQuad q) {
     return clamp(0.5f * kInvPi * sum, 0.0f, 1.0f);
 }
 
-// Exact, from a point p with unit normal n to the plane convex quadrilateral c0 c1 c2 c3, clipped to the horizon of n.
-// Counter-clockwise seen from its front; 0 from its back and from its own plane, and for a degenerate one.
+// Returns the exact form factor from a point p with unit normal n to the plane convex quadrilateral c0 c1 c2
+// c3, clipped to the horizon of n. It is counter-clockwise seen from its front; the factor is 0 from its back
+// and from its own plane, and for a degenerate one.
 FUNCTION float polygonFormFactor(vec3 p, vec3 n, vec3 c0, vec3 c1, vec3 c2, vec3 c3) {
     SeenQuad q;
     q.a = c0 - p;
@@ -107,8 +114,8 @@ FUNCTION float polygonFormFactor(vec3 p, vec3 n, vec3 c0, vec3 c1, vec3 c2, vec3
     return lambertQuad(n, q);
 }
 
-// The same to the parallelogram centre +- du / 2 +- dv / 2 (a texel: PatchEdges), whose front is the side of sNormal
-// whichever handedness du, dv have.
+// Returns the same for the parallelogram centre +- du / 2 +- dv / 2 (a texel: PatchEdges), whose front is the
+// side of sNormal whichever handedness du, dv have.
 FUNCTION float parallelogramFormFactor(vec3 p, vec3 n, vec3 centre, vec3 du, vec3 dv, vec3 sNormal) {
     vec3 r = centre - p;
     vec3 front = cross(du, dv);

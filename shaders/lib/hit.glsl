@@ -1,9 +1,9 @@
-// From a hit triangle to a link. Legal as GLSL and as C++; the includer supplies
+// Turns a hit triangle into a link. It is legal as GLSL and as C++; the includer supplies
 //   uint texelPatch(uint texel)   the texel -> patch map, kNoPatch where empty
 //   uint chartOfPatch(uint patch)
 
-// The nearest patch of the triangle's chart: the hit texel's own, else the nearest within two texels, else the triangle's
-// representative. Never nothing, which would lose energy at every chart edge.
+// Returns the nearest patch of the triangle's chart: the hit texel's own, else the nearest within two texels,
+// else the triangle's representative. It is never nothing, which would lose energy at every chart edge.
 FUNCTION uint patchAtHit(HitTriangle t, float b1, float b2, uint size) {
     vec2 uv = t.uv0 * (1.0f - b1 - b2) + t.uv1 * b1 + t.uv2 * b2;
     float x = uv.x * float(size), y = uv.y * float(size);

@@ -1,4 +1,4 @@
-// What sampling a group of lamps and gathering their light share: both draw the same rays.
+// Sampling a group of analytic lights and gathering their light share this: both draw the same rays.
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
@@ -14,7 +14,7 @@ Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp
 
 struct LampRay {
     vec3 target;
-    vec3 light; // unshadowed, per unit of the lamp's colour; the mean over a lamp's samples counts
+    vec3 light; // unshadowed, per unit of the light's colour; the mean over its samples counts
     bool traced;
 };
 
@@ -23,7 +23,7 @@ LampRay lampRay(Lamp l, Patch p, uint s) {
     uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
     if (l.type == kLampSky) {
-        // With a picture in pairs, one by each way, that share their numbers.
+        // With a picture, samples come in pairs, one by each way, that share their numbers.
         uint turn = push.skySize.x > 0u ? index / 2u : index;
         SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, push.skySize, push.skyRotation);
         ray.target = p.position + push.reach * sky.direction;
@@ -33,7 +33,7 @@ LampRay lampRay(Lamp l, Patch p, uint s) {
         ray.target = point.target;
         ray.light = vec3(point.factor);
     }
-    // Below the geometric horizon it is hidden, and not asked for.
+    // Below the geometric horizon the end is hidden, and not asked for.
     ray.traced = ray.light != vec3(0.0) && (p.flags & kPatchSends) != 0u && dot(ray.target - p.position, p.normal) > p.offset;
     return ray;
 }

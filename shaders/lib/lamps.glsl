@@ -1,21 +1,23 @@
-// What shines without geometry: points, spheres, suns, rectangles and discs. Legal as GLSL and as C++ (namespace
-// relume::shader); after lib/polygon_sample.glsl and lib/sampling.glsl. Factors are lighting (irradiance / pi) per unit of the
-// lamp's colour; occlusion is the caller's.
+// Analytic lights: points, spheres, suns, rectangles and discs. It is legal as GLSL and as C++ (namespace
+// relume::shader); it comes after lib/polygon_sample.glsl and lib/sampling.glsl. Factors are lighting
+// (irradiance / pi) per unit of the light's colour; occlusion is left to the caller.
 
-// Rays end this share of their length before a lamp: one that is fixed to a surface must not be hidden by it.
+// Rays end this share of their length before a light: one that is fixed to a surface must not be hidden by
+// it.
 CONST float kLampGap = 1e-4f;
 
-// Squared [m^2]: a lamp without extent that is nearer than a micrometre counts as if it were as far away. What is at a surface
-// is there by rounding, and 1 / d^2 has no bound.
+// This distance is squared [m^2]: a light without extent that is nearer than a micrometre counts as if it
+// were as far away. What is at a surface is there by rounding, and 1 / d^2 has no bound.
 CONST float kNearestLamp2 = 1e-12f;
 
-// Keeps the numbers of lamps apart from those of directions and of emitters.
+// The salt keeps the numbers of analytic lights apart from those of directions and of mesh lights.
 CONST uint kLampSalt = 0x85ebca6bu;
 
-// Scrambles sample `number` of all rounds; key: seedKey of the patch.
+// Returns the seed that scrambles sample `number` of all sample passes; key is seedKey of the patch.
 FUNCTION uint lampSeed(Lamp l, uint key, uint number) { return hash32((replicateSeed(key, number) ^ kLampSalt) + l.seed); }
 
-// KHR_lights_punctual: the recommended end at the range, and the spot's smooth edge. d: from the patch to the lamp [m].
+// Returns what is left of the light by KHR_lights_punctual: the recommended end at the range, and the spot's
+// smooth edge. d leads from the patch to the light [m].
 FUNCTION float lampFade(Lamp l, vec3 d) {
     float distance2 = dot(d, d), fade = 1.0f;
     if (l.range > 0.0f) {
@@ -27,7 +29,8 @@ FUNCTION float lampFade(Lamp l, vec3 d) {
     return fade * cone * cone;
 }
 
-// A direction within the cone around unit `axis` whose half angle has this squared sine, uniform in solid angle.
+// Returns a direction within the cone around unit `axis` whose half angle has this squared sine, uniform in
+// solid angle.
 FUNCTION vec3 coneDirection(vec3 axis, float sine2, vec2 u) {
     vec3 c = cosineDirection(u); // whose x and y are uniform in the unit disc
     float r2 = c.x * c.x + c.y * c.y;
@@ -49,8 +52,8 @@ FUNCTION PolygonPart rectanglePart(Lamp l) {
     return q;
 }
 
-// Of the whole lamp, unshadowed; negative where only samples tell. A sphere or sun that stands above the horizon as a whole
-// lights like its centre.
+// Returns the factor of the whole light, unshadowed; negative where only samples tell. A sphere or sun that
+// stands above the horizon as a whole lights like its centre.
 FUNCTION float lampWhole(Lamp l, Patch p) {
     if (l.type == kLampDisc || l.type == kLampSky) return -1.0f;
     if (l.type == kLampRectangle) {
@@ -71,10 +74,10 @@ FUNCTION float lampWhole(Lamp l, Patch p) {
 
 struct LampSample {
     vec3 target;  // end of the ray [m]
-    float factor; // its mean over u is the whole lamp's
+    float factor; // its mean over u is the whole light's
 };
 
-// Uniform u in [0, 1)^2. reach: far outside the scene [m]. Not of the sky.
+// Samples a light other than the sky, for uniform u in [0, 1)^2. reach is far outside the scene [m].
 FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
     LampSample s;
     s.target = l.position;

@@ -1,4 +1,4 @@
-// What a ray from a patch meets, as a link. The includer's push constants have the tables.
+// Tells what a ray from a patch meets, as a link. The includer's push constants have the tables.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer HitTriangles { HitTriangle items[]; };
 
 uint texelPatch(uint texel) { return Words(push.texelToPatch).items[texel]; }

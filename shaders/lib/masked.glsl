@@ -1,4 +1,5 @@
-// Alpha test of a hit on a masked triangle (index in WorldMesh order). Reads `geometry`, a TraceGeometry.
+// The alpha test of a hit on a masked triangle (index in WorldMesh order). It reads `geometry`, a
+// TraceGeometry.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AlphaTriangles { AlphaTriangle items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AlphaMaterials { AlphaMaterial items[]; };
 

@@ -1,4 +1,5 @@
-// One 32-bit word of visibility: patch `lane` of the unit's row chunk against 32 senders of its column chunk.
+// Makes one 32-bit word of visibility: patch `lane` of the unit's row chunk against 32 senders of its column
+// chunk.
 #include "lib/supers.glsl"
 #include "lib/senders.glsl"
 
@@ -9,7 +10,7 @@ bool unitAsked(SuperBlock super, uint row, uint column, uint local) {
     return push.senders == 0ul && row <= column && sends.items[row] != 0u;
 }
 
-// The patch that sender `index` is for this row of receivers; kNoPatch for padding.
+// Returns the patch that sender `index` is for this row of receivers; kNoPatch for padding.
 uint columnPatch(uint index, uint rowKey) {
     return push.senders == 0ul ? index : drawnMember(push.senders, push.members, index, rowKey);
 }
@@ -48,12 +49,12 @@ void traceWord(uint unit, uint word, uint lane) {
         atomicAdd(Words(push.rays).items[slot], uint(bitCount(facing)));
     }
     uint seen = 0u;
-    // Sender by sender, though some lanes then wait: neighbours' rays to one sender take the same way.
+    // Lanes go sender by sender, though some then wait: neighbours' rays to one sender take the same way.
     for (uint j = 0u; j < 32u; ++j) {
         if ((facing >> j & 1u) == 0u) continue;
         uint sender = columnPatch(first + j, rowKey);
         Patch b = loadPatch(push.patches, sender);
-        // The lower index first, whichever end asks; RTRad's rays start at the receiver.
+        // The ray starts at the lower index, whichever end asks; RTRad's rays start at the receiver.
         bool turned = rtrad ? reversed : sender < receiver;
         if (turned ? patchesSee(b, a, rtrad) : patchesSee(a, b, rtrad)) seen |= 1u << j;
     }

@@ -1,4 +1,4 @@
-// Geometry of a pair of patches. Legal as GLSL and as C++ (namespace relume::shader).
+// Geometry of a pair of patches. It is legal as GLSL and as C++ (namespace relume::shader).
 
 struct Segment {
     vec3 origin;    // [m]
@@ -7,16 +7,17 @@ struct Segment {
     float tMax;
 };
 
-// Both patches take part and each one's centre lies above the other one's plane, by more than its offset so that rounding
-// never lets patches of one plane see each other.
+// Tells whether both patches take part and each one's centre lies above the other one's plane, by more than
+// its offset so that rounding never lets patches of one plane see each other.
 FUNCTION bool pairFaces(Patch a, Patch b) {
     vec3 d = b.position - a.position;
     return (a.flags & b.flags & kPatchSends) != 0u && dot(d, a.normal) > a.offset && dot(d, b.normal) < -b.offset;
 }
 
-// The segment that decides whether two patches see each other, `lower` being the one of the lower index: both ends are
-// shifted along their normals, so the whole open segment counts. With `rtrad`: from position to position along the unit
-// direction, t in [0.001, distance - 0.002] (RTRad's absolute rule). tMax <= tMin: empty, counts as visible.
+// Returns the segment that decides whether two patches see each other, `lower` being the one of the lower
+// index: both ends are shifted along their normals, so the whole open segment counts. With `rtrad` it goes
+// from position to position along the unit direction, t in [0.001, distance - 0.002] (RTRad's absolute rule).
+// tMax <= tMin means empty, and counts as visible.
 FUNCTION Segment pairSegment(Patch lower, Patch higher, bool rtrad) {
     Segment s;
     if (rtrad) {

@@ -1,4 +1,5 @@
-// What Patch::flags say together. Legal as GLSL and as C++ (namespace relume::shader); after shared.h.
+// This tells what Patch::flags say together. It is legal as GLSL and as C++ (namespace relume::shader); it
+// comes after shared.h.
 
-// Its light is in the picture, and so counts when errors are told.
+// Tells whether the patch's light is in the picture, and so counts when errors are told.
 FUNCTION bool patchIsShown(uint flags) { return (flags & (kPatchSends | kPatchBackSide | kPatchThin)) == kPatchSends; }

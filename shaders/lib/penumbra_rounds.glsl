@@ -1,11 +1,11 @@
-// Which patches take part in push.round of direct light; push.penumbra 0: all.
+// Tells which patches take part in push.round of direct light; with push.penumbra 0 all do.
 #include "lib/penumbra.glsl"
 
 bool roundLeftOut(uint patchIndex) {
     return push.penumbra != 0ul && push.round % kPenumbraRounds != 0u && !inPenumbra(patchIndex);
 }
 
-// The first round says what the others are to do; bit i: one of the lights i % 32.
+// Notes in the first sample pass what the others are to do; bit i is for the lights i % 32.
 void noteLights(uint patchIndex, uint reached, uint hidden) {
     if (push.penumbra == 0ul || push.round != 0u) return;
     uint part = Words(push.parts).items[patchIndex];

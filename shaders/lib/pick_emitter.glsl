@@ -1,10 +1,12 @@
-// One emitter out of many. Legal as GLSL and as C++; after lib/emitters.glsl. The includer supplies
+// Picks one polygon out of many. It is legal as GLSL and as C++; it comes after lib/emitters.glsl. The
+// includer supplies
 //   EmitterNode emitterNode(uint index)   of the light tree; 0 is its root
 
-// Goes down the light tree [Conty Estevez and Kulla 2018] for a receiver at p [m] of unit normal n. u in [0, 1) is rescaled
-// at each step, so one low-discrepancy number serves. Returns the polygon and in `probability` the chance it had;
-// kNoEmitter with 0 where the way ends at emitters none of which can shine on p: the sample's value is then 0, and
-// the mean of value / probability still that of all. At most kEmitterDepth steps.
+// Goes down the light tree [Conty Estevez and Kulla 2018] for a receiver at p [m] of unit normal n. u in [0,
+// 1) is rescaled at each step, so one low-discrepancy number serves. Returns the polygon and in `probability`
+// the chance it had; kNoEmitter with 0 where the way ends at polygons none of which can shine on p: the
+// sample's value is then 0, and the mean of value / probability still that of all. It takes at most
+// kEmitterDepth steps.
 FUNCTION uint pickEmitter(vec3 p, vec3 n, float u, INOUT(float) probability) {
     EmitterNode root = emitterNode(0u);
     probability = emitterImportance(root, p, n) > 0.0f ? 1.0f : 0.0f;

@@ -1,18 +1,22 @@
-// Points on plane convex polygons that shine on a receiver. Legal as GLSL and as C++ (namespace relume::shader); after
-// lib/form_factor.glsl.
+// Points on plane convex polygons that shine on a receiver. It is legal as GLSL and as C++ (namespace
+// relume::shader); it comes after lib/form_factor.glsl.
 //
-// A point's own form factor goes with 1 / distance^2, so seen from nearby it differs a thousandfold over the polygon. The share
-// of the light that some such points say is seen, sum(V f) / sum(f), then hangs on one of them: its mean over any number of
-// rounds stays off, by what the few points of one round have to do with each other. So a polygon that is near is halved, again
-// and again, and each half is taken as often as it lights the receiver, which its exact form factor tells: a hierarchical
-// warp [Clarberg et al. 2005, Wavelet Importance Sampling] that keeps the strata of the numbers that go in.
+// A point's own form factor goes with 1 / distance^2, so seen from nearby it differs a thousandfold over the
+// polygon. The share of the light that some such points say is seen, sum(V f) / sum(f), then hangs on one of
+// them: its mean over any number of sample passes stays off, by what the few points of one pass have to do
+// with each other. So a polygon that is near is halved, again and again, and each half is taken as often as
+// it lights the receiver, which its exact form factor tells: a hierarchical warp [Clarberg et al. 2005,
+// Wavelet Importance Sampling] that keeps the strata of the numbers that go in.
 
-// A polygon whose reach (from its centre to the farthest corner) is less than this share of its distance counts as even: f
-// differs by a factor of 4.3 at most over it because of the distance, and by .2 of its mean as a rule.
+// A polygon whose reach (from its centre to the farthest corner) is less than this share of its distance
+// counts as even: f differs by a factor of 4.3 at most over it because of the distance, and by .2 of its mean
+// as a rule.
 CONST float kEvenReach = 0.35f;
-// At most so many halvings: from a hundredth of the polygon's size away on it is cut until it is even.
+// There are at most so many halvings: from a hundredth of the polygon's size away on it is cut until it is
+// even.
 CONST uint kMostHalvings = 16u;
-// No half that may light the receiver is taken less often: rounding could have made nothing of its form factor.
+// No half that may light the receiver is taken less often: rounding could have made nothing of its form
+// factor.
 CONST float kLeastHalf = 0.001f;
 
 struct PolygonPoint {
@@ -20,7 +24,8 @@ struct PolygonPoint {
     float weight; // density of points that are uniform in area, over that of these; its mean is 1
 };
 
-// The unit square onto a triangle, keeping areas and, better than square roots do, neighbours [Heitz 2019].
+// Maps the unit square onto a triangle, keeping areas and, better than square roots do, neighbours [Heitz
+// 2019].
 FUNCTION vec3 trianglePoint(vec3 a, vec3 b, vec3 c, vec2 u) {
     float s, t;
     if (u.y > u.x) {
@@ -40,7 +45,7 @@ struct PolygonPart {
     float split; // share of the area that the triangle a b c has
 };
 
-// Uniform in area for uniform u in [0, 1)^2; stratified where u is.
+// Returns a point of the part, uniform in area for uniform u in [0, 1)^2; stratified where u is.
 FUNCTION vec3 partPoint(PolygonPart q, vec2 u) {
     if (q.shape == kEmitterParallelogram) return q.a + u.x * (q.b - q.a) + u.y * (q.d - q.a);
     if (u.x < q.split) return trianglePoint(q.a, q.b, q.c, vec2(u.x / q.split, u.y));
@@ -54,7 +59,7 @@ FUNCTION bool isEven(vec3 p, PolygonPart q) {
     return reach2 <= kEvenReach * kEvenReach * dot(away, away);
 }
 
-// A triangle whose longest edge is that from a to b.
+// Turns a triangle so that its longest edge is that from a to b.
 FUNCTION PolygonPart longestFirst(PolygonPart q) {
     vec3 ab = q.b - q.a, bc = q.c - q.b, ca = q.a - q.c, a = q.a;
     float x = dot(ab, ab), y = dot(bc, bc), z = dot(ca, ca);
@@ -71,8 +76,8 @@ FUNCTION PolygonPart longestFirst(PolygonPart q) {
     return q;
 }
 
-// One of the two halves of a part; halvesAlongX tells which of the two numbers chooses. A quadrilateral falls into its
-// triangles, whose areas are `split` and the rest.
+// Returns one of the two halves of a part; alongX says which of the two numbers chooses. A quadrilateral
+// falls into its triangles, whose areas are `split` and the rest.
 FUNCTION PolygonPart halfOf(PolygonPart q, bool first, bool alongX) {
     PolygonPart h = q;
     if (q.shape == kEmitterParallelogram) {
@@ -111,7 +116,7 @@ FUNCTION PolygonPart halfOf(PolygonPart q, bool first, bool alongX) {
     return h;
 }
 
-// A point for the receiver at p [m] of unit normal n, for uniform u in [0, 1)^2.
+// Returns a point for the receiver at p [m] of unit normal n, for uniform u in [0, 1)^2.
 FUNCTION PolygonPoint polygonPoint(vec3 p, vec3 n, PolygonPart q, vec2 u) {
     PolygonPoint result;
     result.weight = 1.0f;

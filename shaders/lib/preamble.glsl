@@ -1,4 +1,4 @@
-// What every shader starts with.
+// Every shader starts with this.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require

@@ -1,4 +1,5 @@
-// Listed links, traced again: invocation `first` takes every `step`-th one, so that nobody need know how many there are.
+// Traces listed links again: invocation `first` takes every `step`-th one, so that nobody need know how many
+// there are.
 void retraceLinks(uint first, uint step) {
     Words list = Words(push.list);
     for (uint i = first; i < list.items[0]; i += step) {

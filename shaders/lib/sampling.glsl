@@ -1,6 +1,6 @@
-// Low-discrepancy directions. Legal as GLSL and as C++ (namespace relume::shader).
+// Low-discrepancy directions. It is legal as GLSL and as C++ (namespace relume::shader).
 
-// Integer hash with low bias [Wellons 2018, "lowbias32"].
+// Hashes integers with low bias [Wellons 2018, "lowbias32"].
 FUNCTION uint hash32(uint x) {
     x ^= x >> 16;
     x *= 0x7feb352du;
@@ -18,7 +18,8 @@ FUNCTION uint reverseBits(uint x) {
     return (x >> 16) | (x << 16);
 }
 
-// Nested uniform (Owen) scrambling by hashing in bit-reversed order [Laine and Karras 2011; Burley 2020].
+// Does nested uniform (Owen) scrambling by hashing in bit-reversed order [Laine and Karras 2011; Burley
+// 2020].
 FUNCTION uint owenHash(uint reversed, uint seed) {
     uint x = reversed + seed;
     x ^= x * 0x6c50b47cu;
@@ -30,9 +31,9 @@ FUNCTION uint owenHash(uint reversed, uint seed) {
 
 FUNCTION uint owenScramble(uint x, uint seed) { return reverseBits(owenHash(reverseBits(x), seed)); }
 
-// Second dimension of the Sobol sequence [Sobol 1967; Kollig and Keller 2002], bit-reversed; the first one, bit-reversed, is
-// the index itself. The generator matrix is Pascal's triangle modulo 2, a Kronecker power of ((1, 1), (0, 1)): one step
-// for each factor.
+// Returns the second dimension of the Sobol sequence [Sobol 1967; Kollig and Keller 2002], bit-reversed; the
+// first one, bit-reversed, is the index itself. The generator matrix is Pascal's triangle modulo 2, a
+// Kronecker power of ((1, 1), (0, 1)): one step for each factor.
 FUNCTION uint reversedSobol2(uint index) {
     index ^= (index & 0xaaaaaaaau) >> 1;
     index ^= (index & 0xccccccccu) >> 2;
@@ -41,18 +42,19 @@ FUNCTION uint reversedSobol2(uint index) {
     return index ^ (index >> 16);
 }
 
-// Point `index` of the sequence scrambled by `seed`, in [0, 1)^2.
+// Returns point `index` of the sequence scrambled by `seed`, in [0, 1)^2.
 FUNCTION vec2 sobolPoint(uint index, uint seed) {
-    uint i = owenScramble(index, seed); // shuffles the order as well, as Burley does: aligned runs stay together
+    uint i = owenScramble(index, seed); // shuffles the order, too, as Burley does: aligned runs stay together
     uint x = reverseBits(owenHash(i, hash32(seed ^ 0x2c1b3c6du)));
     uint y = reverseBits(owenHash(reversedSobol2(i), hash32(seed ^ 0x297a2d39u)));
-    // By way of int, which every processor converts in one instruction.
+    // The numbers go by way of int, which every processor converts in one instruction.
     return vec2(float(int(x >> 8)), float(int(y >> 8))) * (1.0f / 16777216.0f);
 }
 
-// Cosine-distributed direction around +z by the concentric map [Shirley and Chiu 1997]; density cos / pi. Within an eighth of
-// the circle a few terms of the series for sine and cosine are exact to a float's last bit, on every device alike; no
-// branches, so that compilers put patches side by side in vector registers.
+// Returns a cosine-distributed direction around +z by the concentric map [Shirley and Chiu 1997]; density cos
+// / pi. Within an eighth of the circle a few terms of the series for sine and cosine are exact to a float's
+// last bit, on every device alike; there are no branches, so that compilers put patches side by side in
+// vector registers.
 FUNCTION vec3 cosineDirection(vec2 u) {
     float px = 2.0f * u.x - 1.0f, py = 2.0f * u.y - 1.0f;
     bool wide = abs(px) > abs(py);
@@ -65,7 +67,7 @@ FUNCTION vec3 cosineDirection(vec2 u) {
     return vec3(r * (wide ? c : s), r * (wide ? s : c), sqrt(max(0.0f, 1.0f - r * r)));
 }
 
-// A direction around unit n, from one around +z; the tangents follow n alone [Duff et al. 2017].
+// Returns a direction around unit n, from one around +z; the tangents follow n alone [Duff et al. 2017].
 FUNCTION vec3 aroundNormal(vec3 n, vec3 d) {
     float s = n.z >= 0.0f ? 1.0f : -1.0f;
     float a = -1.0f / (s + n.z);
@@ -77,33 +79,34 @@ FUNCTION vec3 aroundNormal(vec3 n, vec3 d) {
 
 FUNCTION uint seedKey(Patch p) { return p.flags >> 8; }
 
-// Samples take turns among kReplicates sequences: which one, as a seed for the scrambling, and the place in it.
+// Samples take turns among kReplicates sequences: these return which one, as a seed for the scrambling, and
+// the place in it.
 FUNCTION uint replicateSeed(uint key, uint sampleIndex) { return hash32(key * kReplicates + sampleIndex % kReplicates); }
 FUNCTION uint replicateIndex(uint sampleIndex) { return sampleIndex / kReplicates; }
 
-// What seeds the random numbers of a patch: its texel, that texel's place in its 4 x 4, or the texel of its chunk's first
-// patch. size: lightmap edge [texels].
+// Returns what seeds the random numbers of a patch: its texel, that texel's place in its 4 x 4, or the texel
+// of its chunk's first patch. size is the lightmap edge [texels].
 FUNCTION uint rotationKey(Patch p, Patch firstOfChunk, uint rotation, uint size) {
     uint texel = seedKey(p);
     if (rotation == kRotateInterleaved) return texel / size % 4u * 4u + texel % size % 4u;
     return rotation == kRotateTile ? seedKey(firstOfChunk) : texel;
 }
 
-// A direction around +z turned to the patch's shading normal. Below the geometric horizon it is mirrored up, so no ray
-// starts inside.
+// Turns a direction around +z to the patch's shading normal. Below the geometric horizon it is mirrored up,
+// so no ray starts inside.
 FUNCTION vec3 aroundPatch(Patch p, vec3 local) {
     vec3 d = aroundNormal(p.shading, local);
     float c = dot(d, p.normal);
     return c < 0.0f ? d - 2.0f * c * p.normal : d;
 }
 
-// Direction of sample `index` for patch p: density cos / pi around the shading normal. `key` seeds the scrambling:
-// rotationKey.
+// Returns the direction of sample `index` for patch p: density cos / pi around the shading normal. `key`
+// seeds the scrambling: rotationKey.
 FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
     return aroundPatch(p, cosineDirection(sobolPoint(replicateIndex(index), replicateSeed(key, index))));
 }
 
-// Cosine and sine of bits / 2^32 of a full turn, by the same series as above.
+// Returns cosine and sine of bits / 2^32 of a full turn, by the same series as above.
 FUNCTION vec2 turnBy(uint bits) {
     float a = (float(int((bits & 0x3fffffffu) >> 6)) * (1.0f / 16777216.0f) - 0.5f) * 1.57079633f;
     float a2 = a * a;
@@ -114,9 +117,10 @@ FUNCTION vec2 turnBy(uint bits) {
     return vec2(back ? -x : x, back ? -y : y);
 }
 
-// The point of a set of `count`, each in the middle of a ring of its own (bake/links/directions.h), as a direction around +z: the
-// set turned by a random angle and all points moved by one random share of their rings. So each is distributed like the
-// cosine, whatever the set, and the set as a whole stays as even as it is.
+// Returns the point of a set of `count`, each in the middle of a ring of its own (bake/links/directions.h),
+// as a direction around +z: the set is turned by a random angle and all points are moved by one random share
+// of their rings. So each is distributed like the cosine, whatever the set, and the set as a whole stays as
+// even as it is.
 FUNCTION vec3 discDirection(vec2 point, uint count, uint seed) {
     uint bits = hash32(seed);
     vec2 turn = turnBy(bits);
@@ -132,8 +136,9 @@ FUNCTION vec3 discDirection(vec2 point, uint count, uint seed) {
 FUNCTION uint discTurn(uint index, uint count) { return replicateIndex(index) / count * 0x9e3779b9u; }
 FUNCTION uint discSeed(uint key, uint index, uint count) { return replicateSeed(key, index) + discTurn(index, count); }
 
-// Which point of a disc's set sample `index` takes. Patches begin anywhere in the set: each single sample may then have any
-// ring, and rounds of a few samples are unbiased by themselves, on which the products of their bounces depend.
+// Returns which point of a disc's set sample `index` takes. Patches begin anywhere in the set: each single
+// sample may then have any ring, and sample passes of a few samples are unbiased by themselves, on which the
+// products of their bounces depend.
 FUNCTION uint discPoint(uint index, uint count, uint seed) {
     return (replicateIndex(index) % count + hash32(seed ^ 0x02e5be93u) % count) % count;
 }

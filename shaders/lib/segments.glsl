@@ -1,4 +1,4 @@
-// One word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own.
+// Makes one word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own.
 const uint kTargetsPerWord = 32u;
 
 void traceTargets(uint chunk, uint word, uint lane) {

@@ -1,10 +1,11 @@
-// The sky as a lamp: one radiance, or an equirectangular picture, sampled by itself and by the cosine alike. After
-// lib/lamps.glsl. Before it: vec4 skyPixel(uint) - radiance [cd/m^2] and the share of its row up to and with the pixel - and
-// float skyRow(uint), the share of all rows up to and with this one, weighted by luminance and solid angle.
+// The sky as a light: one radiance, or an equirectangular picture, sampled by itself and by the cosine alike.
+// It comes after lib/lamps.glsl, and after vec4 skyPixel(uint) - radiance [cd/m^2] and the share of its row
+// up to and with the pixel - and float skyRow(uint), the share of all rows up to and with this one, weighted
+// by luminance and solid angle.
 
 #include "sky_place.glsl"
 
-// The first of `count` whose share is above u, and where in it u lies.
+// Returns the first of `count` whose share is above u, and where in it u lies.
 FUNCTION uint skyFind(uint first, uint count, bool row, float u, INOUT(float) within) {
     uint low = 0u, high = count - 1u;
     while (low < high) {
@@ -19,7 +20,7 @@ FUNCTION uint skyFind(uint first, uint count, bool row, float u, INOUT(float) wi
     return low;
 }
 
-// Density over solid angle with which skyFind takes a direction in this pixel [1/sr].
+// Returns the density over solid angle with which skyFind takes a direction in this pixel [1/sr].
 FUNCTION float skyDensity(uint row, uint column, uvec2 size, float cosPolar) {
     uint first = row * size.x;
     float rows = skyRow(row) - (row == 0u ? 0.0f : skyRow(row - 1u));
@@ -30,11 +31,11 @@ FUNCTION float skyDensity(uint row, uint column, uvec2 size, float cosPolar) {
 
 struct SkySample {
     vec3 direction;
-    vec3 light; // its mean over samples is the unshadowed lighting, per unit of the lamp's colour
+    vec3 light; // its mean over samples is the unshadowed lighting, per unit of the light's colour
 };
 
-// byPicture: the direction is drawn by the picture's brightness, else by the cosine; the balance heuristic [Veach and Guibas
-// 1995] weighs both. size 0: one radiance.
+// Samples the sky. With byPicture the direction is drawn by the picture's brightness, else by the cosine; the
+// balance heuristic [Veach and Guibas 1995] weighs both. size 0 means one radiance.
 FUNCTION SkySample skySample(Patch p, vec2 u, bool byPicture, uvec2 size, float rotation) {
     SkySample s;
     s.light = vec3(0.0f, 0.0f, 0.0f);

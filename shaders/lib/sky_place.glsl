@@ -1,8 +1,8 @@
-// Where in a sky's equirectangular picture a direction lies, and back: assets/model/scene.h, Sky.
+// Tells where in a sky's equirectangular picture a direction lies, and back: assets/model/scene.h, Sky.
 
 CONST float kTurn = 6.28318531f;
 
-// In [0, 1)^2.
+// Returns the place, in [0, 1)^2.
 FUNCTION vec2 skyPlace(vec3 d, float rotation) {
     float u = 0.5f + (atan(d.x, -d.z) + rotation) / kTurn;
     return vec2(u - floor(u), acos(clamp(d.y, -1.0f, 1.0f)) * 2.0f / kTurn);

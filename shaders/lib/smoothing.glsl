@@ -1,14 +1,15 @@
-// One direction of the separable smoothing of indirect light within a chart. The includer's push constants hold patches,
-// patchChart, texelToPatch, distances, size, sigma and reach.
+// Smooths indirect light within a chart along one direction; the smoothing is separable. The includer's push
+// constants hold patches, patchChart, texelToPatch, distances, size, sigma and reach.
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Floats { float items[]; };
 
 const uint kMaxReach = 8u; // texels
-// Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly smoothed.
+// Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly
+// smoothed.
 const float kDistanceShare = 0.3;
 
-// The patch of the same chart so many texels away along `axis`, and how much it counts: by distance in the world, measured in
-// texels of the receiver, by how far it lies off its plane, and by its normal.
+// Finds the patch of the same chart so many texels away along `axis`, and how much it counts: by distance in
+// the world, measured in texels of the receiver, by how far it lies off its plane, and by its normal.
 float tapWeight(Patch centre, float sigma, uint chart, ivec2 texel, out uint index) {
     index = kNoPatch;
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.size)))) return 0.0;
@@ -18,7 +19,8 @@ float tapWeight(Patch centre, float sigma, uint chart, ivec2 texel, out uint ind
     if ((other.flags & kPatchSends) == 0u) return 0.0;
     vec3 d = other.position - centre.position;
     float height = dot(d, centre.normal);
-    // Off the plane counts four times: a step or a fold within the chart parts what lies side by side in the atlas.
+    // The distance off the plane counts four times: a step or a fold within the chart parts what lies side by
+    // side in the atlas.
     float distance2 = (dot(d, d) + 15.0 * height * height) / max(centre.area, 1e-30);
     float facing = max(dot(centre.shading, other.shading), 0.0);
     facing *= facing;
@@ -26,8 +28,9 @@ float tapWeight(Patch centre, float sigma, uint chart, ivec2 texel, out uint ind
     return exp(-0.5 * distance2 / (sigma * sigma)) * facing * facing;
 }
 
-// Weights of the taps from -reach to reach that make a local straight-line fit at the centre: at a chart's edge, where all
-// taps lie on one side, a mean would be pulled along the gradient [Fan and Gijbels 1996].
+// The weights of the taps from -reach to reach that make a local straight-line fit at the centre: at a
+// chart's edge, where all taps lie on one side, a mean would be pulled along the gradient [Fan and Gijbels
+// 1996].
 struct Taps {
     uint index[2u * kMaxReach + 1u];
     float weight[2u * kMaxReach + 1u];

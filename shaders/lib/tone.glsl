@@ -1,4 +1,4 @@
-// From light to what a screen shows. Legal as GLSL and as C++ (namespace relume::shader).
+// Turns light into what a screen shows. It is legal as GLSL and as C++ (namespace relume::shader).
 
 CONST uint kToneNone = 0u;
 CONST uint kToneAces = 1u;
@@ -8,15 +8,15 @@ FUNCTION float luminance(vec3 linear) { // of Rec. 709 primaries [ITU-R BT.709-6
     return dot(linear, vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
-// The transfer function of sRGB [IEC 61966-2-1], of values in [0, 1].
+// Applies the transfer function of sRGB [IEC 61966-2-1] to values in [0, 1].
 FUNCTION vec3 srgbEncode(vec3 linear) {
     vec3 low = 12.92f * linear;
     vec3 high = 1.055f * pow(max(linear, vec3(0.0031308f)), vec3(1.0f / 2.4f)) - 0.055f;
     return mix(high, low, vec3(lessThanEqual(linear, vec3(0.0031308f))));
 }
 
-// The Academy's reference rendering and output transforms (ACES 1.0, sRGB at 100 cd/m^2) as two matrices and a rational curve
-// [the fit of S. Hill 2015, given in "BakingLab", ACES.hlsl]. linear to linear.
+// Applies the Academy's reference rendering and output transforms (ACES 1.0, sRGB at 100 cd/m^2) as two
+// matrices and a rational curve [the fit of S. Hill 2015, given in "BakingLab", ACES.hlsl], linear to linear.
 FUNCTION vec3 toneAces(vec3 linear) {
     const mat3 toRrt = mat3(0.59719f, 0.07600f, 0.02840f, 0.35458f, 0.90834f, 0.13383f, 0.04823f, 0.01566f, 0.83777f);
     const mat3 fromOdt =
@@ -26,9 +26,10 @@ FUNCTION vec3 toneAces(vec3 linear) {
     return clamp(fromOdt * curve, 0.0f, 1.0f);
 }
 
-// AgX, base look [T. Sobotka 2022]: a log encoding from 2^-12.47393 to 2^4.026069 in inset primaries and a sigmoid, here the
-// polynomial of degree six that B. Wrensch fitted ["Minimal AgX Implementation" 2023]. Bright colours fade to white without a
-// change of hue. linear to values encoded by a power of 2.2.
+// Applies AgX, base look [T. Sobotka 2022]: a log encoding from 2^-12.47393 to 2^4.026069 in inset primaries
+// and a sigmoid, here the polynomial of degree six that B. Wrensch fitted ["Minimal AgX Implementation"
+// 2023]. Bright colours fade to white without a change of hue. It turns linear values into ones encoded by a
+// power of 2.2.
 FUNCTION vec3 agxEncoded(vec3 linear) {
     const mat3 inset = mat3(0.842479062f, 0.042328242f, 0.042375655f, 0.078433600f, 0.878468636f, 0.078433600f,
                             0.079223745f, 0.079166127f, 0.879142974f);
@@ -42,13 +43,13 @@ FUNCTION vec3 agxEncoded(vec3 linear) {
     return clamp(outset * curve, 0.0f, 1.0f);
 }
 
-// linear to linear.
+// Applies AgX, linear to linear.
 FUNCTION vec3 toneAgx(vec3 linear) {
     return pow(agxEncoded(linear), vec3(2.2f));
 }
 
-// toneAgx in sRGB encoding with one power instead of two. Where sRGB is linear, below 10 of 255, a square stands for the power of
-// 2.2: within 0.4 of one step of 8 bits.
+// Does toneAgx in sRGB encoding with one power instead of two. Where sRGB is linear, below 10 of 255, a
+// square stands for the power of 2.2: within 0.4 of one step of 8 bits.
 FUNCTION vec3 toneAgxAsSrgb(vec3 linear) {
     const float limit = 0.0727f; // its power of 2.2 is sRGB's limit, 0.0031308
     vec3 encoded = agxEncoded(linear);
@@ -57,19 +58,20 @@ FUNCTION vec3 toneAgxAsSrgb(vec3 linear) {
     return mix(high, low, vec3(lessThanEqual(encoded, vec3(limit))));
 }
 
-// Light times exposure to linear values in [0, 1].
+// Turns light times exposure into linear values in [0, 1].
 FUNCTION vec3 toneMap(vec3 linear, uint tone) {
     if (tone == kToneAces) return toneAces(linear);
     if (tone == kToneAgx) return toneAgx(linear);
     return clamp(linear, 0.0f, 1.0f);
 }
 
-// The same, sRGB encoded: what a screen takes.
+// Does the same, sRGB encoded: what a screen takes.
 FUNCTION vec3 toneMapAsSrgb(vec3 linear, uint tone) {
     return tone == kToneAgx ? toneAgxAsSrgb(linear) : srgbEncode(toneMap(linear, tone));
 }
 
-// Brightness in a picture's 8 bits for the meter: 0 no light, 1 to 255 an eighth of an EV each, from 2^-20 to 2^12.
+// Encodes brightness in a picture's 8 bits for the meter: 0 is no light, 1 to 255 an eighth of an EV each,
+// from 2^-20 to 2^12.
 CONST float kMeterLowest = -20.0f, kMeterSteps = 8.0f;
 FUNCTION float meterCode(float light) {
     return light > 1e-6f ? clamp(1.0f + kMeterSteps * (log2(light) - kMeterLowest), 1.0f, 254.5f) : 0.0f;

@@ -1,4 +1,5 @@
-// One ray, by the tracer that this variant was compiled for. `geometry` is the TraceGeometry of the push constants.
+// Traces one ray by the tracer that this variant was compiled for. `geometry` is the TraceGeometry of the
+// push constants.
 #ifdef TRACER_QUERY
 #extension GL_EXT_ray_query : require
 #endif
@@ -19,7 +20,7 @@ struct Hit {
 #define PRECISE precise
 #include "lib/intersect.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer ThreeRows { uvec4 a, b, c; };
-// Rows at base + 48 * index: with an offset of 32 bits, one address in one register.
+// Returns the rows at base + 48 * index: with an offset of 32 bits, one address stays in one register.
 ThreeRows threeRows(ADDRESS base, uint index) { return ThreeRows(base + uint64_t(index * 48u)); }
 BvhNode bvhNode(uint index) {
     ThreeRows rows = threeRows(geometry.accel, index);
@@ -87,7 +88,8 @@ Hit closestHit(vec3 origin, vec3 direction) {
 #ifdef TRACER_PIPELINE
 layout(location = 0) rayPayloadEXT Hit hit;
 
-// The miss shader sets the payload to "none"; closest-hit shaders are skipped here, so anything else is a hit.
+// The miss shader sets the payload to "none"; closest-hit shaders are skipped here, so anything else is a
+// hit.
 bool occluded(Segment s) {
     hit.triangle = 0u;
     traceRayEXT(accelerationStructureEXT(geometry.accel), gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT,
@@ -101,13 +103,13 @@ Hit closestHit(vec3 origin, vec3 direction) {
 }
 #endif
 
-// Whether patch `to` is seen from patch `from`, which of both is the lower one or RTRad's receiver.
+// Tells whether patch `to` is seen from patch `from`, which of both is the lower one or RTRad's receiver.
 bool patchesSee(Patch from, Patch to, bool rtrad) {
     Segment s = pairSegment(from, to, rtrad);
     return s.tMax <= s.tMin || !occluded(s);
 }
 
-// Whether nothing stands between patch p and a point off its own surface.
+// Tells whether nothing stands between patch p and a point off its own surface.
 bool pointSeen(Patch p, vec3 target) {
     vec3 origin = p.position + p.offset * p.normal;
     return !occluded(Segment(origin, target - origin, 0.0, 1.0));

@@ -1,12 +1,12 @@
-// Walks through a voxel map. Legal as GLSL and as C++; points are in voxels, so that p lies in voxel floor(p). The
-// includer supplies
+// Walks through a voxel map. It is legal as GLSL and as C++; points are in voxels, so that p lies in voxel
+// floor(p). The includer supplies
 //   bool voxelSet(ivec3 voxel)   false outside the map
 
-// Which voxels a segment passes, in order [Amanatides and Woo 1987].
+// Tells which voxels a segment passes, in order [Amanatides and Woo 1987].
 struct VoxelWalk {
     ivec3 voxel;
     ivec3 way;   // -1, 0 or 1 along each axis
-    ivec3 left;  // voxels still to go along each axis; what is left decides, not the parameter, so no walk misses its end
+    ivec3 left;  // voxels still to go along each axis; they decide, so no walk misses its end
     vec3 next;   // parameter at which the next voxel along each axis begins
     vec3 stride; // parameter that one voxel along each axis takes
 };
@@ -29,7 +29,7 @@ FUNCTION VoxelWalk startWalk(vec3 from, vec3 to) {
     return w;
 }
 
-// On to the next voxel; false at the end.
+// Goes on to the next voxel; returns false at the end.
 FUNCTION bool stepWalk(INOUT(VoxelWalk) w) {
     if (w.next.x <= w.next.y && w.next.x <= w.next.z) {
         if (w.left.x == 0) return false;
@@ -48,11 +48,12 @@ FUNCTION bool stepWalk(INOUT(VoxelWalk) w) {
     return true;
 }
 
-// So many set voxels in a row at either end of a segment are the patches' own surroundings (a corner of a room, a bent
-// surface) and do not block.
+// So many set voxels in a row at either end of a segment are the patches' own surroundings (a corner of a
+// room, a bent surface) and do not block.
 const int kEndVoxels = 3;
 
-// Whether something stands between two points: a set voxel that is not one of the first or the last few in a row.
+// Tells whether something stands between two points: a set voxel that is not one of the first or the last few
+// in a row.
 FUNCTION bool voxelsBlock(vec3 from, vec3 to) {
     VoxelWalk w = startWalk(from, to);
     bool open = false; // came through a free voxel
@@ -73,13 +74,14 @@ FUNCTION bool voxelsBlock(vec3 from, vec3 to) {
 // No voxel that a plane of unit normal n touches is farther from it than this [voxels].
 FUNCTION float planeClearance(vec3 n) { return abs(n.x) + abs(n.y) + abs(n.z); }
 
-// The point moved along n to at least `clearance` above the plane through p.
+// Returns the point moved along n to at least `clearance` above the plane through p.
 FUNCTION vec3 liftedAbove(vec3 point, vec3 p, vec3 n, float clearance) {
     return point + n * max(0.0f, clearance - dot(point - p, n));
 }
 
-// RTRad's march: both ends moved towards each other by 0.07 m, then points at fixed shares of the way, the first one
-// included, the last one not. `from` and `to` in metres; a voxel is floor((p - origin) * scale).
+// Marches as RTRad does: both ends are moved towards each other by 0.07 m, then points are taken at fixed
+// shares of the way, the first one included, the last one not. `from` and `to` are in metres; a voxel is
+// floor((p - origin) * scale).
 FUNCTION bool rtradMarchBlocked(vec3 from, vec3 to, VoxelGrid grid) {
     const float kInset = 0.07f;
     vec3 start = from + normalize(to - from) * kInset;

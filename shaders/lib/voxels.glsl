@@ -1,4 +1,4 @@
-// Visibility by the voxel map at geometry.accel: what lib/trace.glsl is to the tracers of triangles.
+// Finds visibility by the voxel map at geometry.accel: what lib/trace.glsl is to the tracers of triangles.
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelGrids { VoxelGrid items[]; };
 VoxelGrid grid = VoxelGrids(geometry.accel).items[0];
 
@@ -13,12 +13,14 @@ bool voxelSet(ivec3 v) {
 }
 #include "lib/voxel_walk.glsl"
 
-// Mixed with another tracer, voxels serve one sender in `ratio`, by its texel as RTRad has it, one group of samples, one target.
+// Mixed with another tracer, voxels serve one sender in `ratio`, by its texel as RTRad has it, one group of
+// samples, one target.
 bool voxelsServe(Patch sender) { return (sender.flags >> 8) % grid.ratio == 0u; }
 bool voxelsServeTarget(uint target) { return target % grid.ratio == 0u; }
 bool voxelsServeSamples(uint group) { return group % grid.ratio == 0u; }
 
-// Both ends stay clear of the voxels that both patches' planes touch; so does then all that lies between them.
+// Tells whether two patches see each other. Both ends stay clear of the voxels that both patches' planes
+// touch; so does then all that lies between them.
 bool patchesSee(Patch from, Patch to, bool rtrad) {
     if (rtrad) return !rtradMarchBlocked(from.position, to.position, grid);
     vec3 a = (from.position - grid.origin) * grid.scale, b = (to.position - grid.origin) * grid.scale;
@@ -30,8 +32,8 @@ bool patchesSee(Patch from, Patch to, bool rtrad) {
 }
 
 #ifdef VOXEL_LINKS
-// What stands for the surface in a set voxel, as a ray going `direction` meets it: the patch that faces the ray most, else
-// kLinkDark for geometry that is no receiver, else kNoPatch.
+// Returns what stands for the surface in a set voxel, as a ray going `direction` meets it: the patch that
+// faces the ray most, else kLinkDark for geometry that is no receiver, else kNoPatch.
 uint facingPatch(ivec3 voxel, vec3 direction) {
     uint i = voxelIndex(voxel), word = Words(grid.bits).items[i >> 5];
     uint rank = Words(grid.ranks).items[i >> 5] + uint(bitCount(word & ((1u << (i & 31u)) - 1u)));
@@ -54,7 +56,8 @@ uint facingPatch(ivec3 voxel, vec3 direction) {
     return found;
 }
 
-// A target's own surface is that which faces the patch in the target's voxel: the end stays clear of it as of a patch's.
+// A target's own surface is that which faces the patch in the target's voxel: the end stays clear of it as of
+// a patch's.
 bool pointSeen(Patch p, vec3 target) {
     vec3 a = (p.position - grid.origin) * grid.scale, b = (target - grid.origin) * grid.scale;
     float clearA = planeClearance(p.normal);
@@ -70,11 +73,12 @@ bool pointSeen(Patch p, vec3 target) {
     return !voxelsBlock(start, liftedAbove(end, a, p.normal, clearA));
 }
 
-// What a ray from patch p meets: the first set voxel whose surface faces it. Set voxels in a row at the start are the
-// patch's own surroundings: there only what faces the ray counts; later on the back of something counts too.
+// Returns what a ray from patch p meets: the first set voxel whose surface faces it. Set voxels in a row at
+// the start are the patch's own surroundings: there only what faces the ray counts; later on the back of
+// something counts too.
 uint voxelLink(Patch p, vec3 direction) {
     vec3 start = (p.position - grid.origin) * grid.scale + p.normal * planeClearance(p.normal);
-    // Up to where the ray leaves the map.
+    // The walk goes up to where the ray leaves the map.
     vec3 far = (mix(vec3(0.0), vec3(grid.resolution), greaterThan(direction, vec3(0.0))) - start) / direction;
     far = mix(far, vec3(kNever), equal(direction, vec3(0.0)));
     float reach = min(far.x, min(far.y, far.z));

@@ -8,8 +8,8 @@
 
 #include <benchmark/benchmark.h>
 
-// What happens on the CPU before the first ray, on a scene of some 30k triangles. Rays and gathers are
-// measured in their real kernels by `relume bench trace`.
+// This measures what happens on the CPU before the first ray, on a scene of some 30k triangles. Rays and
+// gathers are measured in their real kernels by `relume bench trace`.
 namespace relume {
 namespace {
 

@@ -1,4 +1,4 @@
-// As they come, and with the hash that fits: it keeps damage out, but not what somebody made.
+// Inputs are read as they come, and with the hash that fits: it keeps damage out, but not what somebody made.
 #include "assets/base/error.h"
 #include "bake/output/checkpoint.h"
 #include "tests/fuzz/fuzz.h"

@@ -23,7 +23,7 @@ inline std::string contentOf(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A ramp in half or float, by one of OpenEXR's codecs, in lines or tiles.
+/// Returns a ramp in half or float, by one of OpenEXR's codecs, in lines or tiles.
 inline std::string exrRamp(Imf::Compression compression, Imf::PixelType type, bool tiled) {
     constexpr int kWidth = 13, kHeight = 40;
     std::vector<float> floats(size_t{kWidth} * kHeight);
@@ -54,7 +54,7 @@ inline std::string exrRamp(Imf::Compression compression, Imf::PixelType type, bo
     return contentOf(path);
 }
 
-/// Small headers that once took gigabytes.
+/// Returns small headers that once took gigabytes.
 inline std::vector<std::string> claimingExrs() {
     using test::ExrClaims;
     ExrClaims tiles{.right = 32767, .bottom = 32767};

@@ -1,4 +1,5 @@
-// A plain mutation loop: inputs depend on seed and number alone, so that each of them can be made again.
+// This is a plain mutation loop: inputs depend on seed and number alone, so that each of them can be made
+// again.
 #include "tests/fuzz/fuzz.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-// GCC has no header of these.
+// GCC has no header for these.
 extern "C" {
 int __sanitizer_install_malloc_and_free_hooks(void (*onMalloc)(const volatile void*, size_t),
                                               void (*onFree)(const volatile void*));
@@ -52,7 +53,7 @@ struct Options {
     std::vector<std::string> files; // to be read instead
 };
 
-/// What runs, for handlers of signals, which may call next to nothing.
+/// Tells what runs to handlers of signals, which may call next to nothing.
 struct Current {
     const char* program = "";
     char keptAs[200] = "";
@@ -192,7 +193,7 @@ int main(int count, char** arguments) {
     Options options;
     if (!parse(count, arguments, options)) return usage();
     current.program = arguments[0];
-    // What is logged is made up, and thrown away.
+    // Log messages are made, and thrown away.
     spdlog::set_default_logger(
         std::make_shared<spdlog::logger>("none", std::make_shared<spdlog::sinks::null_sink_mt>()));
     watch();

@@ -22,7 +22,7 @@ inline std::string base64(const std::vector<uint8_t>& bytes) {
     return out;
 }
 
-/// As .glb, and as .gltf with its bytes in a URI, whose text may become longer and still be read.
+/// Adds a file as .glb, and as .gltf with its bytes in a URI, whose text may become longer and still be read.
 inline void addBothKinds(std::vector<std::string>& corpus, test::GlbBuilder builder) {
     const std::vector<uint8_t> glb = builder.bytes();
     corpus.emplace_back(glb.begin(), glb.end());
@@ -35,7 +35,7 @@ inline std::vector<std::string> gltfCorpus() {
     std::vector<std::string> corpus;
     addBothKinds(corpus, test::squareScene());
     addBothKinds(corpus, test::richScene());
-    // 250 million vertices that are nowhere, and many primitives that share some.
+    // These are 250 million vertices that are nowhere, and many primitives that share some.
     test::GlbBuilder zeros = test::squareScene();
     zeros.json["accessors"].push_back({{"componentType", 5126}, {"count", 250'000'000}, {"type", "VEC3"}});
     zeros.json["accessors"].back()["sparse"] = {

@@ -1,4 +1,4 @@
-// A scene as every command begins with it: read, given lightmap UVs, flattened.
+// A scene is treated as every command begins with it: read, given lightmap UVs, flattened.
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/unwrap.h"
 #include "assets/atlas/world_mesh.h"

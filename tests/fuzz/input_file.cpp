@@ -11,7 +11,8 @@
 namespace relume::fuzz {
 namespace {
 
-/// Memory where there is a file system in it: a disk would be flushed for each file that is written.
+/// Returns the folder for inputs. It is in memory where there is a file system in it, since a disk would be
+/// flushed for each file that is written.
 const TemporaryFolder& inputFolder() {
     static const TemporaryFolder folder = [] {
         if (access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);

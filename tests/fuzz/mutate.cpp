@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kMostBytes = 64 << 10; // of an input
 
-// What sizes, counts, offsets and indices go wrong at.
+// Sizes, counts, offsets and indices go wrong at these values.
 constexpr std::array<uint64_t, 17> kIntegers = {
     0,       1,        2,          3,          7,          255,        256,        0x7fff,      0xffff,
     0x10000, 0xffffff, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff, 1ull << 40, ~uint64_t{0}};
@@ -38,7 +38,7 @@ public:
 
 private:
     size_t below(size_t bound) { return bound > 0 ? static_cast<size_t>(random_() % bound) : 0; }
-    /// Of up to 16 bytes mostly, of the whole input at times.
+    /// Returns a length, mostly of up to 16 bytes, at times of anything up to all that is left.
     size_t lengthFrom(size_t begin) {
         const size_t left = bytes_.size() - begin;
         return std::min(left, below(8) == 0 ? below(left + 1) : 1 + below(16));
@@ -116,7 +116,7 @@ private:
         const size_t at = below(bytes_.size() + 1);
         bytes_.replace(at, below(2) == 0 ? piece.size() : 0, piece);
     }
-    /// In texts: the next number gets another value.
+    /// Gives the next number of a text another value.
     void replaceNumber() {
         const auto isDigit = [](unsigned char c) { return std::isdigit(c) != 0; };
         const auto from = bytes_.begin() + static_cast<std::ptrdiff_t>(below(bytes_.size()));

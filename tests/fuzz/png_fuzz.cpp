@@ -1,4 +1,4 @@
-// A PNG as a lightmap or picture, and PNG and JPEG as an image of a scene.
+// A PNG is read as a lightmap or picture, and PNG and JPEG as an image of a scene.
 #include "assets/base/error.h"
 #include "assets/gltf/gltf_build.h"
 #include "assets/images/float_image.h"

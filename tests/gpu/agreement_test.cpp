@@ -25,8 +25,8 @@ constexpr uint32_t kUnitsPerSubmit = 128; // short submits on a software device 
 constexpr uint32_t kChunksPerSubmit = 4;
 constexpr uint32_t kLinkSamples = 8;
 constexpr uint32_t kDiscPoints = 2; // with four replicates the samples of a disc's set
-// Of the units of a scene so many are compared, spread evenly: about two million rays. Neighbouring pairs
-// that graze one edge would make a bad sample.
+// So many units of a scene are compared, spread evenly: about two million rays. Neighbouring pairs that graze
+// one edge would make a bad sample.
 constexpr uint32_t kUnits = 1024;
 
 // One ray in a million may pass a triangle's edge on the other side.
@@ -34,7 +34,7 @@ constexpr double kMaxPairShare = 1e-6;
 // A direction that meets an edge of two charts may end on either.
 constexpr double kMaxLinkShare = 2e-4;
 
-/// Visibility of all pairs and the rays it took.
+/// Holds the visibility of all pairs and the rays that it took.
 struct Visibility {
     std::vector<uint32_t> bits; // unit by unit, as OcclusionWork has them
     uint64_t rays = 0;
@@ -101,7 +101,8 @@ public:
                 std::accumulate(counters.begin(), counters.end(), uint64_t{0})};
     }
 
-    /// Of all patches; as ClosestWork has them. disc: vec2[kDiscPoints], nullptr: Sobol points.
+    /// Returns the links of all patches, as ClosestWork has them. `disc` is vec2[kDiscPoints]; nullptr: Sobol
+    /// points.
     std::vector<uint32_t> links(Tracer& tracer, Rotation rotation, const vk::Buffer* disc) {
         std::vector<uint32_t> all;
         const vk::Buffer buffer(
@@ -127,7 +128,7 @@ public:
         return all;
     }
 
-    /// Pairs that only one of both sees.
+    /// Counts the pairs that only one of both sees.
     uint64_t unlikePairs(const Visibility& a, const Visibility& b, std::string& example) const {
         uint64_t unlike = 0;
         for (uint32_t unit : units_) {

@@ -1,4 +1,5 @@
-// `relume bake` as a user runs it: what it writes, what it refuses, and that a stop leaves nothing behind.
+// This runs `relume bake` as a user does: it checks what it writes, what it refuses, and that a stop leaves
+// nothing behind.
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
@@ -22,7 +23,7 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-/// A furnace whose six charts leave room between each other.
+/// Makes a furnace whose six charts leave room between each other.
 Scene room(float albedo, float emission, uint32_t texels) {
     SceneMaker maker(64);
     maker.box({0, 0, 0}, {glm::vec3(2, 0, 0), {0, 2, 0}, {0, 0, 2}}, maker.material(albedo, emission),
@@ -34,7 +35,7 @@ class BakeCommand : public testing::Test {
 protected:
     BakeCommand() { saveGlb(room(0.5f, 1.0f, 14), scene_); }
 
-    /// By pairs unless told otherwise, under validation: `relume bake` fails when it complains.
+    /// Bakes by pairs unless told otherwise, under validation: `relume bake` fails when it complains.
     ProcessResult bake(const Strings& more) const {
         Strings arguments = {"bake", scene_, "--size", "64", "--validate"};
         if (std::find(more.begin(), more.end(), "--method") == more.end())
@@ -43,7 +44,7 @@ protected:
         return runRelume(arguments);
     }
     std::string path(const std::string& name) const { return folder_.path(name); }
-    /// The scene and nothing else, or these too.
+    /// Expects the scene and nothing else, or these too.
     void expectFiles(Strings names) const {
         names.push_back("room.glb");
         std::sort(names.begin(), names.end());
@@ -66,7 +67,7 @@ TEST_F(BakeCommand, WritesTheLightmapAndTellsHowItCameAbout) {
     EXPECT_EQ(map.width, 64u);
     EXPECT_EQ(map.height, 64u);
     EXPECT_EQ(map.channels, (Strings{"R", "G", "B", "coverage"}));
-    // Three bounces: 1 + a + a^2.
+    // Three bounces give 1 + a + a^2.
     for (size_t i = 0; i < map.planes[0].size(); ++i) {
         if (map.planes[3][i] == 1.0f) {
             EXPECT_NEAR(map.planes[0][i], 1.75, 0.02);
@@ -125,7 +126,7 @@ TEST_F(BakeCommand, RadianceIsEmissionAndAlbedoTimesLighting) {
     }
 }
 
-// What the command does when nothing is said about the method; its error is written, too.
+// The command uses the hybrid when nothing is said about the method; its error is written, too.
 TEST_F(BakeCommand, TheDefaultIsHybrid) {
     const ProcessResult r = runRelume({"bake", scene_, "--size", "64", "--validate", "--error", "0.02", "-o",
                                        path("map.exr"), "--error-map", path("error.exr")});
@@ -191,7 +192,7 @@ TEST_F(BakeCommand, StatisticsNameEverything) {
         ASSERT_TRUE(json["seconds"].contains(phase)) << phase;
         EXPECT_GT(json["seconds"][phase], 0.0) << phase;
     }
-    // On standard output, and nothing else there.
+    // The numbers go to standard output, and nothing else does.
     const ProcessResult toOut = bake({"-o", path("map.exr"), "--passes", "1", "--json", "-"});
     ASSERT_EQ(toOut.status, 0) << toOut.err;
     EXPECT_EQ(nlohmann::json::parse(toOut.out)["passes"], 1);
@@ -273,7 +274,7 @@ TEST_F(BakeCommand, WhatCannotBeWrittenIsToldBeforeTheBake) {
 
 TEST_F(BakeCommand, LightsBeyondTheMemoryForLayersShareOne) {
     const std::string layers = path("layers.exr");
-    // Of six walls that shine, in three layers or four.
+    // Six walls shine, in three layers or four.
     const ProcessResult baked =
         bake({"--method", "hybrid", "--samples", "32", "--layers", "--layer-memory", "160K", "-o", layers});
     ASSERT_EQ(baked.status, 0) << baked.err;
@@ -309,7 +310,7 @@ TEST_F(BakeCommand, ASceneWithoutLightmapUvsNamesTheMend) {
     EXPECT_EQ(bake({"-o", path("map.exr"), "--unwrap", "--passes", "1"}).status, 0);
 }
 
-// RTRad's own picture, through the command line and the reference's own tool.
+// The preset is held against RTRad's own picture, through the command line and the reference's own tool.
 TEST(BakeReference, PresetOnTheCommandLineMatchesRtradsPicture) {
     const std::string shared = RELUME_SHARED_DIR, tool = shared + "/tools/rtrad_dfpr.py",
                       picture = shared + "/references/rtrad/128_1x1.png",
@@ -330,7 +331,7 @@ TEST(BakeReference, PresetOnTheCommandLineMatchesRtradsPicture) {
     EXPECT_LE(std::strtod(compared.out.c_str() + 5, nullptr), 0.001) << compared.out;
 }
 
-// Ctrl-C in the middle of the passes; an older lightmap stays as it was.
+// Ctrl-C comes in the middle of the bounces; an older lightmap stays as it was.
 TEST_F(BakeCommand, AnInterruptLeavesNothingBehind) {
     saveGlb(room(0.97f, 1.0f, 20), scene_);
     std::ofstream(path("map.exr")) << "older";

@@ -16,7 +16,7 @@ inline bool sameBytes(const FloatImage& a, const FloatImage& b) {
     return true;
 }
 
-/// Area times reflected light [cd] of all patches that are shown.
+/// Returns area times reflected light [cd] of all patches that are shown.
 inline double reflectedFlux(const Baked& baked) {
     double flux = 0;
     const std::vector<uint32_t>& map = baked.patches.scene.texelToPatch;

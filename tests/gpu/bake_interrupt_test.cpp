@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM before a bake has begun: it ends at once, and nothing is left.
+// Ctrl-C and SIGTERM come before a bake has begun: it ends at once, and nothing is left.
 #include "assets/base/clock.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
@@ -13,16 +13,16 @@
 namespace relume {
 namespace {
 
-// Of what a loaded machine adds to the half second.
-constexpr double kGenerous = 4.0; // [s]
+// A loaded machine adds at most this to the half second.
+constexpr double kGenerous = 10.0; // [s]
 
 struct Interrupted {
     ProcessResult process;
     double seconds = 0; // from the signal to the end
 };
 
-/// Bakes a scene that ships with so many texels that each phase takes longer than that, and sends the signal
-/// as soon as the text is told.
+/// Bakes one of the scenes that ship, with so many texels that each phase takes longer than that, and sends
+/// the signal as soon as the text is told.
 Interrupted interruptAt(const std::string& text, int number, const TemporaryFolder& folder) {
     std::optional<Clock::time_point> sent;
     Interrupted result;
@@ -42,7 +42,8 @@ Interrupted interruptAt(const std::string& text, int number, const TemporaryFold
 
 TEST(BakeInterrupt, EndsAtOnceInEachPhase) {
     const TemporaryFolder folder;
-    // Before rasterization, patches, tracer and validity; while there is none of these the solver ends it.
+    // The signal comes before rasterization, patches, tracer and validity; while there is none of these the
+    // solver ends the bake.
     for (const char* text : {"device: ", "tracer: "}) {
         for (const int number : {SIGINT, SIGTERM}) {
             const Interrupted r = interruptAt(text, number, folder);

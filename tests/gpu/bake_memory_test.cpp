@@ -1,4 +1,4 @@
-// What a bake takes of the device's memory.
+// This checks how much of the device's memory a bake takes.
 #include "bake/baker/baker.h"
 #include "tests/gpu/gpu_environment.h"
 

@@ -22,7 +22,7 @@ namespace {
 constexpr uint32_t kGap = 1;         // texels between charts
 constexpr uint32_t kDiscSides = 256; // area within 1e-4 of the disc's
 
-// A surface over the unit square, cut into cells x cells pieces of two triangles each.
+// Makes a surface over the unit square, cut into cells x cells pieces of two triangles each.
 Primitive patchwork(uint32_t cells, const std::function<glm::dvec3(glm::dvec2)>& position,
                     const std::function<glm::dvec3(glm::dvec2)>& normal,
                     const std::function<glm::vec2(glm::dvec2)>& lightmapUv) {
@@ -80,7 +80,7 @@ int SceneMaker::alphaTexture(uint32_t width, uint32_t height, const std::vector<
     return static_cast<int>(scene_.textures.size()) - 1;
 }
 
-// Charts fill the lightmap in shelves from the top.
+// Places a chart; charts fill the lightmap in shelves from the top.
 TexelRect SceneMaker::place(glm::uvec2 texels) {
     if (shelfX_ + texels.x > size_) {
         shelfY_ += shelfHeight_ + kGap;

@@ -15,7 +15,7 @@ namespace relume {
 
 inline const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
-/// Texels of a lightmap that one surface of a test scene covers.
+/// Describes the texels of a lightmap that one surface of a test scene covers.
 struct TexelRect {
     uint32_t x = 0, y = 0, width = 0, height = 0;
 };
@@ -26,28 +26,29 @@ class SceneMaker {
 public:
     explicit SceneMaker(uint32_t size) : size_(size) {} // lightmap edge [texels]
 
-    /// A rough dielectric of this albedo and emission [cd/m^2]. Returns its index.
+    /// Adds a rough dielectric of this albedo and emission [cd/m^2]. Returns its index.
     int material(float albedo, float emission = 0.0f);
     int material(const Material& material);
-    /// Alpha per texel, row 0 first, looked up without interpolation. Returns its texture's index.
+    /// Adds a texture of alpha per texel, row 0 first, looked up without interpolation. Returns its index.
     int alphaTexture(uint32_t width, uint32_t height, const std::vector<uint8_t>& alpha);
 
-    /// The parallelogram corner + s u + t v, s and t in [0, 1], front along u x v. Texel columns run along u.
+    /// Adds the parallelogram corner + s u + t v, s and t in [0, 1], front along u x v. Texel columns run
+    /// along u.
     TexelRect quad(glm::vec3 corner, glm::vec3 u, glm::vec3 v, int material, glm::uvec2 texels);
-    /// The same without lightmap UVs: it only blocks light.
+    /// Adds the same without lightmap UVs: it only blocks light.
     void blocker(glm::vec3 corner, glm::vec3 u, glm::vec3 v, int material);
-    /// A polygon of many sides in place of the ellipse of half axes u and v, in a square chart. Its area is
-    /// within 1e-4 of the ellipse's.
+    /// Adds a polygon of many sides in place of the ellipse of half axes u and v, in a square chart. Its area
+    /// is within 1e-4 of the ellipse's.
     TexelRect disc(glm::vec3 centre, glm::vec3 u, glm::vec3 v, int material, uint32_t texels);
-    /// The walls of the box with edges u, v and w (right-handed) as seen from inside: those at the start of
-    /// u, v, w, then those at the end. One material and number of texels for each; texels.x along the first
-    /// of the wall's two edges in cyclic order u, v, w.
+    /// Adds the walls of the box with edges u, v and w (right-handed) as seen from inside: those at the start
+    /// of u, v, w, then those at the end. Each has one material and number of texels; texels.x goes along the
+    /// first of the wall's two edges in cyclic order u, v, w.
     std::array<TexelRect, 6> box(glm::vec3 corner, const std::array<glm::vec3, 3>& edges,
                                  const std::array<int, 6>& materials,
                                  const std::array<glm::uvec2, 6>& texels);
     std::array<TexelRect, 6> box(glm::vec3 corner, const std::array<glm::vec3, 3>& edges, int material,
                                  uint32_t texels);
-    /// A sphere seen from inside, as six faces of a cube blown up, each cut into texels x texels cells.
+    /// Adds a sphere seen from inside, as six faces of a cube blown up, each cut into texels x texels cells.
     std::array<TexelRect, 6> sphere(glm::vec3 centre, float radius, const std::array<int, 6>& materials,
                                     uint32_t texels);
 
@@ -98,26 +99,27 @@ struct Baked {
 /// Bakes on the test device. Texels beside the charts stay empty.
 Baked bakeScene(const Scene& scene, const BakeDesc& desc);
 
-/// A Baker of the scene on the test device, not yet stepped.
+/// Makes a Baker of the scene on the test device, not yet stepped.
 std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc);
 
-/// The tracers that run on the test device.
+/// Returns the tracers that run on the test device.
 std::vector<TracerKind> tracersOfTestDevice();
 
-/// That every tracer of the test device bakes what the first one does, within this relative error.
+/// Expects that every tracer of the test device bakes what the first one does, within this relative error.
 void expectTracersAgree(const Scene& scene, BakeDesc desc, double tolerance);
 
-/// The scene with every instance blown up by `factor` about the origin.
+/// Returns the scene with every instance blown up by `factor` about the origin.
 Scene scaled(Scene scene, float factor);
 
-/// Values of the red channel over the covered texels of `rect`.
+/// Describes the values of the red channel over the covered texels of a rectangle.
 struct TexelStatistics {
     double mean = 0, min = 0, max = 0;
     uint32_t count = 0;
 };
 TexelStatistics statistics(const FloatImage& image, const TexelRect& rect);
 double texel(const FloatImage& image, const TexelRect& rect, uint32_t column, uint32_t row);
-/// Root of the mean squared difference of R, G and B over the texels of coverage 1, relative to b's mean.
+/// Returns the root of the mean squared difference of R, G and B over the texels of coverage 1, relative to
+/// b's mean.
 double relativeError(const FloatImage& a, const FloatImage& b);
 
 } // namespace relume

@@ -1,4 +1,4 @@
-// `relume bench edits` as a user runs it, on a room small enough for any device.
+// This runs `relume bench edits` as a user does, on a room small enough for any device.
 #include <fstream>
 #include <iterator>
 

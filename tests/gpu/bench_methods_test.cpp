@@ -1,4 +1,4 @@
-// `relume bench methods` as a user runs it, on a room small enough for any device.
+// This runs `relume bench methods` as a user does, on a room small enough for any device.
 #include <fstream>
 #include <iterator>
 

@@ -44,8 +44,8 @@ bool resumed(const ProcessResult& r) {
 
 } // namespace
 
-// Handed on from one solver to the next after 1, 2, 4, 8 ... steps, every other time with other batches and
-// without a cache.
+// The bake is handed on from one solver to the next after 1, 2, 4, 8 ... steps, every other time with other
+// batches and without a cache.
 TEST_P(ResumedSolver, GivesTheSameBytes) {
     const TemporaryFolder folder;
     const std::string file = folder.path("checkpoint");
@@ -132,7 +132,7 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runRelume(arguments, onErr, killAfter);
     }
-    /// A bake that gets the signal as soon as it solves.
+    /// Runs a bake that gets the signal as soon as it solves.
     ProcessResult interrupted(const Strings& arguments, int number) const {
         bool sent = false;
         return bake(arguments, [&](const std::string& err) {
@@ -142,9 +142,9 @@ protected:
         });
     }
     /// Kills the bake so many times, at moments drawn from the whole of its duration, and lets it go on from
-    /// what is there. Whenever it came to its end it must have written the same bytes.
-    /// method: the arguments of a bake of so many samples or passes; raised, up to the most, until it takes
-    /// its time on this device.
+    /// what is there. Whenever it came to its end it must have written the same bytes. `method` returns the
+    /// arguments of a bake of so many samples or bounces; the count is raised, up to `most`, until the bake
+    /// takes its time on this device.
     void killAndResume(const std::function<Strings(uint32_t)>& method, uint32_t count, uint32_t most,
                        uint32_t kills, uint32_t seed) const {
         using Clock = std::chrono::steady_clock;
@@ -182,7 +182,7 @@ protected:
         EXPECT_GE(goneOn, kills / 4);
     }
 
-    static constexpr double kLongEnough = 1.5; // three times what starting takes [s]
+    static constexpr double kLongEnough = 0.8; // half as much again as starting takes [s]
 
     TemporaryFolder folder_;
     const std::string scene_ = folder_.path("box.glb"), map_ = folder_.path("map.exr"),
@@ -263,7 +263,7 @@ TEST_F(ResumedCommand, AFileOfSomethingElseIsRefusedInOneLine) {
     const std::string whole = bytesOf(checkpoint_);
     std::ofstream(half, std::ios::binary) << whole.substr(0, whole.size() / 2);
     refused(half, same, "is damaged");
-    // What it is not about: batches, caches and where the result goes.
+    // A checkpoint does not depend on batches, caches and where the result goes.
     EXPECT_EQ(
         bake({"--samples", "384", "-o", folder_.path("map.png"), "--resume", checkpoint_, "--batch-ms", "3"})
             .status,

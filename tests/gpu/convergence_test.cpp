@@ -1,5 +1,5 @@
-// More samples bring less error, what is told as well as what is true, however a scene is lit; and what they
-// go to is right.
+// More samples bring less error, told as well as true, however a scene is lit; and what they converge to is
+// right.
 #include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
@@ -49,8 +49,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Convergence, testing::ValuesIn([] {
                          }()),
                          [](const auto& test) { return test.param; });
 
-// Thousands of emitters, some patches right beside a large one: what a few points of a round tell of it must
-// have nothing to do with how their numbers were scrambled, or the replicates never agree.
+// There are thousands of mesh lights, and some patches lie right beside a large one: what a few points of a
+// sample pass tell of it must have nothing to do with how their numbers were scrambled, or the replicates
+// never agree.
 TEST(Convergence, DirectLightOfManyEmittersGoesOnConverging) {
     const Scene scene = generateScene("atrium");
     constexpr uint32_t few = 1024, many = 16384;
@@ -58,9 +59,9 @@ TEST(Convergence, DirectLightOfManyEmittersGoesOnConverging) {
     EXPECT_GT(first.progress.error, leastFall(double(many) / few) * then.progress.error);
 }
 
-// A large emitter near the floor, half of it hidden by a plate right below it: what is seen of it is a
-// rectangle of known form factor. Small ones beside it, which shine away from the floor, make it one of many,
-// of which each patch picks some.
+// A large mesh light hangs near the floor, half of it hidden by a plate right below it: what is seen of it is
+// a rectangle of known form factor. Small ones beside it, which shine away from the floor, make it one of
+// many, of which each patch picks some.
 TEST(Convergence, AHalfHiddenNearEmitterAmongManyIsRight) {
     constexpr float height = 0.2f, edge = 0.7f, gap = 0.001f;
     constexpr uint32_t texels = 24;

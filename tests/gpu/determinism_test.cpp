@@ -1,5 +1,5 @@
-// One scene, one tracer, one device: the same bytes, whatever the batches, the timing and the number of
-// threads.
+// One scene, one tracer and one device give the same bytes, whatever the batches, the timing and the number
+// of threads.
 #include "assets/generate/generate.h"
 #include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
@@ -15,7 +15,7 @@
 namespace relume {
 namespace {
 
-// In place while it lives.
+// Sets the number of threads while it lives.
 class ThreadCount {
 public:
     explicit ThreadCount(const char* count) {
@@ -46,7 +46,7 @@ void expectSameBytes(const FloatImage& a, const FloatImage& b) {
 
 class Determinism : public testing::TestWithParam<TracerKind> {};
 
-// What a viewer does after every batch.
+// A viewer looks at the light after every batch.
 TEST(Determinism, LookingAtTheLightChangesNoByte) {
     const Scene scene = generateScene("cornell_geom");
     for (const BakeDesc& desc :
@@ -74,7 +74,7 @@ TEST_P(Determinism, TwoRunsAndSmallBatchesGiveTheSameBytes) {
     if (std::find(kinds.begin(), kinds.end(), GetParam()) == kinds.end())
         GTEST_SKIP() << tracerName(GetParam()) << " does not run on this device";
     const Scene scene = generateScene("cornell_geom");
-    // More than one super-block row, so that batches can be cut in many ways.
+    // There is more than one super-block row, so that batches can be cut in many ways.
     const BakeDesc desc{.size = 48, .tracer = GetParam(), .passes = 3};
     const Baked first = bakeScene(scene, desc);
     ASSERT_GT(first.patches.chunkCount(), shader::kSuper);
@@ -107,7 +107,7 @@ TEST(Determinism, NumberOfThreadsGivesTheSameBytes) {
     expectSameBytes(maps[0], maps[2]);
 }
 
-// A pass ends at the same light whether the aim is a number of passes or an error.
+// A bounce ends at the same light whether the aim is a number of bounces or an error.
 TEST(Determinism, PassesAreTheSameWhateverEndsThem) {
     const Scene scene = generateScene("cornell_geom");
     const Baked byError = bakeScene(scene, {.size = 32, .passes = 0, .error = 0.05});

@@ -1,4 +1,4 @@
-// Picks and form factors of emitters on the device are those of the host.
+// Picks and form factors of mesh lights on the device are those of the host.
 #include "bake/lights/emitters.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"

@@ -1,4 +1,4 @@
-// What a bake does to files: none is lost that was there, and a result is kept whatever happens to its place.
+// A bake loses no file that was there, and keeps its result whatever happens to its place.
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"

@@ -1,4 +1,4 @@
-// Links that read the light filtered over what their direction stands for.
+// Here links read the light filtered over what their direction stands for.
 #include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
@@ -10,8 +10,8 @@
 namespace relume {
 namespace {
 
-// A room whose floor shines in stripes two texels wide: fine detail, of which few directions catch more or
-// less by chance.
+// Makes a room whose floor shines in stripes two texels wide: fine detail, of which few directions catch more
+// or less by chance.
 Scene stripedRoom(uint32_t size) {
     SceneMaker maker(size);
     Material shining;
@@ -69,7 +69,7 @@ TEST_P(Footprint, FurnaceEndsAtTheSeriesLimit) {
     }
 }
 
-// Its charts lie beside bright ones in the lightmap.
+// The cell's charts lie beside bright ones in the lightmap.
 TEST_P(Footprint, ADarkCellStaysDark) {
     SceneMaker maker(128);
     maker.box({-1, -1, -1}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.8f, 1.0f), 19);
@@ -121,7 +121,7 @@ TEST(FootprintTracers, Agree) {
     expectTracersAgree(scene, desc, 5e-3);
 }
 
-// Against many directions without it.
+// The error is measured against many directions without footprints.
 TEST(FootprintError, IsLessWithFewDirections) {
     struct Scenes {
         const char* name;
@@ -144,7 +144,8 @@ TEST(FootprintError, IsLessWithFewDirections) {
     }
 }
 
-// The same directions with and without it: with four times as many a quarter of the area is filtered over.
+// The same directions are used with and without footprints: with four times as many directions a quarter of
+// the area is filtered over.
 TEST(FootprintError, FallsWithTheDirections) {
     const Scene scene = generateScene("cornell_small");
     double before = 1.0;
@@ -159,7 +160,7 @@ TEST(FootprintError, FallsWithTheDirections) {
     }
 }
 
-// Where the error decides how many directions there are, rounds begin with wide ones.
+// Where the error decides how many directions there are, sample passes begin with wide footprints.
 TEST(FootprintError, FallsFromRoundToRound) {
     const Scene scene = generateScene("cornell_small");
     double before = 1.0;

@@ -1,4 +1,4 @@
-// Closed rooms whose light is known everywhere, corners and edges included.
+// These are closed rooms whose light is known everywhere, corners and edges included.
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
 
@@ -11,7 +11,7 @@
 namespace relume {
 namespace {
 
-/// Edges of a box that lies askew in the world.
+/// Returns the edges of a box that lies askew in the world.
 std::array<glm::vec3, 3> leaning(glm::vec3 size) {
     const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), 0.7f, glm::normalize(glm::vec3(0.3f, 1.0f, -0.5f))));
     return {turn[0] * size.x, turn[1] * size.y, turn[2] * size.z};
@@ -46,8 +46,8 @@ TEST(Furnace, RowsOfALeaningRoomSumToOne) {
     expectEverywhere(bakeScene(maker.scene(), {.size = maker.size()}).lighting, walls, 1.0, 0.005);
 }
 
-// Texels twice as long as wide, and neighbours of other sizes around the corner: the form of far pairs is for
-// squares.
+// Texels are twice as long as wide, with neighbours of other sizes around the corner, while the formula for
+// far pairs is for squares.
 TEST(Furnace, RowsWithUnlikeTexelsSumToOne) {
     SceneMaker maker(100);
     const int lamp = maker.material(0.0f, 1.0f);
@@ -83,7 +83,7 @@ TEST(Furnace, RemainingErrorIsTold) {
     EXPECT_NEAR((late - early) / early, told, 0.1 * told);
 }
 
-// The integrating sphere: what one part of it sends arrives everywhere alike, on itself too.
+// In the integrating sphere, what one part of it sends arrives everywhere alike, on itself too.
 TEST(Furnace, SphereInteriorIsLitEvenly) {
     SceneMaker maker(112);
     const int black = maker.material(0.0f), lamp = maker.material(0.0f, 1.0f);

@@ -6,11 +6,11 @@
 
 namespace relume {
 
-/// The one OpenGL context of this test process, with its debug messages on: a test during which it says
-/// anything fails.
+/// Returns the one OpenGL context of this test process, with its debug messages on: a test during which it
+/// says anything fails.
 const gl::HeadlessContext& testContext();
 
-/// What a test draws.
+/// Says what a test draws.
 struct PictureDesc {
     const Scene& scene;
     const FloatImage* lightmap = nullptr; // nullptr: none yet
@@ -24,7 +24,7 @@ struct Picture {
     SceneRenderer::Counts counts;
     float exposure = 0;
 
-    /// What the PNG would have in R, G, B at a pixel, row 0 on top.
+    /// Returns what the PNG would have in R, G, B at a pixel, row 0 on top.
     glm::ivec3 pixel(uint32_t x, uint32_t y) const;
 };
 

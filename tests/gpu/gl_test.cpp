@@ -1,4 +1,4 @@
-// The owners of OpenGL's objects that a viewer needs: fences, mapped buffers, readbacks, timers.
+// This tests the owners of OpenGL's objects that a viewer needs: fences, mapped buffers, readbacks, timers.
 #include "renderer/gl/fence.h"
 #include "renderer/gl/pixel_buffer.h"
 #include "renderer/gl/readback.h"
@@ -41,7 +41,7 @@ TEST(Gl, FencesTellWhenCommandsAreDone) {
     EXPECT_TRUE(fence.signalled());
 }
 
-/// Texels of a texture of half floats, as numbers.
+/// Returns the texels of a texture of half floats, as numbers.
 std::vector<glm::vec4> texelsOf(const gl::Texture& texture) {
     std::vector<glm::vec4> texels(size_t{texture.width()} * texture.height());
     glGetTextureImage(texture.get(), 0, GL_RGBA, GL_FLOAT,
@@ -57,7 +57,7 @@ TEST(Gl, PixelBuffersUploadWhatIsAskedFor) {
     const std::vector<glm::vec4> zeros(size_t{kSize} * kSize, glm::vec4(0));
     texture.upload(GL_RGBA, GL_FLOAT, zeros.data());
     ASSERT_EQ(buffer.bytes().size(), gl::PixelBuffer::kTexelBytes * kSize * kSize);
-    // Written by another thread, as a baker does.
+    // Another thread writes them, as a baker does.
     std::thread([bytes = buffer.bytes()] {
         for (uint32_t i = 0; i < kSize * kSize; ++i) {
             const uint64_t texel = glm::packHalf4x16(glm::vec4(static_cast<float>(i), 1, 2, 1));

@@ -1,4 +1,4 @@
-// Bakes of all methods, tracers, layers and presets by the program itself: the light is, to the bit, what
+// The program itself bakes with all methods, tracers, layers and presets: the light is, to the bit, what
 // tests/golden/bakes.txt says.
 #include "assets/base/error.h"
 #include "assets/images/float_image.h"
@@ -25,7 +25,7 @@ namespace {
 
 const std::string kList = RELUME_SOURCE_DIR "/tests/golden/bakes.txt";
 
-/// One line of the list.
+/// Holds one line of the list.
 struct GoldenBake {
     std::string name, hash;
     std::vector<std::string> arguments;
@@ -52,8 +52,8 @@ std::vector<GoldenBake> readList() {
     return bakes;
 }
 
-/// Which machines make the same bits: those with this device and this widest vector unit, as both Embree and
-/// the software device choose their code by it.
+/// Tells which machines make the same bits: those with this device and this widest vector unit, as both
+/// Embree and the software device choose their code by it.
 std::string kindOfMachine() {
     __builtin_cpu_init();
     const std::string vectors = __builtin_cpu_supports("avx512f") ? "avx512"
@@ -81,7 +81,7 @@ void updateList(const std::string& before, const std::string& after, const std::
     std::ofstream(kList, std::ios::binary) << text;
 }
 
-/// SHA-256 of all planes in the order of their channels, by the system's program.
+/// Returns the SHA-256 of all planes in the order of their channels, by the system's program.
 std::string hashOf(const FloatImage& image, const TemporaryFolder& folder) {
     const std::string path = folder.path("pixels");
     std::ofstream file(path, std::ios::binary);

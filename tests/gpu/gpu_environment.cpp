@@ -22,8 +22,8 @@ std::unique_ptr<vk::Device>& device() {
     return instance;
 }
 
-// Made by the first test that asks, so that listing the tests needs no device; destroyed while validation
-// still listens.
+// Makes the device for the first test that asks, so that listing the tests needs none, and destroys it while
+// validation still listens.
 class DeviceLifetime final : public testing::Environment {
 public:
     void TearDown() override {
@@ -59,7 +59,7 @@ const vk::Device& testDevice() {
         const char* select = std::getenv("RELUME_TEST_DEVICE");
         device() = std::make_unique<vk::Device>(
             vk::Device::Desc{.select = select != nullptr ? select : "", .validation = true});
-        // Stays loaded to the end: else the leaks above have no name any more.
+        // The layer stays loaded to the end, or the leaks above would have no name any more.
         (void)dlopen("libVkLayer_khronos_validation.so", RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
     }
     return *device();

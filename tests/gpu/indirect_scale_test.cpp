@@ -1,4 +1,4 @@
-// Links from a coarser grid of patches, interpolated within charts.
+// Here links start from a coarser grid of patches and are interpolated within charts.
 #include "assets/generate/generate.h"
 #include "bake/gather/coarse_patches.h"
 #include "tests/gpu/bake_scene.h"
@@ -55,7 +55,7 @@ TEST_P(IndirectScale, FurnaceEndsAtTheSeriesLimit) {
     }
 }
 
-// Charts of 20 and 12 texels: windows of the grid hold parts of several.
+// Charts have 20 and 12 texels, so windows of the grid hold parts of several.
 TEST_P(IndirectScale, ADarkCellStaysDark) {
     SceneMaker maker(128);
     maker.box({-1, -1, -1}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.8f, 1.0f), 19);
@@ -90,8 +90,8 @@ TEST_P(IndirectScale, CacheAndBatchesChangeNoByte) {
     EXPECT_GT(without.progress.rays, first.progress.rays);
 }
 
-// A quarter and a sixteenth, but for charts' edges; what is kept shrinks alike. Directional: all rays are
-// links.
+// They are a quarter and a sixteenth, but for charts' edges; what is kept shrinks alike. With the directional
+// method all rays are links.
 TEST(IndirectScaleRays, FollowTheGrid) {
     const Scene scene = generateScene("cornell_geom");
     BakeDesc desc{.size = 128, .passes = 2, .method = Method::Directional, .samples = 16};
@@ -118,7 +118,8 @@ TEST(IndirectScaleTracers, Agree) {
     expectTracersAgree(scene, desc, 5e-3);
 }
 
-// Against sixteen times the samples of every patch: the grid's own error is among what is told.
+// The bake is held against sixteen times the samples of every patch: the grid's own error is part of what is
+// told.
 TEST(IndirectScaleError, IsTold) {
     for (const char* name : {"cornell_geom", "cornell_layers"}) {
         const Scene scene = generateScene(name);
@@ -156,8 +157,8 @@ TEST(IndirectScaleError, EndsWhereTheGridDoes) {
     EXPECT_LT(baked.progress.samples, 16384u);
 }
 
-// Straight lines along a flat chart come out as they are but beyond the last receivers, and no weight reaches
-// another chart.
+// Linear slopes along a flat chart come out as they are except beyond the last receivers, and no weight
+// reaches another chart.
 TEST(CoarsePatches, ReproduceStraightLines) {
     SceneMaker maker(96);
     const TexelRect wall = maker.quad({0, 0, 0}, kX, kY, maker.material(0.5f, 1.0f), {29, 23});

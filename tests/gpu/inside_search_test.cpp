@@ -1,5 +1,5 @@
-// Patches that lie inside something: the same ones whether all directions are followed, as where objects may
-// move later, or as many as it takes.
+// The search finds the same patches inside something whether all directions are followed, as where objects
+// may move later, or as many as it takes.
 #include "bake/baker/inside_search.h"
 
 #include "assets/base/watch.h"
@@ -13,7 +13,7 @@
 namespace relume {
 namespace {
 
-/// A floor, in a room or below the sky, on which a box stands that covers part of it.
+/// Makes a floor, in a room or below the sky, on which a box stands that covers part of it.
 Scene coveredFloor(bool closed) {
     SceneMaker maker(128);
     const int grey = maker.material(0.5f, 1.0f);

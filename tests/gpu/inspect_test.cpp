@@ -1,5 +1,5 @@
-// Quantities that the baker put in the lightmap's place, on the model and as texture; what is seen and
-// clicked at.
+// This tests quantities that the baker put in the lightmap's place, on the model and as texture, and what is
+// seen and clicked at.
 #include "renderer/picker.h"
 #include "renderer/picture.h"
 #include "renderer/tile_ids.h"
@@ -28,7 +28,7 @@ void expectNear(const glm::ivec3& a, const glm::ivec3& b, int tolerance = 1) {
         EXPECT_NEAR(a[c], b[c], tolerance) << "channel " << c;
 }
 
-/// The wall in a view that inspects; its lightmap holds `value` left and `other` right.
+/// Draws the wall in a view that inspects; its lightmap holds `value` left and `other` right.
 Picture inspect(const DrawSettings& settings, const glm::vec3& value, const glm::vec3& other) {
     const SceneMaker maker = wall(grey(0.5f));
     const FloatImage quantity =
@@ -102,7 +102,7 @@ public:
     gl::Framebuffer target;
 };
 
-/// Red from 0 to 1 along the row, green along the column; the last row is empty.
+/// Makes red from 0 to 1 along the row and green along the column; the last row is empty.
 FloatImage ramps() {
     FloatImage image = lightmapOf(1.0f);
     for (uint32_t i = 0; i < kWallSize * kWallSize; ++i) {
@@ -157,7 +157,7 @@ TEST(UvView, ExposesLightAsTheSceneDoes) {
     EXPECT_EQ(uv.draw({}).pixel(64, 32), glm::ivec3(255, 0, 0)); // no texture yet
 }
 
-/// A closed room of 2 m whose walls have charts of 16 x 16 texels.
+/// Makes a closed room of 2 m whose walls have charts of 16 x 16 texels.
 struct Room {
     explicit Room(const Material& material = grey(0.5f)) : maker(kWallSize) {
         testContext();
@@ -201,7 +201,7 @@ TEST(TileIds, TellsWhatTheCameraSees) {
     const std::set<uint32_t> seen(tiles.begin(), tiles.end());
     EXPECT_EQ(seen.size(), tiles.size());
     EXPECT_TRUE(std::is_sorted(tiles.begin(), tiles.end()));
-    // Charts may share the tiles at their borders: those that are only of the wall behind.
+    // Charts may share the tiles at their borders; these are the tiles of only the wall behind.
     std::set<uint32_t> behind = room.tilesOf(room.walls[5]);
     for (size_t i = 0; i < 5; ++i)
         for (const uint32_t tile : room.tilesOf(room.walls[i]))

@@ -1,4 +1,4 @@
-// What must not change a lightmap, and where there must be no light at all.
+// This tests what must not change a lightmap, and where there must be no light at all.
 #include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kScaledSize = 128; // the scenes' charts lie on multiples of 1/128
 
-/// The instance that each patch belongs to.
+/// Returns the instance that each patch belongs to.
 std::vector<uint32_t> instanceOfPatch(const PatchSet& patches) {
     const WorldMesh& mesh = patches.scene.mesh;
     std::vector<uint32_t> ofChart(mesh.chartCount, ~0u), ofPatch(patches.scene.patches.size(), ~0u);

@@ -1,4 +1,4 @@
-// Lights without geometry: against closed forms and second integrations, in every method.
+// Analytic lights are held against closed forms and second integrations, in every method.
 #include "assets/generate/generate.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
@@ -41,7 +41,7 @@ glm::dvec3 placeOf(uint32_t column, uint32_t row) {
     return {(column + 0.5) * texel - kSide / 2, (row + 0.5) * texel - kSide / 2, 0};
 }
 
-/// What every texel of the floor should be, within this share of it.
+/// Expects of every texel of the floor what `exact` says, within this share of it.
 void expectFloor(const Floor& floor, const FloatImage& lighting,
                  const std::function<double(glm::dvec3)>& exact, double tolerance) {
     for (uint32_t row = 0; row < kFloorTexels; ++row) {
@@ -53,7 +53,7 @@ void expectFloor(const Floor& floor, const FloatImage& lighting,
     }
 }
 
-/// At `position`, shining down.
+/// Returns a light at `position` that shines down.
 Light lightAt(LightType type, glm::vec3 position, float intensity) {
     Light light;
     light.type = type;
@@ -103,7 +103,7 @@ TEST_P(LampMethods, AnOpenPlaneUnderAConstantSkyGetsPiTimesItsRadiance) {
         floor, floor.bake(GetParam()), [](glm::dvec3) { return 3.0; }, 1e-5);
 }
 
-// Inside a white ball everything is lit alike, by the lamp and over and over by itself.
+// Inside a white ball everything is lit alike, by the light and over and over by itself.
 TEST_P(LampMethods, BouncesOfALampFollow) {
     constexpr float kAlbedo = 0.5f, kRadius = 1.5f;
     SceneMaker maker(64);
@@ -148,7 +148,8 @@ TEST(Lamps, ASphereAboveTheHorizonLightsLikeItsCentre) {
         1e-4);
 }
 
-// Half sunk into the floor's plane: only the upper half's light counts. Integrated over directions.
+// The sphere is half sunk into the floor's plane, and only the upper half's light counts. It is integrated
+// over directions.
 TEST(Lamps, ASphereOnTheHorizonIsCutByIt) {
     Light bulb = lightAt(LightType::Point, {0, 0, 0}, 100.0f);
     bulb.radius = 0.5f;
@@ -194,7 +195,7 @@ TEST(Lamps, ADiscHasItsFormFactor) {
                 7 * closed::pointToDisc(0.5, 1.0), 0.005 * 7);
 }
 
-// A wall that hides half of the disc in the sky from a texel in the middle of its shadow's edge.
+// A wall hides half of the disc in the sky from a texel in the middle of its shadow's edge.
 TEST(Lamps, TheSunsDiscMakesSoftEdges) {
     constexpr float kAngle = 0.4f;
     Light sun = lightAt(LightType::Directional, {0, 0, 0}, 1000.0f);
@@ -211,13 +212,13 @@ TEST(Lamps, TheSunsDiscMakesSoftEdges) {
     const double half = std::tan(kAngle / 2);
     for (uint32_t column = 0; column < rect.width; ++column) {
         const double x = -1 + (column + 0.5) * 0.1, t = std::clamp(x / (2 * half), -1.0, 1.0);
-        // The share of a disc on one side of a chord.
+        // This is the share of a disc on one side of a chord.
         const double share = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
         EXPECT_NEAR(texel(lighting, rect, column, 5) / (1000 / kPi), share, 0.015) << column;
     }
 }
 
-// A small bright spot beside a dim rest, turned: only sampling by brightness finds it.
+// There is a small bright spot beside a dim rest, turned: only sampling by brightness finds it.
 TEST(Lamps, ASkyPictureIsSampledByBrightness) {
     constexpr uint32_t kWidth = 64, kHeight = 32;
     Floor floor;
@@ -228,7 +229,7 @@ TEST(Lamps, ASkyPictureIsSampledByBrightness) {
     sky.rotation = 0.8f;
     sky.pixels.assign(kWidth * kHeight, glm::vec3(0.1f));
     sky.pixels[8 * kWidth + 40] = {500, 500, 500};
-    // The floor's normal, +Z, lies in the picture at its edges; integrated pixel by pixel.
+    // The floor's normal, +Z, lies in the picture at its edges; this integrates pixel by pixel.
     double exact = 0;
     constexpr int kFine = 8;
     for (uint32_t row = 0; row < kHeight * kFine; ++row) {
@@ -246,7 +247,8 @@ TEST(Lamps, ASkyPictureIsSampledByBrightness) {
     EXPECT_LT((all.max - all.min) / all.mean, 0.2);
 }
 
-// Emitters, lamps and sky count once, whichever method: their sum is what each gives alone.
+// Mesh lights, analytic lights and the sky count once in every method: together they give the sum of what
+// each gives alone.
 TEST_P(LampMethods, LightsAddUp) {
     Scene scene = generateScene("cornell_small");
     const auto bake = [&](const Scene& s) {

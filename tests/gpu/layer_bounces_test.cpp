@@ -1,4 +1,4 @@
-// Layers that bounce side by side on the device, as GPUs have it: each comes out as it does alone.
+// Layers bounce side by side on the device, as on GPUs; each comes out as it does alone.
 #include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ BakeDesc onDevice(BakeDesc desc = kQuick) {
     return desc;
 }
 
-// Each light by itself, while no other one shines.
+// Bakes each light by itself, while no other one shines.
 void bakeOneByOne(Layered& bake) {
     for (const LightSource& source : lightSources(bake.scene)) {
         bake.edit({.muted = {}, .solo = {source.key}});
@@ -33,7 +33,7 @@ void expectSameLayers(Layered& bake, Layered& alone) {
     EXPECT_TRUE(sameBytes(bake.light(), alone.light()));
 }
 
-// From nothing layers bounce together once each has its direct light; what changes surfaces leaves that, so
+// From the start, layers bounce together once each has its direct light; an edit of surfaces keeps that, so
 // that they do at once.
 void expectAsAlone(const BakeDesc& desc, const std::vector<Light>& more = {}) {
     Scene scene = room();
@@ -67,7 +67,7 @@ TEST(LayerBounces, FourSideBySideAreAsAlone) {
     expectAsAlone(onDevice());
 }
 
-// The last ones have idle places beside them.
+// The last layers have idle places beside them.
 TEST(LayerBounces, SixAreAsAlone) {
     Light far = lightAt(LightType::Point, {0.3f, 1.8f, 0.2f}, 1.0f, "Far");
     Light sun = lightAt(LightType::Directional, {1.0f, 1.0f, 1.9f}, 5.0f, "Sun"); // which a closed room hides
@@ -88,7 +88,7 @@ TEST(LayerBounces, OfOneRoundOfLinksAreAsAlone) {
     expectAsAlone(desc);
 }
 
-// One of those under way is another one now, the others go on.
+// One of the layers under way is replaced; the others go on.
 TEST(LayerBounces, AnEditAmongThemLeavesTheOthers) {
     Layered bake(room(), onDevice());
     bake.finish();
@@ -113,7 +113,7 @@ TEST(LayerBounces, AnEditAmongThemLeavesTheOthers) {
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, onDevice())));
 }
 
-// To the error that is asked for, levels and all.
+// Layers go to the error that is asked for, levels and all.
 TEST(LayerBounces, ToAnErrorAreAsAlone) {
     BakeDesc desc = onDevice();
     desc.samples = 0;

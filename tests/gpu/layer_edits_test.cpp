@@ -1,4 +1,4 @@
-// Edits of layers against fresh bakes of what they lead to.
+// Edits of layers are held against fresh bakes of what they lead to.
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/layered.h"
 
@@ -20,7 +20,7 @@ TEST(Layers, AMovedLightMakesItsOwnLayerAnew) {
     EXPECT_TRUE(sameBytes(bake.layer(0), plate));
     EXPECT_TRUE(sameBytes(bake.layer(2), spot));
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene)));
-    // Shadow rays to this light alone: as many as it has samples.
+    // There are shadow rays to this light alone, as many as it has samples.
     const uint64_t patches = plate.size();
     EXPECT_GT(bake.progress().rays, rays);
     EXPECT_LE(bake.progress().rays - rays, patches * kQuick.samples);
@@ -142,7 +142,7 @@ TEST(Layers, AColouredSurfaceIsSeenInAllLightsAtOnce) {
     EXPECT_GT(distance(atOnce, after), 0.05);
 }
 
-// While layers follow a colour lights are dragged and dimmed: what is shown keeps up, and does not go back to
+// While layers follow a colour, lights are dragged and dimmed: what is shown keeps up and does not go back to
 // the colour before.
 TEST(Layers, WhileAllAreSeenAtOnceLightsAreEditedAsEver) {
     BakeDesc desc = kQuick;
@@ -252,7 +252,7 @@ TEST(Layers, ALightInsideAWallIsDark) {
     EXPECT_TRUE(bake.solver().layers()[1]->converged);
 }
 
-// A light that is dragged: each edit comes before the one before was followed to its end.
+// A light is dragged: each edit comes before the one before was followed to its end.
 TEST(Layers, ALightThatIsDraggedIsSeenAndEndsAsAFreshBake) {
     BakeDesc desc = kQuick;
     desc.batchMs = 1.0;
@@ -294,7 +294,8 @@ TEST(Layers, WithoutItsLastLightAPictureIsDark) {
     EXPECT_EQ(meanOf(shown()), 0.0);
 }
 
-// A hundred edits, most of which come before the one before was followed to its end, and all of them undone.
+// Makes a hundred edits, most of which come before the one before was followed to its end, and undoes them
+// all.
 void editAndUndo(const BakeDesc& desc) {
     Layered bake(room(), desc);
     bake.finish();
@@ -357,7 +358,7 @@ TEST(Layers, AHundredRandomEditsAreUndoneBeyondTheMemory) {
     editAndUndo(desc);
 }
 
-// The level of surfaces that were painted is that of those before, which a bake of its own may never have.
+// Painted surfaces have the level of those before, which a fresh bake may never have.
 TEST(Layers, ALayerThatWasDroppedComesBackWithItsBytes) {
     BakeDesc desc = kQuick;
     desc.samples = 0;

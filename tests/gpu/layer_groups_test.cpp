@@ -1,4 +1,4 @@
-// Lights that share layers, for there is no memory to tell all of them apart.
+// Here lights share layers, for there is no memory to tell all of them apart.
 #include "assets/atlas/lightmap_atlas.h"
 #include "tests/gpu/layered.h"
 
@@ -9,8 +9,9 @@ namespace {
 
 constexpr LightKey kBulb{LightKey::Kind::Lamp, 2, 0}, kPanel{LightKey::Kind::Lamp, 4, 0};
 
-/// A floor and two walls under a sky and two suns, with two plates that shine, a bulb, a spot, a panel and a
-/// point, and a shelf: nine lights, of which six are of the rest where there is room for three layers.
+/// Makes a floor and two walls under a sky and two suns, with two plates that shine, a bulb, a spot, a panel
+/// and a point, and a shelf: nine lights, of which six are in the light group where there is room for three
+/// layers.
 Scene yard() {
     SceneMaker maker(64);
     const int white = maker.material(0.6f);
@@ -35,7 +36,7 @@ Scene yard() {
     return scene;
 }
 
-/// Memory for so many layers.
+/// Returns the memory for so many layers.
 uint64_t bytesFor(const Scene& scene, uint32_t layers, uint32_t size = 64) {
     const std::unique_ptr<Baker> baker =
         makeBaker(scene, {.size = size, .passes = 0, .method = Method::Hybrid, .samples = 16});
@@ -82,7 +83,7 @@ TEST(LayerGroups, SumToABakeWithALayerForEach) {
     EXPECT_LE(distance(grouped.light(), apart.light()), 0.02);
 }
 
-// Sums of the same samples, which direct light alone is made of: they differ by rounding.
+// Both are sums of the same samples, of which direct light alone is made: they differ by rounding.
 TEST(LayerGroups, HoldTheLightOfTheirMembers) {
     Scene scene = yard();
     for (Material& material : scene.materials)

@@ -1,6 +1,6 @@
 #pragma once
 
-// A bake of layers whose scene is edited, and the room that is baked.
+// Here are a bake of layers whose scene is edited, and the room that is baked.
 #include "bake/layers/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/light_at.h"
@@ -17,7 +17,7 @@ namespace relume {
 
 using Light4 = std::vector<glm::vec4>;
 
-/// A closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
+/// Makes a closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
 inline Scene room(float albedo = 0.6f) {
     SceneMaker maker(64);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(albedo), 16);
@@ -36,7 +36,7 @@ inline Scene room(float albedo = 0.6f) {
 inline constexpr BakeDesc kQuick{
     .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
 
-/// A bake of layers whose scene is edited.
+/// Holds a bake of layers whose scene is edited.
 class Layered {
 public:
     explicit Layered(Scene start, const BakeDesc& desc = kQuick)
@@ -88,7 +88,7 @@ inline glm::mat4 at(glm::vec3 position) {
     return glm::translate(glm::mat4(1.0f), position);
 }
 
-/// Root of the mean squared difference, relative to the mean of b.
+/// Returns the root of the mean squared difference, relative to the mean of b.
 inline double distance(const Light4& a, const Light4& b) {
     double squares = 0, sum = 0;
     for (size_t i = 0; i < b.size(); ++i) {

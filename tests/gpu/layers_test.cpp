@@ -1,4 +1,4 @@
-// Layers: their sum against other solvers and closed forms.
+// The sum of layers is held against other solvers and closed forms.
 #include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Layers, SumToWhatTheHybridBakes) {
     EXPECT_LE(relativeError(bake.image(), bakeScene(scene, precise).lighting), 0.02);
 }
 
-// The noise of the links that bounces settle over must not stay in what is gathered over many.
+// The noise of the links over which bounces converge must not stay in what is gathered over many.
 TEST(Layers, ConvergeToWhatTheHybridConvergesTo) {
     BakeDesc many{.passes = 0, .method = Method::Hybrid, .samples = 1024};
     Scene scene = room();
@@ -44,7 +44,8 @@ TEST(Layers, ConvergeToWhatTheHybridConvergesTo) {
     EXPECT_LE(relativeError(bake.image(), expected), 0.002);
 }
 
-// A step of many rounds lasts: what is told of its rays meanwhile must not stand still, nor change the count.
+// A step of many sample passes lasts: what is told of its rays meanwhile must not stand still, nor change the
+// count.
 TEST(Layers, CountRaysWhileDirectLightIsSampled) {
     BakeDesc desc = kQuick;
     desc.samples = 256;
@@ -78,7 +79,7 @@ TEST(Layers, SumToTheFurnace) {
         EXPECT_NEAR(statistics(bake.image(), wall).mean, kWanted, 0.01 * kWanted);
 }
 
-// Direct light of a point without extent: E = I cos / r^2, lighting E / pi.
+// Direct light of a point without extent is E = I cos / r^2, and lighting is E / pi.
 TEST(Layers, HoldLightForOneCandela) {
     SceneMaker maker(32);
     const TexelRect rect =

@@ -28,7 +28,7 @@ struct Struct {
     std::vector<Member> members;
 };
 
-// Names and single signs, comments left out.
+// Reads names and single signs and leaves comments out.
 std::vector<std::string> readTokens(const std::string& path) {
     std::ifstream file(path);
     std::vector<std::string> tokens;
@@ -92,7 +92,8 @@ const std::map<std::string, size_t> kSizes = {
     SIZE_OF(BounceLane),       SIZE_OF(BouncePush),      SIZE_OF(ChunkSumPush)};
 #undef SIZE_OF
 
-// Byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all else of 4.
+// Appends the byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all
+// else at multiples of 4.
 size_t appendWords(const std::vector<Struct>& structs, const Struct& entry, size_t offset,
                    std::vector<size_t>& words) {
     static const std::map<std::string, size_t> sizes = {

@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// A light of this intensity, in its type's unit, that looks along -z.
+/// Returns a light of this intensity, in its type's unit, that looks along -z.
 inline Light lightAt(LightType type, glm::vec3 position, float intensity, const std::string& name) {
     Light light;
     light.name = name;

@@ -1,4 +1,5 @@
-// Directional and hybrid: closed forms, the pure method, and what must not change a byte.
+// The directional and the hybrid method are held against closed forms and the pure method; this also tests
+// what must not change a byte.
 #include "assets/generate/generate.h"
 #include "bake/links/link_solver.h"
 #include "tests/gpu/bake_comparison.h"
@@ -13,8 +14,8 @@
 namespace relume {
 namespace {} // namespace
 
-// A closed room with a difference in albedo and light, baked by each set and each rotation: all have the same
-// mean, and the thesis' sets are as good as the sequence.
+// A closed room with differences in albedo and light is baked by each set and each rotation: all have the
+// same mean, and the thesis' sets are as good as the sequence.
 TEST(Directions, SetsAndRotationsAgree) {
     SceneMaker maker(64);
     std::array<int, 6> materials;
@@ -130,7 +131,7 @@ TEST_P(LinkMethods, ReflectsAsMuchAsPure) {
     }
 }
 
-// At the size that the scene's charts are made for: see agreement_test.cpp.
+// The size is the one that the scene's charts are made for: see agreement_test.cpp.
 TEST_P(LinkMethods, TracersAgree) {
     const Scene scene = generateScene("cornell_geom");
     const BakeDesc desc{.size = 128, .passes = 2, .method = GetParam(), .samples = 16};
@@ -175,7 +176,7 @@ TEST_P(LinkMethods, ErrorIsTold) {
     }
 }
 
-// Texel by texel, a near emitter that leans below the horizon: exact where nothing is hidden.
+// A near mesh light leans below the horizon; texel by texel, its light is exact where nothing is hidden.
 TEST(Hybrid, UnhiddenEmittersAreExact) {
     const glm::vec3 corner(-0.3f, 0.0f, -0.5f), u = kY, v = glm::vec3(-0.3f, 0.1f, 1.2f);
     SceneMaker maker(64);
@@ -195,7 +196,7 @@ TEST(Hybrid, UnhiddenEmittersAreExact) {
     }
 }
 
-// A hundredth of a texel wide, and the only light there is.
+// The mesh light is a hundredth of a texel wide, and the only light there is.
 TEST(Hybrid, ATinyEmitterIsFound) {
     SceneMaker maker(64);
     const TexelRect floor =
@@ -214,7 +215,7 @@ TEST(Hybrid, ATinyEmitterIsFound) {
     }
 }
 
-// Forty lamps, far more than are sampled one by one.
+// There are forty mesh lights, far more than are sampled one by one.
 TEST(Hybrid, ManyEmittersAddUp) {
     SceneMaker maker(96);
     const TexelRect floor =
@@ -245,7 +246,7 @@ TEST(Hybrid, ManyEmittersAddUp) {
     EXPECT_NEAR(sum / exactSum, 1.0, 0.005);
 }
 
-// Also where so little is left that smoothing would do harm.
+// This holds also where so little is left that smoothing would do harm.
 TEST(Hybrid, TheErrorToldFallsToTheOneAskedFor) {
     const double asked = 0.001;
     const auto baker =

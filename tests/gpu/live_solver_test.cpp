@@ -1,5 +1,5 @@
-// What a viewer does to a solver: looks on, moves its camera, changes the budget, aborts passes. None of it
-// changes what comes out.
+// A viewer looks on, moves its camera, changes the budget and aborts bounces. None of it changes what comes
+// out of a solver.
 #include "assets/generate/generate.h"
 #include "bake/output/checkpoint.h"
 #include "tests/gpu/bake_comparison.h"
@@ -50,7 +50,7 @@ void expectSameLight(const FloatImage& a, const FloatImage& b, bool sameOrder) {
         EXPECT_LT(relativeError(a, b), 1e-5);
 }
 
-// The display: it copies what it is told has changed.
+// Stands for the display: it copies what it is told has changed.
 class Display {
 public:
     explicit Display(const Baker& baker) : light_(baker.patches().scene.patches.size()) {}
@@ -79,7 +79,7 @@ public:
         return !live.changed.empty();
     }
     bool complete() const { return complete_; }
-    /// Over patches that are shown, weighted alike.
+    /// Returns the mean over patches that are shown, weighted alike.
     double mean(const PatchSet& patches) const { return meanOf(light_, patches); }
     static double meanOf(const std::vector<glm::vec4>& light, const PatchSet& patches) {
         double sum = 0, count = 0;
@@ -155,7 +155,7 @@ TEST_P(LiveSolver, AMovingCameraChangesTheOrderOnly) {
     EXPECT_EQ(solver.progress().pairs, straight.progress.pairs);
 }
 
-// At any moment, with and without what aborting at once takes.
+// A bounce or sample pass is aborted at any moment, with and without what aborting at once takes.
 TEST_P(LiveSolver, AnAbortedPassLeavesNoTrace) {
     const Scene scene = generateScene("cornell_geom");
     BakeDesc desc = GetParam().desc;
@@ -189,7 +189,7 @@ TEST_P(LiveSolver, AnAbortedPassLeavesNoTrace) {
     }
 }
 
-// In the middle of a round, each solver with a camera of its own.
+// The checkpoint comes in the middle of a sample pass, and each solver has a camera of its own.
 TEST_P(LiveSolver, ACheckpointKeepsWhatIsDone) {
     const TemporaryFolder folder;
     const std::string file = folder.path("checkpoint");
@@ -277,7 +277,7 @@ TEST(LiveLight, CompleteIsHardlyDimmerThanTheEnd) {
         scene, {.passes = 0, .error = 0.002, .method = Method::Mipmapped, .pairs = {.window = 2}});
 }
 
-// Where bounces go on for long. A whole wall shines, so that directions find it alike in every round.
+// Bounces go on for long here. A whole wall shines, so that directions find it alike in every sample pass.
 TEST(LiveLight, CompleteIsHardlyDimmerThanTheEndOfManyBounces) {
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     SceneMaker maker(64);

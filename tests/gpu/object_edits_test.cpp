@@ -1,5 +1,5 @@
-// Objects that are moved, hidden and shown again while layers are baked: against fresh bakes of what that
-// leads to.
+// Objects are moved, hidden and shown again while layers are baked, which is held against fresh bakes of what
+// that leads to.
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/trace/make_tracer.h"
@@ -18,10 +18,11 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kMovingSize = 64;
-// Instances of the room below: walls, plate, shelf, block, wall light.
+// These are instances of the room below: walls, plate, shelf, block, wall light.
 constexpr size_t kPlate = 6, kShelf = 7, kBlock = 8, kBlockEnd = 14;
 
-/// A closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a panel.
+/// Makes a closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a
+/// panel.
 Scene movingRoom(float plate = 8.0f) {
     SceneMaker maker(kMovingSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
@@ -45,7 +46,7 @@ constexpr BakeDesc kQuickMoving{.size = kMovingSize,
                                 .smooth = true,
                                 .layers = true};
 
-/// A bake of layers whose scene is edited.
+/// Holds a bake of layers whose scene is edited.
 class Moving {
 public:
     explicit Moving(Scene start, const BakeDesc& desc = kQuickMoving)
@@ -60,7 +61,7 @@ public:
         while (!solver().done())
             solver().step();
     }
-    /// Whether the scene as it is now could be followed.
+    /// Tells whether the solver could follow the scene as it is now.
     bool follow() {
         while (!solver().atRest())
             solver().step();
@@ -79,7 +80,7 @@ public:
             scene.instances[i].hidden = hidden;
     }
     Light4 light() { return solver().light(); }
-    /// Of the composite, then of the layers.
+    /// Returns the image of the composite, then those of the layers.
     std::vector<FloatImage> images() {
         std::vector<FloatImage> all = {baker_->lightmap({.sew = false})};
         for (const auto& layer : solver().layers())
@@ -126,7 +127,7 @@ glm::mat4 turned(float angle, glm::vec3 about, glm::vec3 axis) {
     return by(about) * glm::rotate(glm::mat4(1.0f), angle, axis) * by(-about);
 }
 
-/// The host's tracer and gather, and every tracer of the device with the device's gather.
+/// Runs with the host's tracer and gather, and with every tracer of the device and the device's gather.
 class ObjectEdits : public testing::TestWithParam<int> {
 protected:
     static BakeDesc desc() {
@@ -137,8 +138,8 @@ protected:
         desc.deviceGather = true;
         return desc;
     }
-    /// Of a fresh bake's rays, at most. Batches of a device's gather take in whole runs of chunks, which is
-    /// all of so small a lightmap.
+    /// Returns the largest share of a fresh bake's rays that is allowed. Batches of a device's gather take in
+    /// whole runs of chunks, which is all of so small a lightmap.
     static double few(double share) {
         return GetParam() == 0 && testDevice().info().software() ? share : 1.0;
     }
@@ -184,7 +185,7 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
     EXPECT_LT(distance(soon, after), 1e-3) << "of the same rays to lights and links";
 }
 
-// The lamp, too, in its new place, before any layer is there.
+// The light, too, is seen in its new place, before any layer is there.
 TEST(ObjectEdits, ALampThatIsMovedAtOnceWithAnObjectIsSeenInAllLights) {
     BakeDesc live = kQuickMoving;
     live.live = true;
@@ -202,7 +203,7 @@ TEST(ObjectEdits, ALampThatIsMovedAtOnceWithAnObjectIsSeenInAllLights) {
     EXPECT_TRUE(sameBytes(bake.light(), Moving(bake.scene, live).light()));
 }
 
-// The sum of all lights takes links of a few rounds: those of all the others follow once it is seen.
+// The sum of all lights takes links of a few sample passes; those of all the others follow once it is seen.
 TEST_P(ObjectEdits, ADraggedObjectIsSeenBeforeAllLinksHaveFollowed) {
     BakeDesc live = desc();
     live.live = true;
@@ -288,7 +289,7 @@ TEST_P(ObjectEdits, ThereAndBackAreTheFirstBytes) {
     ASSERT_TRUE(bake.follow());
     bake.finish();
     EXPECT_EQ(bake.light(), first);
-    // Links are back as well: what is made of them is.
+    // Links are back as well, since what is made of them is.
     bake.scene.lights[0].transform = by({0.7f, 0.5f, 1.2f});
     followed(bake, desc());
 }
@@ -324,7 +325,8 @@ TEST_P(ObjectEdits, AnObjectBehindAWallIsAFreshBake) {
 
 INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
 
-// Half in the floor and half out of it: texels of both change whether they lie inside something.
+// The object is half in the floor and half out of it, and texels of both change whether they lie inside
+// something.
 TEST(ObjectEdits, TexelsInsideSomethingAreFoundAnew) {
     SceneMaker maker(kMovingSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
@@ -382,7 +384,7 @@ TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
     followed(bake);
 }
 
-// Each edit comes before the one before was followed to its end, lamps move as well.
+// Each edit comes before the one before was followed to its end, and analytic lights move as well.
 TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
     BakeDesc desc = kQuickMoving;
     desc.batchMs = 1.0;
@@ -399,7 +401,7 @@ TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
     followed(bake, desc);
 }
 
-// Where links of later rounds are not kept they are traced again as ever.
+// Where links of later sample passes are not kept, they are traced again as ever.
 TEST(ObjectEdits, LinksBeyondTheMemoryAreTracedWhereObjectsAre) {
     BakeDesc desc = kQuickMoving;
     desc.samples = 64;

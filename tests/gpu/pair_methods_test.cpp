@@ -1,4 +1,5 @@
-// Undersampling and adaptive subdivision against the pure method and closed forms; the visibility cache.
+// Undersampling and adaptive subdivision are held against the pure method and closed forms; the visibility
+// cache is tested, too.
 #include "assets/generate/generate.h"
 #include "bake/pairs/pair_passes.h"
 #include "tests/gpu/bake_comparison.h"
@@ -57,8 +58,8 @@ TEST_P(PairMethods, AreNearPure) {
     EXPECT_LT(other.progress.rays, pure.progress.rays);
 }
 
-// Radiance emission / (1 - albedo) everywhere, in the mean within the form factors' error. What Monte-Carlo
-// draws for a chunk stays for all passes: in so small a room its rows sum to 1 in the mean only.
+// The radiance is emission / (1 - albedo) everywhere, in the mean within the form factors' error. What
+// Monte-Carlo draws for a chunk stays for all bounces: in so small a room its rows sum to 1 in the mean only.
 TEST_P(PairMethods, FurnaceEndsAtTheSeriesLimit) {
     SceneMaker maker(64);
     const auto walls = maker.box({3, 1, -2}, {glm::vec3(2, 0, 0), {0, 2, 0}, {0, 0, 2}},
@@ -71,7 +72,7 @@ TEST_P(PairMethods, FurnaceEndsAtTheSeriesLimit) {
         EXPECT_NEAR(statistics(baked.radiance, wall).mean, 2.0, 2.0 * GetParam().furnace);
 }
 
-// Windows reach across charts in the lightmap, light does not.
+// Windows reach across charts in the lightmap; light does not.
 TEST_P(PairMethods, ADarkCellStaysDark) {
     SceneMaker maker(64);
     const std::array<glm::vec3, 3> edges = {glm::vec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
@@ -100,7 +101,7 @@ TEST_P(PairMethods, BatchesAndCachesChangeNoByte) {
     EXPECT_TRUE(sameBytes(plain.lighting, cached.lighting));
     EXPECT_GT(cached.progress.cacheBytes, 0u);
     EXPECT_LE(cached.progress.rays, plain.progress.rays);
-    if (GetParam().method == Method::Adaptive) return; // its senders change from pass to pass
+    if (GetParam().method == Method::Adaptive) return; // its senders change from bounce to bounce
     EXPECT_EQ(cached.progress.rays + cached.progress.raysSaved, plain.progress.rays);
     EXPECT_EQ(cached.progress.cachedShare, 1.0);
 }
@@ -116,7 +117,7 @@ TEST(PairMethods, WindowsOfOneTexelArePure) {
     }
 }
 
-// Where nothing may be merged adaptive subdivision is pure too.
+// Where nothing may be merged, adaptive subdivision is pure, too.
 TEST(PairMethods, AThresholdOfZeroIsPure) {
     const Scene scene = generateScene("cornell_geom");
     const Baked pure = bakeScene(scene, {.size = 48, .passes = 2});
@@ -138,7 +139,7 @@ TEST(PairMethods, AThresholdThatFallsEndsNearerToPure) {
               0.7 * relativeError(steady.lighting, pure.lighting));
 }
 
-// What does not fit is traced in every pass, and nothing else changes.
+// What does not fit is traced in every bounce, and nothing else changes.
 TEST(VisibilityCache, KeepsWhatFits) {
     const Scene scene = generateScene("cornell_geom");
     const auto bake = [&](CacheSettings cache, bool rtrad = false) {
@@ -169,7 +170,7 @@ TEST(VisibilityCache, KeepsWhatFits) {
     EXPECT_EQ(presetAll.rays + presetAll.raysSaved, presetNone.rays);
 }
 
-// More super-blocks than a batch's table has room for, so that those not kept take turns.
+// There are more super-blocks than a batch's table has room for, so that those not kept take turns.
 TEST(VisibilityCache, ALongListOfSuperBlocksIsRight) {
     const Scene scene = generateScene("cornell_geom");
     BakeDesc desc{.size = 96, .passes = 2, .batchMs = 45, .cache = {.kind = CacheSettings::Kind::None}};

@@ -1,4 +1,4 @@
-// What the visualisations show, against what can be told about simple scenes or asked in another way.
+// What the visualisations show is held against what can be told about simple scenes or asked in another way.
 #include "assets/generate/generate.h"
 #include "bake/show/patch_inspector.h"
 #include "bake/trace/make_tracer.h"
@@ -21,7 +21,7 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-/// A baker and an inspector of it.
+/// Holds a baker and an inspector of it.
 struct Inspected {
     explicit Inspected(const Scene& scene, const BakeDesc& desc = {})
         : baker(makeBaker(scene, desc)),
@@ -110,8 +110,8 @@ TEST(PatchInspector, MipsAreMeansOfWindowsWithinCharts) {
     }
 }
 
-// Even light in half of a wall, a steep slope in the other: the tree keeps large leaves here and single
-// texels there.
+// There is even light in half of a wall and a steep slope in the other: the tree keeps large leaves here and
+// single texels there.
 TEST(PatchInspector, LeavesFollowTheLight) {
     SceneMaker maker(64);
     maker.box(glm::vec3(0), kUnitBox, maker.material(0.5f), 16);
@@ -134,7 +134,7 @@ TEST(PatchInspector, LeavesFollowTheLight) {
     }
     EXPECT_GT(largest, 60u);
     EXPECT_GT(single, 60u);
-    // Of an 8x8 leaf 28 texels lie along its border.
+    // In an 8x8 leaf, 28 texels lie along its border.
     uint32_t inside = 0;
     for (uint32_t i = 0; i < box.set().count; ++i)
         inside += leaves[i].r == 64.0f && leaves[i].g == 0.0f;
@@ -176,7 +176,7 @@ TEST(PatchInspector, SeesAllOtherWallsOfABox) {
     }
 }
 
-// The preset asks for whole blocks, many super-blocks of them here.
+// The preset asks for whole blocks, of which there are many super-blocks here.
 TEST(PatchInspector, RtradSeesAllOtherWallsOfABox) {
     SceneMaker maker(192);
     maker.box(glm::vec3(0), kUnitBox, maker.material(0.5f), 54);
@@ -237,7 +237,7 @@ TEST(PatchInspector, LinksEndWhereTheDirectionsHit) {
     }
 }
 
-// Above a floor there is sky or the back of a roof: lines go where the directions do.
+// Above a floor there is sky or the back of a roof, and lines go where the directions do.
 TEST(PatchInspector, LinksWithoutPatchKeepTheirDirection) {
     SceneMaker maker(32);
     const int grey = maker.material(0.5f);

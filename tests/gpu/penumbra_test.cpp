@@ -1,4 +1,4 @@
-// Direct light of layers, whose rays go where neighbours see a light unalike.
+// This tests the direct light of layers, whose rays go where neighbours see different shares of a light.
 #include "bake/surface/tile_parts.h"
 #include "tests/gpu/layered.h"
 
@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kPoints = 1024; // on the light, per patch
 constexpr BakeDesc kDirect{.passes = 1, .method = Method::Hybrid, .samples = kPoints, .layers = true};
 
-/// A floor of 2 m below a panel, and a plate of a quarter of its edge between them.
+/// Makes a floor of 2 m below a panel, and a plate of a quarter of its edge between them.
 Scene shaded(LightType type = LightType::Rectangle) {
     SceneMaker maker(64);
     maker.quad({0, 0, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(40));
@@ -25,7 +25,7 @@ Scene shaded(LightType type = LightType::Rectangle) {
     return scene;
 }
 
-/// What every patch taking every ray would find.
+/// Returns what would be found if every patch took every ray.
 FloatImage everyRay(const Scene& scene) {
     BakeDesc all = kDirect;
     all.layers = false;
@@ -34,7 +34,7 @@ FloatImage everyRay(const Scene& scene) {
 
 } // namespace
 
-// Rays of every patch would be kPoints; the penumbra is an eighth of the floor.
+// Every patch would take kPoints rays; the penumbra is an eighth of the floor.
 TEST(Penumbra, TakesTheRays) {
     const Scene scene = shaded();
     Layered bake(scene, kDirect);
@@ -58,7 +58,7 @@ TEST(Penumbra, IsEverywhereWhereTheWholeLightIsUnknown) {
     EXPECT_DOUBLE_EQ(bake.solver().layers()[0]->directShare(), 1.0);
 }
 
-// Step by step as far as at once, but for rounding.
+// Going step by step leads as far as going at once, but for rounding.
 TEST(Penumbra, IsThatOfTheFirstRound) {
     const Scene scene = shaded();
     Layered few(scene, {.passes = 1, .method = Method::Hybrid, .samples = 8, .layers = true}),

@@ -1,4 +1,4 @@
-// What is published is what makeLightmap makes of the same patches, as halves; and only what changed is
+// What is published is what makeLightmap makes of the same patches, as halves, and only what changed is
 // copied.
 #include "assets/generate/generate.h"
 #include "bake/show/publisher.h"
@@ -19,7 +19,7 @@ namespace {
 
 using Texels = std::vector<uint64_t>;
 
-/// Patches of a scene, a light of random numbers and a publisher of them.
+/// Holds the patches of a scene, a light of random numbers and a publisher of them.
 class Published {
 public:
     Published(const Scene& scene, const BakeDesc& desc, uint32_t rings = 4)
@@ -58,14 +58,14 @@ public:
         vk::upload(testDevice(), values_, light_.data(), light_.size() * sizeof(glm::vec4));
     }
 
-    /// Slot 0's copy, brought up to date.
+    /// Brings slot 0's copy up to date and returns it.
     const Texels& copied() {
         slot_.resize(size_t{publisher_.size()} * publisher_.size());
         publisher_.publish(std::as_writable_bytes(std::span(slot_)), 0);
         return slot_;
     }
 
-    /// Every texel against makeLightmap's, within what rounding to halves, once per ring, may do.
+    /// Compares every texel with makeLightmap's, within what rounding to halves, once per ring, may do.
     void expectLightmap(const Texels& texels) const {
         const FloatImage expected =
             makeLightmap(patches(), light_,
@@ -93,7 +93,7 @@ private:
     bool rtrad_;
 };
 
-// A box half sunk into the floor of a closed room: texels of the floor lie inside it.
+// Makes a box half sunk into the floor of a closed room: texels of the floor lie inside it.
 Scene sunkenBox() {
     SceneMaker scene(96);
     const int grey = scene.material(0.5f), lamp = scene.material(0.5f, 5.0f);
@@ -146,7 +146,7 @@ TEST(Publisher, RtradsSeamsTakeTheDarkest) {
     published.expectLightmap(published.copied());
 }
 
-// Some chunks at a time, in any order: each time everything is as if all had been updated.
+// Some chunks are updated at a time, in any order: each time everything is as if all had been updated.
 TEST(Publisher, PartialUpdatesAddUp) {
     for (const Scene& scene : scenes()) {
         Published published(scene, {.size = 128});

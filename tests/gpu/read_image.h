@@ -10,7 +10,7 @@
 
 namespace relume {
 
-/// The four halves of each texel of a shared image that nobody else uses now.
+/// Reads the four halves of each texel of a shared image that nobody else uses now.
 inline std::vector<uint64_t> readImage(const vk::SharedImage& image) {
     const size_t count = size_t{image.width()} * image.height();
     const vk::Buffer texels(

@@ -13,9 +13,9 @@
 
 #include <gtest/gtest.h>
 
-// RTRad's own pictures. It showed the lightmap stretched over 1440 x 810 pixels, bilinear with 8-bit weights,
-// wrapped at the borders, clamped and sRGB encoded to 8 bits; DFPR is the mean RGB distance in units of full
-// scale.
+// Bakes are held against RTRad's own pictures. It showed the lightmap stretched over 1440 x 810 pixels,
+// bilinear with 8-bit weights, wrapped at the borders, clamped and sRGB encoded to 8 bits; DFPR is the mean
+// RGB distance in units of full scale.
 
 namespace relume {
 namespace {
@@ -96,7 +96,7 @@ TEST(Reference, voxelMarchingMatchesRtradsPicture) {
     EXPECT_LE(dfprAgainst(image, kPictures + "256_VXRM_32.png"), 0.001);
 }
 
-// One sender in four marches, whatever tracer serves the others; the light lies between both.
+// One sender in four is marched to, whatever tracer serves the others; the light lies between both.
 TEST(Reference, voxelRatioMixesMarchesAndRays) {
     if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
     constexpr uint32_t kSize = 48;
@@ -114,7 +114,7 @@ TEST(Reference, voxelRatioMixesMarchesAndRays) {
     EXPECT_LE(distance(mixed, bakePreset(kSize, TracerKind::Embree, mixture)), 0.0002);
 }
 
-// Of the adaptive picture the bake is too long for a test: by hand,
+// The bake of the adaptive picture is too long for a test; run it by hand:
 //   relume bake CornellLucy.glb --preset rtrad --method adaptive --passes 2 --size 512 -o MAP.exr
 //   tools/rtrad_dfpr.py MAP.exr 512_T05.png --nearest
 TEST(Reference, monteCarloPresetMatchesRtradsPictures) {

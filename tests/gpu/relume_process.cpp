@@ -18,7 +18,7 @@
 namespace relume {
 namespace {
 
-// Reads what is there; false at the end of the stream.
+// Reads what is there. Returns false at the end of the stream.
 bool readMore(int fd, std::string& text) {
     std::array<char, 4096> bytes;
     const ssize_t count = read(fd, bytes.data(), bytes.size());

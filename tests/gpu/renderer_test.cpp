@@ -1,4 +1,5 @@
-// Pictures whose pixels are known: what the renderer makes of light, materials and lightmaps.
+// These pictures have pixels that are known: they show what the renderer makes of light, materials and
+// lightmaps.
 #include "assets/base/error.h"
 #include "assets/images/metrics.h"
 #include "renderer/picture.h"
@@ -51,7 +52,7 @@ TEST(Renderer, AddsEmission) {
     expectAll(drawPicture({maker.scene(), &lightmap, before(), plain(View::Emission)}), encoded(0.3));
 }
 
-// As the baker reflects it: a smooth metal sends no diffuse light back, a rough one half.
+// It is drawn as the baker reflects it: a smooth metal sends no diffuse light back, a rough one half.
 TEST(Renderer, TakesTheBakersAlbedoOfMetals) {
     Material metal = grey(0.8f);
     metal.metallic = 1.0f;
@@ -98,15 +99,16 @@ TEST(Renderer, FiltersTheLightmapAsAsked) {
                             .width = 256,
                             .height = 256});
     };
-    // Four pixels for each texel: those at the border of the step are 1/8 and 3/8 of a texel away from it.
+    // There are four pixels for each texel: those at the border of the step are 1/8 and 3/8 of a texel away
+    // from it.
     const Picture nearest = draw(LightmapFilter::Nearest), bilinear = draw(LightmapFilter::Bilinear),
                   bicubic = draw(LightmapFilter::Bicubic);
     EXPECT_EQ(nearest.pixel(127, 9).r, encoded(0.2));
     EXPECT_EQ(nearest.pixel(128, 9).r, encoded(0.8));
     EXPECT_NEAR(bilinear.pixel(127, 9).r, encoded(0.5 - 0.6 / 8), 1);
     EXPECT_NEAR(bilinear.pixel(129, 9).r, encoded(0.5 + 0.6 * 3 / 8), 1);
-    // The integral of the cubic B-spline over 1/8 of its unit, from the middle: t (2/3 - t^2 / 3 ...), here
-    // by its weights.
+    // This is the integral of the cubic B-spline over 1/8 of its unit, from the middle: t (2/3 - t^2 / 3
+    // ...), here by its weights.
     const double f = 0.375, w2 = (1 + 3 * f + 3 * f * f - 3 * f * f * f) / 6, w3 = f * f * f / 6;
     EXPECT_NEAR(bicubic.pixel(127, 9).r, encoded(0.2 + 0.6 * (w2 + w3)), 1);
 }
@@ -171,7 +173,7 @@ TEST(Renderer, SmoothsEdgesByMultisampling) {
     EXPECT_GT(between(4), 60); // along its four sides
 }
 
-// From candle light to the sun: with automatic exposure the picture is the same in any unit.
+// From candle light to the sun, with automatic exposure, the picture is the same in any unit.
 TEST(Renderer, KnowsNoUnitOfLight) {
     const SceneMaker maker = wall(grey(0.5f));
     DrawSettings settings = plain();

@@ -1,5 +1,5 @@
-// The RTRad preset's methods against its formulas written down once more, plainly: every receiver, every
-// sample, every triangle.
+// The RTRad preset's methods are held against its formulas written down once more, plainly: every receiver,
+// every sample, every triangle.
 #include "assets/generate/generate.h"
 #include "tests/gpu/bake_scene.h"
 
@@ -16,7 +16,7 @@ constexpr double kReflectivity = 0.9, kClamp = 0.05, kLight = 0.1;
 
 using Texture = std::vector<glm::dvec4>;
 
-/// RTRad's textures, and its passes over them.
+/// Holds RTRad's textures and does its passes over them.
 class Rtrad {
 public:
     explicit Rtrad(const PatchSet& set)
@@ -92,7 +92,7 @@ private:
         if (known < 0) known = blocked(j) ? 0 : 1;
         return known == 1;
     }
-    // Moeller and Trumbore's test against every triangle.
+    // Does Moeller and Trumbore's test against every triangle.
     bool blocked(uint32_t j) const {
         const glm::dvec3 from(set_.scene.patches[map_[receiver_]].position);
         const glm::dvec3 to(set_.scene.patches[map_[j]].position);
@@ -145,7 +145,7 @@ private:
         }
     }
 
-    // kRtradSize is a power of two: a level is the mean of four texels of the one before.
+    // Makes the mips. kRtradSize is a power of two: a level is the mean of four texels of the one before.
     void makeMips() {
         mips_.assign(1, ligIn_);
         for (uint32_t level = 1, n = kRtradSize / 2; level < 4; ++level, n /= 2) {
@@ -210,7 +210,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(RtradMethods, FollowRtradsFormulas) {
     const RtradCase& c = GetParam();
-    // The stride misses the small lamp of the one, as RTRad's does, and finds the long ones of the other.
+    // The stride misses the small mesh light of the one, as RTRad's does, and finds the long ones of the
+    // other.
     const Scene scene = generateScene(c.method == Method::Static ? "cornell_layers" : "cornell_geom");
     const auto baker = makeBaker(
         scene, {.size = kRtradSize, .passes = kPasses, .method = c.method, .pairs = c.pairs, .rtrad = true});
@@ -230,10 +231,10 @@ TEST_P(RtradMethods, FollowRtradsFormulas) {
             bounced += exact < 0.9 ? exact : 0.0;
         }
     }
-    // Something arrived; a stride of 8 meets no lamp at all at this size, and all must then stay dark.
+    // Something arrived; a stride of 8 meets no mesh light at all at this size, and all must then stay dark.
     const bool meetsNoLamp = c.method == Method::Static && c.pairs.window == 8;
     EXPECT_EQ(bounced > 1.0, !meetsNoLamp) << bounced;
-    // Texel centres lie on edges at this size: a few rays are a matter of the last bit.
+    // Texel centres lie on edges at this size, so the last bit decides a few rays.
     const double count = 3.0 * baker->patches().count;
     EXPECT_LT(std::sqrt(squares / count) / (sum / count), 2e-3);
 }

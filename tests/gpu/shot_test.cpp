@@ -1,5 +1,5 @@
-// `relume shot` as a user runs it: pictures of the scenes that ship against those kept in tests/golden, and
-// what it refuses.
+// This runs `relume shot` as a user does: pictures of the scenes that ship are held against those kept in
+// tests/golden, and it checks what is refused.
 #include "app/text/heat_map.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"

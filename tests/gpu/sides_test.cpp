@@ -1,4 +1,4 @@
-// Which side of a surface sends, receives and blocks.
+// This tests which side of a surface sends, receives and blocks.
 #include "assets/base/log.h"
 #include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
@@ -12,7 +12,7 @@
 namespace relume {
 namespace {
 
-/// Squares below and above the origin's plane, both looking at it.
+/// Holds squares below and above the origin's plane, both looking at it.
 struct Witnesses {
     TexelRect below, above;
 };
@@ -55,7 +55,7 @@ TEST(Sides, DoubleSidedEmitterSendsFromBothSides) {
     EXPECT_EQ(statistics(baked.lighting, lamp).max, 0.0);
 }
 
-// The lamp's light meets it again from a mirror-like room: its back must not receive.
+// A mesh light behind the receiver leaves it dark, for its back must not receive; one in front lights it.
 TEST(Sides, DoubleSidedReceiverShowsItsFront) {
     SceneMaker maker(64);
     Material m;
@@ -82,7 +82,7 @@ TEST(Sides, MirroredInstanceKeepsItsFront) {
     EXPECT_EQ(texel(baked.lighting, w.below, 8, 8), 0.0);
 }
 
-// A mirrored furnace: walls turned inside out would be black.
+// In a mirrored furnace, walls turned inside out would be black.
 TEST(Sides, MirroredRoomIsAFurnaceStill) {
     SceneMaker maker(64);
     const auto walls =
@@ -105,7 +105,7 @@ TEST_P(Masked, HolesLetLightPass) {
     const auto bake = [&](bool masked, uint32_t& screenTexels) {
         SceneMaker maker(80);
         const TexelRect floor = maker.quad({0, 0, 0}, kX, kY, maker.material(0.0f), glm::uvec2(24));
-        // 25 texels, so that no ray meets the hole's edge itself.
+        // There are 25 texels, so that no ray meets the hole's edge itself.
         maker.quad({0, 0, 1}, kY, kX, maker.material(0.0f, 1.0f), glm::uvec2(25));
         Material m;
         m.baseColor = glm::vec4(0, 0, 0, 1);
@@ -148,7 +148,7 @@ TEST_P(Masked, HolesDoNotEmit) {
     m.emission = glm::vec3(1);
     m.alphaMode = AlphaMode::Mask;
     m.baseColorTexture.texture = maker.alphaTexture(2, 1, {0, 255});
-    // Along v, which is x here, so the front looks down; the hole is the half with x < 0.5.
+    // u is x here and v is -y, so the front looks down; the hole is the half with x < 0.5.
     const TexelRect lamp = maker.quad({0, 1, 1}, kX, -kY, maker.material(m), glm::uvec2(32));
     const Baked baked = bakeScene(maker.scene(), {.size = 64, .tracer = GetParam()});
     EXPECT_EQ(statistics(baked.lighting, lamp).count, 16u * 32u);
@@ -177,7 +177,7 @@ TEST(Albedo, AboveTheLimitIsClampedWithAWarning) {
     EXPECT_EQ(baked.patches.clampedAlbedo, 6u * 8u * 8u);
     for (uint32_t i = 0; i < baked.patches.count; ++i)
         EXPECT_FLOAT_EQ(baked.patches.albedo[i].r, 0.98f);
-    // What a wall shows after two passes: 1 + a L2, L2 = 1 + a.
+    // After two bounces, a wall shows 1 + a L2, L2 = 1 + a.
     EXPECT_NEAR(statistics(baked.radiance, walls[0]).mean, 1 + 0.98 * (1 + 0.98), 0.02);
 }
 

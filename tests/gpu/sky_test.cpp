@@ -1,4 +1,4 @@
-// The sky behind a scene: its radiance as displayed, its picture where it belongs.
+// This tests the sky behind a scene: its radiance as displayed, its picture where it belongs.
 #include "renderer/picture.h"
 #include "renderer/scene_renderer.h"
 #include "tests/gpu/relume_process.h"
@@ -14,12 +14,12 @@ namespace {
 
 constexpr float kRight = 0.5f * std::numbers::pi_v<float>;
 
-/// A wall far to the side, before a sky.
+/// Sets up a wall far to the side, before a sky.
 class SkyRenderer : public testing::Test {
 protected:
     SkyRenderer() : scene_((testContext(), wall(grey(0.5f)).scene())), lightmap_(lightmapOf(0.5f), "test") {}
 
-    /// What is seen in the middle of a picture from the origin of a place above the wall.
+    /// Returns what is seen in the middle of a picture from a place above the wall.
     glm::ivec3 seen(const glm::vec3& direction, const DrawSettings& settings = plain()) {
         ViewCamera camera;
         camera.eye = {0.0f, 50.0f, 0.0f};
@@ -33,7 +33,7 @@ protected:
             {target_.get(), target_.width(), target_.height()});
         return Picture{readPicture(target_), {}, 0}.pixel(pixel.x, pixel.y);
     }
-    /// Four columns from -x over -z and x to z, the upper half red of each, the lower blue.
+    /// Paints four columns from -x over -z and x to z, the upper half of each red, the lower blue.
     void paint() {
         Sky& sky = scene_.sky;
         sky.file = "painted.exr";
@@ -60,7 +60,7 @@ TEST_F(SkyRenderer, ShowsItsRadianceExposedAsTheScene) {
     DrawSettings brighter = plain();
     brighter.exposure = 1.0f;
     EXPECT_EQ(seen({0, 0.3f, 1}, brighter), glm::ivec3(encoded(0.2), encoded(0.4), encoded(0.8)));
-    // Before the wall there is the wall, behind it the sky.
+    // In front of the wall the wall is seen, behind it the sky.
     const ViewCamera camera = before();
     EXPECT_EQ(look(camera, plain(), {16, 16}), glm::ivec3(encoded(0.25)));
     ViewCamera wide = camera;
@@ -85,7 +85,7 @@ TEST_F(SkyRenderer, APictureLiesWhereTheBakeTakesItFrom) {
     const auto colour = [](double red, double green, double blue) {
         return glm::ivec3(encoded(red), encoded(green), encoded(blue));
     };
-    // Middles of columns: the picture's middle is -z, to the right of it +x.
+    // These are middles of columns: the picture's middle is -z, and +x is to the right of it.
     const float c = std::cos(0.5f * kRight), s = std::sin(0.5f * kRight);
     const auto near = [&](const glm::ivec3& a, const glm::ivec3& b) {
         const glm::ivec3 off = glm::abs(a - b);
@@ -94,7 +94,8 @@ TEST_F(SkyRenderer, APictureLiesWhereTheBakeTakesItFrom) {
     near(seen({s, 1.0f, -c}), colour(0.8, 0.4, 0.0));
     near(seen({-s, 1.0f, -c}), colour(0.8, 0.2, 0.0));
     near(seen({s, -1.0f, c}), colour(0.0, 0.6, 0.8));
-    // Turned by a quarter counter-clockwise from above: what was to the right is ahead to the left.
+    // The sky is turned by a quarter counter-clockwise from above: what was to the right is ahead to the
+    // left.
     SkySettings turned = scene_.sky;
     turned.rotation = kRight;
     gpu_->updateSky(turned);

@@ -1,4 +1,4 @@
-// Parts of a lightmap's texture group, against the whole.
+// Parts of a lightmap's texture group are held against the whole.
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/world_mesh.h"
 #include "bake/surface/cit_pass.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kGroupSize = 64;
 
-// Of odd places and sizes: rounding shows.
+// Makes a room of odd places and sizes, so that rounding shows.
 Scene groupRoom() {
     SceneMaker maker(kGroupSize);
     maker.box({0.13f, -0.77f, 0.31f}, {1.93f * kX, 2.17f * kY, 1.71f * kZ}, maker.material(0.6f), 13);
@@ -61,7 +61,7 @@ TEST(TextureGroup, AWindowHasTheTexelsOfTheWhole) {
     }
 }
 
-// A pass that stays hears of factors, and whose materials it has not.
+// A pass that stays is told of factors, and tells whose materials it does not have.
 TEST(TextureGroup, APassThatStaysFollowsFactorsOfMaterials) {
     Scene scene = groupRoom();
     const LightmapAtlas atlas = buildAtlas(scene, kGroupSize);
@@ -80,7 +80,7 @@ TEST(TextureGroup, APassThatStaysFollowsFactorsOfMaterials) {
     EXPECT_FALSE(pass.serves(flattenInstances(scene, atlas, plate)));
 }
 
-// Patches of a window are those of the whole that lie in it.
+// The patches of a window are those of the whole that lie in it.
 TEST(TextureGroup, PatchesOfAWindowAreThoseOfTheWhole) {
     const Scene scene = groupRoom();
     const LightmapAtlas atlas = buildAtlas(scene, kGroupSize);

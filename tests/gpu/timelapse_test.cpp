@@ -1,4 +1,5 @@
-// `relume timelapse` as a user runs it: which frames there are, what they show, and what it refuses.
+// This runs `relume timelapse` as a user does: it checks which frames there are, what they show, and what is
+// refused.
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
@@ -29,7 +30,7 @@ Strings joined(Strings first, const Strings& second) {
     return first;
 }
 
-/// PATH while it lives.
+/// Sets PATH while it lives.
 class Path {
 public:
     explicit Path(const std::string& value) : old_(std::getenv("PATH")) { setenv("PATH", value.c_str(), 1); }
@@ -45,7 +46,7 @@ class TimelapseCommand : public testing::Test {
 protected:
     TimelapseCommand() {
         SceneMaker maker(64);
-        // A lamp in the ceiling of a room: from pass to pass more of it is lit.
+        // A mesh light is in the ceiling of a room: from bounce to bounce more of the room is lit.
         std::array<int, 6> materials;
         materials.fill(maker.material(0.7f));
         materials[4] = maker.material(0.0f, 2.0f);
@@ -99,7 +100,7 @@ TEST_F(TimelapseCommand, ShowsTheBakeAsItConverges) {
     ASSERT_EQ(r.status, 0) << r.err;
     EXPECT_EQ(r.out, "");
     ASSERT_EQ(framesIn("out"), kFour); // after 1, 2, 4 and 5 passes
-    // One exposure for all: every bounce makes it brighter.
+    // There is one exposure for all, and every bounce makes it brighter.
     double before = 0;
     for (const std::string& name : kFour) {
         const FloatImage image = readImage(path("out/" + name));
@@ -172,7 +173,7 @@ TEST_F(TimelapseCommand, KeepsTheFramesOfAnotherRunUnlessToldOtherwise) {
 }
 
 TEST_F(TimelapseCommand, LeavesWholeFramesBehindWhenItIsStopped) {
-    // Far more than is waited for.
+    // This is far more than is waited for.
     const Strings arguments = {
         "timelapse",       scene_, "-o",       path("out"),   "--exposure", "0",     "--size",     "320x180",
         "--lightmap-size", "256",  "--method", "directional", "--samples",  "65536", "--batch-ms", "1"};
@@ -218,21 +219,21 @@ TEST_F(TimelapseCommand, SaysHowToGetFfmpegWhereThereIsNone) {
     EXPECT_EQ(folder_.files(), Strings{"room.glb"});
 }
 
-// In place of the real one, this reads a little, complains and goes, while more frames come.
+// In place of the real ffmpeg, this reads a little, complains and goes, while more frames come.
 TEST_F(TimelapseCommand, TellsWhatFfmpegSaidLastAndLeavesNothing) {
     const Path path = withFfmpeg("head -c 1000 >/dev/null; echo first >&2; echo no such encoder >&2; exit 1");
     expectError(1, "out.mp4: ffmpeg failed: no such encoder", joined({"-o", video_}, pure_));
     EXPECT_EQ(folder_.files(), (Strings{"ffmpeg", "room.glb"}));
 }
 
-// In place of the real one, this writes down its arguments and how many bytes it was given.
+// In place of the real ffmpeg, this writes down its arguments and how many bytes it was given.
 TEST_F(TimelapseCommand, GivesFfmpegTheFramesAndHoldsTheLastForTwoSeconds) {
     const Path path = withFfmpeg("for last; do :; done; { echo \"$@\"; wc -c; } > \"${last#file:}\"");
     const ProcessResult r = run(joined({"-o", video_}, pure_));
     ASSERT_EQ(r.status, 0) << r.err;
     const std::string told = bytesOf(video_);
     EXPECT_TRUE(contains(told, "-s 320x180 -r 2 ")) << told;
-    // Four frames, and the last for two seconds at two frames per second.
+    // There are four frames, and the last one lasts for two seconds at two frames per second.
     EXPECT_TRUE(contains(told, fmt::format("\n{}\n", 3 * 320 * 180 * (3 + 4)))) << told;
     EXPECT_EQ(folder_.files(), (Strings{"ffmpeg", "out.mp4", "room.glb"}));
 }
@@ -244,7 +245,7 @@ TEST_F(TimelapseCommand, MakesAVideo) {
     ASSERT_EQ(r.status, 0) << r.err;
     EXPECT_EQ(folder_.files(), (Strings{"out.mp4", "room.glb"}));
     EXPECT_EQ(bytesOf(path("out.mp4")).substr(4, 4), "ftyp");
-    // Two frames and two seconds of the last one.
+    // There are two frames and two seconds of the last one.
     const std::string count =
         "test $(ffmpeg -v error -i '" + path("out.mp4") + "' -f framemd5 - | grep -vc '^#') = 10";
     EXPECT_EQ(std::system(count.c_str()), 0);

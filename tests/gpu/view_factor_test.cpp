@@ -1,4 +1,5 @@
-// Bakes of one bounce from an emitter of radiance 1 to a black receiver: the lighting is the form factor.
+// These bakes have one bounce from a mesh light of radiance 1 to a black receiver: the lighting is the form
+// factor.
 #include "tests/gpu/bake_scene.h"
 #include "tests/unit/closed_forms.h"
 
@@ -14,7 +15,7 @@ closed::Vec vec(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-/// A receiver's texel centre, front along u x v.
+/// Describes a receiver, with its front along u x v.
 struct Plate {
     glm::vec3 corner, u, v;
     TexelRect rect;
@@ -26,8 +27,8 @@ struct Plate {
     closed::Vec normal() const { return closed::unit(vec(glm::cross(u, v))); }
 };
 
-/// Each texel of `plate` must be lit as the parallelogram says, to a share of its own value and of the
-/// largest.
+/// Expects that each texel of `plate` is lit as the parallelogram says, to a share of its own value and of
+/// the largest.
 void expectLitBy(const FloatImage& lighting, const Plate& plate, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
     const double largest = statistics(lighting, plate.rect).max;
     for (uint32_t row = 0; row < plate.rect.height; ++row) {
@@ -86,7 +87,7 @@ TEST(ViewFactor, PointAndDisc) {
     }
 }
 
-// Catalogue B-3 and B-4: the corner of the rectangle is above the plate, at its foot.
+// These are the catalogue's B-3 and B-4: the corner of the rectangle is above the plate, at its foot.
 TEST(ViewFactor, PointAndRectangle) {
     constexpr float kSmall = 1e-3f;
     SceneMaker parallel(64);
@@ -100,7 +101,7 @@ TEST(ViewFactor, PointAndRectangle) {
     SceneMaker perpendicular(64);
     receiver = perpendicular.quad(-kSmall * (kX + kY), 2 * kSmall * kX, 2 * kSmall * kY,
                                   perpendicular.material(0.0f), glm::uvec2(2));
-    // In the plane x = -0.4, facing the plate, which looks along z.
+    // This lies in the plane x = -0.4 and faces the plate, which looks along z.
     perpendicular.quad({-0.4f, 0, 0}, 0.9f * kY, 1.1f * kZ, perpendicular.material(0.0f, 1.0f),
                        glm::uvec2(48));
     exact = closed::pointToPerpendicularRectangle(1.1, 0.9, 0.4);
@@ -117,7 +118,7 @@ TEST(ViewFactor, OffsetEmitter) {
     expectLitBy(bakeScene(maker.scene(), {.size = maker.size()}).lighting, plate, corner, u, v);
 }
 
-// Leaning, near, and partly below the receivers' horizon.
+// The mesh light leans, is near, and is partly below the receivers' horizon.
 TEST(ViewFactor, LeaningEmitterCutByTheHorizon) {
     const glm::vec3 corner(-0.3f, 0.0f, -0.5f), u = kY, v = glm::vec3(-0.3f, 0.1f, 1.2f);
     SceneMaker maker(96);
@@ -127,9 +128,8 @@ TEST(ViewFactor, LeaningEmitterCutByTheHorizon) {
     expectLitBy(bakeScene(maker.scene(), {.size = maker.size()}).lighting, plate, corner, u, v);
 }
 
-// A half plane hides the emitter up to a line that moves as the receiver does. Which columns of the emitter's
-// texels are seen is a matter of their centres: half a column is the error of one texel, next to none that of
-// the mean.
+// A half plane hides the mesh light up to a line that moves as the receiver does. The centres of its texels
+// decide which columns are seen: the error of one texel is half a column, that of the mean is next to none.
 TEST(ViewFactor, HalfHiddenBigNearEmitter) {
     constexpr uint32_t kColumns = 64;
     constexpr float kHeight = 0.5f, kEdgeHeight = 0.25f, kHalf = 1.0f;
@@ -163,7 +163,7 @@ TEST(ViewFactor, HalfHiddenBigNearEmitter) {
     EXPECT_NEAR(sum, exactSum, kOnePercent * exactSum);
 }
 
-// F_ij A_i = F_ji A_j: the power that reaches j from i, and the other way round.
+// F_ij A_i = F_ji A_j is the power that reaches j from i, and the other way round.
 TEST(ViewFactor, Reciprocity) {
     const auto power = [](bool firstEmits) {
         SceneMaker maker(96);

@@ -1,5 +1,5 @@
-// What a viewer asks of the renderer beyond one picture: pictures that are kept, exposure without waiting,
-// other materials, samples and shaders at run time, lines and voxels.
+// This tests what a viewer asks of the renderer beyond one picture: pictures that are kept, exposure without
+// waiting, other materials, samples and shaders at run time, lines and voxels.
 #include "assets/base/error.h"
 #include "renderer/gl/debug.h"
 #include "renderer/picture.h"
@@ -26,7 +26,7 @@ namespace {
 
 using Metering = SceneRenderer::Metering;
 
-/// A wall with its lightmap, a renderer and a target.
+/// Holds a wall with its lightmap, a renderer and a target.
 class Viewer {
 public:
     explicit Viewer(Metering metering = Metering::Wait, const Material& material = grey(0.5f),
@@ -99,7 +99,7 @@ TEST(ViewerRenderer, DrawsInstancesWhereTheyAre) {
     EXPECT_EQ(show(glm::scale(glm::mat4(1.0f), {-1.0f, 1.0f, 1.0f}), false), wall) << "mirrored";
     EXPECT_EQ(show(glm::scale(glm::mat4(1.0f), {1.0f, 1.0f, -1.0f}), false), nothing) << "seen from behind";
     EXPECT_LT(viewer.gpu.bounds().size().z, 1e-6f);
-    // Turned towards +y: its normal, too.
+    // The wall is turned towards +y, and so is its normal.
     viewer.frame.settings.view = View::Normal;
     const glm::mat4 half = glm::rotate(glm::mat4(1.0f), glm::radians(-45.0f), {1.0f, 0.0f, 0.0f});
     const glm::ivec3 tilted = show(half, false);
@@ -168,7 +168,7 @@ TEST(ViewerRenderer, FiltersFilledLightmapsAlike) {
         for (uint32_t x = 28; x < 36; ++x)
             EXPECT_EQ(fast.pixel(x, 32), viewer.pixel(x, 32)) << x;
     }
-    // An empty texel that a filter reaches from a patch.
+    // This is an empty texel that a filter reaches from a patch.
     image.planes[3][20 * kWallSize + 33] = 0.0f;
     EXPECT_FALSE(LightmapImage(image, "hole").texture().filled);
     image.planes[3][20 * kWallSize + 33] = 1.0f;
@@ -195,7 +195,7 @@ TEST(ViewerRenderer, ChangesItsSamples) {
     }
 }
 
-/// A copy of shaders/ that is used while it lives.
+/// Makes a copy of shaders/ that is used while it lives.
 class ShaderFolder {
 public:
     ShaderFolder() : path_(folder_.path("shaders")) {
@@ -297,7 +297,7 @@ TEST(ViewerRenderer, DrawsVoxelsInTheScenesPlace) {
     viewer.draw();
     EXPECT_EQ(viewer.pixel(16, 32), glm::ivec3(255, 0, 0));
     EXPECT_EQ(viewer.pixel(48, 32), glm::ivec3(0, 0, 255));
-    // From behind the farther one is in front.
+    // Seen from behind, the farther one is in front.
     viewer.frame.camera = cameraAt({3, 0.1f, -4}, {0.5f, 0, -1}, viewer.gpu.bounds());
     viewer.draw();
     const glm::ivec3 seen = viewer.pixel();

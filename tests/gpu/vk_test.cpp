@@ -15,7 +15,7 @@ namespace {
 
 const std::string kTestShaders = RELUME_SOURCE_DIR "/tests/gpu/shaders";
 
-// Shaders come from the tests' folder while it lives.
+// Lets shaders come from the tests' folder while it lives.
 struct TestShaders {
     TestShaders() { setShaderFolder(kTestShaders); }
     ~TestShaders() { setShaderFolder(""); }
@@ -42,7 +42,7 @@ std::vector<uint32_t> runFill(const vk::ComputeProgram& program, uint32_t count)
     return vk::readBuffer<uint32_t>(device, buffer, count);
 }
 
-// Triangles over x in [i, i + 1], i = 0, 1, 2, 3.
+// Returns triangles over x in [i, i + 1], i = 0, 1, 2, 3.
 std::vector<glm::vec3> fourTriangles() {
     std::vector<glm::vec3> positions;
     for (int i = 0; i < 4; ++i) {
@@ -95,7 +95,7 @@ TEST(VkCheck, NamesCallAndResult) {
 }
 
 TEST(VkBuffer, RoundTripInBothMemories) {
-    // 70 MB: the copy goes in several pieces where it is staged.
+    // These are 70 MB: the copy goes in several pieces where it is staged.
     const std::vector<uint32_t> values = numbers(17'500'003);
     for (vk::Memory memory : {vk::Memory::Device, vk::Memory::Host}) {
         vk::Buffer buffer(testDevice(), {.size = values.size() * 4, .memory = memory, .name = "round trip"});
@@ -203,8 +203,8 @@ TEST(VkRay, AccelKeepsGeometriesApart) {
     struct Push {
         VkDeviceAddress accel, result;
     };
-    // Per count of opaque triangles: geometry * 100 + index in it, and the hole where the second masked one
-    // is.
+    // For each count of opaque triangles, this holds geometry * 100 + index in it, and the hole where the
+    // second masked one is.
     const std::pair<uint32_t, std::vector<uint32_t>> cases[] = {
         {4, {0, 1, 2, 3, 1000}}, {2, {0, 1, 100, 1000, 1000}}, {0, {100, 1000, 102, 103, 1000}}};
     for (const auto& [opaqueCount, expected] : cases) {
@@ -239,7 +239,7 @@ TEST(VkRay, AccelOfNothingIsNeverHit) {
 TEST(VkRaster, DrawsIntoTwoTargetsAndSamplesTheLastMip) {
     const vk::Device& device = testDevice();
     const TestShaders shaders;
-    // A texture of two mips whose 1 x 1 mip is the mean of 4 texels.
+    // This is a texture of two mips whose 1 x 1 mip is the mean of 4 texels.
     const vk::Image2D texture(
         device, {.width = 2, .height = 2, .mips = 2, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .name = "texture"});
     const std::vector<uint8_t> texels = {0, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 0, 0, 0, 255};
@@ -313,7 +313,7 @@ TEST(VkShaders, FolderWithoutShadersIsRefused) {
     EXPECT_THROW((void)shaderCode("no such shader"), Error);
 }
 
-// What is embedded is what the sources say: both compilers build every program.
+// The embedded shaders are what the sources say: both compilers build every program.
 TEST(VkShaders, EveryProgramCompilesFromTheSourceFolder) {
     setShaderFolder(RELUME_SOURCE_DIR "/shaders");
     for (const std::string& name : shaderNames())

@@ -1,5 +1,5 @@
-// The CVM pass against a test of its own: every voxel that a triangle touches is set, no voxel that it leaves
-// aside by more than rounding.
+// The CVM pass is held against a test in double precision: every voxel that a triangle touches is set, and
+// none that it misses by more than rounding.
 #include "bake/trace/voxel_map.h"
 #include "bake/vk/buffer.h"
 #include "tests/gpu/gpu_environment.h"
@@ -17,7 +17,7 @@ namespace {
 
 using Corners = std::array<glm::vec3, 3>;
 
-/// Triangles that are no receivers, with nothing else in the scene.
+/// Makes a scene of triangles that are no receivers, and of nothing else.
 TraceScene sceneOf(const std::vector<Corners>& triangles) {
     TraceScene scene;
     scene.size = 1;
@@ -36,8 +36,8 @@ TraceScene sceneOf(const std::vector<Corners>& triangles) {
     return scene;
 }
 
-/// Separating axes in double precision [Akenine-Moeller 2001]: the box's, the triangle's normal and the nine
-/// products of edges; half the box's edge is `half`, its centre the origin.
+/// Tests separating axes in double precision [Akenine-Moeller 2001]: the box's, the triangle's normal and the
+/// nine products of edges; half the box's edge is `half`, its centre the origin.
 bool overlaps(const std::array<glm::dvec3, 3>& p, double half) {
     const auto separates = [&](const glm::dvec3& axis) {
         const double a = glm::dot(axis, p[0]), b = glm::dot(axis, p[1]), c = glm::dot(axis, p[2]);
@@ -67,7 +67,7 @@ public:
     }
     uint64_t count() const { return map_.setVoxels(); }
 
-    /// In voxels.
+    /// Returns a triangle in units of voxels.
     std::array<glm::dvec3, 3> triangle(size_t index) const {
         std::array<glm::dvec3, 3> p;
         for (size_t k = 0; k < 3; ++k)
@@ -86,7 +86,8 @@ struct Mistakes {
     uint64_t missed = 0, spurious = 0, touched = 0;
 };
 
-/// Of all voxels; one that a triangle grazes within `kTolerance` voxels may be set or not.
+/// Counts the mistakes among all voxels; one that a triangle grazes within `kTolerance` voxels may be set or
+/// not.
 Mistakes mistakesOf(const Voxels& voxels, size_t triangles, int resolution) {
     constexpr double kTolerance = 2e-3;
     std::vector<uint8_t> must(size_t(resolution) * resolution * resolution), may(must.size());
@@ -119,7 +120,7 @@ Mistakes mistakesOf(const Voxels& voxels, size_t triangles, int resolution) {
 
 enum class Shape { Large, Small, Sliver, Flat, Line };
 
-/// Of one kind, in a box far from the origin, which costs bits.
+/// Returns random triangles of one kind, in a box far from the origin, which costs bits.
 std::vector<Corners> randomTriangles(Shape shape, uint32_t count) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
@@ -159,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Triangles, Conservative,
                                          MapCase{Shape::Sliver, 60, 64}, MapCase{Shape::Flat, 12, 33},
                                          MapCase{Shape::Line, 60, 64}, MapCase{Shape::Large, 2, 200}));
 
-// The bounds' walls lie in the middle of a layer of voxels: that one is set and no other.
+// The bounds' walls lie in the middle of a layer of voxels: that layer is set and no other.
 TEST(VoxelMap, wallsOnTheBoundsAreOneLayerThick) {
     const glm::vec3 a(0, 0, 0), b(2, 0, 0), c(2, 2, 0), d(0, 2, 0), up(0, 0, 2);
     const TraceScene scene = sceneOf({{a, b, c}, {a, c, d}, {a + up, b + up, c + up}});
@@ -174,7 +175,7 @@ TEST(VoxelMap, wallsOnTheBoundsAreOneLayerThick) {
     }
 }
 
-// A square whose alpha is solid where x < 1: the rest lets light pass and sets no voxel.
+// A square's alpha is solid where x < 1: the rest lets light through and sets no voxel.
 TEST(VoxelMap, holesOfMaskedTrianglesStayEmpty) {
     const glm::vec3 a(0, 0, 0), b(2, 0, 0), c(2, 2, 0), d(0, 2, 0);
     TraceScene scene = sceneOf({{a, b, c}, {a, c, d}});
@@ -191,7 +192,7 @@ TEST(VoxelMap, holesOfMaskedTrianglesStayEmpty) {
     }
 }
 
-// RTRad: one voxel per pixel, and the last column of pixels falls into the last but one of voxels.
+// RTRad sets one voxel per pixel, and the last column of pixels falls into the last but one of voxels.
 TEST(VoxelMap, rtradSetsOneVoxelPerPixel) {
     const glm::vec3 a(-1, -1, 0.3f), b(1, -1, 0.3f), c(1, 1, 0.3f), d(-1, 1, 0.3f), lo(-1), hi(1);
     TraceScene scene = sceneOf({{a, b, c}, {a, c, d}, {lo, lo, lo}, {hi, hi, hi}});

@@ -1,5 +1,5 @@
-// The voxel tracer against the bvh's, which sees triangles: how often they disagree, in which direction, and
-// whether what it calls a hit lies near the real one.
+// The voxel tracer is held against the bvh's, which sees triangles: how often they disagree, in which
+// direction, and whether what it calls a hit lies near the real one.
 #include "assets/generate/generate.h"
 #include "bake/pairs/pair_passes.h"
 #include "bake/trace/make_tracer.h"
@@ -53,7 +53,7 @@ public:
         return makeTracer(kind, testDevice(), patches().scene, baker_->light().patches, voxels);
     }
 
-    /// Of the kept units, one after the other.
+    /// Returns the bits of the kept units, one after the other.
     std::vector<uint32_t> pairs(Tracer& tracer) {
         const vk::Buffer sends =
             vk::makeBuffer(testDevice(), std::vector<uint32_t>(chunks_, 1u), "chunk sends");
@@ -97,7 +97,7 @@ public:
         }
     }
 
-    /// Of all patches; as ClosestWork has them.
+    /// Returns the links of all patches, as ClosestWork has them.
     std::vector<uint32_t> links(Tracer& tracer) {
         const vk::Buffer buffer(testDevice(), {.size = VkDeviceSize{kVoxelLinkSamples} * kChunk * 4,
                                                .memory = vk::Memory::Host,
@@ -118,7 +118,7 @@ public:
         return all;
     }
 
-    /// Of every patch one word: bit s is set if it sees targets[s].
+    /// Returns one word of every patch: bit s is set if it sees targets[s].
     std::vector<uint32_t> seen(Tracer& tracer, const std::vector<glm::vec3>& targets) {
         std::vector<glm::vec4> all;
         for (uint32_t chunk = 0; chunk < chunks_; ++chunk)
@@ -157,7 +157,7 @@ bool bitOf(const std::vector<uint32_t>& words, size_t bit) {
     return (words[bit / 32] >> bit % 32 & 1u) != 0;
 }
 
-/// Shares of all facing pairs, plain and weighted by what their form factor would carry.
+/// Holds shares of all facing pairs, plain and weighted by what their form factor would carry.
 struct Disagreement {
     double leaks = 0, falseShadows = 0;               // of the pairs
     double leakedLight = 0, lostLight = 0;            // of the light
@@ -230,7 +230,7 @@ TEST_P(VoxelAgreement, withTheBvh) {
     EXPECT_GT(d.falseShadows, 0.001); // voxels were asked at all
 }
 
-// About one and a half times what was measured; shadows grow by up to a voxel all around.
+// These bounds are about one and a half times what was measured; shadows grow by up to a voxel all around.
 INSTANTIATE_TEST_SUITE_P(Scenes, VoxelAgreement,
                          testing::Values(VoxelCase{"cornell_geom", 64, 0.11},
                                          VoxelCase{"cornell_geom", 256, 0.03},
@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, VoxelAgreement,
                                          VoxelCase{"cornell_layers", 128, 0.02},
                                          VoxelCase{"gallery", 128, 0.06}, VoxelCase{"octagon", 128, 0.10}));
 
-/// A closed room with a plate half-way up, a fourth of the floor's area.
+/// Makes a closed room with a plate half-way up, of a fourth of the floor's area.
 struct PlateRoom {
     SceneMaker maker{48};
     static constexpr float kPlate = 1.0f, kHeight = 1.01f; // [m], its edge and where it hangs
@@ -253,8 +253,8 @@ struct PlateRoom {
     }
 };
 
-/// How far inside the plate's edge the segment passes it [m]; negative: outside. Only for segments that cross
-/// its height.
+/// Returns how far inside the plate's edge the segment passes it [m]; negative: outside. It is only for
+/// segments that cross its height.
 float insidePlate(glm::vec3 from, glm::vec3 to) {
     const glm::vec3 p = glm::mix(from, to, (PlateRoom::kHeight - from.z) / (to.z - from.z));
     return PlateRoom::kPlate / 2 - std::max(std::abs(p.x), std::abs(p.y));
@@ -323,7 +323,7 @@ TEST(VoxelTracer, linksInABoxAreThePatchesThere) {
     }
 }
 
-// Of a mixture every bit and link is one tracer's or the other's, by the sender's texel or the sample.
+// Every bit and link of a mixture is one tracer's or the other's, by the sender's texel or the sample.
 TEST(MixedTracer, everyPartIsItsTracers) {
     PlateRoom room;
     Questions questions(room.maker.scene(), room.maker.size(), 1024);

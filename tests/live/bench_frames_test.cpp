@@ -1,4 +1,4 @@
-// `relume bench frames` as a user runs it: what is measured is a bake that goes on.
+// This runs `relume bench frames` as a user does: what is measured is a bake that goes on.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(BenchFrames, CountsRaysOfStepsThatLast) {
     expectRays({"--lightmap-size", "128"});
 }
 
-// All passes there can be are over in a moment.
+// All bounces that there can be are over in a moment.
 TEST(BenchFrames, BeginsAgainWhereABakeEnds) {
     expectRays({"--method", "pure", "--cache", "none", "--lightmap-size", "8"});
 }

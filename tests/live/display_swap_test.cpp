@@ -1,5 +1,5 @@
-// A thousand maps of one value each, from a thread that writes to one that draws: none is torn, none is an
-// older one.
+// A thousand maps of one value each go from a thread that writes to one that draws: none is torn, and none is
+// an older one.
 #include "app/viewer/picture/lightmap_bridge.h"
 #include "assets/generate/generate.h"
 #include "bake/show/publisher.h"
@@ -25,7 +25,7 @@ namespace {
 constexpr uint32_t kSwapSize = 128;
 constexpr uint32_t kMaps = 1000; // up to 2048 every whole number is a half
 
-/// The bake thread: writes and publishes 1, 2, 3 and so on.
+/// Stands for the bake thread: it writes and publishes 1, 2, 3 and so on.
 class Writer {
 public:
     Writer(LightmapExchange& exchange, bool shared)
@@ -82,7 +82,7 @@ GLuint compiled(GLenum stage, const char* source) {
     return shader;
 }
 
-/// Pictures that are made of the map without waiting for the device, as a viewer's are, and looked at later.
+/// Makes pictures of the map without waiting for the device, as a viewer does, to be looked at later.
 class Pictures {
 public:
     Pictures() : program_(glCreateProgram()), empty_({.attributes = {}, .name = "pictures"}) {
@@ -119,7 +119,7 @@ public:
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    /// Texels of picture n that are not n.
+    /// Counts the texels of picture n that are not n.
     uint32_t wrong(uint64_t n) {
         texels_.resize(size_t{kSwapSize} * kSwapSize);
         glGetTextureImage(picture(n).color().get(), 0, GL_RGBA, GL_FLOAT,
@@ -127,7 +127,7 @@ public:
         const auto want = static_cast<float>(n);
         uint32_t wrong = 0, covered = 0;
         for (const glm::vec4& texel : texels_) {
-            // Filled texels are means of equal halves: exact but for the division.
+            // Filled texels are means of equal halves, exact but for the division.
             const float room = texel.a == 1.0f ? 0.0f : texel.a == 0.5f ? 1e-3f * want : 0.0f;
             const glm::vec3 expected = texel.a > 0.0f ? glm::vec3(want) : glm::vec3(0.0f);
             for (int c = 0; c < 3; ++c)
@@ -147,7 +147,7 @@ private:
     std::vector<glm::vec4> texels_;
 };
 
-/// The drawing thread: each picture is looked at when the next map is there already.
+/// Runs the drawing thread: each picture is looked at when the next map is there already.
 void expectNoTear(bool shared) {
     testContext();
     LightmapExchange exchange;

@@ -1,4 +1,5 @@
-// What the bake thread publishes, seen through OpenGL as the viewer does: both displays, no window.
+// What the bake thread publishes is seen through OpenGL as the viewer does it, with both displays and without
+// a window.
 #include "app/live/live_bake.h"
 #include "app/viewer/picture/lightmap_bridge.h"
 #include "assets/generate/generate.h"
@@ -35,7 +36,8 @@ DisplayHost hostOfContext() {
     return {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids};
 }
 
-// Tests of shared images are skipped where the bake thread would not share them either.
+// Tells whether images can be shared. Tests of shared images are skipped where the bake thread would not
+// share them either.
 bool canShare() {
     const DisplayHost host = hostOfContext();
     const auto& uuids = host.deviceUuids;
@@ -51,7 +53,7 @@ Texels readTexels(const LightmapTexture& lightmap) {
     return texels;
 }
 
-/// Of all patches [cd/m^2].
+/// Returns the mean of all patches [cd/m^2].
 double meanOf(const LightmapTexture& lightmap) {
     double sum = 0, count = 0;
     for (const glm::u16vec4& texel : readTexels(lightmap)) {
@@ -63,7 +65,7 @@ double meanOf(const LightmapTexture& lightmap) {
     return lightmap.unit * sum / count;
 }
 
-/// A bake and the drawing thread's end of it.
+/// Holds a bake and the drawing thread's end of it.
 class Display {
 public:
     explicit Display(DisplayMode mode, const DisplayHost& host = hostOfContext())
@@ -74,7 +76,7 @@ public:
     LightmapBridge& bridge() { return bridge_; }
     LightmapTexture texture() const { return bridge_.texture(); }
 
-    /// Frame after frame, until it is so.
+    /// Runs frame after frame until it is so.
     bool until(const std::function<bool()>& what, double seconds = kPatience) {
         const auto end = Clock::now() + std::chrono::duration<double>(seconds);
         while (Clock::now() < end) {
@@ -89,7 +91,7 @@ public:
         newest_ =
             bake_.start({.scene = &scene, .edits = edits, .settings = settings, .keepLight = keepLight});
     }
-    /// That the newest bake is done and its last map is there.
+    /// Waits until the newest bake is done and its last map is there.
     bool untilShown() {
         using Phase = BakeStatus::Phase;
         const auto done = [&] {
@@ -113,7 +115,7 @@ private:
     uint64_t newest_ = 0;
 };
 
-/// Both displays.
+/// Runs each test with both displays.
 class DisplayTest : public testing::TestWithParam<DisplayMode> {
 protected:
     void SetUp() override {
@@ -146,14 +148,14 @@ TEST_P(DisplayTest, EndsWithMakeLightmapsTexels) {
         const glm::vec4 got = glm::unpackHalf(texels[t]);
         ASSERT_EQ(got.a, expected.planes[3][t]) << "texel " << t;
         for (int c = 0; c < 3; ++c) {
-            // Rounded to halves once per ring of filled texels.
+            // The values are rounded to halves once per ring of filled texels.
             const float want = expected.planes[static_cast<size_t>(c)][t] / unit;
             ASSERT_NEAR(got[c], want, std::abs(want) * 2e-3f + 1e-7f) << "texel " << t;
         }
     }
 }
 
-// Neither black nor another map while a lightmap of another size is made.
+// Neither black nor another map is shown while a lightmap of another size is made.
 TEST_P(DisplayTest, AnotherSizeKeepsTheOldMapUntilItsOwnIsThere) {
     Display display(GetParam());
     display.start(quickSettings(), false);
@@ -218,7 +220,7 @@ TEST(Display, SharedAndCopiedShowTheSamePixels) {
     EXPECT_NE(seen[0][0].picture.planes, seen[0][1].picture.planes) << "the edit is not seen";
 }
 
-/// What a drawing thread does that OpenGL leaves in the lurch.
+/// Does what a drawing thread does whose OpenGL cannot import the images.
 bool refuseOffer(Display& display) {
     const auto end = Clock::now() + std::chrono::duration<double>(kPatience);
     while (Clock::now() < end) {
@@ -273,8 +275,8 @@ TEST(Display, ADeviceThatOpenGlDoesNotKnowIsCopiedFrom) {
     EXPECT_EQ(forced.bake().status().doing, why) << "a scene changes nothing";
 }
 
-// Descriptors without memory behind them. NVIDIA's driver (580.159) refuses them, and then also the process'
-// next memory.
+// There are descriptors without memory behind them. NVIDIA's driver (580.159) refuses them, and then also the
+// process' next memory.
 TEST(Display, WhatOpenGlCannotImportIsRefused) {
     if (!canShare()) GTEST_SKIP() << "images cannot be shared";
     if (!testDevice().info().software()) GTEST_SKIP() << "the driver would refuse memory after it";

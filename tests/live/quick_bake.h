@@ -8,7 +8,8 @@
 namespace relume {
 
 constexpr uint32_t kQuickSize = 64;
-// The bake gets what time the machine has left, under a sanitizer a tenth of that [s].
+// Tests wait so long [s]: the bake gets what time the machine has left, and under a sanitizer a tenth of
+// that.
 constexpr double kPatience = 240;
 
 inline BakeSettings quickSettings() {

@@ -6,15 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <thread>
 
 namespace relume {
 namespace {
-
-using namespace std::chrono_literals;
 
 class ViewerLights : public ViewerTest {
 protected:
@@ -39,7 +35,7 @@ TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
     EXPECT_GT(mean(added) - mean(before), 0.005) << "another light";
 
     viewer->keys({"alt+4"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     const Place strength = placeOf(*viewer, "Lights/Point/Intensity");
     edit(*viewer, "edit: Intensity of Point",
          [&] { viewer->drag(strength.first, strength.second, strength.first + 50, strength.second); });
@@ -84,7 +80,7 @@ TEST_F(ViewerLights, BeyondTheMemoryTheyShareALayerAndThePanelSaysSo) {
 TEST_F(ViewerLights, ADragIsCancelledByEscape) {
     auto viewer = openConverged();
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
-    std::this_thread::sleep_for(300ms);
+    viewer->settle();
     const Place before = placeOf(*viewer, "Gizmo/X");
     viewer->mark();
     viewer->moveTo(before.first, before.second);
@@ -95,7 +91,7 @@ TEST_F(ViewerLights, ADragIsCancelledByEscape) {
     viewer->keys({"Escape"});
     EXPECT_TRUE(viewer->says("action: drag cancelled")) << viewer->output();
     viewer->xdotool({"mouseup", "1"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     EXPECT_EQ(placeOf(*viewer, "Gizmo/X"), before);
     viewer->mark();
     viewer->keys({"ctrl+z"});
@@ -107,7 +103,7 @@ TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
     auto viewer = openConverged();
     viewer->keys({"ctrl+2"});
     EXPECT_TRUE(viewer->says("action: select light Spot")) << viewer->output();
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     viewer->mark();
     viewer->keys({"l"});
     EXPECT_TRUE(viewer->says("action: select light Light")) << "the emitter: " << viewer->output();
@@ -140,7 +136,7 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
     const FloatImage after = screenshot(*viewer);
     viewer->keys({"b"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     const FloatImage wiped = screenshot(*viewer);
     EXPECT_LT(differenceBetween(before, wiped, 0.0, 0.49), 0.002) << "left as it was";
     EXPECT_LT(differenceBetween(after, wiped, 0.51, 1.0), 0.002) << "right as it is";
@@ -148,12 +144,12 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     // The line follows the mouse, from where that was pressed, not from where it was by the next frame.
     const Place line = placeOf(*viewer, "Wipe/Line");
     viewer->dragWhileItHangs(line.first, line.second, line.first + 230, line.second);
-    std::this_thread::sleep_for(300ms);
+    viewer->settle();
     const FloatImage further = screenshot(*viewer);
     EXPECT_LT(differenceBetween(before, further, 0.0, 0.7), 0.002);
     viewer->mark();
     viewer->keys({"shift+b"}); // the light as it is becomes B
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     EXPECT_LT(difference(after, screenshot(*viewer)), 0.002);
     quit(*viewer);
 }
@@ -191,7 +187,7 @@ TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
     viewer->keys({"ctrl+q"});
     EXPECT_TRUE(viewer->says("ask: scene.glb has edits")) << viewer->output();
     viewer->keys({"Escape"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     EXPECT_TRUE(viewer->runs());
     viewer->mark();
     viewer->keys({"ctrl+s"});
@@ -216,19 +212,17 @@ TEST_F(ViewerLights, AreLookedAtAlone) {
     const FloatImage both = screenshot(*viewer);
     viewer->mark();
     viewer->keys({"alt+l"});
-    EXPECT_TRUE(viewer->says("map: layer complete")) << viewer->output();
-    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(viewer->shows("map: layer complete")) << viewer->output();
     const FloatImage point = screenshot(*viewer);
     viewer->keys({"l"}); // the emitter
-    std::this_thread::sleep_for(1s);
+    viewer->settle();
     const FloatImage emitter = screenshot(*viewer);
     EXPECT_GT(difference(both, point), 0.01);
     EXPECT_GT(difference(both, emitter), 0.01);
     EXPECT_GT(difference(point, emitter), 0.01);
     viewer->mark();
     viewer->keys({"alt+l"});
-    EXPECT_TRUE(viewer->says("map: light complete")) << viewer->output();
-    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(viewer->shows("map: light complete")) << viewer->output();
     EXPECT_LT(difference(both, screenshot(*viewer)), 0.002);
     edit(*viewer, "edit: Solo of Light", [&] { viewer->keys({"alt+s"}); });
     EXPECT_LT(difference(emitter, screenshot(*viewer)), 0.003);
@@ -239,7 +233,7 @@ TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
     auto viewer = openConverged();
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
     viewer->keys({"alt+4"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     const auto look = [&](const char* name) {
         const Place middle = placeOf(*viewer, name);
         const FloatImage window = screenshot(*viewer, "shift+F12");
@@ -257,9 +251,10 @@ TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
     };
     std::vector<std::vector<double>> seen;
     for (const char* name : {"Lights/Light/Preview", "Lights/Point/Preview"}) {
+        viewer->mark();
         seen.push_back(look(name));
-        for (int tries = 0; tries < 30 && isFlat(seen.back()); ++tries) {
-            std::this_thread::sleep_for(1s);
+        while (isFlat(seen.back()) && viewer->shows("preview: drawn", 60)) {
+            viewer->mark();
             seen.back() = look(name);
         }
         EXPECT_FALSE(isFlat(seen.back())) << name;
@@ -288,20 +283,19 @@ TEST_F(ViewerLights, TheSkyTakesAPicture) {
     edit(*viewer, "edit: Add sky", [&] { viewer->keys({"ctrl+6"}); });
     const FloatImage even = screenshot(*viewer);
     viewer->keys({"alt+4"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     const auto choose = [&](const std::string& name) {
         const Place button = placeOf(*viewer, "Lights/Selected/Choose picture");
         viewer->click(button.first, button.second);
-        EXPECT_TRUE(viewer->says("action: Choose the sky's picture")) << viewer->output();
-        std::this_thread::sleep_for(1s); // the field takes the keyboard with its second frame
+        // The field takes the keyboard with its second frame.
+        EXPECT_TRUE(viewer->shows("action: Choose the sky's picture")) << viewer->output();
         viewer->keys({"ctrl+a", "BackSpace"});
         viewer->type(name);
         viewer->keys({"Return"});
     };
     viewer->mark();
     choose(home_.path("none.exr"));
-    EXPECT_TRUE(viewer->says("error: " + home_.path("none.exr"))) << viewer->output();
-    std::this_thread::sleep_for(500ms);
+    EXPECT_TRUE(viewer->shows("error: " + home_.path("none.exr"))) << viewer->output();
     edit(*viewer, "edit: Picture of the sky", [&] { choose(picture); });
     EXPECT_GT(difference(even, screenshot(*viewer)), 0.005) << "from above, and of another strength";
     viewer->mark();
@@ -310,7 +304,7 @@ TEST_F(ViewerLights, TheSkyTakesAPicture) {
     const Sky saved = loadGltf(file).sky;
     EXPECT_EQ(std::filesystem::path(saved.file).filename(), "sky.exr");
     EXPECT_EQ(saved.width, 16u);
-    std::this_thread::sleep_for(300ms);
+    viewer->settle();
     const Place none = placeOf(*viewer, "Lights/Selected/No picture");
     edit(*viewer, "edit: Sky without a picture", [&] { viewer->click(none.first, none.second); });
     edit(*viewer, "undo: Sky without a picture", [&] { viewer->keys({"ctrl+z"}); });
@@ -328,13 +322,12 @@ TEST_F(ViewerLights, AreSavedAsAnotherFile) {
     viewer->keys({"ctrl+b", "ctrl+1"});
     EXPECT_TRUE(viewer->says("title: first.glb* - Relume")) << viewer->output();
     viewer->keys({"ctrl+shift+s"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     viewer->keys({"ctrl+a"});
     viewer->type(second);
     viewer->keys({"Return"});
     EXPECT_TRUE(viewer->says("saved: " + second)) << viewer->output();
-    EXPECT_TRUE(viewer->says("title: second.glb - Relume")) << viewer->output();
-    std::this_thread::sleep_for(300ms);
+    EXPECT_TRUE(viewer->shows("title: second.glb - Relume")) << viewer->output();
     viewer->mark();
     viewer->keys({"ctrl+2"});
     EXPECT_TRUE(viewer->says("title: second.glb* - Relume")) << viewer->output();
@@ -344,7 +337,7 @@ TEST_F(ViewerLights, AreSavedAsAnotherFile) {
     EXPECT_EQ(loadGltf(first).lights.size(), 0u);
     // Its bookmarks, and what is offered for an export.
     viewer->keys({"alt+3"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     placeOf(*viewer, "Scene/bookmark 1");
     viewer->mark();
     viewer->keys({"ctrl+e", "Return"});

@@ -4,14 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
-#include <thread>
 
 namespace relume {
 namespace {
-
-using namespace std::chrono_literals;
 
 class ViewerObjects : public ViewerTest {
 protected:
@@ -26,7 +22,7 @@ protected:
         viewer->keys({"bracketleft"}); // exposure by hand
         viewer->click(kOnBox.first, kOnBox.second);
         EXPECT_TRUE(viewer->says("action: select 7")) << viewer->output();
-        std::this_thread::sleep_for(500ms);
+        viewer->settle();
         return viewer;
     }
     glm::vec3 savedPlace() const { return glm::vec3(loadGltf(file_).instances.at(kBox).transform[3]); }
@@ -80,7 +76,7 @@ TEST_F(ViewerObjects, AreDrawnWhereTheyAreBeforeTheBakeFollows) {
     EXPECT_TRUE(viewer->says("edit: Position of Tall box")) << viewer->output();
     EXPECT_GT(difference(before, screenshot(*viewer)), 0.001);
     viewer->keys({"h"});
-    std::this_thread::sleep_for(300ms);
+    viewer->settle();
     viewer->mark();
     viewer->click(kOnBox.first, kOnBox.second);
     EXPECT_TRUE(viewer->says("action: select ")) << viewer->output();
@@ -92,7 +88,7 @@ TEST_F(ViewerObjects, AreSetInThePanelAndSaved) {
     auto viewer = openWithBox();
     const glm::vec3 before = savedPlace();
     viewer->keys({"alt+3"});
-    std::this_thread::sleep_for(500ms);
+    viewer->settle();
     const Place place = placeOf(*viewer, "Scene/Object/Position [m]"); // its middle: y
     viewer->mark();
     viewer->drag(place.first, place.second, place.first + 50, place.second);

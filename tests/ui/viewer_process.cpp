@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -23,6 +24,9 @@ using Clock = std::chrono::steady_clock;
 Clock::time_point after(double seconds) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
+
+// The viewer says so when what it was sent is on the screen, with the number of inputs that it has taken.
+constexpr std::string_view kSettled = "settled: ";
 
 [[noreturn]] void becomeRelume(const ViewerProcess::Desc& desc, int err) {
     const int nothing = open("/dev/null", O_RDWR);
@@ -77,11 +81,33 @@ void ViewerProcess::listen(int stream) {
     more_.notify_all();
 }
 
-bool ViewerProcess::says(const std::string& text, double seconds) {
+bool ViewerProcess::waitFor(const std::function<bool()>& there, double seconds) {
     std::unique_lock lock(mutex_);
-    const auto there = [&] { return output_.find(text, mark_) != std::string::npos; };
     more_.wait_until(lock, after(seconds), [&] { return there() || closed_; });
     return there();
+}
+
+bool ViewerProcess::says(const std::string& text, double seconds) {
+    return waitFor([&] { return output_.find(text, mark_) != std::string::npos; }, seconds);
+}
+
+bool ViewerProcess::shows(const std::string& text, double seconds) {
+    return waitFor(
+        [&] {
+            const size_t at = output_.find(text, mark_);
+            return at != std::string::npos && output_.find(kSettled, at) != std::string::npos;
+        },
+        seconds);
+}
+
+// The inputs that it had taken when what is on the screen had settled last.
+uint64_t ViewerProcess::inputs() {
+    const size_t at = output_.rfind(kSettled);
+    return at == std::string::npos ? 0 : std::strtoull(output_.c_str() + at + kSettled.size(), nullptr, 10);
+}
+
+void ViewerProcess::settle() {
+    waitFor([&] { return inputs() > inputsBefore_; }, patience_);
 }
 
 void ViewerProcess::mark() {
@@ -111,6 +137,10 @@ bool ViewerProcess::window(double seconds) {
 }
 
 void ViewerProcess::xdotool(const std::vector<std::string>& arguments) {
+    {
+        const std::lock_guard lock(mutex_);
+        inputsBefore_ = inputs();
+    }
     std::vector<std::string> all = {"DISPLAY=" + display_, "xdotool"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     runProgram("/usr/bin/env", all, nullptr, 20);
@@ -126,39 +156,40 @@ void ViewerProcess::type(const std::string& text) {
 }
 
 void ViewerProcess::moveTo(int x, int y) {
+    if (std::pair(x, y) == cursor_) return; // no event would come of it
+    cursor_ = {x, y};
     xdotool({"mousemove", "--window", std::to_string(window_), std::to_string(x), std::to_string(y)});
 }
 
 // ImGui takes one change of a button per frame: a frame must come between two.
 void ViewerProcess::click(int x, int y, int button) {
     moveTo(x, y);
-    std::this_thread::sleep_for(150ms);
+    settle();
     xdotool({"mousedown", std::to_string(button)});
-    std::this_thread::sleep_for(150ms);
+    settle();
     xdotool({"mouseup", std::to_string(button)});
 }
 
 void ViewerProcess::drag(int fromX, int fromY, int toX, int toY, int button) {
     constexpr int kSteps = 8;
     moveTo(fromX, fromY);
-    std::this_thread::sleep_for(150ms);
+    settle();
     xdotool({"mousedown", std::to_string(button)});
-    for (int i = 1; i <= kSteps; ++i) {
+    settle();
+    for (int i = 1; i <= kSteps; ++i)
         moveTo(fromX + (toX - fromX) * i / kSteps, fromY + (toY - fromY) * i / kSteps);
-        std::this_thread::sleep_for(40ms);
-    }
-    std::this_thread::sleep_for(150ms);
+    settle();
     xdotool({"mouseup", std::to_string(button)});
 }
 
 void ViewerProcess::dragWhileItHangs(int fromX, int fromY, int toX, int toY) {
     moveTo(fromX, fromY);
-    std::this_thread::sleep_for(300ms);
+    settle();
     kill(pid_, SIGSTOP);
     xdotool({"mousedown", "1"});
     moveTo(toX, toY);
     kill(pid_, SIGCONT);
-    std::this_thread::sleep_for(300ms);
+    settle();
     xdotool({"mouseup", "1"});
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -24,8 +27,14 @@ public:
     ViewerProcess(const ViewerProcess&) = delete;
     ViewerProcess& operator=(const ViewerProcess&) = delete;
 
-    /// Whether stderr has this text, or gets it within so many seconds: behind mark() only.
+    /// Tells whether stderr has this text, or gets it within so many seconds: behind mark() only.
     [[nodiscard]] bool says(const std::string& text, double seconds = 20);
+    /// Tells whether it says the text, and afterwards that what is on the screen has settled.
+    [[nodiscard]] bool shows(const std::string& text, double seconds = 20);
+    /// Waits until what was sent last is on the screen, so that the panels tell where their controls are now.
+    /// Goes on where nothing comes of it for as long as the patience lasts: an input beside the window, say.
+    void settle();
+    void setPatience(double seconds) { patience_ = seconds; }
     /// What is said from now on.
     void mark();
     std::string output(); // all of stderr so far
@@ -54,6 +63,8 @@ public:
 
 private:
     void listen(int stream);
+    uint64_t inputs();
+    bool waitFor(const std::function<bool()>& there, double seconds);
 
     std::string display_;
     pid_t pid_ = -1;
@@ -65,6 +76,9 @@ private:
     std::string output_;
     size_t mark_ = 0;
     bool closed_ = false;
+    double patience_ = 20;               // [s]
+    uint64_t inputsBefore_ = 0;          // what it had taken when the last input was sent
+    std::pair<int, int> cursor_{-1, -1}; // where the cursor was sent to [pixels]
 };
 
 } // namespace relume

@@ -19,7 +19,7 @@ bool warns(const LightmapAtlas& atlas, const std::string& part) {
                        [&](const std::string& w) { return w.find(part) != std::string::npos; });
 }
 
-/// Bounds of an instance of the unit-square UVs, in texels.
+/// Holds the bounds of an instance of the unit-square UVs, in texels.
 struct TexelBox {
     glm::vec2 low, high;
 };
@@ -27,7 +27,7 @@ TexelBox boxOf(const AtlasRect& rect, uint32_t size) {
     return {rect.offset * float(size), (rect.offset + rect.scale) * float(size)};
 }
 
-/// The two halves of a square whose UVs have been moved over each other by `shift`.
+/// Makes the two halves of a square, whose UVs have been moved over each other by `shift`.
 Primitive overlappingHalves(float shift) {
     Primitive p = test::primitiveOf(
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}},
@@ -38,7 +38,7 @@ Primitive overlappingHalves(float shift) {
 }
 
 TEST(UvGrid, SharedEdgesNeverCountTwiceAndLeaveNoGap) {
-    // A fan of slivers around a point that is on no cell's corner, in both windings.
+    // There is a fan of slivers around a point that is on no cell's corner, in both windings.
     UvGrid grid(64, glm::dvec2(0), glm::dvec2(1));
     std::vector<glm::dvec2> rim;
     for (int i = 0; i <= 64; ++i)
@@ -159,7 +159,7 @@ TEST(Atlas, OverlapAboveOnePercentIsRefused) {
     EXPECT_EQ(lightmapSet({"", {overlappingHalves(0)}}), 1);
     EXPECT_EQ(lightmapSet({"", {overlappingHalves(0.008f)}}), 1);
     EXPECT_EQ(lightmapSet({"", {overlappingHalves(0.02f)}}), -1);
-    // The share counts, not the place: the same mesh in a corner of an atlas.
+    // The share counts, not the place: this is the same mesh in a corner of an atlas.
     for (float shift : {0.008f, 0.02f}) {
         Primitive small = overlappingHalves(shift);
         for (glm::vec2& uv : small.texCoord1)
@@ -178,7 +178,7 @@ TEST(Atlas, OverlapAboveOnePercentIsRefused) {
     }
 }
 
-/// So many squares beside each other, each a mesh of its own whose UVs are those of all others.
+/// Makes so many squares beside each other, each a mesh of its own whose UVs are those of all others.
 Scene squaresOfTheSameUvs(int count) {
     Scene scene;
     scene.path = "squares.glb";
@@ -274,7 +274,7 @@ TEST(Atlas, ReferenceScenesAreUsedAsTheyAre) {
     const std::string folder = std::string(RELUME_SHARED_DIR) + "/scenes/rtrad/";
     if (!std::filesystem::exists(folder + "Multilayer.glb"))
         GTEST_SKIP() << "no " << folder << " here: the reference scenes are not part of the project";
-    // Coverage as measured by the converter that made the files.
+    // These are the coverages that the converter which made the files measured.
     const std::pair<const char*, double> scenes[] = {{"CornellLucy.glb", 0.702},
                                                      {"CornellGeom.glb", 0.879},
                                                      {"Multilayer.glb", 0.743},

@@ -8,9 +8,9 @@
 namespace relume {
 namespace {
 
-// Chromaticity from Planck's law and the CIE 1931 observer, by the fits of [Wyman, Sloan and Shirley 2013,
-// Simple Analytic Approximations to the CIE XYZ Color Matching Functions], and in linear sRGB with its
-// largest channel at 1.
+// Returns the chromaticity from Planck's law and the CIE 1931 observer, by the fits of [Wyman, Sloan and
+// Shirley 2013, Simple Analytic Approximations to the CIE XYZ Color Matching Functions], as linear sRGB with
+// its largest channel at 1.
 glm::dvec3 integrated(double kelvin) {
     const auto lobe = [](double x, double middle, double left, double right) {
         const double t = (x - middle) * (x < middle ? left : right);

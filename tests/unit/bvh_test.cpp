@@ -140,7 +140,7 @@ TEST(Bvh, findsWhatBruteForceFinds) {
     EXPECT_GT(hits, 2000u);
 }
 
-// Both walks against brute force, for one ray and the one the other way.
+// Compares both walks with brute force, for one ray and the one the other way.
 void expectAgreement(BvhWalk& walk, glm::vec3 origin, glm::vec3 direction, const std::string& what) {
     for (const glm::vec3 d : {direction, -direction}) {
         const auto expected = walk.bruteForce(origin, d, 0, 1e30f);
@@ -153,7 +153,8 @@ void expectAgreement(BvhWalk& walk, glm::vec3 origin, glm::vec3 direction, const
     }
 }
 
-// From corners, edges and faces of boxes, along the axes, along the faces and to other boxes' corners.
+// Rays go from corners, edges and faces of boxes, along the axes, along the faces and to other boxes'
+// corners.
 TEST(Bvh, findsWhatBruteForceFindsFromItsBoxes) {
     const TraceScene scene = roomWithSphere(12);
     const Bvh bvh = buildBvh(scene.mesh);
@@ -178,7 +179,7 @@ TEST(Bvh, findsWhatBruteForceFindsFromItsBoxes) {
     }
 }
 
-// Triangles without area, as points, lines and double corners, among others: they stop nothing and hide
+// Triangles without area (points, lines, double corners) are among others: they stop nothing and hide
 // nothing.
 TEST(Bvh, degenerateTrianglesAreHarmless) {
     std::mt19937 random(5);
@@ -208,8 +209,8 @@ TEST(Bvh, degenerateTrianglesAreHarmless) {
     EXPECT_EQ(through.bvhClosestHit(glm::vec3(0), glm::vec3(1), 0, 1e30f).triangle, shader::kNoPatch);
 }
 
-// A tree as deep as is allowed, with something on the stack at every level: nodes in a row whose boxes hold
-// the ray.
+// The tree is as deep as is allowed, with something on the stack at every level: nodes in a row whose boxes
+// hold the ray.
 TEST(Bvh, theStackHoldsTheDeepestTree) {
     Bvh bvh;
     bvh.depth = shader::kBvhDepth;

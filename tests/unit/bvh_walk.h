@@ -8,7 +8,7 @@
 namespace relume {
 namespace shader {
 
-/// The shaders' traversal on the CPU, and what it is measured by.
+/// Does the shaders' traversal on the CPU, and counts what it is measured by.
 struct BvhWalk {
     const Bvh* bvh = nullptr;
     std::function<bool(uint, float, float)> solid = [](uint, float, float) { return true; };

@@ -33,7 +33,7 @@ void expectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5f)
     EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-// Where a point comes to lie: x and y from -1 to 1, z the depth.
+// Returns where a point comes to lie: x and y from -1 to 1, z the depth.
 glm::vec3 project(const ViewCamera& camera, float aspect, const glm::vec3& point) {
     const glm::vec4 clip = projectionMatrix(camera, aspect) * viewMatrix(camera) * glm::vec4(point, 1.0f);
     return glm::vec3(clip) / clip.w;
@@ -45,7 +45,7 @@ TEST(Camera, ProjectsTheTargetToTheMiddleAndTheAngleToTheEdge) {
     const glm::vec3 middle = project(camera, 2.0f, camera.target);
     EXPECT_NEAR(middle.x, 0.0f, 1e-6f);
     EXPECT_NEAR(middle.y, 0.0f, 1e-6f);
-    // 45 degrees up, and twice as far to the right as an aspect of 2 allows.
+    // These are 45 degrees up, and twice as far to the right, as an aspect of 2 allows.
     expectNear(project(camera, 2.0f, {1, 12, -7}), {0, 1, 0.001f});
     expectNear(project(camera, 2.0f, {21, 2, -7}), {1, 0, 0.001f});
 }

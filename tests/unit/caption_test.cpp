@@ -1,4 +1,5 @@
-// Captions: where they are, that they can be read on anything, and that nothing else of the picture changes.
+// This tests captions: where they are, that they can be read on anything, and that nothing else of the
+// picture changes.
 #include "renderer/caption.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ TEST(Caption, ChangesItsCornerOnlyAndIsReadableOnAnything) {
                 }
             }
         }
-        // Strokes of 18 letters, 5 to 25 pixels each.
+        // These are strokes of 18 letters, 5 to 25 pixels each.
         EXPECT_GT(letters, 80u);
         EXPECT_LT(letters, 500u);
     }

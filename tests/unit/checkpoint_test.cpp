@@ -1,4 +1,4 @@
-// Checkpoint files: what is written is what is read, and nothing else is taken for it.
+// In checkpoint files, what is written is what is read, and nothing else is taken for it.
 #include "assets/base/error.h"
 #include "bake/output/checkpoint.h"
 #include "bake/surface/patches.h"
@@ -28,7 +28,7 @@ protected:
         return {std::istreambuf_iterator<char>(in), {}};
     }
     void write(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
-    /// What the attempt to go on from the file says; "" when it works.
+    /// Returns what the attempt to go on from the file says; "" when it works.
     std::string problem(const CheckpointKey& key, ParkedSolver& solver) const {
         try {
             Checkpoint(path_, key.version).restore(key, solver);
@@ -53,7 +53,7 @@ protected:
 
 } // namespace
 
-// Parts of no, of odd and of large size, which are read and written in pieces.
+// There are parts of no, of odd and of large size, which are read and written in pieces.
 TEST_F(CheckpointFile, HoldsWhatWasSaved) {
     const std::vector<size_t> sizes = {16, 0, 5, (20u << 20) + 3};
     ParkedSolver before(sizes), after(sizes);

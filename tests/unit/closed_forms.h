@@ -5,13 +5,14 @@
 #include <cmath>
 #include <numbers>
 
-// View factors known in closed form, in double precision. The numbers (C-11 and so on) are those of [Howell,
-// A Catalog of Radiation Heat Transfer Configuration Factors, 3rd ed.]. Lengths in any one unit.
+// These are view factors known in closed form, in double precision. The numbers (C-11 and so on) are those of
+// [Howell, A Catalog of Radiation Heat Transfer Configuration Factors, 3rd ed.]. Lengths may be in any one
+// unit.
 namespace relume::closed {
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// C-11: between two equal, parallel, directly opposed rectangles of sides a and b at distance c.
+/// Returns C-11: between two equal, parallel, directly opposed rectangles of sides a and b at distance c.
 inline double parallelRectangles(double a, double b, double c) {
     const double x = a / c, y = b / c, x1 = std::sqrt(1 + x * x), y1 = std::sqrt(1 + y * y);
     return 2 / (kPi * x * y) *
@@ -19,8 +20,8 @@ inline double parallelRectangles(double a, double b, double c) {
             y * x1 * std::atan(y / x1) - x * std::atan(x) - y * std::atan(y));
 }
 
-/// C-14: from a rectangle of width w to one at a right angle to it of height h, both as long as their common
-/// edge l.
+/// Returns C-14: from a rectangle of width w to one at a right angle to it of height h, both as long as their
+/// common edge l.
 inline double perpendicularRectangles(double w, double h, double l) {
     const double W = w / l, H = h / l, w2 = W * W, h2 = H * H, s = w2 + h2;
     const double a = (1 + w2) * (1 + h2) / (1 + s);
@@ -31,25 +32,25 @@ inline double perpendicularRectangles(double w, double h, double l) {
            (kPi * W);
 }
 
-/// C-41: from a disc of radius r1 to a parallel, coaxial one of radius r2 at distance h.
+/// Returns C-41: from a disc of radius r1 to a parallel, coaxial one of radius r2 at distance h.
 inline double coaxialDiscs(double r1, double r2, double h) {
     const double a = r1 / h, b = r2 / h, x = 1 + (1 + b * b) / (a * a);
     return 0.5 * (x - std::sqrt(x * x - 4 * (b / a) * (b / a)));
 }
 
-/// B-12: from a small plate to a coaxial parallel disc of radius r at distance h.
+/// Returns B-12: from a small plate to a coaxial parallel disc of radius r at distance h.
 inline double pointToDisc(double r, double h) {
     return r * r / (r * r + h * h);
 }
 
-/// B-3: from a small plate to a parallel rectangle a by b at distance c, one corner of which is on the
-/// plate's normal.
+/// Returns B-3: from a small plate to a parallel rectangle a by b at distance c, one corner of which is on
+/// the plate's normal.
 inline double pointToParallelRectangle(double a, double b, double c) {
     const double x = a / c, y = b / c, x1 = std::sqrt(1 + x * x), y1 = std::sqrt(1 + y * y);
     return (x / x1 * std::atan(y / x1) + y / y1 * std::atan(x / y1)) / (2 * kPi);
 }
 
-/// B-4: from a small plate to a rectangle at a right angle to it. The plate is at distance c from the
+/// Returns B-4: from a small plate to a rectangle at a right angle to it. The plate is at distance c from the
 /// rectangle's plane, its normal is along the side a, and the corner nearest to it is at the foot of the
 /// perpendicular; the other side is b.
 inline double pointToPerpendicularRectangle(double a, double b, double c) {
@@ -57,13 +58,13 @@ inline double pointToPerpendicularRectangle(double a, double b, double c) {
     return (std::atan(b / c) - c / r * std::atan(b / r)) / (2 * kPi);
 }
 
-/// The integrating sphere: from any part of a sphere's inside to a part of that area, its share of the whole
-/// area.
+/// Returns the factor in the integrating sphere: from any part of a sphere's inside to a part of that area,
+/// it is that part's share of the whole area.
 inline double sphereInterior(double area, double radius) {
     return area / (4 * kPi * radius * radius);
 }
 
-// Vectors of the numeric reference.
+// These are vectors of the numeric reference.
 using Vec = std::array<double, 3>;
 inline Vec operator+(const Vec& a, const Vec& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -87,9 +88,9 @@ inline Vec unit(const Vec& a) {
     return 1 / length(a) * a;
 }
 
-/// By adaptive integration, not by any formula for polygons: from point p of unit normal n to the
-/// parallelogram corner + s u + t v, s and t in [0, 1], whose front is along u x v. Parts below the horizon
-/// of n or seen from behind count as 0. Absolute error about `tolerance`.
+/// Returns the view factor by adaptive integration, not by any formula for polygons: from point p of unit
+/// normal n to the parallelogram corner + s u + t v, s and t in [0, 1], whose front is along u x v. Parts
+/// below the horizon of n or seen from behind count as 0. The absolute error is about `tolerance`.
 inline double integratedParallelogram(const Vec& p, const Vec& n, const Vec& corner, const Vec& u,
                                       const Vec& v, double tolerance = 1e-8) {
     const Vec front = cross(u, v);

@@ -22,7 +22,7 @@ protected:
         std::ofstream(path(name)) << text;
         return path(name);
     }
-    /// Of "--output", beside a file that is read.
+    /// Returns the clash of "--output" with a file that is read.
     std::string clash(const std::string& read, const std::string& written) const {
         return CommandFiles().reads("SCENE", read).writes("--output", written).clash();
     }

@@ -29,7 +29,7 @@ protected:
         }
         return "accepted";
     }
-    /// What the parser tells on the standard error.
+    /// Returns what the parser tells on the standard error.
     std::string told(const CommandWords& typed) {
         CommandWords arguments = ready(typed);
         std::reverse(arguments.begin(), arguments.end());

@@ -109,7 +109,8 @@ TEST_F(CompareTest, PrintsTheMetricsAskedFor) {
     EXPECT_EQ(compare("--metric rmse " + files).output, "0.25\n");
     EXPECT_EQ(compare(files + " --metric relrmse,Maximum --metric bias").output, "0.5\n0.25\n0.25\n");
     const double seen = std::stod(compare("--metric flip " + files).output);
-    // Grey on grey: lightness 116 (cbrt(0.75) - cbrt(0.5)), by the paper's formulas (flip_test.cpp).
+    // Grey on grey gives a lightness difference of 116 (cbrt(0.75) - cbrt(0.5)), by the paper's formulas
+    // (flip_test.cpp).
     const double knee = 0.4 * std::pow(203.31, 0.7);
     EXPECT_NEAR(seen, 0.95 / knee * std::pow(116 * (std::cbrt(0.75) - std::cbrt(0.5)), 0.7), 1e-4);
     const std::string black = image("c.exr", 4, 0.0f);

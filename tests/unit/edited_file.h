@@ -28,7 +28,7 @@ inline uint32_t wordAt(const std::string& bytes, size_t offset) {
     return value;
 }
 
-/// The JSON text of a .gltf or .glb.
+/// Returns the JSON text of a .gltf or .glb.
 inline std::string jsonTextOf(const std::string& path) {
     const std::string bytes = readAll(path);
     return bytes.rfind("glTF", 0) == 0 ? bytes.substr(20, wordAt(bytes, 12)) : bytes;
@@ -38,13 +38,13 @@ inline json jsonOf(const std::string& path) {
     return json::parse(jsonTextOf(path));
 }
 
-/// What is behind the JSON chunk of a .glb.
+/// Returns what is behind the JSON chunk of a .glb.
 inline std::string chunksOf(const std::string& path) {
     const std::string bytes = readAll(path);
     return bytes.substr(20 + wordAt(bytes, 12));
 }
 
-/// Files of one test, each in a folder of its own.
+/// Makes the files of one test, each in a folder of its own.
 class EditedFile : public testing::Test {
 protected:
     using Edit = std::function<void(Scene&)>;
@@ -58,7 +58,7 @@ protected:
         std::ofstream(folder_.path(name), std::ios::binary) << text;
         return folder_.path(name);
     }
-    /// The file at `path` saved over itself with an edit.
+    /// Saves the file at `path` over itself with an edit.
     static EditedNodes save(const std::string& path, const Edit& edit) {
         const Scene before = loadGltf(path);
         Scene after = before;
@@ -83,7 +83,7 @@ inline void expectNear(const glm::mat4& a, const glm::mat4& b, float tolerance =
             EXPECT_NEAR(a[c][r], b[c][r], tolerance) << "column " << c << " row " << r;
 }
 
-/// A scene of a square, with the nodes and lights that are added to it.
+/// Makes a scene of a square, with the nodes and lights that are added to it.
 struct LitScene : GlbBuilder {
     LitScene() : GlbBuilder(squareScene()) {
         json["scenes"] = nlohmann::json::array({{{"nodes", nlohmann::json::array({0})}}});

@@ -8,7 +8,8 @@
 namespace relume {
 namespace {
 
-// Two squares of 1 m face each other 2 m apart; a small one stands between them or beside.
+// Tells whether the shaft is open: two squares of 1 m face each other 2 m apart, and a small one stands
+// between them or beside.
 bool openPast(glm::vec3 obstacle, bool masked = false) {
     TraceWorld world;
     world.add([](float u, float v) { return glm::vec3(u, 0, -v); }, 1);

@@ -16,7 +16,7 @@ namespace relume {
 namespace shader {
 namespace {
 
-// Every ray against every triangle, with the shaders' own functions.
+// Tests every ray against every triangle, with the shaders' own functions.
 struct AllTriangles {
     const TraceScene& scene;
 #include "shaders/lib/intersect.glsl"
@@ -75,12 +75,12 @@ using shader::kBlockWords;
 using shader::kChunk;
 using shader::Patch;
 
-// A room with a sphere and a masked screen: all that occlusion knows.
+// Makes a room with a sphere and a masked screen: all that occlusion knows.
 TraceScene furnishedRoom() {
     TraceWorld world;
     world.addRoom({0, 0, 0}, {4, 3, 5}, 2);
     world.addBumpySphere({2, 1.2f, 1.5f}, 0.8f, 8);
-    // Placed so that no row of patches looks along a border of its holes.
+    // It is placed so that no row of patches looks along a border of its holes.
     world.add([](float u, float v) { return glm::vec3(0.537f + 2.913f * u, 0.217f + 2.041f * v, 3.5f); }, 2,
               {.masked = true});
     return world.build();
@@ -98,7 +98,7 @@ struct Bits {
             result.push_back(&words[s * shader::kSuperWords]);
         return result;
     }
-    // i < j, patch indices; or patch and sender
+    // Returns the bit of patches i < j, or of a patch and a sender.
     bool at(uint32_t i, uint32_t j) const {
         const uint32_t row = i / kChunk, column = j / kChunk;
         const auto super = std::find_if(supers.begin(), supers.end(), [&](const SuperBlock& s) {
@@ -239,7 +239,7 @@ TEST(Embree, partsOfTheWorkGiveTheSameBitsAndLeaveSkippedUnitsAlone) {
     }
 }
 
-// Against the bits of all pairs, for senders drawn from runs of patches.
+// Lists are held against the bits of all pairs, for senders drawn from runs of patches.
 TEST(Embree, listsGiveTheBitsOfTheDrawnPatches) {
     const TraceScene scene = furnishedRoom();
     const Bits whole = traceBits(scene, 2);
@@ -337,7 +337,7 @@ TEST(Embree, linksOfADiscAreThoseOfBruteForce) {
     EXPECT_LE(wrong, 2u);
 }
 
-// A floor below a lid: seen from above as lids come.
+// Makes a floor below a lid, whose front is on top unless it is `turned`.
 TraceScene floorAndLid(const TraceWorld::Look& look, bool turned) {
     TraceWorld world;
     world.add([](float u, float v) { return glm::vec3(u, 0, -v); }, 1);
@@ -390,7 +390,7 @@ TEST(Embree, maskedHolesLetRaysPass) {
     for (uint32_t i = 0; i < 512; ++i) {
         for (uint32_t j = 512; j < 1024; ++j) {
             const glm::vec3 middle = (scene.patches[i].position + scene.patches[j].position) * 0.5f;
-            // Solid where both coordinates are in the same half of the screen.
+            // The screen is solid where both coordinates are in the same half of it.
             const float x = middle.x + 1.5f - 2, y = 1.5f - middle.z - 2;
             if (std::abs(x) < 1e-3f || std::abs(y) < 1e-3f) continue;
             const bool solid = (x < 0) == (y < 0);

@@ -10,7 +10,7 @@
 
 namespace relume::shader {
 
-/// The light tree's descent over a set on the host.
+/// Does the light tree's descent over a set on the host.
 struct EmitterTables {
     const EmitterSet* set;
     EmitterNode emitterNode(uint index) { return set->nodes[index]; }
@@ -21,7 +21,8 @@ struct EmitterTables {
 
 namespace relume::test {
 
-/// The mesh of a scene as it is in a bake, its lightmap UVs TEXCOORD_1; of those without, none.
+/// Returns the mesh of a scene as it is in a bake. Its lightmap UVs are TEXCOORD_1; instances without these
+/// have none.
 inline WorldMesh flattened(const Scene& scene) {
     LightmapAtlas atlas;
     for (const Instance& instance : scene.instances) {
@@ -35,7 +36,7 @@ inline EmitterSet emittersOf(const Scene& scene, EmitterDesc desc = {}) {
     return buildEmitters(scene, flattened(scene), desc);
 }
 
-/// A scene of one primitive that emits `emission`.
+/// Makes a scene of one primitive that emits `emission`.
 inline Scene glowing(Primitive primitive, glm::vec3 emission = glm::vec3(1)) {
     primitive.material = 0;
     Scene scene = sceneOf(std::move(primitive));
@@ -44,7 +45,7 @@ inline Scene glowing(Primitive primitive, glm::vec3 emission = glm::vec3(1)) {
     return scene;
 }
 
-/// The square with an emission texture over it, upright: pixel (0, 0) at uv (0, 0).
+/// Makes the square with an emission texture over it, upright: pixel (0, 0) is at uv (0, 0).
 inline Scene glowingPicture(uint32_t width, uint32_t height,
                             const std::function<glm::u8vec3(uint32_t, uint32_t)>& pixel) {
     Primitive primitive = square();
@@ -62,8 +63,8 @@ inline Scene glowingPicture(uint32_t width, uint32_t height,
     return scene;
 }
 
-/// `count` squares of side `size` in the unit cube, turned and lit at random, the brightest 1000 times the
-/// darkest.
+/// Makes `count` squares of side `size` in the unit cube, turned and lit at random, the brightest 1000 times
+/// as bright as the darkest.
 inline Scene manyLamps(uint32_t count, float size, uint32_t seed = 1) {
     Scene scene;
     scene.path = "lamps.glb";

@@ -22,7 +22,7 @@ double areaOf(const EmitterSet& set) {
     return sum;
 }
 
-// Area times radiance.
+// Returns the sum of area times radiance.
 glm::dvec3 powerOf(const EmitterSet& set) {
     glm::dvec3 sum(0);
     for (const EmitterPolygon& p : set.polygons)
@@ -34,7 +34,7 @@ Primitive triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
     return test::primitiveOf({a, b, c}, {0, 1, 2});
 }
 
-// n x n squares over the unit square, corners shared.
+// Makes n x n squares over the unit square that share corners.
 Primitive grid(uint32_t n) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -47,7 +47,7 @@ Primitive grid(uint32_t n) {
     return test::primitiveOf(positions, indices);
 }
 
-// The mean over a receiving unit square at `corner` of the factor towards the emitters.
+// Returns the mean over a receiving unit square at `corner` of the form factor towards the mesh lights.
 double meanFactor(const EmitterSet& set, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
     constexpr int n = 32;
     const glm::vec3 normal = glm::normalize(glm::cross(u, v));
@@ -59,7 +59,7 @@ double meanFactor(const EmitterSet& set, glm::vec3 corner, glm::vec3 u, glm::vec
     return sum / (n * n);
 }
 
-// A triangle, a kite and a rectangle in z = 0, seen from above.
+// Returns a triangle, a kite and a rectangle in z = 0, seen from above.
 std::vector<EmitterPolygon> nearShapes() {
     const auto shape = [](glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d, uint32_t kind, float split) {
         EmitterPolygon e{};
@@ -105,7 +105,7 @@ TEST(Emitters, PointsAreUniformInAreaWhateverTheShape) {
     const EmitterSet set = test::emittersOf(scene);
     ASSERT_EQ(set.polygons.size(), 3u);
     for (const EmitterPolygon& e : set.polygons) {
-        // Moments against those of the two triangles.
+        // Moments are held against those of the two triangles.
         glm::dvec3 mean(0), square(0), meanRight(0), squareRight(0);
         const glm::dvec3 c[4] = {e.c0, e.c1, e.c2, e.c3};
         double area = 0;
@@ -182,9 +182,9 @@ TEST(Emitters, SamplesOfNearEmittersAverageToTheFormFactorAndAreEven) {
     EXPECT_EQ(shader::emitterSample({1, 1, 9}, {0, 0, -1}, e, u).point, shader::emitterPoint(e, u));
 }
 
-// Each round's few points tell the share of a near emitter that is seen; the mean of many rounds is the
-// share, whatever the numbers were scrambled with. The half of it where x < .7 is hidden, so that the rest's
-// own form factor is exact.
+// The few points of each sample pass tell the share of a near mesh light that is seen; the mean of many
+// sample passes is the share, whatever the numbers were scrambled with. The part of it where x < .7 is
+// hidden, so that the rest's own form factor is exact.
 TEST(Emitters, SharesOfNearEmittersConvergeWhateverTheSeed) {
     const EmitterPolygon e = nearShapes()[2];
     ASSERT_EQ(e.shape, shader::kEmitterParallelogram);
@@ -239,7 +239,7 @@ TEST(Emitters, TrianglesOfOnePlaneBecomeQuadrilaterals) {
 }
 
 TEST(Emitters, ConcaveAndFoldedPairsStayTriangles) {
-    // An arrow head, and a sheet folded by 3 degrees.
+    // These are an arrow head and a sheet folded by 3 degrees.
     const Primitive arrow =
         test::primitiveOf({{0, 0, 0}, {2, 1, 0}, {0.5f, 1, 0}, {0, 3, 0}}, {0, 1, 2, 0, 2, 3});
     EXPECT_EQ(test::emittersOf(test::glowing(arrow)).polygons.size(), 2u);
@@ -281,7 +281,7 @@ TEST(Emitters, PlainTexturesStayOnePiece) {
         test::emittersOf(test::glowingPicture(64, 64, [](auto...) { return glm::u8vec3(188); }));
     ASSERT_EQ(plain.polygons.size(), 1u);
     EXPECT_NEAR(plain.polygons[0].radiance.g, linearFromSrgb(188 / 255.0), 1e-6);
-    // Half black, read without interpolation: exactly the white half is left.
+    // The picture is half black and read without interpolation: exactly the white half is left.
     Scene scene =
         test::glowingPicture(64, 32, [](uint32_t x, uint32_t) { return glm::u8vec3(x < 32 ? 255 : 0); });
     scene.textures[0].nearest = true;
@@ -289,7 +289,7 @@ TEST(Emitters, PlainTexturesStayOnePiece) {
     ASSERT_EQ(half.polygons.size(), 1u);
     EXPECT_NEAR(half.polygons[0].area, 0.5f, 1e-6f);
     EXPECT_NEAR(shader::emitterPoint(half.polygons[0], {0.5f, 0.5f}).x, 0.25f, 1e-6f);
-    // All black: nothing.
+    // All black leaves nothing.
     EXPECT_TRUE(test::emittersOf(test::glowingPicture(8, 8, [](auto...) {
                     return glm::u8vec3(0);
                 })).polygons.empty());
@@ -302,7 +302,8 @@ glm::u8vec3 pattern(uint32_t x, uint32_t y) {
     return {wave(0.2 * x), wave(0.13 * y + 0.05 * x), uint8_t(x / 7 % 2 == y / 5 % 2 ? 255 : 0)};
 }
 
-// The power by brute force: 8 x 8 samples per texel of the picture, bilinear between the texels' centres.
+// Returns the power by brute force: 8 x 8 samples per texel of the picture, bilinear between the texels'
+// centres.
 glm::dvec3 densePower(const Scene& scene, glm::dvec2 repeats) {
     const Image& image = scene.images[0];
     const auto texel = [&](int x, int y) {
@@ -339,10 +340,10 @@ TEST(Emitters, TexturedPowerIsThatOfADenseQuadrature) {
     EXPECT_LT(set.polygons.size(), 61u * 47u);
     expectPower(set, densePower(scene, {1, 1}));
     EXPECT_NEAR(areaOf(set), 1, 0.01); // hardly anything of it is black
-    // Repeated and moved by KHR_texture_transform.
+    // The picture is repeated and moved by KHR_texture_transform.
     scene.materials[0].emissionTexture.transform = glm::mat3(2, 0, 0, 0, 3, 0, 0.25f, 0.5f, 1);
     expectPower(test::emittersOf(scene), densePower(scene, {2, 3}));
-    // On a triangle: half the square's, for a picture symmetrical about the diagonal.
+    // On a triangle it is half the square's, for a picture symmetrical about the diagonal.
     const auto symmetrical = [](uint32_t x, uint32_t y) { return pattern(std::min(x, y), std::max(x, y)); };
     Scene half = test::glowingPicture(48, 48, symmetrical);
     half.meshes[0].primitives[0].indices.resize(3);
@@ -350,7 +351,7 @@ TEST(Emitters, TexturedPowerIsThatOfADenseQuadrature) {
 }
 
 TEST(Emitters, WrapModesAreTheSamplers) {
-    // A ramp in x over uv 0 to 2: mirrored it comes back, clamped it stays bright.
+    // This is a ramp in x over uv 0 to 2: mirrored it comes back, clamped it stays bright.
     Scene scene = test::glowingPicture(64, 4, [](uint32_t x, uint32_t) { return glm::u8vec3(x * 4); });
     scene.materials[0].emissionTexture.transform = glm::mat3(2, 0, 0, 0, 1, 0, 0, 0, 1);
     double once = 0, last = 0;

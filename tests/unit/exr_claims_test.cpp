@@ -42,7 +42,8 @@ protected:
         }
         return "no error";
     }
-    /// All readers refuse the file with one line that has `part`, and take little memory for that.
+    /// Expects that all readers refuse the file with one line that has `part`, and take little memory for
+    /// that.
     void expectRefused(const std::string& bytes, const std::string& part) const {
         const std::string path = store("claims.exr", bytes);
         const std::function<void()> readers[] = {[&] { readImage(path); }, [&] { readLayeredExr(path); },
@@ -73,11 +74,11 @@ TEST_F(ClaimsTest, HeadersOfLargePicturesInSmallFiles) {
     expectRefused(ExrClaims{.right = 32767, .bottom = 32767}.bytes(std::string(20000, 'x')),
                   "its header claims");
     expectRefused(ExrClaims{.right = 4095, .bottom = 4095, .channels = 3000}.bytes(), "its header claims");
-    // One line, which comes in a piece of 256.
+    // The picture is one line, which comes in a piece of 256.
     expectRefused(
         ExrClaims{.right = 999'999, .bottom = 0, .channels = 100, .compression = 9}.bytes("xxxxxxxx"),
         "its header claims pieces of");
-    // With room for what DWA packs best, but not for its table.
+    // There is room for what DWA packs best, but not for its table.
     expectRefused(ExrClaims{.right = 0, .bottom = 1'000'000, .compression = 8}.bytes(), "chunks");
 }
 
@@ -120,7 +121,7 @@ TEST_F(ClaimsTest, AttributesLargerThanTheFile) {
     expectRefused(chunks.bytes(), "2147483647 chunks");
 }
 
-// Pixels take memory as they come: here none do.
+// Pixels take memory as they come, and here none come.
 TEST_F(ClaimsTest, RubbishBehindAHeaderThatFits) {
     std::string rubbish(600'000, '\0');
     std::mt19937 random(1);

@@ -54,7 +54,7 @@ protected:
         std::ofstream(path(name), std::ios::binary) << text;
         return path(name);
     }
-    /// As a check before a long work and the writing after it.
+    /// Checks and writes, as before and after a long work.
     static void write(const std::string& to, const std::string& text) {
         checkFileWritable(to, 0);
         writeFileAtomically(to, text);
@@ -132,7 +132,7 @@ TEST_F(FileWrite, WritesIntoAFifo) {
 TEST_F(FileWrite, AReaderThatGoesAwayIsAnError) {
     const std::string fifo = path("fifo");
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-    // More than the FIFO holds, so that the reader is gone before all is written.
+    // This is more than the FIFO holds, so that the reader is gone before all is written.
     const std::string much(1u << 22, 'x');
     auto reader = std::async(std::launch::async, [&] {
         const int descriptor = open(fifo.c_str(), O_RDONLY);
@@ -211,7 +211,7 @@ TEST_F(FileWrite, RefusesASocketBeforehand) {
     close(descriptor);
 }
 
-// Runs something as a user without rights; its word is the exit status.
+// Runs something as a user without rights; the exit status is what it returns.
 int asNobody(const std::function<bool()>& action) {
     const pid_t child = fork();
     if (child == 0) _exit(setuid(65534) == 0 && action() ? 0 : 1);

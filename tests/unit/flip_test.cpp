@@ -23,7 +23,7 @@ std::vector<glm::vec3> flat(uint32_t width, uint32_t height, const glm::vec3& co
     return picture(width, height, [&](uint32_t, uint32_t) { return colour; });
 }
 
-// Uniform noise in [0, 1) of a linear congruential generator, a value per channel in texel order.
+// Returns uniform noise in [0, 1) of a linear congruential generator, a value per channel in texel order.
 std::vector<glm::vec3> noise(uint32_t width, uint32_t height, uint32_t seed) {
     const auto next = [&] {
         seed = seed * 1664525u + 1013904223u;
@@ -58,20 +58,20 @@ TEST(Flip, FollowsTheFormulasOnFlatPictures) {
     };
     // Green and blue are the largest difference there is.
     EXPECT_NEAR(between({0, 1, 0}, {0, 0, 1}), 1.0, 1e-4);
-    // CIELAB of sRGB's green (87.73, -86.18, 83.18) and blue (32.30, 79.19, -107.86); with Hunt's effect they
-    // are 55.44 + |(-75.61 - 25.58, 72.98 + 34.84)| apart, black and white 100.
+    // In CIELAB, sRGB's green is (87.73, -86.18, 83.18) and its blue (32.30, 79.19, -107.86); with Hunt's
+    // effect they are 55.44 + |(-75.61 - 25.58, 72.98 + 34.84)| apart, black and white 100.
     const double largest = std::pow(55.44 + std::hypot(75.61 + 25.58, 72.98 + 34.84), 0.7),
                  knee = 0.4 * largest;
     const double black = 0.95 + (std::pow(100.0, 0.7) - knee) / (largest - knee) * 0.05;
     EXPECT_NEAR(between(glm::vec3(0), glm::vec3(1)), black, 1e-4);
     EXPECT_NEAR(black, 0.9674, 1e-4);
-    // Greys, below the knee: lightness 116 cbrt(Y) - 16.
+    // These greys differ by less than the knee; their lightness is 116 cbrt(Y) - 16.
     const double step = 116.0 * (std::cbrt(0.5) - std::cbrt(0.4));
     EXPECT_NEAR(between(glm::vec3(0.5f), glm::vec3(0.4f)), std::pow(step, 0.7) / knee * 0.95, 1e-4);
 }
 
-// Means and single texels by a program of its own in numpy, after the authors' published one: full 2D kernels
-// instead of separated ones, in doubles.
+// Means and single texels come from a separate program in numpy, after the authors' published one: it has
+// full 2D kernels instead of separated ones, in doubles.
 TEST(Flip, AgreesWithADirectEvaluation) {
     const auto noisy = flip(input(40, 30, noise(40, 30, 1), noise(40, 30, 2)));
     EXPECT_NEAR(mean(noisy), 0.392662, 2e-5);

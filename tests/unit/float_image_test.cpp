@@ -38,7 +38,7 @@ void store(const std::string& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// What `action` says when it throws Error.
+/// Returns what `action` says when it throws Error.
 template<class Action>
 std::string errorOf(const Action& action) {
     try {

@@ -27,7 +27,7 @@ float polygon(const Vec& p, const Vec& n, const Vec& corner, const Vec& u, const
                                      toFloat(corner + u + v), toFloat(corner + v));
 }
 
-/// Mean of f over the unit square by m x m midpoints.
+/// Returns the mean of f over the unit square by m x m midpoints.
 double meanOverSquare(int m, const std::function<double(double, double)>& f) {
     double sum = 0;
     for (int i = 0; i < m; ++i)
@@ -36,7 +36,7 @@ double meanOverSquare(int m, const std::function<double(double, double)>& f) {
     return sum / m / m;
 }
 
-/// A random rotation, as the images of the axes [Shoemake 1992].
+/// Returns a random rotation, as the images of the axes [Shoemake 1992].
 std::array<Vec, 3> randomAxes(std::mt19937& random) {
     std::normal_distribution<double> normal;
     const Vec x = unit({normal(random), normal(random), normal(random)});
@@ -49,7 +49,7 @@ TEST(ClosedForms, HaveTheLiteraturesNumbers) {
     EXPECT_NEAR(perpendicularRectangles(1, 1, 1), 0.20004, 5e-6);
     EXPECT_NEAR(coaxialDiscs(1, 1, 1), 0.38197, 5e-6);
     EXPECT_NEAR(2 * parallelRectangles(2, 3, 6) + 0, 2 * parallelRectangles(3, 2, 6), 1e-12);
-    // A closed box of 1 x 2 x 3: from the floor to the ceiling and four walls.
+    // In a closed box of 1 x 2 x 3, these go from the floor to the ceiling and four walls.
     EXPECT_NEAR(parallelRectangles(1, 2, 3) + 2 * perpendicularRectangles(1, 3, 2) +
                     2 * perpendicularRectangles(2, 3, 1),
                 1.0, 1e-12);
@@ -58,7 +58,8 @@ TEST(ClosedForms, HaveTheLiteraturesNumbers) {
 TEST(ClosedForms, AgreeWithIntegration) {
     EXPECT_NEAR(pointToParallelRectangle(1, 2, 0.5),
                 integratedParallelogram({0, 0, 0}, {0, 0, 1}, {0, 0, 0.5}, {0, 2, 0}, {1, 0, 0}), 1e-7);
-    // Plate at the origin looking up along z, wall in the plane y = 0.5 from z = 0 to 1, x from 0 to 2.
+    // The plate is at the origin and looks up along z; the wall is in the plane y = 0.5 from z = 0 to 1, x
+    // from 0 to 2.
     EXPECT_NEAR(pointToPerpendicularRectangle(1, 2, 0.5),
                 integratedParallelogram({0, 0, 0}, {0, 0, 1}, {0, 0.5, 0}, {2, 0, 0}, {0, 0, 1}), 1e-7);
     EXPECT_NEAR(meanOverSquare(200,
@@ -88,8 +89,8 @@ TEST(PolygonFormFactor, GivesPerpendicularUnitSquares) {
 }
 
 TEST(PolygonFormFactor, GivesCoaxialDiscs) {
-    // Both discs cut into parallelograms (wedges of rings); receivers at the radius that halves each ring's
-    // area.
+    // Both discs are cut into parallelograms (wedges of rings), with receivers at the radius that halves each
+    // ring's area.
     const int rings = 24, wedges = 96;
     double sum = 0, weight = 0;
     for (int k = 0; k < 32; ++k) {
@@ -118,7 +119,7 @@ TEST(PolygonFormFactor, GivesPointToRectangle) {
             const double upright = pointToPerpendicularRectangle(a, 1, c);
             EXPECT_NEAR(polygon({0, 0, 0}, {0, 0, 1}, {0, c, 0}, {1, 0, 0}, {0, 0, a}), upright,
                         1e-4 * upright);
-            // The same wall reaching as far below the horizon: nothing changes.
+            // Nothing changes where the same wall reaches as far below the horizon.
             EXPECT_NEAR(polygon({0, 0, 0}, {0, 0, 1}, {0, c, -a}, {1, 0, 0}, {0, 0, 2 * a}), upright,
                         1e-4 * upright);
         }
@@ -181,8 +182,8 @@ TEST(PolygonFormFactor, KeepsItsDigitsFarAway) {
         }
 }
 
-/// Sum over the five other walls of the unit cube, from a point on the floor; each wall cut into m x m
-/// pieces.
+/// Returns the sum over the five other walls of the unit cube, from a point on the floor; each wall is cut
+/// into m x m pieces.
 double cubeSum(double x, double y, int m) {
     struct Wall {
         Vec corner, u, v;
@@ -216,7 +217,7 @@ TEST(PolygonFormFactor, TellsItsFrontFromItsBack) {
     EXPECT_GT(polygon({0, 0, 0}, n, corner, v, u), 0.1f);
     EXPECT_EQ(polygon({0, 0, 0}, {0, 0, -1}, corner, v, u), 0.0f); // below the horizon
     EXPECT_EQ(polygon({0, 0, 1}, {1, 0, 0}, corner, v, u), 0.0f);  // in its plane
-    // A quadrilateral seen from behind whose part below the horizon is the larger one.
+    // This quadrilateral is seen from behind, and its part below the horizon is the larger one.
     EXPECT_EQ(polygon({0, 0, 0}, unit({1, 0, -0.1}), corner, u, v), 0.0f);
 }
 
@@ -253,7 +254,8 @@ TEST(ParallelogramFormFactor, IsTheSameWhereverTheSceneIs) {
 }
 
 TEST(ParallelogramFormFactor, IsContinuousAcrossTheHorizon) {
-    // Turning the receiver in small steps, the clipped quadrilateral may jump by no more than a step's worth.
+    // While the receiver turns in small steps, the clipped quadrilateral may jump by no more than a step's
+    // worth.
     float last = 0.0f;
     for (int k = 0; k <= 20000; ++k) {
         const float a = 3.14159265f * float(k) / 20000.0f;
@@ -267,7 +269,7 @@ TEST(ParallelogramFormFactor, IsContinuousAcrossTheHorizon) {
 
 TEST(FormFactors, AreNeverNan) {
     std::mt19937 random(5);
-    // Coordinates from a small set, so that coinciding and collinear points, edges through p and planes
+    // Coordinates come from a small set, so that coinciding and collinear points, edges through p and planes
     // through p are common.
     std::uniform_int_distribution<int> pick(0, 7);
     const float values[8] = {0, 0, 1, -1, 0.5f, 1e-7f, -1e-7f, 1e-3f};

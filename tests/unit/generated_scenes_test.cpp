@@ -35,7 +35,7 @@ double uvArea(const SoupTriangle& t) {
     return std::abs(a.x * b.y - a.y * b.x) / 2.0;
 }
 
-/// Bounding boxes of the charts: triangles of an instance that share atlas points.
+/// Holds the bounding box of a chart: of triangles of an instance that share atlas points.
 struct ChartBox {
     glm::dvec2 low{1e9}, high{-1e9};
 };
@@ -71,7 +71,7 @@ std::vector<ChartBox> chartBoxes(const std::vector<SoupTriangle>& triangles) {
     return out;
 }
 
-/// How often each texel centre is covered, edges excluded.
+/// Returns how often each texel centre is covered, edges excluded.
 std::vector<uint8_t> coverCount(const std::vector<SoupTriangle>& triangles, int size) {
     std::vector<uint8_t> count(static_cast<size_t>(size) * size);
     for (const SoupTriangle& t : triangles) {
@@ -96,7 +96,7 @@ struct Walks {
     std::vector<glm::dvec3> from, along; // of those that escaped
 };
 
-/// Walks of five steps from a point: what light and eye do in the scene.
+/// Makes walks of five steps from a point, as light and eye do in the scene.
 Walks walk(const TriangleSoup& soup, const glm::dvec3& start, int count) {
     std::mt19937 generator(7);
     const auto uniform = [&] { return generator() / 4294967296.0; };
@@ -227,7 +227,7 @@ TEST_P(GeneratedScenes, FillsTheAtlasWithoutOverlap) {
         EXPECT_EQ(rect.texCoord, 1);
 }
 
-// From every camera: the room is closed but to the sky, and nobody looks into a solid.
+// From every camera, the room is closed but to the sky, and nobody looks into a solid.
 TEST_P(GeneratedScenes, LetsNobodyOutAndShowsNoBacks) {
     const TriangleSoup soup(trianglesOf(scene()));
     for (const Camera& camera : scene().cameras) {
@@ -299,7 +299,7 @@ TEST(Lamps, HasALightOfEachType) {
     EXPECT_GT(scene.materials[scene.meshes[tube.mesh].primitives[0].material].emission.g, 0.0f);
 }
 
-// No lamp outshines the others: along its axis each gives what one works by [lux].
+// No light outshines the others: along its axis each gives what one works by [lux].
 TEST(Lamps, BalanceEachOther) {
     const Scene& scene = sceneOf("lamps");
     const TriangleSoup soup(trianglesOf(scene));
@@ -327,7 +327,7 @@ TEST(Lamps, SunAndSkyComeThroughTheWindowAlone) {
         EXPECT_GT(walks.escaped, 50);
         int leaks = 0;
         for (size_t i = 0; i < walks.from.size(); ++i) {
-            // The window: x = -3, 1.05 m to 2.4 m high, 1.6 m wide.
+            // The window is at x = -3, from 1.05 m to 2.4 m high and 1.6 m wide.
             const double distance = (-3.0 - walks.from[i].x) / walks.along[i].x;
             const glm::dvec3 p = walks.from[i] + distance * walks.along[i];
             const bool isWindow = distance > 0.0 && p.y > 1.05 && p.y < 2.4 && std::abs(p.z) < 0.8;

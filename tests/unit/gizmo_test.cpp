@@ -66,7 +66,7 @@ TEST(ScreenSpace, LinesBehindTheEyeAreCut) {
     EXPECT_LT(line->second.y, 0.0f) << "upwards out of the picture";
 }
 
-// Under perspective: what is drawn under the cursor stays under it.
+// Under perspective, what is drawn under the cursor stays under it.
 TEST(Gizmo, AnAxisMovesByTheWorldDistanceUnderTheCursor) {
     const glm::vec3 origin(0.3f, 0.4f, -0.6f);
     const GizmoPlace place = placeAt(origin);
@@ -157,7 +157,7 @@ TEST(Gizmo, AViewAlongAnAxisIsSafe) {
             }
         }
     }
-    // Towards the eye, where the axis points at it: down.
+    // Where the axis points at the eye, a drag downwards moves towards it.
     const GizmoPlace place{viewFrom({6, 0, 0}, glm::vec3(0.0f)), glm::vec3(0.0f), GizmoMode::Translate};
     const GizmoDrag drag(place, GizmoHandle::X, glm::mat4(1.0f), {400.0f, 300.0f});
     EXPECT_GT(drag.moved({400.0f, 340.0f})[3].x, 0.01f);

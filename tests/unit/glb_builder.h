@@ -15,7 +15,7 @@
 
 namespace relume::test {
 
-/// A path in a folder of this process's own, which ends with it.
+/// Returns a path in a folder of this process's own, which ends with it.
 inline std::string tempPath(const std::string& name) {
     struct Folder {
         std::filesystem::path path =
@@ -41,7 +41,7 @@ inline std::string writeText(const std::string& name, const std::string& text) {
     return writeBytes(name, {text.begin(), text.end()});
 }
 
-/// Red beside half-transparent azure: a PNG of 2 x 1 pixels.
+/// This is a PNG of 2 x 1 pixels: red beside half-transparent azure.
 inline const std::vector<uint8_t> kTwoPixels = {
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
     0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4,
@@ -49,7 +49,7 @@ inline const std::vector<uint8_t> kTwoPixels = {
     0xcf, 0xc0, 0xf0, 0x9f, 0xa1, 0xe1, 0xbf, 0x03, 0x00, 0x10, 0xba, 0x03, 0xbe, 0x3a, 0x79,
     0xbf, 0xbe, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
-/// Makes small glTF files, right or wrong: whatever it has no word for is changed in `json` and `bin`.
+/// Makes small glTF files, right or wrong; whatever it has no function for is changed in `json` and `bin`.
 struct GlbBuilder {
     nlohmann::json json = {{"asset", {{"version", "2.0"}}},          {"buffers", nlohmann::json::array()},
                            {"bufferViews", nlohmann::json::array()}, {"accessors", nlohmann::json::array()},
@@ -90,7 +90,7 @@ struct GlbBuilder {
         return static_cast<int>(json["accessors"].size()) - 1;
     }
 
-    /// A primitive of the unit square in z = 0, facing +z; without normals, UVs or indices of its own.
+    /// Adds a primitive of the unit square in z = 0, facing +z, without normals, UVs or indices of its own.
     nlohmann::json square() {
         const int positions = accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3");
         return {{"attributes", {{"POSITION", positions}}},
@@ -136,7 +136,7 @@ struct GlbBuilder {
     std::string write(const std::string& name) { return writeBytes(name, bytes()); }
 };
 
-/// A square with lightmap UVs on one node.
+/// Makes a square with lightmap UVs on one node.
 inline GlbBuilder squareScene() {
     GlbBuilder builder;
     nlohmann::json square = builder.square();

@@ -21,7 +21,7 @@ using test::richScene;
 using test::squareScene;
 using test::useImage;
 
-/// Loading must fail with one line that names the file and holds `part`.
+/// Expects that loading fails with one line that names the file and holds `part`.
 void expectError(const std::string& path, const std::string& part) {
     try {
         loadGltf(path);
@@ -34,7 +34,7 @@ void expectError(const std::string& path, const std::string& part) {
     }
 }
 
-/// The square's scene with one thing spoiled.
+/// Expects that of the square's scene with one thing spoiled.
 void expectSpoiled(const std::string& name, const std::string& part,
                    const std::function<void(GlbBuilder&)>& spoil) {
     GlbBuilder builder = squareScene();
@@ -202,7 +202,7 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
         png.resize(40);
         useImage(b, {{"bufferView", b.view(png)}, {"mimeType", "image/png"}, {"name", "Wood"}});
     });
-    // stb would write 4080 codes into a table of 256: once before the pixels, once behind some.
+    // stb would write 4080 codes into a table of 256, once before the pixels and once behind some.
     for (const bool behind : {false, true})
         expectSpoiled("codes", "image 0 'Wood' cannot be decoded", [behind](GlbBuilder& b) {
             std::vector<uint8_t> jpeg = {0xff, 0xff, 0xd8}; // filled up, as it may be
@@ -302,7 +302,7 @@ TEST(GltfBadInput, OddJsonValuesNeverCrash) {
     for (int round = 0; round < 300; ++round) {
         GlbBuilder b = rich;
         std::string place = places[random() % places.size()];
-        // Half the time the object or array around the value.
+        // Half the time it is the object or array around the value.
         if (random() % 2 == 0 && place.rfind('/') != 0) place.resize(place.rfind('/'));
         b.json[json::json_pointer(place)] = odd[random() % std::size(odd)];
         SCOPED_TRACE(place + " = " + b.json[json::json_pointer(place)].dump());

@@ -24,7 +24,7 @@ const Light& lightOf(const Scene& scene, const std::string& name) {
     throw Error("no light " + name + " among " + std::to_string(scene.lights.size()));
 }
 
-/// Only where a light is and where it shines counts.
+/// Expects the same pose: only where a light is and where it shines counts.
 void expectSamePose(const glm::mat4& a, const glm::mat4& b) {
     for (int r = 0; r < 3; ++r)
         EXPECT_NEAR(a[3][r], b[3][r], 1e-5f);
@@ -32,7 +32,7 @@ void expectSamePose(const glm::mat4& a, const glm::mat4& b) {
     EXPECT_LT(glm::length(difference), 1e-5f);
 }
 
-/// Lights of every kind of node below every kind of parent.
+/// Makes lights of every kind of node below every kind of parent.
 LitScene parents() {
     LitScene scene;
     const int entry = scene.light(kPoint);
@@ -332,7 +332,7 @@ TEST_F(GltfEditNode, AreaLightsAreEditedInTheirNode) {
     EXPECT_EQ(loadGltf(path).lights[0].transform[3].y, 2.2f);
 }
 
-/// Three lights on three entries.
+/// Makes three lights on three entries.
 LitScene three() {
     LitScene scene;
     for (const char* name : {"A", "B", "C"}) {

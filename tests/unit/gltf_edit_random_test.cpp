@@ -1,4 +1,4 @@
-// Random edits of random files: what is read back is what was saved, however often.
+// After random edits of random files, what is read back is what was saved, however often.
 #include "assets/gltf/gltf_edit.h"
 #include "tests/unit/edited_file.h"
 
@@ -18,13 +18,13 @@ protected:
     float number(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
     int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
 
-    /// Rigid, so that no parent shears what is below it.
+    /// Returns a rigid transform, so that no parent shears what is below it.
     glm::mat4 pose() {
         const glm::mat4 place = glm::translate(glm::mat4(1), {number(-5, 5), number(-5, 5), number(-5, 5)});
         return glm::rotate(place, number(-3, 3), glm::vec3(number(-1, 1), 1, number(-1, 1)));
     }
 
-    /// A tree of nodes with lights of all kinds, some of which share an entry.
+    /// Makes a tree of nodes with lights of all kinds, some of which share an entry.
     test::LitScene file() {
         test::LitScene scene;
         scene.json["materials"] =

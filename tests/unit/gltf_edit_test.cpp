@@ -22,7 +22,8 @@ using test::readAll;
 
 using GltfEdit = test::EditedFile;
 
-/// Extras everywhere, unknown extensions, numbers that only their text holds, two lights on one entry.
+/// Makes a file with extras everywhere, unknown extensions, numbers that only their text holds, and two
+/// lights on one entry.
 LitScene everything() {
     LitScene scene;
     json& root = scene.json;
@@ -164,7 +165,7 @@ TEST_F(GltfEdit, EmissionIsAFactorUpToOneAndAStrengthAbove) {
     EXPECT_EQ(jsonOf(path)["materials"][0], json::object({{"name", "A"}}));
 }
 
-/// The list of extensions, new in the file, once moved the material away while it was written.
+/// The list of extensions, when new in the file, once moved the material away while it was written.
 TEST_F(GltfEdit, AMaterialIsEditedWhileExtensionsAreAdded) {
     LitScene builder;
     builder.json["materials"] = json::array({{{"name", "A"}}});
@@ -242,7 +243,7 @@ TEST_F(GltfEdit, AFileWithoutScenesGetsOneForItsSkyOnly) {
     EXPECT_EQ(loadGltf(path).lights.size(), 3u);
 }
 
-/// A .gltf in a folder of its own, with a buffer and a picture beside it whose names need escapes.
+/// Holds a .gltf in a folder of its own, with a buffer and a picture beside it whose names need escapes.
 class GltfEditBeside : public GltfEdit {
 protected:
     GltfEditBeside() {
@@ -288,7 +289,7 @@ TEST_F(GltfEditBeside, UrisLeadFromAnotherFolderToTheSameFiles) {
     EXPECT_EQ(back.meshes[0].primitives[0].positions, before.meshes[0].primitives[0].positions);
 }
 
-// JSON holds UTF-8 alone, names of folders need not be.
+// JSON holds only UTF-8, which names of folders need not be.
 TEST_F(GltfEditBeside, UrisLeadOutOfAFolderWhoseNameIsNoUtf8) {
     const std::string folder = folder_.path("caf\xe9"), path = folder + "/scene.gltf";
     std::filesystem::rename(folder_.path("my scene"), folder);

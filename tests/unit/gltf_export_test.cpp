@@ -284,7 +284,7 @@ TEST_F(GltfExport, RefersToTheSkyPictureFromWhereItIsSaved) {
     for (const char* name : {"a_sky.exr", "deep"})
         std::filesystem::rename(file(name), file("elsewhere/" + std::string(name)));
     EXPECT_EQ(loadGltf(file("elsewhere/deep/er/b.glb")).sky.pixels, scene.sky.pixels);
-    // The picture is gone from its place, the pixels are not.
+    // The picture is gone from its place; the pixels are not.
     saveGlb(second, file("c.glb"));
     EXPECT_EQ(loadGltf(file("c.glb")).sky.pixels, scene.sky.pixels);
     EXPECT_TRUE(std::filesystem::exists(file("c_sky.exr")));

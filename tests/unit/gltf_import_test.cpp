@@ -44,7 +44,7 @@ TEST(GltfImport, NodesInheritTheirParentsTransforms) {
     EXPECT_EQ(scene.instances[0].name, "Child");
     EXPECT_EQ(scene.instances[1].name, "Square");
     EXPECT_EQ(scene.instances[1].mesh, 0);
-    // A quarter turn about z after doubling: (1,0,0) -> (0,2,0).
+    // A quarter turn about z after doubling takes (1,0,0) to (0,2,0).
     expectNear(apply(scene.instances[0].transform, {0, 0, 0}), {1, 4, 3});
     expectNear(apply(scene.instances[0].transform, {0, 1, 0}), {-1, 4, 3});
     expectNear(apply(scene.instances[1].transform, {1, 0, 0}), {1, 10, 3});
@@ -164,7 +164,7 @@ TEST(GltfImport, SparseAccessorsOverTheirBaseAndOverZeros) {
 
 TEST(GltfImport, MissingNormalsAreFlatAndSplitVertices) {
     GlbBuilder b;
-    // Two triangles with a common edge, folded by a right angle.
+    // These are two triangles with a common edge, folded by a right angle.
     const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3");
     const int colors = b.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, .5f, .5f, .5f}, "VEC3");
     b.node({{"mesh", b.mesh({{"attributes", {{"POSITION", positions}, {"COLOR_0", colors}}},
@@ -221,7 +221,7 @@ TEST(GltfImport, TextureCoordinatesOfAllTypes) {
 
 TEST(GltfImport, QuantizedPositionsWithStride) {
     GlbBuilder b;
-    // Three components of 16 bits padded to 8 bytes.
+    // These are three components of 16 bits padded to 8 bytes.
     const int positions = b.accessor<int16_t>({0, 0, 0, -99, 32767, 0, 0, -99, 0, -32767, 0}, "VEC3", true);
     b.json["accessors"][static_cast<size_t>(positions)]["count"] = 3;
     b.json["bufferViews"][0]["byteStride"] = 8;
@@ -311,7 +311,8 @@ TEST(GltfImport, Materials) {
 TEST(GltfImport, TextureTransformAndItsTexCoord) {
     GlbBuilder b = squareScene();
     addImage(b);
-    // The example of the extension's specification: the lower left quarter of the image, turned clockwise.
+    // This is the example of the extension's specification: the lower left quarter of the image, turned
+    // clockwise.
     const json transform = {
         {"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {.5, .5}}, {"texCoord", 1}};
     b.json["materials"] = {

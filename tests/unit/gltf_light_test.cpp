@@ -23,12 +23,12 @@ using test::GlbBuilder;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A square and lights, which it adds on nodes of their own.
+/// Makes a file with a square and lights, which it adds on nodes of their own.
 class LightFile {
 public:
     LightFile() : builder(test::squareScene()) { builder.json["scenes"] = {{{"nodes", {0}}}}; }
 
-    /// Returns the node.
+    /// Adds a node of the scene and returns its index.
     int node(json value) {
         const int index = builder.node(std::move(value));
         builder.json["scenes"][0]["nodes"].push_back(index);
@@ -60,7 +60,7 @@ public:
     GlbBuilder builder;
 };
 
-/// The warnings of the scene in one line each, without the path before them.
+/// Returns the warnings of the scene in one line each, without the path before them.
 std::string warningsOf(const Scene& scene) {
     std::string lines;
     for (const std::string& warning : scene.warnings)

@@ -31,7 +31,7 @@ std::string messageOf(const std::function<void()>& action) {
     return "no error";
 }
 
-/// Loading must fail with one line that names the file and holds `part`, and take little memory.
+/// Expects that loading fails with one line that names the file and holds `part`, and takes little memory.
 void expectRefused(const std::string& path, const std::string& part) {
     EXPECT_LT(test::peakGrowth([&] { messageOf([&] { loadGltf(path); }); }), test::kLittleMemory) << path;
     const std::string message = messageOf([&] { loadGltf(path); });
@@ -44,7 +44,7 @@ json& primitiveOf(GlbBuilder& b) {
     return b.json["meshes"][0]["primitives"][0];
 }
 
-/// An accessor of zeros without data.
+/// Adds an accessor of zeros without data.
 int zeros(GlbBuilder& b, uint64_t count, const char* type) {
     b.json["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", type}});
     return static_cast<int>(b.json["accessors"].size()) - 1;
@@ -122,7 +122,7 @@ TEST(GltfSize, ImagesThatShareBytes) {
     expectRefused(b.write("images.glb"), "GiB of buffers out of");
 }
 
-/// The PNG of two pixels, claiming another size.
+/// Returns the PNG of two pixels, claiming another size.
 std::vector<uint8_t> claimingPng(uint8_t thousandsAcross, uint8_t thousandsDown) {
     std::vector<uint8_t> png = test::kTwoPixels;
     png[18] = static_cast<uint8_t>(4 * thousandsAcross); // times 256, near enough
@@ -143,7 +143,7 @@ TEST(GltfSize, PicturesThatClaimMoreThanTheyHold) {
     expectRefused(c.write("small.glb"), "cannot be decoded");
 }
 
-/// A folder with a pipe that nobody writes to and a folder.
+/// Makes a folder with a pipe that nobody writes to and a folder.
 class OddFiles : public testing::Test {
 protected:
     OddFiles() {

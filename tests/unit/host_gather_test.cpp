@@ -14,8 +14,8 @@ using shader::kChunk;
 using shader::kSuper;
 using shader::kSuperPatches;
 
-// Patches all over two unit squares that face each other, some nearer than a few patch sizes, in 20 chunks:
-// two super-rows, the second one not full.
+// Holds patches all over two unit squares that face each other, some nearer than a few patch sizes, in 20
+// chunks: two super-rows, the second one not full.
 struct World {
     static constexpr uint32_t kChunks = 20, kCount = kChunks * kChunk;
     std::mt19937 random{7};
@@ -54,7 +54,7 @@ struct World {
         }
     }
 
-    // One receiver's light from one sender, in double where it adds up.
+    // Returns one receiver's light from one sender, in double where it adds up.
     glm::dvec3 light(uint32_t i, uint32_t j) const {
         const shader::Patch &p = patches[i], &s = patches[j];
         const glm::vec3 d = s.position - p.position;
@@ -98,7 +98,7 @@ std::vector<shader::SuperBlock> superBlocks(std::initializer_list<std::pair<uint
     return supers;
 }
 
-// The sums of the super-blocks of a table, per patch.
+// Returns the sums of the super-blocks of a table, per patch.
 std::vector<glm::vec3> gather(const World& world, HostPairs work,
                               const std::vector<shader::SuperBlock>& supers, uint32_t threads) {
     std::vector<std::vector<uint32_t>> bits;

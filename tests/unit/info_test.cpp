@@ -90,7 +90,7 @@ TEST(InfoCommand, JsonHoldsTheAtlasMapping) {
     EXPECT_EQ(info["lightmap"]["repacked"], true);
     EXPECT_EQ(info["lightmap"]["instances"][1]["name"], "Second");
     EXPECT_EQ(info["lightmap"]["instances"][1]["texCoord"], 1);
-    // Two squares of n texels and 2 between them fill 64: n = 31 high at most.
+    // Two squares of n texels and 2 between them fill 64, so n is 31 at most.
     EXPECT_NEAR(info["lightmap"]["instances"][0]["scale"][0].get<double>(), 31.0 / 64.0, 1e-6);
     const std::string table = run("info " + path);
     EXPECT_NE(table.find("repacked, a rectangle per instance"), std::string::npos);

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The text after an edit; its value must be that of the edited JSON.
+/// Returns the text after an edit; its value must be that of the edited JSON.
 std::string edited(const std::string& text, const std::function<void(Json&)>& edit) {
     const Json before = Json::parse(text);
     Json after = before;

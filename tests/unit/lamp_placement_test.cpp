@@ -11,7 +11,7 @@ namespace {
 const glm::vec3 kLow(-1, 0, -2), kHigh(3, 2, 1), kBlock(1, 1, -0.5f);
 constexpr float kBlockRadius = 0.6f;
 
-// Seen from outside.
+// Adds a ball seen from outside.
 void addBall(TraceWorld& world, const glm::vec3& centre, float radius) {
     world.add(
         [=](float u, float v) {
@@ -69,7 +69,7 @@ TEST(LampPlacement, LightIsOneAtAQuarterOfTheDiagonal) {
     EXPECT_FLOAT_EQ(lamp.radius, 0.04f);
 }
 
-// Inside of a ball only backs are seen, from outside it takes up too little of the view but close by.
+// Inside of a ball only backs are seen; from outside it takes up too little of the view except close by.
 TEST(LampPlacement, TellsWhereThereIsNoPlace) {
     TraceWorld world;
     addBall(world, {0, 0, 0}, 1);

@@ -45,7 +45,7 @@ TEST(LevelGrowth, EndsWhereThereAreNoMore) {
     EXPECT_EQ(roundsFor(all, all, 1e-6), (Rounds{5, 5}));
 }
 
-// Where something else than samples misses the aim, too.
+// This holds where something else than samples misses the aim, too.
 TEST(LevelGrowth, AlwaysTakesMore) {
     const SampledPart cheap{.rounds = 4, .most = 1000, .variance = 1.0, .costOfRound = 1.0};
     const SampledPart dear{.rounds = 4, .most = 1000, .variance = 1.0, .costOfRound = 9.0};
@@ -57,7 +57,7 @@ TEST(LevelGrowth, AlwaysTakesMore) {
     EXPECT_EQ(roundsFor(cheap, none, 2.0), (Rounds{8, 0}));
 }
 
-// Against all pairs within its limits: a step of the ladder is half as much again at most.
+// The growth is held against all pairs within its limits: a step of the ladder is half as much again at most.
 TEST(LevelGrowth, CostsLittleMoreThanTheLeast) {
     std::mt19937 random(1);
     constexpr uint32_t kLadder[] = {1, 2, 3, 4, 6, 8};

@@ -75,7 +75,7 @@ TEST(LightEdits, ErasingALampKeepsTheSwitchesOfTheOthers) {
     EXPECT_TRUE(document.mix.muted.empty());
 }
 
-// A camera at the origin that looks at something 5 m away.
+// Returns a camera at the origin that looks at something 5 m away.
 LightSpot spotAhead() {
     return {.camera = glm::mat4(1.0f), .seen = {0.0f, 0.0f, -5.0f}, .lighting = glm::vec3(20.0f)};
 }
@@ -143,7 +143,7 @@ TEST(LightEdits, SitsOnASurface) {
 
 TEST(LightEdits, ASurfacesNormalIsThatOfItsTriangle) {
     WorldMesh mesh;
-    // A floor, a wall, and another instance's floor just above.
+    // These are a floor, a wall, and another instance's floor just above.
     mesh.positions = {{0, 0, 0}, {1, 0, 0},     {0, 0, -1},    {0, 0, 0},     {0, 0, -1},
                       {0, 1, 0}, {0, 0.01f, 0}, {1, 0.01f, 0}, {0, 0.01f, -1}};
     mesh.material = {0, 0, 0};

@@ -5,7 +5,7 @@
 namespace relume {
 namespace {
 
-/// Two lamps, as many suns, a sky, and lamps again: names "lamp 0", "sun 2", ..., "Sky".
+/// Makes half of the lamps, the suns, a sky, and the other lamps; names are "lamp 0", "sun 2", ..., "Sky".
 Scene sceneOf(uint32_t suns, uint32_t lamps, bool sky) {
     Scene scene;
     const auto add = [&](const char* kind, LightType type) {

@@ -16,7 +16,8 @@ LayeredImage::Layer layer(const char* name, const glm::vec3& weight, const std::
     return made;
 }
 
-/// A lamp whose colour and intensity are known, one that is off, and a sky of which only the weight is known.
+/// Makes a light whose colour and intensity are known, one that is off, and a sky of which only the weight is
+/// known.
 LayeredImage board() {
     LayeredImage image;
     image.composite = {2, 1, {}, {}, {}};

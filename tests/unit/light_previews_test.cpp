@@ -15,7 +15,7 @@ using Pixel = std::array<int, 3>;
 
 const LightKey kLamp{Kind::Lamp, 0, 0}, kEmitter{Kind::Emitter, 3, 1};
 
-/// Nothing, a white wall, a red one, a white one that shines.
+/// Holds what pixels see: nothing, a white wall, a red one, and a white one that shines.
 class PreviewTest : public testing::Test {
 protected:
     PreviewTest() {

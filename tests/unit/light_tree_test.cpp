@@ -29,7 +29,7 @@ std::vector<Receiver> receivers(uint32_t count, float reach = 1.0f) {
     return list;
 }
 
-// The chance of every emitter, by going down both ways; returns that of ending at none.
+// Finds the chance of every mesh light by going down both ways; returns that of ending at none.
 double chances(const EmitterSet& set, const Receiver& r, uint32_t index, double chance,
                std::vector<double>& out) {
     const EmitterNode& node = set.nodes[index];
@@ -134,7 +134,7 @@ TEST(LightTree, ChancesSumToOneAndAreWhatIsPicked) {
     }
 }
 
-// Every emitter that lights the receiver at all has a chance, and the mean of light / chance is all light.
+// Every mesh light that lights the receiver at all has a chance, and the mean of light / chance is all light.
 TEST(LightTree, EstimatesAreUnbiasedHoweverManyEmitters) {
     for (const uint32_t count : {1u, 10u, 1000u}) {
         const EmitterSet set = test::emittersOf(test::manyLamps(count, count > 100 ? 0.02f : 0.2f));
@@ -230,7 +230,7 @@ TEST(LightTree, WithoutEmittersEveryPickEndsAtTheRoot) {
     EXPECT_EQ(probability, 0.0f);
 }
 
-// Many lamps in one place and of ever smaller size are what makes trees deep.
+// Many mesh lights in one place and of ever smaller size make trees deep.
 TEST(LightTree, DepthIsBounded) {
     std::vector<EmitterPolygon> polygons;
     for (uint32_t i = 0; i < 3000; ++i) {

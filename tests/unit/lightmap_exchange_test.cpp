@@ -117,7 +117,7 @@ TEST(LightmapExchange, RefusedImagesAreToldOfOnce) {
     EXPECT_FALSE(exchange.refused());
 }
 
-// Two threads as the viewer has them, without OpenGL and Vulkan: every map that is taken must be whole and
+// Two threads work as in the viewer, without OpenGL and Vulkan: every map that is taken must be whole and
 // newer than the one before. ThreadSanitizer looks at the rest.
 TEST(LightmapExchange, NoMapIsTornInAThousandSwaps) {
     constexpr size_t kBytes = 4096;

@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// What is wrong with an HTML or SVG text, "" where nothing is: tags balanced (HTML's empty elements apart),
-/// attributes quoted, `<` and `&` only where they mean markup.
+/// Tells what is wrong with an HTML or SVG text, or "" where nothing is: tags must be balanced (HTML's empty
+/// elements apart), attributes quoted, and `<` and `&` may stand only where they mean markup.
 inline std::string markupProblem(const std::string& text) {
     const std::set<std::string> empty = {"meta", "img", "br", "link", "hr"};
     std::vector<std::string> open;

@@ -1,4 +1,4 @@
-// Trees whose triangles move, against trees built anew.
+// Trees whose triangles move are held against trees built anew.
 #include "bake/trace/moving_bvh.h"
 
 #include <cstring>
@@ -16,7 +16,7 @@ namespace {
 using shader::BvhNode;
 using shader::BvhWalk;
 
-/// A room with a sphere and clutter: each object is a run of triangles.
+/// Holds a room with a sphere and clutter: each object is a run of triangles.
 class Stage {
 public:
     explicit Stage(uint32_t seed = 1) : random_(seed), mesh(roomWithSphere(12).mesh) {
@@ -99,7 +99,7 @@ void checkTree(const WorldMesh& mesh, const Bvh& bvh, bool whole) {
     }
 }
 
-// Closest and any hits of random rays, as a tree built anew has them.
+// Expects closest and any hits of random rays as a tree built anew has them.
 void expectHitsOf(Stage& stage, const Bvh& bvh, int rays) {
     const Bvh anew = buildBvh(stage.mesh);
     const auto solid = [](uint32_t, float b1, float b2) { return b1 < 0.3f || b2 > 0.4f; };
@@ -122,7 +122,7 @@ void expectHitsOf(Stage& stage, const Bvh& bvh, int rays) {
     }
 }
 
-/// What a device that is told of changes only would hold.
+/// Holds what a device that is told of changes only would hold.
 class Copy {
 public:
     explicit Copy(const Bvh& bvh) : bvh_(bvh) {}
@@ -196,7 +196,8 @@ TEST(MovingBvh, AnObjectThatIsDraggedCostsItsOwnTree) {
         stage.shift(object, {0.01f, 0.02f, 0.0f});
         const MovingBvh::Change change = moving.follow(stage.mesh, object);
         ASSERT_FALSE(change.all);
-        // Its leaves and what is above them the first time, its own tree and the node that joins later.
+        // The first time, its leaves and what is above them change; later, its own tree and the node that
+        // joins.
         EXPECT_LE(change.nodes.size(), move == 0 ? moving.bvh().nodes.size() / 4 : object.size() + 2);
         EXPECT_LE(change.triangles.size(), 2 * object.size());
     }
@@ -221,7 +222,7 @@ TEST(MovingBvh, ThereAndBackIsWhatItWas) {
     expectHitsOf(stage, moving.bvh(), 3000);
 }
 
-// What is hidden is put into a point of something else.
+// Hidden triangles are put into a point of something else.
 TEST(MovingBvh, HiddenTrianglesTakeNoRoom) {
     Stage stage;
     MovingBvh moving(stage.mesh);
@@ -232,14 +233,14 @@ TEST(MovingBvh, HiddenTrianglesTakeNoRoom) {
         checkTree(stage.mesh, moving.bvh(), false);
         expectHitsOf(stage, moving.bvh(), 1000);
     }
-    // Of both there is nothing but the node that joins nothing.
+    // Nothing is left of both but the node that joins nothing.
     const Bvh& bvh = moving.bvh();
     const BvhNode& root = bvh.nodes.front();
     EXPECT_TRUE(childBox(root, 1).empty());
     EXPECT_EQ(root.child1, ~0);
 }
 
-// Coordinates that boxes leave no room for.
+// The object gets coordinates that boxes leave no room for.
 TEST(MovingBvh, AnObjectThatLeavesTheSceneIsFound) {
     Stage stage;
     MovingBvh moving(stage.mesh);
@@ -262,7 +263,7 @@ TEST(MovingBvh, MostOfASceneThatMovesIsBuiltAnew) {
     stage.shift(most, {-0.1f, 0.0f, 0.0f});
     EXPECT_TRUE(moving.follow(stage.mesh, most).all);
     expectHitsOf(stage, moving.bvh(), 1000);
-    // Few triangles: a leaf, and nothing to take it apart for.
+    // Few triangles are a leaf, and there is nothing to take it apart for.
     Stage tiny;
     tiny.mesh.positions.resize(9);
     tiny.mesh.material.resize(3);

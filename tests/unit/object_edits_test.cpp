@@ -43,7 +43,7 @@ TEST(ObjectEdits, ShearStaysWhereOneTurns) {
     EXPECT_LT(off(turnedTo(turned, {0.0f, 0.0f, 0.0f}), sheared), 1e-5f);
 }
 
-/// A floor and a plate that its file has turned and scaled.
+/// Holds a floor and a plate that its file has turned and scaled.
 class PlacedObject : public testing::Test {
 protected:
     PlacedObject() {
@@ -60,7 +60,7 @@ protected:
             scene_.geometry.draws[mesh.instance[i / 3]].bounds.add(mesh.positions[i]);
         edits_ = editsOf(scene_.prepared.scene);
     }
-    // Two triangles in y = 0 around the origin, facing +y.
+    // Adds two triangles in y = 0 around the origin, facing +y.
     static void add(WorldMesh& mesh, uint32_t instance, const glm::mat4& transform) {
         for (const glm::vec3& corner : {glm::vec3(-1, 0, 1), glm::vec3(1, 0, 1), glm::vec3(1, 0, -1),
                                         glm::vec3(-1, 0, 1), glm::vec3(1, 0, -1), glm::vec3(-1, 0, -1)})

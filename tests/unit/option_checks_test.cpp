@@ -1,4 +1,4 @@
-// What options take: the checks by themselves, and that no option has others.
+// This tests what options take: the checks by themselves, and that no option has others.
 #include "app/commands/command_line.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
@@ -13,7 +13,7 @@
 namespace relume {
 namespace {
 
-/// The text as it comes out of a check, "refused: ..." with what is told.
+/// Returns the text as it comes out of a check, or "refused: ..." with what is told.
 std::string passed(const CLI::Validator& check, std::string text) {
     const std::string problem = check(text);
     return problem.empty() ? text : "refused: " + problem;

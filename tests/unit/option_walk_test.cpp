@@ -1,5 +1,6 @@
-// Every option of every verb with values that are absurd: a refusal as wrong usage that names the option, or
-// what the tables below say. Nothing is done, as no file is there that a verb begins with.
+// Every option of every verb gets values that are absurd: each is refused as wrong usage in a message that
+// names the option, or does what the tables below say. Nothing is done, as no file is there that a verb
+// begins with.
 #include "app/commands/command_line.h"
 #include "assets/base/error.h"
 #include "tests/temporary_folder.h"
@@ -24,7 +25,7 @@ using OptionNames = std::set<std::string>;
 
 const WalkWords kValues = {"-1", "0", "nan", "inf", "1e30", "", "x"};
 
-/// What each verb is given beside the option, so that it gets as far as its first file, which is missing.
+/// Each verb is given these beside the option, so that it gets as far as its first file, which is missing.
 const std::map<std::string, WalkWords> kVerbs = {
     {"view", {"missing.glb"}},
     {"bake", {"missing.glb", "-o", "out.exr"}},
@@ -44,7 +45,7 @@ const std::map<std::string, WalkWords> kVerbs = {
     {"bench methods", {"missing.glb", "--html", "out.html"}},
 };
 
-/// Options that are refused without another one.
+/// These options are refused without another one.
 const std::map<std::string, WalkWords> kWith = {
     {"--checkpoint-every", {"--checkpoint", "out.checkpoint"}},
     {"--layer-memory", {"--layers"}},
@@ -59,8 +60,8 @@ const std::map<std::string, WalkWords> kWith = {
     {"--target", {"--eye", "1,2,3"}},
 };
 
-/// Options that take a text of any kind: names, and files that may be called so. What they mean by it decides
-/// whether it is a mistake.
+/// These options take a text of any kind: names, and files that may be called so. What they mean by it
+/// decides whether it is a mistake.
 const OptionNames kTexts = {
     "scene",    "name",     "a",        "b",      "layers",       "--output",    "--picture",
     "--json",   "--html",   "--plot",   "--diff", "--mask",       "--error-map", "--scene-out",
@@ -68,7 +69,7 @@ const OptionNames kTexts = {
     "--set",    "--move",   "--rotate", "--aim",  "--add",        "--duplicate", "--delete",
     "--hide",   "--show",   "--mute",   "--solo"};
 
-/// Of all others, those of the values that mean something.
+/// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {
     {"--voxel-ratio", {"0"}},     // no voxels
     {"--dilate", {"0"}},          // no rings
@@ -94,7 +95,7 @@ struct WalkOutcome {
     std::string message;
 };
 
-/// As main does it. Other exceptions are mistakes of the program and go through.
+/// Runs a command line as main does. Other exceptions are mistakes of the program and go through.
 WalkOutcome walkOutcome(const WalkWords& typed) {
     CLI::App app;
     app.name("relume");
@@ -130,7 +131,7 @@ protected:
         return {verb.substr(0, blank), verb.substr(blank + 1)};
     }
 
-    /// The line that gives the option this value, in place of what the verb's own line gives it.
+    /// Returns the line that gives the option this value, in place of what the verb's own line gives it.
     static WalkWords lineWith(const std::string& verb, const CLI::Option& option, const std::string& value) {
         WalkWords words = verbOf(verb), own = kVerbs.at(verb);
         const std::string name = option.get_name();

@@ -1,4 +1,4 @@
-// The groups of patches that links with a footprint read.
+// This tests the groups of patches that links with a footprint read.
 #include "bake/links/patch_pyramid.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using shader::kNoPatch;
 
 constexpr uint32_t kSize = 16;
 
-// A chart on some texels: position of a texel's centre, its normal.
+// Describes a chart on some texels: the position of a texel's centre, and its normal.
 struct Chart {
     std::function<bool(uint32_t, uint32_t)> covers;
     std::function<glm::vec3(float, float)> position;
@@ -68,7 +68,7 @@ struct Tree {
             index = parent(index);
         return index;
     }
-    // Patches below, each with its share.
+    // Returns the patches below, each with its share.
     std::vector<std::pair<uint32_t, double>> leaves(uint32_t index) const {
         if (!isNode(index)) return {{index, 1.0}};
         std::vector<std::pair<uint32_t, double>> result;
@@ -123,7 +123,7 @@ void expectSound(const Tree& tree) {
 
 } // namespace
 
-// 16 x 16 texels of 1 m^2: a node for each square of 2, 4, 8 and 16, as large as it is.
+// 16 x 16 texels of 1 m^2 have a node for each square of 2, 4, 8 and 16, as large as it is.
 TEST(PatchPyramid, ASquareHasAllItsSquares) {
     const PatchSet set = patchesOf({{[](uint32_t, uint32_t) { return true; }, kFlat, kUp, 1.0f}});
     const Tree tree{set};
@@ -137,7 +137,7 @@ TEST(PatchPyramid, ASquareHasAllItsSquares) {
     EXPECT_NEAR(tree.nodeAt(tree.pyramid.parents[0]).size, 4.0f, 1e-5f);
 }
 
-// Two charts that share squares of the grid, of texels of other sizes.
+// Two charts with texels of unlike sizes share squares of the grid.
 TEST(PatchPyramid, ChartsAreNotMixed) {
     const PatchSet set =
         patchesOf({{[](uint32_t x, uint32_t y) { return x + y < 13; }, kFlat, kUp, 1.0f},
@@ -161,7 +161,7 @@ TEST(PatchPyramid, AStripIsAsWideAsItIsLong) {
     EXPECT_NEAR(tree.nodeAt(tree.root(0)).size, 0.5f * (256 + 1), 1e-2f);
 }
 
-// Folded along a line between texels 6 and 7: what reaches across it is in no node.
+// The chart is folded along a line between texels 6 and 7: what reaches across it is in no node.
 TEST(PatchPyramid, EdgesAreKept) {
     const PatchSet set =
         patchesOf({{[](uint32_t, uint32_t) { return true; },
@@ -189,7 +189,7 @@ TEST(PatchPyramid, WhatLiesInsideIsLeftOut) {
         EXPECT_EQ(tree.parent(i) == kNoPatch, i < 40) << i;
 }
 
-// Over all N directions: the cosine over a hemisphere of this radius, pi r^2.
+// The sum over all N directions is the cosine over a hemisphere of this radius, pi r^2.
 TEST(Footprint, SharesSumToTheProjectedHemisphere) {
     const float radius = 3.0f;
     for (const uint32_t samples : {16u, 1024u}) {

@@ -21,7 +21,7 @@ std::string problemOf(const Bytes& png) {
     return findPngDamage({reinterpret_cast<const char*>(png.data()), png.size()}).problem;
 }
 
-/// With one bit of the checksum of IDAT, or of IHDR's, turned over.
+/// Returns a PNG with one bit of the checksum of IDAT, or of IHDR, turned over.
 Bytes withWrongChecksum(size_t at = 41 + 17 + 2) {
     Bytes png = test::kTwoPixels;
     png[at] ^= 1;

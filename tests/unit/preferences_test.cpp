@@ -61,7 +61,7 @@ TEST_F(PreferencesFile, ComesBackAsItWas) {
     EXPECT_EQ(after.bookmarks.at("one.glb").front().camera.yfov, 0.5f);
 }
 
-// JSON holds UTF-8 alone, names of files need not be.
+// JSON holds only UTF-8, which names of files need not be.
 TEST_F(PreferencesFile, NamesThatAreNoUtf8ComeBack) {
     Preferences before;
     before.captureFolder = "caf\xe9/shots";

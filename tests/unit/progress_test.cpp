@@ -23,7 +23,7 @@ TEST(PhaseProgress, EndsAJobThatTellsAfterCtrlC) {
     EXPECT_THROW(tellWatch("patches", 0.6), Error);
 }
 
-// A library that does not come back: only the alarm ends it.
+// Only the alarm ends a library that does not come back.
 TEST(PhaseProgressDeathTest, EndsAJobThatTellsNothing) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto hang = [] {

@@ -51,7 +51,7 @@ TEST_F(RadianceHdr, DecodesPixelByPixel) {
 }
 
 TEST_F(RadianceHdr, DecodesRunsOfPixels) {
-    // 1 + 2 + 1 x 256 pixels: later counts are higher digits.
+    // There are 1 + 2 + 1 x 256 pixels: later counts are higher digits.
     const FloatImage image =
         read(header("-Y 1 +X 260") + bytesOf({128, 0, 0, 129, 1, 1, 1, 2, 1, 1, 1, 1, 0, 128, 0, 129}));
     for (size_t i = 0; i < 260; ++i) {
@@ -60,7 +60,7 @@ TEST_F(RadianceHdr, DecodesRunsOfPixels) {
     }
 }
 
-/// Ten pixels channel by channel: a run, or single values.
+/// Returns ten pixels channel by channel: a run, or single values.
 std::string planarRow() {
     return bytesOf({2,       2,   0,       10, 128 + 10, 128, 3, 0, 1, 2, 128 + 7, 7,
                     10,      0,   1,       2,  3,        4,   5, 6, 7, 8, 9, //

@@ -1,5 +1,5 @@
-// What the renderer does before OpenGL: geometry, the camera it chooses, includes and messages of shaders;
-// and the options of `relume shot`.
+// This tests what the renderer does before OpenGL: geometry, the camera that it chooses, includes and
+// messages of shaders; and the options of `relume shot`.
 #include "app/pictures/shot_options.h"
 #include "assets/base/error.h"
 #include "assets/generate/generate.h"
@@ -60,7 +60,7 @@ TEST(GoodView, StandsInsideARoom) {
 
 TEST(GoodView, StandsOutsideAnObject) {
     Scene scene = generateScene("cornell_small");
-    // The tall box alone: seen from its middle there are backs only.
+    // The tall box is alone: only backs are seen from its middle.
     scene.instances = {scene.instances.back()};
     const WorldMesh mesh = meshOf(scene);
     const Box bounds = boundsOf(mesh);

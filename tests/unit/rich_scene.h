@@ -10,7 +10,7 @@ inline void useImage(GlbBuilder& b, const nlohmann::json& image) {
     b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
 }
 
-/// A scene that uses most of what the import knows.
+/// Makes a scene that uses most of what the import knows.
 inline GlbBuilder richScene() {
     GlbBuilder b = squareScene();
     useImage(b, {{"bufferView", b.view(kTwoPixels)}, {"mimeType", "image/png"}});

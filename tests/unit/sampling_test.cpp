@@ -51,7 +51,7 @@ TEST(Sampling, meanOfManyScramblesIsTheIntegral) {
     EXPECT_NEAR(sum / (256 * 16), 1.0 / 6.0, 1e-3);
 }
 
-// Density cos / pi: the mean cosine is 2/3, the mean of x^2 is 1/4.
+// With density cos / pi, the mean cosine is 2/3 and the mean of x^2 is 1/4.
 TEST(Sampling, cosineDirectionsHaveTheRightMoments) {
     double cosine = 0, x2 = 0, x = 0;
     constexpr uint32_t count = 4096;

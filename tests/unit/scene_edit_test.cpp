@@ -1,4 +1,5 @@
-// Edits as they are typed: what each does to a scene, and what is wrong with those that do nothing.
+// This tests edits as they are typed: what each does to a scene, and what is wrong with those that do
+// nothing.
 #include "app/edit/edit_options.h"
 
 #include "app/edit/scene_names.h"
@@ -20,8 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A lamp of every kind, two objects of one glowing material, an emitter with two materials and a chair that
-/// shares its name with a lamp.
+/// Makes an analytic light of every kind, two objects of one glowing material, a mesh light with two
+/// materials and a chair that shares its name with a light.
 Scene room() {
     Scene scene;
     for (const char* name : {"Paint", "Glow", "Screen"})
@@ -70,7 +71,7 @@ protected:
             if (candidate.name == name) return candidate;
         throw Error("no light " + name);
     }
-    /// The message of an edit that must change nothing; it starts with "usage: " for wrong values.
+    /// Returns the message of an edit that must change nothing; it starts with "usage: " for wrong values.
     std::string refused(const std::string& option, const std::string& text) {
         const SceneEdits before = edits_;
         std::string message = "no error";
@@ -196,7 +197,7 @@ TEST_F(SceneEditTest, ARotationKeepsScaleAndMirroring) {
         glm::scale(glm::mat4(1), {2, 3, -0.5f});
     edit("--rotate", "Chair=0,0,0");
     test::expectNear(edits_.placements[0].transform, scaled);
-    // About the world's X, then Y, then Z: +Y goes to +Z by X, to +X by Y, to +Y by Z.
+    // It turns about the world's X, then Y, then Z: +Y goes to +Z by X, to +X by Y, to +Y by Z.
     edit("--rotate", "spot=90,90,90");
     const glm::mat4 turned = light("spot").transform;
     test::expectNear(turned, glm::mat4(0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1), 0.0f);
@@ -306,7 +307,7 @@ TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
     EXPECT_EQ(refused("--delete", ""), "usage: names nothing: write NAME");
 }
 
-/// Values that no text says, from another user of the edits.
+/// Values that no text can say come from another user of the edits.
 TEST_F(SceneEditTest, ValuesThatAreNotFiniteAreRefused) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const SceneEdits before = edits_;
@@ -352,7 +353,7 @@ TEST(NearNames, ComeByLikeness) {
     EXPECT_EQ(nearNamesHint("x", {}), "there is none");
 }
 
-/// Through a file with things that nothing here knows.
+/// These edits go through a file with things that nothing here knows.
 using SceneEditFile = test::EditedFile;
 
 TEST_F(SceneEditFile, EditsReachTheFileAndAllElseStays) {

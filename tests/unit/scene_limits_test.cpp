@@ -1,5 +1,5 @@
-// Scenes that are too large or too bright for floats: what is dropped, cut or dimmed, and that the rest
-// bakes.
+// This tests scenes that are too large or too bright for floats: what is dropped, cut or dimmed, and that the
+// rest bakes.
 #include "assets/model/scene_limits.h"
 
 #include "assets/atlas/lightmap_atlas.h"
@@ -27,12 +27,12 @@ using nlohmann::json;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-/// Positions of two triangles beside each other, the second with one corner there.
+/// Returns the positions of two triangles beside each other, the second with one corner at x.
 std::vector<float> trianglesTo(float x) {
     return {0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, x, 0, 0, 2, 1, 0};
 }
 
-/// A good square, and a mesh of these positions on a node.
+/// Loads a good square, and a mesh of these positions on a node.
 Scene loaded(const std::vector<float>& positions, json node = json::object()) {
     test::GlbBuilder builder = test::squareScene();
     const int accessor = builder.accessor<float>(positions, "VEC3");
@@ -124,7 +124,7 @@ TEST(SceneLimits, NoFarTriangleIsFlattened) {
         EXPECT_TRUE(isWithinReach(position));
 }
 
-// The reason of the bound: what multiplies most lengths.
+// These multiply most lengths, which is the reason for the bound.
 TEST(SceneLimits, ProductsOfLengthsWithinTheBoundsAreFinite) {
     const float f = kFarthest;
     const glm::vec3 low(-f), high(f), n(0, 0, 1);

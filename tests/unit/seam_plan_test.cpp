@@ -1,5 +1,5 @@
-// SewSeams cut into what each chunk of patches is responsible for, against makeLightmap, which fills whole
-// maps.
+// SewSeams, cut into what each chunk of patches is responsible for, is held against makeLightmap, which fills
+// whole maps.
 #include "bake/output/lightmap.h"
 #include "bake/surface/seam_plan.h"
 
@@ -11,7 +11,8 @@
 namespace relume {
 namespace {
 
-// Patches at random texels in tile order, some of them inside something. share: of texels with a patch.
+// Makes patches at random texels in tile order, some of them inside something; `share` is that of texels with
+// a patch.
 PatchSet randomPatches(uint32_t size, double share, uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -40,7 +41,7 @@ struct Texel {
     double light = 0, coverage = 0;
 };
 
-// What a device does with a plan: all patches, then fills ring by ring of the given chunks.
+// Does what a device does with a plan: writes all patches, then fills ring by ring of the given chunks.
 void follow(const PatchSet& set, const SeamPlan& plan, const std::vector<uint32_t>& chunks,
             const std::vector<glm::vec4>& light, std::vector<Texel>& texels) {
     const std::vector<uint32_t> shown = shownTexels(set);
@@ -99,7 +100,7 @@ TEST(SeamPlan, FillsWhatMakeLightmapFills) {
     }
 }
 
-// After one chunk's light has changed nothing but its own part of the plan is followed.
+// After one chunk's light has changed, nothing but its own part of the plan is followed.
 TEST(SeamPlan, FollowsOneChunkAtATime) {
     const PatchSet set = randomPatches(48, 0.4, 3);
     const SeamPlan plan = buildSeamPlan(set, 4);

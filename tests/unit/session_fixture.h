@@ -17,7 +17,7 @@ namespace relume {
 inline const std::string kScenes = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/";
 constexpr uint32_t kSize = 64;
 
-/// A session of a scene file of its own. Bakes are counted, none runs.
+/// Holds a session of a scene file of its own. Bakes are counted, and none runs.
 class SessionTest : public testing::Test {
 protected:
     SessionTest() {
@@ -27,7 +27,7 @@ protected:
 
     std::string file() const { return folder_.path("scene.glb"); }
 
-    /// Frames until it is so. Counts the scenes that came.
+    /// Runs frames until `what` is so. Counts the scenes that came.
     bool until(const std::function<bool()>& what, double seconds = 30) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
         while (std::chrono::steady_clock::now() < end) {

@@ -1,4 +1,4 @@
-// The session without a Vulkan device: what is saved, and what is known to be saved.
+// This tests the session without a Vulkan device: what is saved, and what is known to be saved.
 #include "app/live/session.h"
 
 #include "app/viewer/edits/light_edits.h"
@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-/// Edits saved into the scene's file.
+/// Saves edits into the scene's file.
 class SessionSaveTest : public SessionTest {
 protected:
     void change(const std::string& name, const std::function<void(SceneEdits&)>& what) {

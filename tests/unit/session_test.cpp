@@ -1,4 +1,5 @@
-// The session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, none runs.
+// This tests the session without a Vulkan device: what is loaded, edited, undone. Bakes are counted, and none
+// runs.
 #include "app/live/session.h"
 
 #include "app/viewer/edits/light_edits.h"
@@ -103,7 +104,7 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
         session_.clearError();
     }
     EXPECT_EQ(loads_, 1);
-    // What is watched is still the good one.
+    // The good file is still watched.
     session_.watchFile(true);
     writeFile(kScenes + "cornell_small.glb");
     ASSERT_TRUE(until([&] { return loads_ == 2; }));

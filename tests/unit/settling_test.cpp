@@ -18,7 +18,7 @@ TEST(Settling, AGeometricSeriesIsTold) {
     const double left = settling.left;
     settling.bounce();
     EXPECT_NEAR(settling.left, 0.4 * left, 1e-9);
-    // A mean of a round that lacks 10 % and one that goes on from it and lacks 4 %.
+    // This is the mean of a sample pass that lacks 10 % and one that goes on from it and lacks 4 %.
     settling.left = 0.1;
     settling.round(1);
     EXPECT_NEAR(settling.left, 0.07, 1e-9);

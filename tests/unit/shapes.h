@@ -20,7 +20,7 @@ inline Primitive primitiveOf(std::vector<glm::vec3> positions, std::vector<uint3
     return primitive;
 }
 
-/// The unit square in z = 0 facing +z, its UVs over [low, high].
+/// Makes the unit square in z = 0 facing +z, its UVs over [low, high].
 inline Primitive square(glm::vec2 low = glm::vec2(0), glm::vec2 high = glm::vec2(1)) {
     Primitive primitive = primitiveOf({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 1, 2, 0, 2, 3});
     primitive.texCoord1 = {low, {high.x, low.y}, high, {low.x, high.y}};
@@ -43,7 +43,7 @@ inline Scene sceneOf(Primitive primitive) {
     return scene;
 }
 
-/// A closed surface over a grid of (u, v) in [0,1]^2, both directions wrapping.
+/// Makes a closed surface over a grid of (u, v) in [0,1]^2, both directions wrapping.
 template<typename Surface>
 Primitive wrapped(uint32_t nu, uint32_t nv, const Surface& surface) {
     std::vector<glm::vec3> positions;
@@ -60,7 +60,7 @@ Primitive wrapped(uint32_t nu, uint32_t nv, const Surface& surface) {
     return primitiveOf(positions, indices);
 }
 
-/// A tube around the (2,3) torus knot.
+/// Makes a tube around the (2,3) torus knot.
 inline Primitive torusKnot(uint32_t along = 400, uint32_t around = 24) {
     constexpr float kTurn = 6.28318531f;
     const auto centre = [](float t) {
@@ -74,7 +74,7 @@ inline Primitive torusKnot(uint32_t along = 400, uint32_t around = 24) {
     });
 }
 
-/// A sphere by latitude and longitude, with triangles without area at the poles.
+/// Makes a sphere by latitude and longitude, with triangles without area at the poles.
 inline Primitive sphere(uint32_t n = 64) {
     std::vector<glm::vec3> positions;
     std::vector<uint32_t> indices;
@@ -113,7 +113,7 @@ inline Primitive cube() {
     return primitive;
 }
 
-/// Triangles with no order at all, sharing vertices at random.
+/// Makes triangles with no order at all that share vertices at random.
 inline Primitive soup(uint32_t triangles, uint32_t vertices, uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);

@@ -1,4 +1,4 @@
-// Names like "Obj 2" go by the order of what a file holds: saved and read again they mean the same things.
+// Names like "Obj 2" go by the order of what a file holds: saved and read again, they mean the same things.
 #include "app/edit/scene_edit.h"
 #include "app/edit/scene_names.h"
 #include "tests/unit/edited_file.h"
@@ -20,7 +20,7 @@ protected:
         Scene back;  // as it is read again
     };
 
-    /// The file at `path` edited and saved over itself.
+    /// Edits the file at `path` and saves it over itself.
     static Saved edited(const std::string& path, const std::vector<SceneEdit>& made) {
         const Scene before = loadGltf(path);
         SceneEdits edits = editsOf(before);
@@ -70,7 +70,7 @@ protected:
                                                     : scene.instances[thing.index].transform[3];
     }
 
-    /// A node of this name below another of this name, 1 m above it, each with what `carried` is.
+    /// Makes a node of this name below another of this name, 1 m above it, each with what `carried` is.
     static LitScene pair(const std::string& name, json carried) {
         LitScene scene;
         carried["name"] = name;
@@ -151,7 +151,7 @@ protected:
         return names[size_t(pick(names.size()))];
     }
 
-    /// A forest in which few names are shared by many things.
+    /// Makes a forest of nodes in which many things share few names.
     LitScene file() {
         LitScene scene;
         for (int i = 0; i < 3; ++i)

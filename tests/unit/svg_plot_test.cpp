@@ -25,7 +25,7 @@ TEST(SvgPlot, DrawsALineAndItsPoints) {
                     .series = {{.name = "a", .points = {{1, 1}, {10, 100}, {100, 10000}}}}});
     EXPECT_EQ(markupProblem(svg), "");
     EXPECT_EQ(countOf(svg, "<circle"), 3u);
-    // Equal steps on logarithmic axes: the middle point is half-way.
+    // Steps are equal on logarithmic axes: the middle point is half-way.
     double x[3] = {}, y[3] = {};
     size_t at = 0;
     for (int i = 0; i < 3; ++i) {

@@ -23,7 +23,7 @@ TEST(Tone, NoneOnlyClamps) {
               glm::vec3(0.25f, 1.0f, 0.0f));
 }
 
-// Of both curves: greys stay grey, more light is never darker, all is between black and white.
+// With both curves greys stay grey, more light is never darker, and all is between black and white.
 TEST(Tone, CurvesKeepGreysAndOrder) {
     for (const uint32_t tone : {shader::kToneAces, shader::kToneAgx}) {
         float before = -1.0f;
@@ -42,8 +42,8 @@ TEST(Tone, CurvesKeepGreysAndOrder) {
     }
 }
 
-// Where the two curves put a grey card: AgX at about half of the encoded scale, ACES where its rational curve
-// at 0.18 says.
+// The two curves put a grey card at known places: AgX at about half of the encoded scale, ACES where its
+// rational curve at 0.18 says.
 TEST(Tone, PutsMiddleGreyWhereTheCurvesSay) {
     EXPECT_NEAR(std::pow(shader::toneAgx(glm::vec3(0.18f)).y, 1.0f / 2.2f), 0.48f, 0.02f);
     EXPECT_NEAR(shader::toneAces(glm::vec3(0.18f)).y, 0.1056f, 0.001f);
@@ -56,7 +56,7 @@ TEST(Tone, AgxFadesBrightColoursToWhite) {
     EXPECT_GT(bright.x, 0.5f * bright.z);
 }
 
-// The short cut of pictures: less than half a step of 8 bits away from both powers.
+// The short cut that pictures take is less than half a step of 8 bits away from both powers.
 TEST(Tone, AgxAsSrgbIsAgxEncoded) {
     for (float ev = -16.0f; ev <= 8.0f; ev += 0.0625f) {
         const glm::vec3 light = std::exp2(ev) * glm::vec3(1.0f, 0.4f, 0.05f);

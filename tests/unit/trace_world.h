@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// A scene for tracer tests, made of surfaces p(u, v), each a chart in its own cell of a 4 x 2 atlas of 64 x
+/// Makes a scene for tracer tests of surfaces p(u, v), each a chart in its own cell of a 4 x 2 atlas of 64 x
 /// 64 texels: 16 x 32 texels, so 8 chunks of patches each.
 class TraceWorld {
 public:
@@ -21,12 +21,13 @@ public:
         bool masked = false;
     };
 
-    /// cross(dp/du, dp/dv) points to the front. `cells`: quads along u and along v.
+    /// Adds a surface; cross(dp/du, dp/dv) points to the front. `cells` is the number of quads along u and
+    /// along v.
     void add(const Surface& surface, uint32_t cells, const Look& look) {
         parts_.push_back({surface, cells, look});
     }
     void add(const Surface& surface, uint32_t cells) { add(surface, cells, Look{}); }
-    /// The inside of the box [lo, hi], as six charts.
+    /// Adds the inside of the box [lo, hi], as six charts.
     void addRoom(glm::vec3 lo, glm::vec3 hi, uint32_t cells) {
         for (int axis = 0; axis < 3; ++axis) {
             for (const bool high : {false, true}) {
@@ -56,7 +57,8 @@ public:
             cells);
     }
 
-    /// Masked surfaces show a checker of 2 x 2 texels over each quad: solid where (u < 1/2) == (v < 1/2).
+    /// Builds the scene. Masked surfaces show a checker of 2 x 2 texels over each quad: solid where (u < 1/2)
+    /// == (v < 1/2).
     TraceScene build() const {
         TraceScene scene;
         scene.size = kSize;

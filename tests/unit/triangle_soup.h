@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// A triangle of a scene in world space, in double precision.
+/// Holds a triangle of a scene in world space, in double precision.
 struct SoupTriangle {
     glm::dvec3 position[3];
     glm::dvec3 shadingNormal[3];
@@ -50,7 +50,7 @@ struct SoupHit {
     double distance = std::numeric_limits<double>::infinity();
 };
 
-/// Closest hits among triangles, for tests that must not lean on the tracers they check.
+/// Finds closest hits among triangles, for tests that must not lean on the tracers they check.
 class TriangleSoup {
 public:
     explicit TriangleSoup(std::vector<SoupTriangle> triangles) : triangles_(std::move(triangles)) {

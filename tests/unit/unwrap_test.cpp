@@ -15,7 +15,7 @@
 namespace relume {
 namespace {
 
-/// Every mesh of the scene must have become a valid atlas that still shows the same triangles.
+/// Expects that every mesh of the scene has become a valid atlas that still shows the same triangles.
 void expectValid(Scene scene, const UnwrapDesc& desc, const std::string& name) {
     SCOPED_TRACE(name);
     const Scene before = scene;
@@ -59,7 +59,7 @@ TEST(Unwrap, CubeBecomesSixSquares) {
     EXPECT_EQ(result.density, 16.0);
     EXPECT_EQ(scene.meshes[0].primitives[0].positions.size(), 24u);
     EXPECT_EQ(flatten(scene, buildAtlas(scene, 64)).chartCount, 6u);
-    // Six squares of 16 texels in their packing, three by two: no density is lost to stretching.
+    // Six squares of 16 texels are packed three by two: no density is lost to stretching.
     const AtlasStatistics statistics = measureAtlas(scene, buildAtlas(scene, 64), 64);
     EXPECT_NEAR(statistics.texelDensityMin, statistics.texelDensityMax, 1e-3 * statistics.texelDensityMax);
     EXPECT_GT(statistics.coverage, 0.5);
@@ -161,7 +161,7 @@ TEST(Unwrap, MoebiusStrip) {
     expectValid(test::sceneOf(test::primitiveOf(positions, indices)), {}, "moebius");
 }
 
-/// A flat ribbon winding twice around the centre at a gentle slope: all normals agree, its projection
+/// A flat ribbon winds twice around the centre at a gentle slope: all normals agree, but its projection
 /// overlaps.
 TEST(Unwrap, SpiralThatOverlapsItsOwnProjectionIsCut) {
     std::vector<glm::vec3> positions;
@@ -183,7 +183,7 @@ TEST(Unwrap, SpiralThatOverlapsItsOwnProjectionIsCut) {
 }
 
 TEST(Unwrap, DensityIsThatOfTheWorld) {
-    // Twice as large in the world as in the mesh: 2 m at 50 texels/m.
+    // It is twice as large in the world as in the mesh: 2 m at 50 texels/m.
     Primitive square = test::square();
     square.texCoord1.clear();
     std::vector<glm::dvec3> corners;
@@ -198,7 +198,7 @@ TEST(Unwrap, DensityIsThatOfTheWorld) {
     const int mesh = test::addMesh(scene, square);
     test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(2)));
     test::addInstance(scene, mesh, glm::translate(glm::mat4(1), glm::vec3(9, 0, 0)));
-    // One rectangle of 2 m and one of 1 m, 5 m^2 in all, in 85 % of the atlas.
+    // There are one rectangle of 2 m and one of 1 m, 5 m^2 in all, in 85 % of the atlas.
     EXPECT_NEAR(unwrap(scene, {}).density, 512 * std::sqrt(0.85 / 5.0), 5.0);
 }
 

@@ -77,7 +77,7 @@ TEST(RedrawPacer, DrawsNothingWhereNothingHappens) {
     EXPECT_EQ(pacer.wait(now, 7.0), 7.0);
 }
 
-// A pacer that has drawn all that it begins with, at time 0 and for 40 ms each.
+// Returns a pacer that has drawn all that it begins with, at time 0 and for 40 ms each.
 RedrawPacer settled() {
     RedrawPacer pacer;
     while (pacer.due(0).any)

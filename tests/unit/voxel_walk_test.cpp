@@ -1,4 +1,4 @@
-// The walk through a voxel map and its rules, on the CPU: the same text as the kernels'.
+// This tests the walk through a voxel map and its rules on the CPU; the source text is the kernels' own.
 #include "bake/base/shader_types.h"
 
 #include <gtest/gtest.h>
@@ -92,7 +92,7 @@ TEST(VoxelWalk, endsClearOfAPlaneAreOutOfItsVoxels) {
     }
 }
 
-// Points from an end on, moved inwards, at multiples of 2 / resolution of what remains.
+// Points go from an end on, moved inwards, at multiples of 2 / resolution of what remains.
 TEST(VoxelWalk, rtradsMarchTakesItsPoints) {
     VoxelGrid grid{};
     grid.origin = vec3(-1);

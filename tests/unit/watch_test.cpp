@@ -1,4 +1,4 @@
-// What long jobs tell while they work, and that each of them can be ended.
+// This tests what long jobs tell while they work, and that each of them can be ended.
 #include "assets/base/watch.h"
 
 #include "assets/atlas/lightmap_atlas.h"
@@ -43,7 +43,7 @@ private:
     WatchScope scope_;
 };
 
-/// Many squares that stand apart.
+/// Makes many squares that stand apart.
 Scene manySquares(int count) {
     Scene scene;
     scene.path = "many.glb";
@@ -53,7 +53,7 @@ Scene manySquares(int count) {
     return scene;
 }
 
-/// The job tells of the phase, and ends when it is ended there.
+/// Expects that the job tells of the phase, and ends when it is ended there.
 void expectPhase(const std::string& phase, const std::function<void()>& job) {
     {
         const WatchRecorder recorder;

@@ -164,7 +164,7 @@ TEST(WorldMesh, InstancesWithoutUvsHaveNoChart) {
 }
 
 TEST(Charts, ConnectThroughEqualPositionsAndUvsOnly) {
-    // Two unit squares side by side, every triangle with vertices of its own.
+    // These are two unit squares side by side, every triangle with vertices of its own.
     const glm::vec3 p[6] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}};
     const int corners[12] = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
     const auto make = [&](float gap, int moved) {

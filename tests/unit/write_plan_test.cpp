@@ -63,7 +63,7 @@ TEST(WritePlan, KeepsAFileInAFolderThatTakesNoNewOnes) {
 }
 
 TEST(WritePlan, InAStickyFolderOnlyOwnersAndRootReplace) {
-    // user, owner of the file, owner of the folder
+    // Each entry has the user, the file's owner, the folder's owner and the way.
     for (const auto& [user, owner, folderOwner, way] :
          {std::tuple{1000u, 1000u, 0u, WriteWay::Replace}, std::tuple{1000u, 1u, 1000u, WriteWay::Replace},
           std::tuple{0u, 1u, 2u, WriteWay::Replace}, std::tuple{1000u, 1u, 0u, WriteWay::InPlace}}) {

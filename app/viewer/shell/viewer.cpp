@@ -144,6 +144,7 @@ void Viewer::run() {
         const double time = now();
         follow(time);
         const Redraw redraw = pacer_.due(time);
+        tellSettled();
         if (!redraw.any || time < frameStart_ + limit || window_.minimised()) continue;
         frameStart_ = time;
         frame(redraw);
@@ -165,9 +166,13 @@ void Viewer::follow(double time) {
         window_.setVsync(vsync_);
     }
     if (sceneDirty_) pacer_.sceneChanged();
-    if (window_.size() != toldSize_ && !window_.minimised()) {
-        toldSize_ = window_.size();
-        tell("window", fmt::format("{} x {}", toldSize_.x, toldSize_.y));
+    if (window_.minimised() != told_.minimised) {
+        told_.minimised = window_.minimised();
+        tell("window", told_.minimised ? "minimised" : "shown");
+    }
+    if (window_.size() != told_.size && !window_.minimised()) {
+        told_.size = window_.size();
+        tell("window", fmt::format("{} x {}", told_.size.x, told_.size.y));
     }
 }
 
@@ -255,8 +260,20 @@ void Viewer::followMap() {
     const PublishedMap& map = *bridge_->map();
     const std::string told =
         std::string(contentName(map.content)) + (map.complete ? " complete" : " partial");
-    if (told != told_) tell("map", told);
-    told_ = told;
+    if (told != told_.map) tell("map", told);
+    told_.map = told;
+}
+
+// Tells whoever listens that what was asked for is on the screen: nothing is left to be drawn, and the map is
+// the one that the view shows. The number of inputs says which of them have been taken.
+void Viewer::tellSettled() {
+    const PublishedMap* shown = bridge_->map();
+    const bool asked =
+        shown == nullptr || (shown->content == inspected_.content && shown->light == inspected_.light);
+    const bool settled =
+        asked && pacer_.settled() && !pane_.adapting() && !bridge_->waiting() && !session_->loading();
+    if (settled && !told_.settled) tell("settled", std::to_string(told_.inputs));
+    told_.settled = settled;
 }
 
 // Follows what is seen beside maps: links of a patch, voxels, and the tiles that the camera sees.

@@ -60,6 +60,7 @@ private:
     void inspect();
     void followInspected();
     void followMap();
+    void tellSettled();
     ScenePane::Look look() const;
     PanelContext context();
     void frame(const Redraw& redraw);
@@ -219,9 +220,16 @@ private:
     double moved_ = -1e9;    // when the camera moved last
     double batchMs_ = 0;     // what the bake was told
     uint64_t logSeen_ = 0;
-    std::string edited_;     // name of the edit under way, "": none
-    std::string told_;       // content of the newest map, as it was told
-    glm::uvec2 toldSize_{0}; // of the window
+    std::string edited_;    // name of the edit under way, "": none
+    struct Told {           // for --log-actions, the last of each
+        std::string map;    // content of the newest map
+        glm::uvec2 size{0}; // of the window
+        bool minimised = false;
+        bool settled = false;   // what was asked for is on the screen
+        uint64_t converged = 0; // the bake whose light had converged, 0: none
+        uint64_t inputs = 0;    // taken so far
+    };
+    Told told_;
     uint32_t askedVoxels_ = 0;
     uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
     double tilesAsked_ = -1e9;

@@ -48,6 +48,8 @@ const char* dragName(int button, int mods) {
 
 void Viewer::handle(const std::vector<WindowEvent>& events) {
     if (!events.empty()) pacer_.input();
+    told_.inputs += events.size();
+    told_.settled = told_.settled && events.empty();
     for (const WindowEvent& event : events) {
         gui_.feed(event);
         switch (event.kind) {

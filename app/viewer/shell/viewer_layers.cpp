@@ -81,7 +81,9 @@ void Viewer::followPreviews(double time) {
     for (const LightGroup& group : status_.groups)
         sources.push_back(group.source);
     previewsDue_ = previews_.update(document.edits, sources);
-    if (previewsDue_) pacer_.statusChanged();
+    if (!previewsDue_) return;
+    tell("preview", "drawn");
+    pacer_.statusChanged();
 }
 
 void Viewer::chooseSky() {

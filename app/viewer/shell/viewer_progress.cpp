@@ -47,11 +47,14 @@ void Viewer::followBadge(double time) {
                                  .newestBake = session_->newestBake(),
                                  .edit = newestEdit_,
                                  .seconds = std::max(end - editedAt_, 0.0)});
-    if (badge.state != badge_.state) {
+    // An edit may be answered between two looks: it had converged before, and has again.
+    const uint64_t converged = badge.state == State::Converged ? session_->newestBake() : 0;
+    if (badge.state != badge_.state || (converged != told_.converged && converged != 0)) {
         if (badge.state == State::Converged) convergedAt_ = time;
         tell("badge", badgeName(badge.state));
         pacer_.input();
     }
+    told_.converged = converged;
     badge_ = std::move(badge);
 }
 

@@ -23,6 +23,9 @@ public:
     /// Says whether something moves by itself: then every frame is drawn.
     void animate(bool on) { animated_ = on; }
 
+    /// Tells whether all that the user did, and every map that came, has been drawn.
+    bool settled() const { return settling_ == 0 && !scene_ && !map_ && !animated_; }
+
     Redraw due(double now) const;
     /// Returns how long nothing will be due unless something is told, `idle` at most.
     double wait(double now, double idle) const;
