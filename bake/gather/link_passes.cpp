@@ -51,11 +51,14 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
     if (desc.direct)
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
-    const uint64_t chunkBytes = uint64_t{desc.linksOfRound} * kChunk * sizeof(uint32_t);
-    const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
-    keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, desc.linkBytes / chunkBytes));
-    links = vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
-    linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
+    if (desc.linkBytes) {
+        const uint64_t chunkBytes = uint64_t{desc.linksOfRound} * kChunk * sizeof(uint32_t);
+        const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
+        keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, *desc.linkBytes / chunkBytes));
+        links =
+            vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
+        linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
+    }
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
     direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
     if (desc.smooth) {

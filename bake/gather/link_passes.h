@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "bake/base/worker_pool.h"
@@ -42,7 +43,9 @@ struct LinkBuffers {
         bool direct = false; // direct light is sampled
         bool smooth = false;
         const CoarsePatches* coarse = nullptr;
-        uint64_t linkBytes = 0; // at most, for links that later bounces gather again
+        // At most so much for links that later bounces gather again; nothing: the solver keeps all links
+        // elsewhere, so that there are none here.
+        std::optional<uint64_t> linkBytes = {};
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
     /// Returns their bytes, with those of direct light but without those of footprints.

@@ -1,9 +1,12 @@
 // This part of LayerSolver bounces layers over links.
 #include "bake/layers/layer_solver.h"
 
+#include "bake/base/series.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace relume {
@@ -450,16 +453,12 @@ void LayerSolver::learnChanges(Lane& lane, bool both) {
     learnChange(lane, total(passes));
 }
 
-// Learns the remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two
-// changes. A light that reaches nothing has converged at once.
 void LayerSolver::learnChange(Lane& lane, const glm::dvec4& total) {
     const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
-    if (change == 0.0 || mean <= 0.0) {
-        lane.iterationError = lane.ratio = 0.0;
-    } else if (lane.change > 0.0) {
-        lane.ratio = change / lane.change;
-        lane.iterationError = lane.ratio < 1.0 ? change * lane.ratio / (1.0 - lane.ratio) / mean : 1.0;
+    if (const std::optional<SeriesRest> rest = seriesRest(lane.change, change, mean)) {
+        lane.ratio = rest->ratio;
+        lane.iterationError = rest->error;
     }
     lane.change = change;
 }

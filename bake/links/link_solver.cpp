@@ -1,11 +1,13 @@
 #include "bake/links/link_solver.h"
 
+#include "bake/base/series.h"
 #include "bake/direct/point_trace.h"
 #include "bake/links/directions.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace relume {
 namespace {
@@ -407,8 +409,6 @@ void LinkSolver::endBounce() {
     state_.stage = Stage::Plan;
 }
 
-// Measures the remaining error of a geometric series: change q / (1 - q), q being the ratio of the last two
-// changes.
 void LinkSolver::measureChange() {
     VkCommandBuffer cmd = commands_.begin();
     resolvePass_.recordChange(cmd, input_.light, buffers_);
@@ -421,12 +421,9 @@ void LinkSolver::measureChange() {
     const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
     if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
     state_.settling.add(mean);
-    if (change == 0.0 || mean <= 0.0) {
-        state_.iterationError = state_.ratio = 0.0;
-    } else if (state_.change > 0.0) {
-        state_.ratio = change / state_.change;
-        const bool falling = state_.ratio < 1.0;
-        state_.iterationError = falling ? change * state_.ratio / (1.0 - state_.ratio) / mean : 1.0;
+    if (const std::optional<SeriesRest> rest = seriesRest(state_.change, change, mean)) {
+        state_.ratio = rest->ratio;
+        state_.iterationError = rest->error;
     }
     state_.change = change;
 }

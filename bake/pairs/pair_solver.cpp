@@ -3,10 +3,12 @@
 #include "assets/base/clock.h"
 #include "assets/base/log.h"
 #include "bake/base/finite_light.h"
+#include "bake/base/series.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace relume {
@@ -20,8 +22,6 @@ using shader::kSuperBlocks;
 constexpr uint32_t kFirstUnits = 16;
 // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
 constexpr double kMaxGrowth = 4.0;
-// The visibility cache takes one over this of the free device memory unless told otherwise.
-constexpr uint64_t kCacheShare = 3;
 // One thread sums up the change of so many patches at a time.
 constexpr uint32_t kMeasured = 1u << 16;
 // Each analytic light that has an extent gets so many rays per patch and sample pass: few enough for a batch
@@ -85,7 +85,7 @@ void PairSolver::makeCache() {
     const CacheSettings& wanted = settings_.cache;
     if (wanted.kind == Kind::None || wanted.kind == Kind::Links || settings_.passes == 1) return;
     const uint64_t slot = superBytes(bothEnds_);
-    const uint64_t limit = wanted.bytes > 0 ? wanted.bytes : device_.freeMemory() / kCacheShare;
+    const uint64_t limit = wanted.bytes;
     if (limit < slot) {
         spdlog::warn(
             "visibility cache: {} bytes do not hold one super-block ({} KiB): everything is traced in "
@@ -366,8 +366,6 @@ void PairSolver::endPass() {
     done_ = progress_.converged || allPasses || progress_.passes >= kMaxPasses;
 }
 
-// Measures the remaining error of a geometric series: change * q / (1 - q), q being the ratio of the last two
-// changes, relative to the mean.
 void PairSolver::measureChange() {
     const auto pieces = static_cast<uint32_t>((patches_.count + kMeasured - 1) / kMeasured);
     std::vector<ChangeSums> parts(pieces);
@@ -381,12 +379,9 @@ void PairSolver::measureChange() {
     const double change = all.count > 0 ? std::sqrt(all.squares / static_cast<double>(all.count)) : 0.0;
     const double mean = all.count > 0 ? all.light / static_cast<double>(all.count) : 0.0;
     requireFiniteLight(mean, change);
-    if (change == 0.0 || mean <= 0.0) {
-        progress_.error = 0.0;
-    } else if (state_.lastChange > 0.0) {
-        const double q = change / state_.lastChange;
-        progress_.error = q < 1.0 ? change * q / (1.0 - q) / mean : 1.0;
-        left_ = static_cast<float>(q < 1.0 ? q / (1.0 - q) : 1.0);
+    if (const std::optional<SeriesRest> rest = seriesRest(state_.lastChange, change, mean)) {
+        progress_.error = rest->error;
+        left_ = static_cast<float>(rest->ratio < 1.0 ? rest->ratio / (1.0 - rest->ratio) : 1.0);
     }
     state_.lastChange = change;
     // RTRad's light has the emission in it from the start.
