@@ -1,55 +1,14 @@
 #include "app/live/session.h"
 
-#include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/base/watch.h"
 #include "assets/model/scene_limits.h"
 #include "bake/trace/make_tracer.h"
-#include "renderer/good_view.h"
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <utility>
 
 namespace relume {
 namespace {
-
-// Pictures are wider than high; only the camera's distance depends on it.
-constexpr float kAspect = 16.0f / 9.0f;
-// A file is looked at so often, and must have stayed the same for so long: its writer may not be done yet.
-constexpr double kPollSeconds = 0.5;
-// Undo keeps so many steps.
-constexpr size_t kMaxSteps = 200;
-
-struct LoadUnwanted {};
-
-/// Ends a load that nobody waits for any more.
-class LoadWatch final : public Watch {
-public:
-    explicit LoadWatch(const std::atomic<bool>& unwanted) : unwanted_(unwanted), scope_(*this) {}
-    void hear(const char*, double) override {
-        if (unwanted_) throw LoadUnwanted();
-    }
-
-private:
-    const std::atomic<bool>& unwanted_;
-    WatchScope scope_;
-};
-
-std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number,
-                                  const std::atomic<bool>& unwanted) {
-    const LoadWatch watch(unwanted);
-    auto scene = std::make_unique<LoadedScene>();
-    scene->prepared = prepareScene(desc);
-    const Scene& file = scene->prepared.scene;
-    scene->geometry = makeGeometry(file, scene->prepared.mesh);
-    scene->view = file.cameras.empty() ? goodView(scene->prepared.mesh, kAspect)
-                                       : cameraOfFile(file.cameras.front(), scene->geometry.bounds);
-    scene->size = desc.size;
-    scene->number = number;
-    return scene;
-}
 
 template<typename Named>
 bool haveSameNames(const std::vector<Named>& a, const std::vector<Named>& b) {
@@ -67,70 +26,55 @@ bool sameObjects(const Scene& a, const Scene& b) {
 
 } // namespace
 
-Session::FileTime Session::fileTime(const std::string& path) {
-    std::error_code error;
-    const auto time = std::filesystem::last_write_time(path, error);
-    return error ? FileTime() : FileTime(time);
-}
-
 Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prepare_(request.prepare) {
     document_.bake = request.bake;
     document_.lightmap = request.lightmap;
 }
 
-Session::~Session() {
-    unwanted_ = true;
-    if (loading_.valid()) loading_.wait();
-}
-
 void Session::open(const std::string& path, bool keep) {
-    if (loading_.valid()) { // one at a time: the newest request is followed when the present load has ended
-        if (path != loadingPath_) unwanted_ = true;
-        nextPath_ = path;
-        keepNext_ = keep;
+    if (loader_.loading()) { // one at a time: the newest request is followed when the present load has ended
+        if (path != loader_.path()) loader_.drop();
+        next_ = Next{path, keep};
         return;
     }
-    keepLoading_ = keep;
-    loadingPath_ = path;
     PrepareDesc desc = prepare_;
     desc.path = path;
     desc.size = document_.bake.size;
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
-    loadingTime_ = fileTime(path);
-    sameFile_ = keep && path == prepare_.path && loadingTime_ && loadingTime_ == watched_;
-    unwanted_ = false;
-    loading_ = std::async(std::launch::async,
-                          [this, desc, number = ++loads_] { return load(desc, number, unwanted_); });
+    const FileTime time = fileTime(path);
+    loading_ = {
+        .keep = keep, .time = time, .sameFile = keep && path == prepare_.path && watch_.isKnown(time)};
+    loader_.start(desc);
 }
 
 bool Session::update() {
     dropFormer();
     takeSaved();
-    if (nextSave_ && !file_.saving() && !loading_.valid()) save(*std::exchange(nextSave_, std::nullopt));
+    if (nextSave_ && !file_.saving() && !loader_.loading()) save(*std::exchange(nextSave_, std::nullopt));
     const bool changed = finishLoading();
-    if (watch_) pollFile();
+    pollFile();
     return changed;
 }
 
 bool Session::finishLoading() {
-    if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-        return false;
+    if (!loader_.ready()) return false;
     bool changed = false;
+    const std::string path = loader_.path();
     // A file that cannot be read is not tried again until it is another one.
-    if (loadingPath_ == prepare_.path) watched_ = loadingTime_;
+    if (path == prepare_.path) watch_.know(loading_.time);
     try {
-        take(loading_.get());
-        changed = true;
-    } catch (const LoadUnwanted&) { // another scene is opened below
+        if (std::unique_ptr<LoadedScene> scene = loader_.finish()) {
+            take(std::move(scene), path);
+            changed = true;
+        } // else another scene is opened below
     } catch (const std::bad_alloc&) {
-        fail(loadingPath_ + ": does not fit in memory");
+        fail(path + ": does not fit in memory");
     } catch (const std::exception& error) {
         fail(error.what());
     }
-    loadingPath_.clear();
-    if (!nextPath_.empty())
-        open(std::exchange(nextPath_, {}), keepNext_);
+    if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
+        open(next->path, next->keep);
     else if (changed && scene_->size != document_.bake.size)
         open(prepare_.path, true); // the size was edited meanwhile
     else if (!changed && scene_ && scene_->size != document_.bake.size) {
@@ -160,18 +104,18 @@ void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instance
         edits.sky = document_.edits.sky;
     }
     if (sameNames && sameInstances && sameLights) return;
-    forgetSteps(); // they refer to materials, instances and lights by number
+    history_.forget(); // they refer to materials, instances and lights by number
     document_.mix = {};
 }
 
 void Session::save(const std::string& path) {
     if (!scene_) return;
-    if (loading_.valid() && loadingPath_ != prepare_.path) {
+    if (loader_.loading() && loader_.path() != prepare_.path) {
         fail(fmt::format("{}: not saved while {} is opened: save it before, or wait", prepare_.path,
-                         loadingPath_));
+                         loader_.path()));
         return;
     }
-    if (file_.saving() || loading_.valid())
+    if (file_.saving() || loader_.loading())
         nextSave_ = path;
     else
         file_.save(path.empty() ? prepare_.path : path, document_.edits);
@@ -183,7 +127,7 @@ void Session::takeSaved() {
         if (!saved) return;
         spdlog::info("saved {}", saved->path);
         prepare_.path = saved->path;
-        watched_ = saved->time; // what we wrote need not be read
+        watch_.know(saved->time); // what we wrote need not be read
         ++saves_;
     } catch (const std::bad_alloc&) {
         fail(prepare_.path + ": cannot be saved: it does not fit in memory");
@@ -195,7 +139,7 @@ void Session::takeSaved() {
 void Session::finishSaving() {
     file_.wait();
     takeSaved();
-    if (!nextSave_ || loading_.valid()) return;
+    if (!nextSave_ || loader_.loading()) return;
     save(*std::exchange(nextSave_, std::nullopt));
     file_.wait();
     takeSaved();
@@ -215,32 +159,26 @@ void Session::keepMaterials(std::vector<Material>& materials, bool sameNames) co
     }
 }
 
-void Session::forgetSteps() {
-    steps_.clear();
-    done_ = 0;
-    open_ = false;
-}
-
-void Session::take(std::unique_ptr<LoadedScene> scene) {
-    kept_ = keepLoading_ && scene_ != nullptr;
+void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) {
+    kept_ = loading_.keep && scene_ != nullptr;
     const Scene& file = scene->prepared.scene;
     SceneEdits edits = editsOf(file);
-    if (kept_ && sameFile_ && sameObjects(scene_->prepared.scene, file)) {
+    if (kept_ && loading_.sameFile && sameObjects(scene_->prepared.scene, file)) {
         edits = document_.edits;
     } else if (kept_) {
         keepEdits(edits, file.instances);
         file_.loaded(file);
     } else {
         file_.loaded(file);
-        forgetSteps();
+        history_.forget();
         document_.mix = {};
     }
     document_.edits = std::move(edits);
     ++changes_;
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
-    prepare_.path = loadingPath_;
-    watched_ = loadingTime_;
+    prepare_.path = path;
+    watch_.know(loading_.time);
     startBake(kept_);
 }
 
@@ -264,25 +202,12 @@ void Session::edit(const std::string& name, const Document& wanted) {
     Document next = wanted;
     file_.number(next.edits.lights);
     if (scene_) limitEdits(scene_->prepared.scene, document_.edits, next.edits);
-    if (open_ && done_ == steps_.size() && done_ > 0 && steps_.back().name == name) {
-        steps_.back().after = next;
-    } else {
-        steps_.resize(done_);
-        if (steps_.size() >= kMaxSteps) steps_.erase(steps_.begin());
-        steps_.push_back({name, document_, next});
-        done_ = steps_.size();
-    }
-    open_ = true;
+    history_.add(name, document_, next);
     apply(next);
 }
 
 void Session::cancelEdit() {
-    if (!open_ || done_ == 0 || done_ != steps_.size()) return;
-    const Document before = std::move(steps_.back().before);
-    steps_.pop_back();
-    done_ = steps_.size();
-    open_ = false;
-    apply(before);
+    if (const std::optional<Document> before = history_.cancel()) apply(*before);
 }
 
 void Session::apply(const Document& next) {
@@ -319,35 +244,22 @@ std::string Session::problem(const BakeSettings& settings) {
 }
 
 bool Session::undo() {
-    open_ = false;
-    if (done_ == 0) return false;
-    apply(Document(steps_[--done_].before));
-    return true;
+    const std::optional<Document> before = history_.undo();
+    if (before) apply(*before);
+    return before.has_value();
 }
 
 bool Session::redo() {
-    open_ = false;
-    if (done_ == steps_.size()) return false;
-    apply(Document(steps_[done_++].after));
-    return true;
-}
-
-std::string Session::undoName() const {
-    return done_ > 0 ? steps_[done_ - 1].name : "";
-}
-
-std::string Session::redoName() const {
-    return done_ < steps_.size() ? steps_[done_].name : "";
+    const std::optional<Document> after = history_.redo();
+    if (after) apply(*after);
+    return after.has_value();
 }
 
 // Reads the scene's file again once its new time stamp stays as it is: its writer may take a while.
 void Session::pollFile() {
-    if (!scene_ || loading_.valid() || secondsSince(polled_) < kPollSeconds) return;
-    polled_ = Clock::now();
-    const auto time = fileTime(prepare_.path);
-    const bool still = time == seen_;
-    seen_ = time;
-    if (time && still && time != watched_) open(prepare_.path, true);
+    const Clock::time_point now = Clock::now();
+    if (!scene_ || loader_.loading() || !watch_.isDue(now)) return;
+    if (watch_.look(fileTime(prepare_.path), now)) open(prepare_.path, true);
 }
 
 } // namespace relume

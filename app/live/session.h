@@ -1,38 +1,19 @@
 #pragma once
 
-#include <atomic>
-#include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/live/document.h"
+#include "app/live/edit_history.h"
+#include "app/live/file_watch.h"
 #include "app/live/live_bake.h"
 #include "app/live/scene_file.h"
+#include "app/live/scene_loader.h"
 #include "app/offline/bake_options.h"
-#include "assets/base/clock.h"
-#include "renderer/camera.h"
-#include "renderer/scene_geometry.h"
 
 namespace relume {
-
-/// A scene as it was loaded. It is never changed afterwards.
-struct LoadedScene {
-    PreparedScene prepared;
-    SceneGeometry geometry; // for the renderer, made beside the main thread
-    ViewCamera view;        // the file's first camera, else one that goodView() finds
-    uint32_t size = 0;      // lightmap edge that the atlas is made for [texels]
-    uint64_t number = 0;    // counts loads from 1
-};
-
-/// All that a user edits and that undo restores.
-struct Document {
-    SceneEdits edits; // of the scene
-    LightMix mix;
-    BakeSettings bake;
-    LightmapDesc lightmap; // of exports
-};
 
 /// The scene on screen, its document with undo and redo, and the bake that follows them. It knows neither a
 /// window nor OpenGL, and is for a single thread.
@@ -40,15 +21,14 @@ class Session {
 public:
     /// Takes the first settings from the request, whose path is not opened. `bake` must outlive the session.
     Session(LiveBake& bake, const BakeRequest& request);
-    ~Session();
 
     /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
     /// when that cannot be read: then lastError() says why. With `keep` (the file changed) the camera and
     /// settings stay, and so do edits of materials, by name, and of objects and lights where the file's are
     /// what they were. Where the file is still as it was loaded or saved, all edits stay.
     void open(const std::string& path, bool keep = false);
-    bool loading() const { return loading_.valid(); }
-    const std::string& loadingPath() const { return loadingPath_; }
+    bool loading() const { return loader_.loading(); }
+    const std::string& loadingPath() const { return loader_.path(); }
     /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
     /// changed.
     bool update();
@@ -69,14 +49,14 @@ public:
     /// Sets the document and bakes it. `name` is shown by undo ("Emission of Lamp"). Edits with the same name
     /// one after the other become one step until endEdit(): those of a dragged slider.
     void edit(const std::string& name, const Document& next);
-    void endEdit() { open_ = false; }
+    void endEdit() { history_.end(); }
     /// Takes back the edit that endEdit() has not ended yet, as if it had not been.
     void cancelEdit();
     bool undo(); // false: nothing left
     bool redo();
     /// Name the edit that undo or redo would take back or make again, "" for none.
-    std::string undoName() const;
-    std::string redoName() const;
+    std::string undoName() const { return history_.undoName(); }
+    std::string redoName() const { return history_.redoName(); }
 
     /// Saves the document's edits beside the main thread, into the scene's file or as `path`, which is that
     /// file from then on. The newest request counts. lastError() says what went wrong.
@@ -94,24 +74,29 @@ public:
 
     LiveBake& bake() { return bake_; }
     /// Switches watching on or off. While on, update() loads the scene anew whenever its file was written.
-    void watchFile(bool on) { watch_ = on; }
-    bool watchesFile() const { return watch_; }
+    void watchFile(bool on) { watch_.setOn(on); }
+    bool watchesFile() const { return watch_.on(); }
 
 private:
-    struct Step {
-        std::string name;
-        Document before, after;
+    /// What was said of the scene that is loading, and of the one that is to be loaded next.
+    struct Loading {
+        bool keep = false;
+        FileTime time;         // of its file
+        bool sameFile = false; // the file is as it was read or saved before
+    };
+    struct Next {
+        std::string path;
+        bool keep = false;
     };
     void apply(const Document& next);
     void startBake(bool keepLight);
     bool finishLoading();
-    void take(std::unique_ptr<LoadedScene> scene);
+    void take(std::unique_ptr<LoadedScene> scene, const std::string& path);
     void keepEdits(SceneEdits& edits, const std::vector<Instance>& instances);
     void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
     void takeSaved();
     void finishSaving();
     void fail(const std::string& message);
-    void forgetSteps();
     void dropFormer();
     void pollFile();
 
@@ -120,24 +105,16 @@ private:
     Document document_;
     std::unique_ptr<LoadedScene> scene_;
     std::vector<std::unique_ptr<LoadedScene>> former_; // the bake thread may still read them
-    std::future<std::unique_ptr<LoadedScene>> loading_;
-    std::atomic<bool> unwanted_ = false; // the load under way, so that it ends early
-    std::string loadingPath_, nextPath_, lastError_;
-    bool keepLoading_ = false, keepNext_ = false, kept_ = false;
+    SceneLoader loader_;
+    Loading loading_;
+    std::optional<Next> next_; // the newest scene that was asked for while one was loading
+    bool kept_ = false;
+    std::string lastError_;
     SceneFile file_;
     std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
-    std::vector<Step> steps_;
-    size_t done_ = 0;   // steps before it are done, the others undone
-    bool open_ = false; // the last step may still grow
-    uint64_t loads_ = 0, firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0;
-
-    using FileTime = std::optional<std::filesystem::file_time_type>;
-    static FileTime fileTime(const std::string& path);
-    bool watch_ = false;
-    Clock::time_point polled_{};
-    FileTime watched_, seen_; // of the scene's file: when it was read or saved, when it was looked at last
-    FileTime loadingTime_;    // of the file that is loading
-    bool sameFile_ = false;   // the file that is loading is as it was read or saved before
+    EditHistory history_;
+    FileWatch watch_; // of the scene's file
+    uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0;
 };
 
 } // namespace relume

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <string>
+
+#include "app/edit/prepare.h"
+#include "renderer/camera.h"
+#include "renderer/scene_geometry.h"
+
+namespace relume {
+
+/// A scene as it was loaded. It is never changed afterwards.
+struct LoadedScene {
+    PreparedScene prepared;
+    SceneGeometry geometry; // for the renderer, made beside the main thread
+    ViewCamera view;        // the file's first camera, else one that goodView() finds
+    uint32_t size = 0;      // lightmap edge that the atlas is made for [texels]
+    uint64_t number = 0;    // counts loads from 1
+};
+
+/// Loads one scene at a time beside the main thread.
+class SceneLoader {
+public:
+    SceneLoader() = default;
+    ~SceneLoader(); // ends a load that is under way
+    SceneLoader(const SceneLoader&) = delete;
+    SceneLoader& operator=(const SceneLoader&) = delete;
+
+    bool loading() const { return loading_.valid(); }
+    /// Returns the path of the scene that is loading, "" for none.
+    const std::string& path() const { return path_; }
+    /// Begins to load; nothing may be loading.
+    void start(const PrepareDesc& desc);
+    /// Lets the load under way end early: nobody wants its scene any more.
+    void drop() { unwanted_ = true; }
+    /// Tells whether finish() would not wait.
+    bool ready() const;
+    /// Returns the scene, nullptr where the load was dropped. Throws what went wrong. Afterwards nothing is
+    /// loading.
+    std::unique_ptr<LoadedScene> finish();
+
+private:
+    std::future<std::unique_ptr<LoadedScene>> loading_;
+    std::atomic<bool> unwanted_ = false;
+    std::string path_;
+    uint64_t loads_ = 0;
+};
+
+} // namespace relume
