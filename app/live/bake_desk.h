@@ -68,7 +68,7 @@ struct ConvergencePoint {
     double error = 1;   // remaining, relRMSE
 };
 
-/// Where the bake thread stands. The main thread takes a copy once per frame.
+/// Tells how far the bake thread is. The main thread takes a copy once per frame.
 struct BakeStatus {
     enum class Phase { Idle, Preparing, Baking, Paused, Done, Failed };
     Phase phase = Phase::Idle;

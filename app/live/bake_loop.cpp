@@ -73,8 +73,7 @@ bool sameEdits(const SceneEdits& a, const SceneEdits& b) {
            a.placements == b.placements;
 }
 
-// Lets pictures come first where the CPU bakes: its threads get the time that is left. They inherit the
-// priority from this one.
+// Lets pictures come first where the CPU bakes: threads inherit the low priority of this one.
 void yieldToOthers() {
     const sched_param none{};
     if (sched_setscheduler(0, SCHED_IDLE, &none) != 0)
@@ -220,8 +219,7 @@ bool BakeLoop::followObjects(const BakeOrders::Start& start) {
     return true;
 }
 
-// Follows a start. Light of another scene is of no use, but light of the same one stays until there is
-// better.
+// Follows a start. Light of the same scene stays until there is better, that of another one is of no use.
 void BakeLoop::prepare(const BakeOrders::Start& start) {
     waiting_.reset();
     if (onlyEdits(start) && followEdit(start)) return;

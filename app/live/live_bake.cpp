@@ -32,7 +32,7 @@ void LiveBake::order(Change change) {
 uint64_t LiveBake::start(Start start) {
     start.number = ++bakes_;
     order([&](BakeOrders& orders) {
-        // Where the last start was not taken up yet and did not keep the light, this one does not either.
+        // This start keeps no light where the last one kept none and was not taken up yet.
         if (orders.start && !orders.start->keepLight) start.keepLight = false;
         orders.start = std::move(start);
         orders.reset = orders.abort = orders.reload = false;

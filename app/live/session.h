@@ -78,12 +78,13 @@ public:
     bool watchesFile() const { return watch_.on(); }
 
 private:
-    /// What was said of the scene that is loading, and of the one that is to be loaded next.
+    /// Holds what was said when the load under way began.
     struct Loading {
         bool keep = false;
         FileTime time;         // of its file
         bool sameFile = false; // the file is as it was read or saved before
     };
+    /// Names the scene that is to be loaded next.
     struct Next {
         std::string path;
         bool keep = false;

@@ -95,8 +95,7 @@ std::string giveSavedName(Spool& spool, const std::string& path) {
 AtomicFile::AtomicFile(const std::string& path, OnFailure onFailure)
     : target_(lookAtTarget(path)), onFailure_(onFailure) {
     const WritePlan plan = planWrite(target_);
-    // What could be written when it was checked may have changed since; the content gets a place all the
-    // same.
+    // The file may have changed since it was checked; the content gets a place all the same.
     if (plan.way == WriteWay::Refuse && onFailure == OnFailure::Drop) throw Error(path + ": " + plan.problem);
     way_ = plan.way;
     problem_ = plan.problem;

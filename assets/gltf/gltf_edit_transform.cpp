@@ -12,7 +12,7 @@ namespace relume::gltf {
 
 namespace {
 
-// What differs by less than this, relative to the whole, is the same: world transforms are floats.
+// Two values that differ by less than this, relative to the whole, are the same: transforms are floats.
 constexpr double kFloatStep = 1.2e-7;
 // Axes that are that far from perpendicular [cosine] are sheared; less is what floats and exporters round.
 constexpr double kShear = 1e-5;

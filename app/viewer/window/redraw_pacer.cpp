@@ -9,7 +9,7 @@ namespace {
 // their size for one more.
 constexpr int kSettlingFrames = 3;
 constexpr double kStatusPeriod = 0.1; // [s]: figures are not read faster
-// Where nobody moves anything, drawing takes a third of the time: it waits this many times what it cost.
+// Drawing takes a third of the time while nobody moves anything: it waits this many times what it cost.
 constexpr double kRest = 2.0;
 
 } // namespace
