@@ -28,9 +28,19 @@ EditedBake::EditedBake(const vk::Device& device, const Scene& scene, WorldMesh m
     : device_(device), scene_(scene),
       baker_(std::make_unique<Baker>(device, scene_, std::move(mesh), settings)) {}
 
+void EditedBake::apply(const SceneEdits& edits) {
+    const Applied applied = baker_->apply({.scene = edits, .mix = {}});
+    ASSERT(applied == Applied::Now);
+}
+
+SceneEdits EditedBake::editsTo(const std::vector<Light>& lights) const {
+    SceneEdits edits = editsOf(scene_);
+    edits.lights = lights;
+    return edits;
+}
+
 double EditedBake::restart(const std::vector<Light>& lights, const SolverSettings& settings) {
-    scene_.lights = lights;
-    baker_->resetSolver(settings);
+    baker_->restart(editsTo(lights), settings);
     for (const std::unique_ptr<Layer>& layer : solver().layers())
         if (!layer->members.empty())
             throw Error(
@@ -60,10 +70,10 @@ PatchLight EditedBake::firstLamp() {
 }
 
 double EditedBake::weigh(const std::vector<Light>& lights) {
-    scene_.lights = lights;
+    const SceneEdits edits = editsTo(lights);
     Stopwatch watch;
     watch([&] {
-        solver().edit({});
+        apply(edits);
         solver().liveLight();
     });
     bakeToEnd(solver());
@@ -73,12 +83,12 @@ double EditedBake::weigh(const std::vector<Light>& lights) {
 MeasuredMove EditedBake::move(const std::vector<Light>& lights, const MoveReferences& references) {
     const PatchSet& patches = baker_->patches();
     const uint64_t rays = solver().progress().rays;
-    scene_.lights = lights;
+    const SceneEdits edits = editsTo(lights);
     const glm::vec3 weight = lights.front().color * lights.front().intensity;
     MeasuredMove edit;
     Stopwatch watch;
     LayerLevel seen;
-    watch([&] { solver().edit({}); });
+    watch([&] { apply(edits); });
     do {
         watch([&] { solver().step(); });
         stopIfInterrupted();
@@ -108,9 +118,9 @@ MeasuredMove EditedBake::move(const std::vector<Light>& lights, const MoveRefere
 }
 
 void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first, MeasuredMove& edit) {
-    scene_.lights = lights;
+    const SceneEdits edits = editsTo(lights);
     Stopwatch watch;
-    watch([&] { solver().edit({}); });
+    watch([&] { apply(edits); });
     do {
         watch([&] { solver().step(); });
         stopIfInterrupted();
@@ -151,34 +161,27 @@ EditedBake::Seen EditedBake::seeLayers(uint64_t LightPattern::*changed, uint64_t
 }
 
 EditedBake::Seen EditedBake::repaint(uint32_t material, const glm::vec4& baseColor) {
-    ASSERT(solver().atRest());
     const uint64_t before = solver().layers().front()->pattern.surfaces;
-    scene_.materials[material].baseColor = baseColor;
+    SceneEdits edits = editsOf(scene_);
+    edits.materials[material].baseColor = baseColor;
     Stopwatch watch;
-    watch([&] {
-        baker_->updateMaterials();
-        solver().edit({});
-    });
+    watch([&] { apply(edits); });
     return seeLayers(&LightPattern::surfaces, before, watch);
 }
 
 std::optional<EditedBake::Replacement> EditedBake::place(uint32_t instance, const glm::mat4& transform,
                                                          const LightmapAtlas& atlas) {
-    ASSERT(solver().atRest());
     const uint64_t objects = solver().layers().front()->pattern.objects;
-    const glm::mat4 before = std::exchange(scene_.instances[instance].transform, transform);
+    SceneEdits edits = editsOf(scene_);
+    edits.placements[instance].transform = transform;
+    const double before = baker_->moves().seconds;
     Stopwatch watch;
-    const std::optional<ObjectMove> move = watch([&] { return baker_->moveObjects(atlas); });
-    if (!move) {
-        scene_.instances[instance].transform = before;
-        return {};
-    }
+    const Applied applied =
+        watch([&] { return baker_->apply({.scene = edits, .mix = {}, .atlas = &atlas}); });
+    ASSERT(applied != Applied::Later);
+    if (applied == Applied::NeedsNewBake) return {};
     Replacement times;
-    times.follow = watch.seconds;
-    watch([&] {
-        solver().moveObjects(*move);
-        solver().edit({});
-    });
+    times.follow = baker_->moves().seconds - before;
     times.seen = seeLayers(&LightPattern::objects, objects, watch);
     return times;
 }

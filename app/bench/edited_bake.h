@@ -67,12 +67,14 @@ public:
     PatchLight light() { return solver().light(); }
 
 private:
-    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    LayerSolver& solver() { return *baker_->layers(); }
+    void apply(const SceneEdits& edits);
+    SceneEdits editsTo(const std::vector<Light>& lights) const;
     const Layer* movedLayer();
     Seen seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch);
 
     const vk::Device& device_;
-    Scene scene_;
+    Scene scene_; // which the baker edits
     std::unique_ptr<Baker> baker_;
 };
 

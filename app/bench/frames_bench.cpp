@@ -20,7 +20,7 @@ namespace relume {
 namespace {
 
 constexpr float kTurn = 0.01f; // [rad] of the camera per frame
-// The bake's first solution must be there after so long.
+// The bake's first solution must be there after so long, and the first rays of a part.
 constexpr double kPatience = 300; // [s]
 
 /// The loop of a viewer without its window.
@@ -64,7 +64,7 @@ public:
         FramesPart part = begin(name);
         bake_.setBatchMs(batchMs);
         auto next = Clock::now();
-        while (secondsSince(start_) < desc_.seconds) {
+        while (goesOn(bakes)) {
             update();
             if (bakes) follow();
             part.frames.push_back(frame(true));
@@ -82,7 +82,7 @@ public:
         FramesPart part = begin(name);
         bake_.setBatchMs(desc_.budget);
         RedrawPacer pacer;
-        while (secondsSince(start_) < desc_.seconds) {
+        while (goesOn(true)) {
             if (update()) pacer.newMap();
             follow();
             const Redraw redraw = pacer.due(secondsSince(start_));
@@ -102,7 +102,7 @@ public:
     FramesPart bakeAlone(const std::string& name) {
         FramesPart part = begin(name);
         bake_.setBatchMs(desc_.budget);
-        while (secondsSince(start_) < desc_.seconds) {
+        while (goesOn(true)) {
             follow();
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
@@ -110,6 +110,13 @@ public:
     }
 
 private:
+    /// A step of a bake may last longer than a part: a rate of no ray at all would say nothing, so the part
+    /// waits until the bake has told of some.
+    bool goesOn(bool bakes) const {
+        const double seconds = secondsSince(start_);
+        if (seconds < desc_.seconds) return true;
+        return bakes && rays_.total() == raysBefore_ && seconds < kPatience;
+    }
     void seeRays() {
         const BakeStatus status = bake_.status();
         rays_.see(status.beginnings, status.rays);
@@ -174,11 +181,11 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
     request.bake.solver.layers.on = true; // as in the viewer
     const PreparedScene scene = prepareScene(request.prepare);
     std::unique_ptr<LiveBake> bake; // its Vulkan outlives OpenGL (picture_studio.h)
-    const gl::HeadlessContext context({.debug = desc.bake.validate});
+    const gl::HeadlessContext context({.debug = desc.bake.machine.validate});
     const gl::GlSharing sharing = gl::querySharing();
     bake = std::make_unique<LiveBake>(
-        LiveBake::Desc{.device = desc.bake.device,
-                       .validation = desc.bake.validate,
+        LiveBake::Desc{.device = desc.bake.machine.device,
+                       .validation = desc.bake.machine.validate,
                        .display = desc.display,
                        .host = {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids},
                        .batchMs = desc.budget});

@@ -16,44 +16,46 @@ constexpr double kLookEvery = 1.05;
 
 FreshBakes::FreshBakes(const vk::Device& device, const Scene& scene, WorldMesh mesh,
                        const BakeSettings& settings)
-    : scene_(scene), baker_(std::make_unique<Baker>(device, scene_, std::move(mesh), settings)) {}
+    : scene_(scene), start_(editsOf(scene)),
+      baker_(std::make_unique<Baker>(device, scene_, std::move(mesh), settings)) {}
 
-PatchLight FreshBakes::light(const std::vector<Light>& lights, const SolverSettings& settings) {
-    scene_.lights = lights;
-    baker_->resetSolver(settings);
+SceneEdits FreshBakes::under(const std::vector<Light>& lights) const {
+    SceneEdits edits = start_;
+    edits.lights = lights;
+    return edits;
+}
+
+PatchLight FreshBakes::bake(const SceneEdits& edits, const SolverSettings& settings) {
+    baker_->restart(edits, settings);
     bakeToEnd(baker_->solver());
     return baker_->solver().light();
 }
 
+PatchLight FreshBakes::light(const std::vector<Light>& lights, const SolverSettings& settings) {
+    return bake(under(lights), settings);
+}
+
 PatchLight FreshBakes::lightOfNothingElse(const std::vector<Light>& lights, const SolverSettings& settings) {
-    const std::vector<Material> materials = scene_.materials;
-    const glm::vec3 sky = scene_.sky.radiance;
-    for (Material& material : scene_.materials)
+    SceneEdits edits = under(lights);
+    for (Material& material : edits.materials)
         material.emission = glm::vec3(0.0f);
-    scene_.sky.radiance = glm::vec3(0.0f);
-    baker_->updateMaterials();
-    PatchLight result = light(lights, settings);
-    scene_.materials = materials;
-    scene_.sky.radiance = sky;
-    baker_->updateMaterials();
-    return result;
+    edits.sky.radiance = glm::vec3(0.0f);
+    return bake(edits, settings);
 }
 
 PatchLight FreshBakes::weighedLight(const std::vector<Light>& before, const std::vector<Light>& after,
                                     const SolverSettings& settings) {
     ASSERT(settings.layers.on);
     light(before, settings);
-    scene_.lights = after;
-    auto& solver = dynamic_cast<LayerSolver&>(baker_->solver());
-    solver.edit({});
-    bakeToEnd(solver);
-    return solver.light();
+    const Applied applied = baker_->apply({.scene = under(after), .mix = {}});
+    ASSERT(applied == Applied::Now);
+    bakeToEnd(baker_->solver());
+    return baker_->solver().light();
 }
 
 FreshBake FreshBakes::measure(const std::vector<Light>& lights, const SolverSettings& settings,
                               const PatchLight& reference) {
-    scene_.lights = lights;
-    baker_->resetSolver(settings);
+    baker_->restart(under(lights), settings);
     Solver& solver = baker_->solver();
     FreshBake bake;
     Stopwatch watch;

@@ -28,7 +28,11 @@ public:
                       const PatchLight& reference);
 
 private:
-    Scene scene_;
+    SceneEdits under(const std::vector<Light>& lights) const;
+    PatchLight bake(const SceneEdits& edits, const SolverSettings& settings);
+
+    Scene scene_;      // which the baker edits
+    SceneEdits start_; // of the scene, as it came
     std::unique_ptr<Baker> baker_;
 };
 

@@ -48,7 +48,7 @@ glm::vec3 pointOf(const Box& bounds, uint32_t index) {
 class Lookout {
 public:
     Lookout(const TraceScene& scene, const Box& bounds)
-        : scene_(scene), embree_(scene), diagonal_(bounds.diagonal()) {}
+        : scene_(scene), embree_(scene, pool_), diagonal_(bounds.diagonal()) {}
 
     /// Tells which of the positions, at most kPlacesAtOnce, see surfaces.
     std::vector<bool> seeSurfaces(const std::vector<glm::vec3>& places) {
@@ -85,6 +85,7 @@ private:
     }
 
     const TraceScene& scene_;
+    WorkerPool pool_{0}; // it has no device, whose pool it could share
     EmbreeScene embree_;
     float diagonal_;
 };

@@ -28,14 +28,14 @@ double cpuSeconds() {
 
 void checkFiles(const BakeOptions& o) {
     CommandFiles()
-        .readsScene("SCENE", o.scene)
-        .reads("--resume", o.resume)
-        .writes("--output", o.output)
-        .writes("--picture", o.picture)
-        .writes("--error-map", o.errorMap)
-        .writes("--checkpoint", o.checkpoint)
-        .writes("--json", o.json)
-        .writes("--scene-out", o.sceneOut)
+        .readsScene("SCENE", o.files.scene)
+        .reads("--resume", o.checkpoint.resume)
+        .writes("--output", o.files.output)
+        .writes("--picture", o.files.picture)
+        .writes("--error-map", o.files.errorMap)
+        .writes("--checkpoint", o.checkpoint.file)
+        .writes("--json", o.files.json)
+        .writes("--scene-out", o.files.sceneOut)
         .mayBe("--checkpoint", "--resume")
         .check();
 }
@@ -45,22 +45,22 @@ void bake(BakeOptions o) {
     const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(o);
     checkFiles(o);
-    o.method = methodName(request.bake.solver.method);
+    o.solve.method = methodName(request.bake.solver.method);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
-    checkWritable(o.output, uint64_t{o.size} * o.size * kBytesPerTexel);
-    if (!o.picture.empty()) checkWritable(o.picture);
-    if (!o.errorMap.empty()) checkWritable(o.errorMap);
-    if (!o.sceneOut.empty()) checkFileWritable(o.sceneOut, 0);
-    if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
-    if (!o.shaders.empty()) setShaderFolder(o.shaders);
+    checkWritable(o.files.output, uint64_t{o.patches.size} * o.patches.size * kBytesPerTexel);
+    if (!o.files.picture.empty()) checkWritable(o.files.picture);
+    if (!o.files.errorMap.empty()) checkWritable(o.files.errorMap);
+    if (!o.files.sceneOut.empty()) checkFileWritable(o.files.sceneOut, 0);
+    if (!o.files.json.empty() && o.files.json != "-") checkFileWritable(o.files.json, 0);
+    if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
     BakeCheckpoints checkpoints(o);
 
     std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
-    if (!o.sceneOut.empty()) checkGlb(prepared.scene, o.sceneOut);
+    if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
     stopIfInterrupted();
     const auto deviceStart = Clock::now();
-    const vk::Device device({.select = o.device, .validation = o.validate});
+    const vk::Device device({.select = o.machine.device, .validation = o.machine.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     const double deviceSeconds = secondsSince(deviceStart);
 
@@ -76,36 +76,37 @@ void bake(BakeOptions o) {
     FloatImage image = baker.lightmap(request.lightmap);
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;
     const SolverProgress& progress = baker.solver().progress();
-    addLightmapAttributes(image, o.scene, request.bake, request.lightmap, progress);
-    const ExrType type = o.half ? ExrType::Half : ExrType::Float;
-    if (o.layers)
-        writeLayers(o.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes), type);
+    addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
+    const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
+    if (o.layers.on)
+        writeLayers(o.files.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
+                    type);
     else
-        writeImage(o.output, image, type);
-    if (!o.picture.empty()) writeImage(o.picture, image);
-    if (!o.errorMap.empty()) writeImage(o.errorMap, baker.errorMap());
-    if (!o.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.sceneOut);
+        writeImage(o.files.output, image, type);
+    if (!o.files.picture.empty()) writeImage(o.files.picture, image);
+    if (!o.files.errorMap.empty()) writeImage(o.files.errorMap, baker.errorMap());
+    if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
 
-    spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.method,
+    spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.solve.method,
                  isPairMethod(request.bake.solver.method)
                      ? fmt::format("{} passes", progress.passes)
                      : fmt::format("{} directions per patch", progress.samples),
                  static_cast<double>(progress.rays) * 1e-6, progress.seconds,
                  static_cast<double>(progress.rays) * 1e-6 / progress.seconds, progress.error);
-    spdlog::info("wrote {} ({} in all)", o.output, formatDuration(secondsSince(start)));
+    spdlog::info("wrote {} ({} in all)", o.files.output, formatDuration(secondsSince(start)));
     failOnValidation(device.validationMessages());
-    if (o.json.empty()) return;
+    if (o.files.json.empty()) return;
     std::vector<PhaseTime> phases = {
         {"load", prepared.loadSeconds}, {"atlas", prepared.atlasSeconds}, {"device", deviceSeconds}};
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     phases.push_back({"solve", progress.seconds});
     phases.push_back({"write", secondsSince(writeStart)});
-    writeStatistics(o.json, {.options = o,
-                             .prepared = prepared,
-                             .baker = baker,
-                             .device = device.info(),
-                             .phases = phases,
-                             .bakeCpuSeconds = bakeCpuSeconds});
+    writeStatistics(o.files.json, {.options = o,
+                                   .prepared = prepared,
+                                   .baker = baker,
+                                   .device = device.info(),
+                                   .phases = phases,
+                                   .bakeCpuSeconds = bakeCpuSeconds});
 }
 
 } // namespace

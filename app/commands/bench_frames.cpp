@@ -49,16 +49,16 @@ void print(const FramesReport& report) {
 }
 
 void benchFrames(BenchFramesOptions o) {
-    CommandFiles().readsScene("SCENE", o.bench.bake.scene).writes("--json", o.json).check();
+    CommandFiles().readsScene("SCENE", o.bench.bake.files.scene).writes("--json", o.json).check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
-    if (!o.bench.bake.shaders.empty()) setShaderFolder(o.bench.bake.shaders);
+    if (!o.bench.bake.machine.shaders.empty()) setShaderFolder(o.bench.bake.machine.shaders);
     o.bench.display = displayModeOf(o.display);
     const FramesReport report = measureFrames(o.bench);
     if (o.json != "-") print(report);
     if (o.json.empty()) return;
     const nlohmann::ordered_json json = {{"version", RELUME_VERSION},
-                                         {"scene", o.bench.bake.scene},
-                                         {"size", o.bench.bake.size},
+                                         {"scene", o.bench.bake.files.scene},
+                                         {"size", o.bench.bake.patches.size},
                                          {"width", o.bench.width},
                                          {"height", o.bench.height},
                                          {"device", report.device},
@@ -84,7 +84,7 @@ void addBenchFramesCommand(CLI::App& bench) {
         "frames", "Frame times while a scene is baked, and what drawing leaves of the bake's speed");
     const auto options = std::make_shared<BenchFramesOptions>();
     FramesBenchDesc& b = options->bench;
-    command->add_option("scene", b.bake.scene, "glTF scene")->required();
+    command->add_option("scene", b.bake.files.scene, "glTF scene")->required();
     addSizeOption(*command, "--lightmap-size", b.bake);
     addSolverOptions(*command, b.bake);
     command->add_option("--width", b.width, "Of the pictures, in pixels")

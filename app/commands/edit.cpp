@@ -23,17 +23,17 @@ namespace {
 
 struct EditOptions {
     std::string scene, output;
-    BakeOptions bake; // output "": none
+    BakeOptions bake; // files.output "": none
 };
 
 // Returns the options of the bake, with layers where the file can hold them. Contradictions are told before
 // anything is written.
 BakeOptions bakeOptionsOf(const EditOptions& options) {
     BakeOptions bake = options.bake;
-    bake.scene = options.scene;
-    bake.layers = bake.output.ends_with(".exr");
-    if (!bake.layers && !bake.layerMemory.empty())
-        throw UsageError("--layer-memory: '" + bake.output + "' holds no layers: end its name in .exr");
+    bake.files.scene = options.scene;
+    bake.layers.on = bake.files.output.ends_with(".exr");
+    if (!bake.layers.on && !bake.layers.memory.empty())
+        throw UsageError("--layer-memory: '" + bake.files.output + "' holds no layers: end its name in .exr");
     resolveBakeOptions(bake);
     return bake;
 }
@@ -42,15 +42,15 @@ BakeOptions bakeOptionsOf(const EditOptions& options) {
 void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
     CLI::Option* output =
         command
-            .add_option("--bake", bake.output,
+            .add_option("--bake", bake.files.output,
                         "Bake the edited scene into this lightmap, .exr (light by light, for `relume mix`) "
                         "or .png; what follows is of it")
             ->type_name("OUT");
     const std::vector<CLI::Option*> before = command.get_options();
     addSizeOption(command, "--size", bake);
-    command.add_option("--error", bake.error, "Stop when the remaining error is below this (0.01)")
+    command.add_option("--error", bake.solve.error, "Stop when the remaining error is below this (0.01)")
         ->check(numberFrom(1e-6, 1.0));
-    command.add_option("--samples", bake.samples, "Directions per patch, whatever the error")
+    command.add_option("--samples", bake.links.samples, "Directions per patch, whatever the error")
         ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     addMachineOptions(command, bake);
     addLayerMemory(command, bake);
@@ -69,7 +69,7 @@ std::vector<Setting> settingsOf(const SceneEdit& edit) {
 void checkFiles(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     CommandFiles files;
     files.readsScene("SCENE", options.scene).writes("--output", options.output).mayBe("--output", "SCENE");
-    files.writes("--bake", options.bake.output);
+    files.writes("--bake", options.bake.files.output);
     for (const TypedEdit& edit : typed)
         for (const Setting& setting : settingsOf(edit.edit))
             if (setting.property == Property::File)
@@ -78,10 +78,10 @@ void checkFiles(const EditOptions& options, const std::vector<TypedEdit>& typed)
 }
 
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
-    if (options.output.empty() && options.bake.output.empty())
+    if (options.output.empty() && options.bake.files.output.empty())
         throw UsageError(
             "edit: nothing to do: give -o for the edited scene, --bake for its lightmap, or both");
-    const bool bakes = !options.bake.output.empty();
+    const bool bakes = !options.bake.files.output.empty();
     const BakeOptions bake = bakes ? bakeOptionsOf(options) : BakeOptions{};
     if (typed.empty())
         throw UsageError("edit: no edit is given: add --set, --move, --add, --delete or another one");
@@ -89,8 +89,8 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     std::error_code code; // the reader tells of a missing scene
     const auto bytes = std::filesystem::file_size(options.scene, code);
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
-    if (bakes) checkWritable(bake.output);
-    if (!bake.shaders.empty()) setShaderFolder(bake.shaders);
+    if (bakes) checkWritable(bake.files.output);
+    if (!bake.machine.shaders.empty()) setShaderFolder(bake.machine.shaders);
     const Scene before = loadGltf(options.scene);
     for (const std::string& warning : before.warnings)
         spdlog::warn("{}", warning);

@@ -1,6 +1,6 @@
 #include "app/commands/command.h"
 #include "app/edit/scene_info.h"
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "app/text/option_checks.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf.h"

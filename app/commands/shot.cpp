@@ -49,15 +49,15 @@ void shoot(ShotOptions o) {
     const ShotRequest shot = resolveShotOptions(o);
     BakeRequest request = resolveBakeOptions(o.bake);
     CommandFiles()
-        .readsScene("SCENE", o.bake.scene)
+        .readsScene("SCENE", o.bake.files.scene)
         .reads("--lightmap", o.lightmap)
-        .writes("--output", o.bake.output)
+        .writes("--output", o.bake.files.output)
         .check();
-    checkWritable(o.bake.output);
-    if (!o.bake.shaders.empty()) setShaderFolder(o.bake.shaders);
+    checkWritable(o.bake.files.output);
+    if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
     std::unique_ptr<FloatImage> image;
     if (!o.lightmap.empty()) {
-        image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.scene));
+        image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.files.scene));
         request.prepare.size = image->width; // the gutters of a repacked atlas depend on it
     }
     std::optional<PhaseProgress> phase(std::in_place, true);
@@ -77,9 +77,9 @@ void shoot(ShotOptions o) {
 
     const LightmapTexture texture =
         lightmap ? lightmap->texture() : LightmapTexture{.size = request.prepare.size};
-    writeImage(o.bake.output, studio.take(texture, shot.draw));
+    writeImage(o.bake.files.output, studio.take(texture, shot.draw));
     if (showsLight(shot.draw.view)) spdlog::info("exposure {:.2f} EV", studio.exposure());
-    spdlog::info("wrote {} ({} in all)", o.bake.output, formatDuration(secondsSince(start)));
+    spdlog::info("wrote {} ({} in all)", o.bake.files.output, formatDuration(secondsSince(start)));
 }
 
 } // namespace

@@ -26,19 +26,19 @@ void makeTimelapse(const TimelapseOptions& o) {
     const BakeOptions& options = o.shot.bake;
     const BakeRequest bakeRequest = resolveBakeOptions(options);
     CommandFiles files;
-    files.readsScene("SCENE", options.scene);
-    if (isVideo(options.output))
-        files.writes("--output", options.output);
+    files.readsScene("SCENE", options.files.scene);
+    if (isVideo(options.files.output))
+        files.writes("--output", options.files.output);
     else
-        files.writesFrames("--output", options.output);
+        files.writesFrames("--output", options.files.output);
     files.check();
-    const auto writer = makeFrameWriter({.path = options.output,
+    const auto writer = makeFrameWriter({.path = options.files.output,
                                          .width = request.shot.width,
                                          .height = request.shot.height,
                                          .rate = request.rate,
                                          .hold = kHoldLast,
                                          .overwrite = o.overwrite});
-    if (!options.shaders.empty()) setShaderFolder(options.shaders);
+    if (!options.machine.shaders.empty()) setShaderFolder(options.machine.shaders);
     std::optional<PhaseProgress> phase(std::in_place, false); // there is a video on its way
     PreparedScene prepared = prepareScene(bakeRequest.prepare);
     stopIfInterrupted();
@@ -54,14 +54,15 @@ void makeTimelapse(const TimelapseOptions& o) {
          .writer = *writer,
          .request = request,
          .lightmap = bakeRequest.lightmap,
-         .title = fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.scene).stem().string(),
-                              methodName(solver.method), options.size, options.size),
+         .title =
+             fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.files.scene).stem().string(),
+                         methodName(solver.method), options.patches.size, options.patches.size),
          .pairs = isPairMethod(solver.method)});
     phase.reset();
     solve(bake->baker().solver(), solver, timelapse);
     bake->logEnd();
     timelapse.finish();
-    spdlog::info("wrote {}: {} frames ({} in all)", options.output, writer->count(),
+    spdlog::info("wrote {}: {} frames ({} in all)", options.files.output, writer->count(),
                  formatDuration(secondsSince(start)));
 }
 

@@ -13,7 +13,7 @@ void addViewCommand(CLI::App& app) {
     addViewOptions(*command, *options);
     command->callback([options] {
         const ViewerDesc desc = resolveViewOptions(*options);
-        if (!options->bake.shaders.empty()) setShaderFolder(options->bake.shaders);
+        if (!options->bake.machine.shaders.empty()) setShaderFolder(options->bake.machine.shaders);
         Viewer viewer(desc);
         viewer.run();
     });

@@ -1,6 +1,6 @@
 #include "app/edit/edit_options.h"
 
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "app/text/near_names.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"

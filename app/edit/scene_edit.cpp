@@ -2,7 +2,7 @@
 
 #include "app/edit/scene_names.h"
 #include "app/edit/scene_pose.h"
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
 #include "assets/images/sky_picture.h"

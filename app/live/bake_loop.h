@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/live/bake_desk.h"
-#include "app/live/bake_forecast.h"
+#include "app/live/bake_meter.h"
 #include "app/live/map_publisher.h"
+#include "app/live/scene_bake.h"
 #include "assets/base/clock.h"
-#include "bake/layers/layer_solver.h"
 
 namespace relume {
 
@@ -27,13 +30,11 @@ private:
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
-    bool onlyEdits(const BakeOrders::Start& start) const;
-    bool followEdit(const BakeOrders::Start& start);
-    bool followObjects(const BakeOrders::Start& start);
-    LayerSolver* layered() const;
-    void makeBaker(WorldMesh mesh, bool keepLight);
+    void goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore);
+    uint64_t texelMoves() const;
+    void letGo();
     void reloadShaders();
-    void restart(bool keepLight);
+    void reset();
     void beginMaps(bool keepLight);
     void begin();
     void ready();
@@ -46,8 +47,7 @@ private:
     void exportAll(const BakeOrders& orders);
     void publish();
     void fail(const std::string& message);
-    void measure();
-    void follow();
+    void giveUp();
     void report(bool always);
     void wake();
 
@@ -55,19 +55,14 @@ private:
     BakeDeviceDesc desc_;
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<MapPublisher> maps_;
-    Scene scene_;                              // with the edits
-    const PreparedScene* prepared_ = nullptr;  // scene_ was made from it; only its address counts
+    SceneBake bake_;
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
-    BakeSettings settings_;
-    bool wantsLayers_ = true;      // layers are asked for, even if settings_ cannot have them
-    uint32_t rings_ = 4;           // of texels filled around charts, on screen
-    std::unique_ptr<Baker> baker_; // of scene_
-    BakeStatus status_;            // report() copies it to the desk
+    BakeStatus status_;                        // report() copies it to the desk
     BakeOrders::Run run_ = BakeOrders::Run::Resume;
     std::vector<uint32_t> seenTiles_;
     InspectRequest inspect_;
-    RayMeter meter_;
-    Clock::time_point reported_{}, measured_{};
+    BakeMeter meter_;
+    Clock::time_point reported_{};
 };
 
 } // namespace relume

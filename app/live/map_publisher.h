@@ -1,31 +1,26 @@
 #pragma once
 
-#include <array>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/live/bake_desk.h"
+#include "app/live/bake_inspection.h"
 #include "app/live/layer_probes.h"
+#include "app/live/light_maps.h"
+#include "app/live/map_slots.h"
 #include "assets/base/clock.h"
-#include "bake/show/patch_inspector.h"
-#include "bake/show/publisher.h"
 
 namespace relume {
 
-/// Brings what a bake has found to the exchange, as maps. It decides between shared images and plain memory,
-/// and keeps the light of the bake before until the new one has a solution. Only the bake thread uses it.
+/// Brings what a bake has found to the exchange, as maps: its light, what a user looks at in its place, and
+/// layers at single texels. Only the bake thread uses it.
 class MapPublisher {
 public:
-    struct Desc {
-        DisplayMode display = DisplayMode::Auto;
-        DisplayHost host;
-    };
     /// Decides how images reach OpenGL. Throws Error when they must be shared and cannot be.
-    MapPublisher(const vk::Device& device, LightmapExchange& exchange, const Desc& desc);
+    MapPublisher(const vk::Device& device, LightmapExchange& exchange, const MapSlots::Desc& desc);
 
     /// Tells what was chosen, with the reason: "shared (OpenGL and Vulkan use one device)".
-    const std::string& choice() const { return choice_; }
+    const std::string& choice() const { return slots_.choice(); }
 
     /// A bake for begin(). The references must stay valid until end().
     struct Bake {
@@ -39,6 +34,7 @@ public:
     /// Says that the bake goes on with another number, because its lights or surfaces were edited. A map of
     /// it follows, even if the edit changes nothing that can be seen.
     void edited(uint64_t number);
+    /// Ends the bake. Texels that were drawn stay; what they were made of goes.
     void end();
 
     /// Sends the layers at these texels to the exchange, one with each publish() while there are any to tell.
@@ -52,59 +48,37 @@ public:
 
     /// Returns the light as the solver has it now for each patch. Needs a bake.
     std::vector<glm::vec4> lightNow();
-    /// Returns the light paths of the patch at this texel, or nothing beside all charts. Needs a bake.
-    std::optional<InspectPaths> paths(uint32_t texel);
-    InspectVoxels voxels(uint32_t resolution) const;
+    /// Returns the bake as one looks at it, beside its light. Needs a bake.
+    BakeInspection& inspection() { return running_->inspection; }
 
 private:
-    /// A publisher that writes maps of one kind, and what goes with each map.
-    struct Source {
-        std::unique_ptr<Publisher> publisher;
-        uint64_t bake = 0;
-        bool radiance = false, filled = true;
+    struct Running {
+        Bake bake;
+        BakeInspection inspection;
     };
-    /// Images that the drawing thread may still use.
-    struct FormerImages {
-        uint32_t set = 0;
-        std::array<vk::SharedImage, Publisher::kSlots> images;
+    /// The newest map of what a user looks at.
+    struct Inspected {
+        MapSource source;
+        uint64_t version = 0; // of the light that it goes with
+        Clock::time_point at{};
     };
-    void choose();
-    Source makeSource() const;
+    MapSource makeSource() const;
     LiveLight askSolver();
     bool publishLight();
     bool publishInspected(const InspectRequest& request);
-    PatchValues inspect(const InspectRequest& request);
-    PatchValues layerOf(const InspectRequest& request);
     bool publishProbe();
-    PatchValues leafColors(const PairSettings& preview);
-    uint32_t patchAt(uint32_t texel) const;
-    void offer();
-    void takeBackFormer();
     std::optional<uint32_t> claim(uint32_t size);
-    void write(Source& source, uint32_t slot, PublishedMap map);
+    void hand(const MapSource& source, uint32_t slot, PublishedMap map);
 
     const vk::Device& device_;
     LightmapExchange& exchange_;
-    Desc desc_;
-    bool shared_ = false;
-    std::string choice_;
-    uint32_t set_ = 0, setSize_ = 0;
-    std::array<vk::SharedImage, Publisher::kSlots> images_;
-    std::vector<FormerImages> former_;
+    MapSlots slots_;
     LayerProbes probes_;
-
-    std::optional<Bake> bake_;
-    std::optional<PatchInspector> inspector_;
-    Source light_, next_, inspected_; // next_: takes light_'s place once there is a solution
-    std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
-    uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
-    bool edited_ = false;             // since the newest map
+    std::optional<Running> running_;
+    LightMaps light_;
+    Inspected inspected_;
+    std::optional<InspectRequest> shown_; // by the newest map, once there is one
     bool owes_ = false;
-    InspectRequest shown_; // by the newest map
-    bool anyShown_ = false;
-    const Publisher* writer_ = nullptr; // of the newest map
-    uint64_t inspectedVersion_ = 0;
-    Clock::time_point inspectedAt_{};
 };
 
 } // namespace relume

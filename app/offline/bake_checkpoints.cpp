@@ -22,8 +22,8 @@ std::string oneWord(std::string text) {
 } // namespace
 
 BakeCheckpoints::BakeCheckpoints(const BakeOptions& options)
-    : path_(options.checkpoint), shaders_(options.shaders), every_(options.checkpointEvery) {
-    if (!options.resume.empty()) resumed_.emplace(options.resume, RELUME_VERSION);
+    : path_(options.checkpoint.file), shaders_(options.machine.shaders), every_(options.checkpoint.every) {
+    if (!options.checkpoint.resume.empty()) resumed_.emplace(options.checkpoint.resume, RELUME_VERSION);
     if (!path_.empty()) checkFileWritable(path_, 0);
 }
 

@@ -25,7 +25,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     applyEdits(prepared.scene, edits);
     readEditedPicture(prepared.scene.sky);
     if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
-    const vk::Device device({.select = options.device, .validation = options.validate});
+    const vk::Device device({.select = options.machine.device, .validation = options.machine.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     warnIfDark(prepared.scene, baker.patches());
@@ -34,13 +34,14 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     solve(baker.solver(), request.bake.solver, none);
     phase.emplace(false);
     FloatImage image = baker.lightmap(request.lightmap);
-    addLightmapAttributes(image, options.scene, request.bake, request.lightmap, baker.solver().progress());
-    if (options.layers)
-        writeLayers(options.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
-                    ExrType::Float);
+    addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap,
+                          baker.solver().progress());
+    if (options.layers.on)
+        writeLayers(options.files.output,
+                    layeredImage(baker, prepared.scene, request.lightmap, image.attributes), ExrType::Float);
     else
-        writeImage(options.output, image, ExrType::Float);
-    spdlog::info("wrote {}", options.output);
+        writeImage(options.files.output, image, ExrType::Float);
+    spdlog::info("wrote {}", options.files.output);
     failOnValidation(device.validationMessages());
 }
 

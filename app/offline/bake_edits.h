@@ -5,7 +5,7 @@
 
 namespace relume {
 
-/// Bakes options.scene as edited into options.output; with options.layers it does so light by light, in one
+/// Bakes the scene of options.files as edited into its output; with layers it does so light by light, in one
 /// .exr. The atlas is that of the scene as its file has it, as in the viewer. Throws Error.
 void bakeEdited(const BakeOptions& options, const SceneEdits& edits);
 

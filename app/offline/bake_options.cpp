@@ -14,7 +14,7 @@ namespace {
 constexpr double kDefaultError = 0.01;
 
 // Adds the options of the methods that follow directions.
-void addLinkOptions(CLI::App& command, BakeOptions& o) {
+void addLinkOptions(CLI::App& command, LinkOptions& o) {
     command
         .add_option(
             "--samples", o.samples,
@@ -41,10 +41,10 @@ void addLinkOptions(CLI::App& command, BakeOptions& o) {
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
-void addCheckpointOptions(CLI::App& command, BakeOptions& o) {
+void addCheckpointOptions(CLI::App& command, CheckpointOptions& o) {
     CLI::Option* checkpoint = command.add_option(
-        "--checkpoint", o.checkpoint, "Save to this file every so often, and on Ctrl-C, what --resume needs");
-    command.add_option("--checkpoint-every", o.checkpointEvery, "Seconds between two of these")
+        "--checkpoint", o.file, "Save to this file every so often, and on Ctrl-C, what --resume needs");
+    command.add_option("--checkpoint-every", o.every, "Seconds between two of these")
         ->capture_default_str()
         ->check(numberFrom(0.05, 86400.0))
         ->needs(checkpoint);
@@ -54,48 +54,48 @@ void addCheckpointOptions(CLI::App& command, BakeOptions& o) {
 
 void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     const bool links = !isPairMethod(solver.method);
-    if (o.samples > 0 && !links)
+    if (o.links.samples > 0 && !links)
         throw UsageError("--samples: only with --method directional or hybrid, others have no directions");
-    if (!o.directions.empty() && !links)
+    if (!o.links.directions.empty() && !links)
         throw UsageError("--directions: only with --method directional or hybrid, others have none");
-    if (!o.rotate.empty() && !links)
+    if (!o.links.rotate.empty() && !links)
         throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
-    if (o.noSmooth && solver.method != Method::Hybrid)
+    if (o.links.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
-    if (o.indirectScale > 0 && !links)
+    if (o.links.indirectScale > 0 && !links)
         throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
                          "indirect light apart");
-    if (o.footprint && !links)
+    if (o.links.footprint && !links)
         throw UsageError("--footprint: only with --method directional or hybrid, others have no directions");
     if (links && solver.transport.rtrad) {
         throw UsageError(std::string("--method ") + methodName(solver.method) +
                          ": RTRad has no right one, --preset rtrad goes with pure and its samplings only");
     }
-    if (o.layers && solver.method != Method::Hybrid)
+    if (o.layers.on && solver.method != Method::Hybrid)
         throw UsageError("--layers: only with --method hybrid, others do not tell lights apart");
-    if (o.layers && (o.indirectScale > 1 || o.footprint || o.directions == "lec"))
+    if (o.layers.on && (o.links.indirectScale > 1 || o.links.footprint || o.links.directions == "lec"))
         throw UsageError("--layers: not with --indirect-scale, --footprint or --directions lec");
-    solver.layers.on = o.layers;
-    if (!o.layerMemory.empty()) solver.layers.bytes = typedMemory("--layer-memory", o.layerMemory);
-    solver.links.samples = o.samples;
-    solver.links.smooth = !o.noSmooth;
-    solver.links.directions = o.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
-    solver.links.rotation = o.rotate == "interleaved" ? Rotation::Interleaved
-                            : o.rotate == "tile"      ? Rotation::Tile
-                                                      : Rotation::Patch;
-    solver.links.indirectScale = std::max(o.indirectScale, 1u);
-    solver.links.footprint = o.footprint;
+    solver.layers.on = o.layers.on;
+    if (!o.layers.memory.empty()) solver.layers.bytes = typedMemory("--layer-memory", o.layers.memory);
+    solver.links.samples = o.links.samples;
+    solver.links.smooth = !o.links.noSmooth;
+    solver.links.directions = o.links.directions == "lec" ? DirectionSet::Lec : DirectionSet::Sobol;
+    solver.links.rotation = o.links.rotate == "interleaved" ? Rotation::Interleaved
+                            : o.links.rotate == "tile"      ? Rotation::Tile
+                                                            : Rotation::Patch;
+    solver.links.indirectScale = std::max(o.links.indirectScale, 1u);
+    solver.links.footprint = o.links.footprint;
     // The passes of these methods are bounces: how many samples they need is another question.
-    if (links) solver.error = o.error > 0 ? o.error : o.samples > 0 ? 0.0 : kDefaultError;
+    if (links) solver.error = o.solve.error > 0 ? o.solve.error : o.links.samples > 0 ? 0.0 : kDefaultError;
 }
 
-void addVoxelOptions(CLI::App& command, BakeOptions& o) {
+void addVoxelOptions(CLI::App& command, VoxelOptions& o) {
     command
-        .add_option("--voxels", o.voxels,
+        .add_option("--voxels", o.resolution,
                     "Voxels along each edge of the voxel map (default 128; --tracer voxel, --voxel-ratio)")
         ->check(wholeFrom(kMinVoxels, kMaxVoxels));
     command
-        .add_option("--voxel-ratio", o.voxelRatio,
+        .add_option("--voxel-ratio", o.ratio,
                     "One sender in this many marches through voxels; 0: none, 1: all")
         ->capture_default_str()
         ->check(wholeFrom(0, 256));
@@ -122,149 +122,156 @@ std::vector<std::string> tracerNames() {
 void addSolverOptions(CLI::App& command, BakeOptions& o) {
     command
         .add_option(
-            "--method", o.method,
+            "--method", o.solve.method,
             "How light is gathered: hybrid (default), directional, pure, static, montecarlo, mipmapped or "
             "adaptive")
         ->check(oneOf(methodNames()));
     addPairOptions(command, o.pairs);
-    command.add_option("--passes", o.passes, "Stop after this many passes (bounces)")
+    command.add_option("--passes", o.solve.passes, "Stop after this many passes (bounces)")
         ->check(wholeFrom(1, Solver::kMaxPasses));
     command
-        .add_option("--error", o.error,
+        .add_option("--error", o.solve.error,
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
         ->check(numberFrom(1e-6, 1.0));
-    addLinkOptions(command, o);
-    addVoxelOptions(command, o);
+    addLinkOptions(command, o.links);
+    addVoxelOptions(command, o.voxels);
     addMachineOptions(command, o);
 }
 
 void addMachineOptions(CLI::App& command, BakeOptions& o) {
-    command.add_option("--tracer", o.tracer, "What traces rays")
+    command.add_option("--tracer", o.machine.tracer, "What traces rays")
         ->capture_default_str()
         ->check(oneOf(tracerNames()));
-    command.add_option("--device", o.device, "Vulkan device: index or part of its name (relume devices)");
-    command.add_option("--reflectivity", o.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
+    command.add_option("--device", o.machine.device,
+                       "Vulkan device: index or part of its name (relume devices)");
+    command
+        .add_option("--reflectivity", o.solve.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
         ->check(numberFrom(0.0, 10.0));
-    command.add_option("--dilate", o.dilate, "Rings of texels filled around charts")
+    command.add_option("--dilate", o.lightmap.dilate, "Rings of texels filled around charts")
         ->capture_default_str()
         ->check(wholeFrom(0, 64));
-    command.add_flag("--no-sew", o.noSew, "Leave the texels around charts empty");
-    command.add_flag("--conservative", o.conservative, "Every texel that a triangle touches becomes a patch");
-    command.add_flag("--unwrap", o.unwrap, "Make lightmap UVs for meshes that have none");
-    command.add_option("--density", o.density, "Texels per metre of --unwrap (default: what fits)")
+    command.add_flag("--no-sew", o.lightmap.noSew, "Leave the texels around charts empty");
+    command.add_flag("--conservative", o.patches.conservative,
+                     "Every texel that a triangle touches becomes a patch");
+    command.add_flag("--unwrap", o.patches.unwrap, "Make lightmap UVs for meshes that have none");
+    command.add_option("--density", o.patches.density, "Texels per metre of --unwrap (default: what fits)")
         ->check(numberAbove(0, 1e6));
-    command.add_flag("--device-gather", o.deviceGather,
+    command.add_flag("--device-gather", o.machine.deviceGather,
                      "Gather by the device's shaders also where it is the CPU, whose own loops are faster");
-    command.add_option("--batch-ms", o.batchMs, "Aim of one submit in milliseconds")
+    command.add_option("--batch-ms", o.machine.batchMs, "Aim of one submit in milliseconds")
         ->capture_default_str()
         ->check(numberFrom(0.1, 45.0));
     command
-        .add_option("--shaders", o.shaders,
+        .add_option("--shaders", o.machine.shaders,
                     "Compile the shaders from this folder instead of the built-in ones")
         ->check(existingFolder());
-    command.add_flag("--validate", o.validate, "Run under the Vulkan validation layers");
+    command.add_flag("--validate", o.machine.validate, "Run under the Vulkan validation layers");
 }
 
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
-    command.add_option(name, o.size, "Lightmap edge in texels")
+    command.add_option(name, o.patches.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(wholeFrom(8, Baker::kMaxSize));
 }
 
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
     return command.add_option(
-        "--layer-memory", o.layerMemory,
+        "--layer-memory", o.layers.memory,
         "Layers take at most so much, as 512M or 2G (default: a third of the free device "
         "memory); lights beyond share layers");
 }
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
-    command.add_option("scene", o.scene, "glTF scene, .gltf or .glb")->required();
-    command.add_option("-o,--output", o.output, "Lightmap to write, .exr or .png")->required();
-    command.add_option("--picture", o.picture, "Write the lightmap to this .png as well");
+    command.add_option("scene", o.files.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.files.output, "Lightmap to write, .exr or .png")->required();
+    command.add_option("--picture", o.files.picture, "Write the lightmap to this .png as well");
     addSizeOption(command, "--size", o);
     addSolverOptions(command, o);
-    command.add_option("--error-map", o.errorMap,
+    command.add_option("--error-map", o.files.errorMap,
                        "Write each texel's standard error as an image, .exr or .png");
     command
-        .add_option("--quantity", o.quantity,
+        .add_option("--quantity", o.lightmap.quantity,
                     "lighting: irradiance / pi; radiance: emission + albedo * lighting")
         ->check(oneOf({"lighting", "radiance"}));
-    command.add_option("--preset", o.preset, "rtrad: the reference implementation to the letter")
+    command.add_option("--preset", o.solve.preset, "rtrad: the reference implementation to the letter")
         ->check(oneOf({"rtrad"}));
-    command.add_option("--distance-factor", o.distanceFactor, "Scales distances, preset rtrad only")
+    command.add_option("--distance-factor", o.solve.distanceFactor, "Scales distances, preset rtrad only")
         ->check(numberFrom(0.0, 2.0));
     CLI::Option* layers = command.add_flag(
-        "--layers", o.layers,
+        "--layers", o.layers.on,
         "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
         "that 'relume mix' weighs anew");
     addLayerMemory(command, o)->needs(layers);
-    command.add_flag("--half", o.half, "Write 16-bit floats");
-    addCheckpointOptions(command, o);
-    command.add_option("--json", o.json, "Write statistics to this file, - for standard output");
-    command.add_option("--scene-out", o.sceneOut,
+    command.add_flag("--half", o.files.half, "Write 16-bit floats");
+    addCheckpointOptions(command, o.checkpoint);
+    command.add_option("--json", o.files.json, "Write statistics to this file, - for standard output");
+    command.add_option("--scene-out", o.files.sceneOut,
                        "Write the scene with the lightmap UVs that were used, .glb");
 }
 
 VoxelSettings resolveVoxels(const BakeOptions& o) {
-    const bool voxelTracer = parseTracerKind(o.tracer) == TracerKind::Voxel;
-    if (voxelTracer && o.voxelRatio > 1) {
-        throw UsageError("--voxel-ratio " + std::to_string(o.voxelRatio) +
+    const bool voxelTracer = parseTracerKind(o.machine.tracer) == TracerKind::Voxel;
+    if (voxelTracer && o.voxels.ratio > 1) {
+        throw UsageError("--voxel-ratio " + std::to_string(o.voxels.ratio) +
                          ": mixes voxels into another tracer; leave out --tracer voxel");
     }
-    if (o.voxels > 0 && !voxelTracer && o.voxelRatio == 0)
+    if (o.voxels.resolution > 0 && !voxelTracer && o.voxels.ratio == 0)
         throw UsageError("--voxels: only with --tracer voxel or --voxel-ratio");
-    VoxelSettings voxels{.ratio = voxelTracer ? 1 : o.voxelRatio};
-    if (o.voxels > 0) voxels.resolution = o.voxels;
+    VoxelSettings voxels{.ratio = voxelTracer ? 1 : o.voxels.ratio};
+    if (o.voxels.resolution > 0) voxels.resolution = o.voxels.resolution;
     return voxels;
 }
 
 BakeRequest resolveBakeOptions(const BakeOptions& o) {
-    const bool rtrad = o.preset == "rtrad";
-    if (rtrad && o.quantity == "lighting") {
+    const bool rtrad = o.solve.preset == "rtrad";
+    if (rtrad && o.lightmap.quantity == "lighting") {
         throw UsageError("--quantity lighting: --preset rtrad computes RTRad's radiosity only; leave it "
                          "out or use radiance");
     }
-    if (!rtrad && o.distanceFactor >= 0) {
+    if (!rtrad && o.solve.distanceFactor >= 0) {
         throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
     }
-    if (!o.unwrap && o.density > 0) throw UsageError("--density: only with --unwrap");
-    if (!o.picture.empty() && !o.picture.ends_with(".png"))
-        throw UsageError("--picture: '" + o.picture + "' does not end in .png");
-    if (!o.sceneOut.empty() && !o.sceneOut.ends_with(".glb"))
-        throw UsageError("--scene-out: '" + o.sceneOut +
+    if (!o.patches.unwrap && o.patches.density > 0) throw UsageError("--density: only with --unwrap");
+    if (!o.files.picture.empty() && !o.files.picture.ends_with(".png"))
+        throw UsageError("--picture: '" + o.files.picture + "' does not end in .png");
+    if (!o.files.sceneOut.empty() && !o.files.sceneOut.ends_with(".glb"))
+        throw UsageError("--scene-out: '" + o.files.sceneOut +
                          "' does not end in .glb: scenes are written as binary glTF");
-    if (o.layers && !o.output.ends_with(".exr"))
+    if (o.layers.on && !o.files.output.ends_with(".exr"))
         throw UsageError("--layers: layers are kept in OpenEXR only: give -o a name that ends in .exr");
-    if (o.layers && o.quantity == "radiance")
+    if (o.layers.on && o.lightmap.quantity == "radiance")
         throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
     BakeRequest request;
-    request.prepare = {.path = o.scene, .size = o.size, .unwrap = o.unwrap, .density = o.density};
-    request.bake.size = o.size;
-    request.bake.conservative = o.conservative;
-    request.bake.tracer = parseTracerKind(o.tracer);
+    request.prepare = {.path = o.files.scene,
+                       .size = o.patches.size,
+                       .unwrap = o.patches.unwrap,
+                       .density = o.patches.density};
+    request.bake.size = o.patches.size;
+    request.bake.conservative = o.patches.conservative;
+    request.bake.tracer = parseTracerKind(o.machine.tracer);
     request.bake.voxels = resolveVoxels(o);
     SolverSettings& solver = request.bake.solver;
     solver.transport.rtrad = rtrad;
-    solver.transport.deviceGather = o.deviceGather;
-    solver.transport.reflectivity = static_cast<float>(o.reflectivity >= 0 ? o.reflectivity
-                                                       : rtrad             ? double(kRtradReflectivity)
-                                                                           : 1.0);
-    solver.transport.distanceFactor = o.distanceFactor >= 0 ? static_cast<float>(o.distanceFactor) : 1.0f;
-    solver.passes = o.passes;
-    solver.error = o.error > 0 ? o.error : o.passes > 0 ? 0.0 : kDefaultError;
-    solver.batchMs = o.batchMs;
-    if (!o.method.empty())
-        solver.method = parseMethod(o.method);
+    solver.transport.deviceGather = o.machine.deviceGather;
+    solver.transport.reflectivity = static_cast<float>(o.solve.reflectivity >= 0 ? o.solve.reflectivity
+                                                       : rtrad                   ? double(kRtradReflectivity)
+                                                                                 : 1.0);
+    solver.transport.distanceFactor =
+        o.solve.distanceFactor >= 0 ? static_cast<float>(o.solve.distanceFactor) : 1.0f;
+    solver.passes = o.solve.passes;
+    solver.error = o.solve.error > 0 ? o.solve.error : o.solve.passes > 0 ? 0.0 : kDefaultError;
+    solver.batchMs = o.machine.batchMs;
+    if (!o.solve.method.empty())
+        solver.method = parseMethod(o.solve.method);
     else
         solver.method = rtrad ? Method::Pure : Method::Hybrid;
     resolvePairOptions(o.pairs, solver);
     resolveLinkOptions(o, solver);
-    const bool radiance = rtrad || o.quantity == "radiance";
+    const bool radiance = rtrad || o.lightmap.quantity == "radiance";
     request.lightmap = {.quantity = radiance ? Quantity::Radiance : Quantity::Lighting,
                         .reflectivity = solver.transport.reflectivity,
-                        .sew = !o.noSew && o.dilate > 0,
-                        .dilate = o.dilate,
+                        .sew = !o.lightmap.noSew && o.lightmap.dilate > 0,
+                        .dilate = o.lightmap.dilate,
                         .rtrad = rtrad};
     return request;
 }

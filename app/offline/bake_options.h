@@ -17,31 +17,77 @@ namespace relume {
 
 constexpr float kRtradReflectivity = 0.9f; // of RTRad's preset, unless told otherwise
 
-/// The options that the user typed after `relume bake`.
-struct BakeOptions {
-    std::string scene, output, picture, errorMap, json, sceneOut, shaders, device;
-    std::string method;             // "": hybrid, or with the RTRad preset pure
-    std::string directions, rotate; // "": not given
-    std::string tracer = "auto", preset, quantity;
-    uint32_t size = 512;
-    uint32_t passes = 0; // 0: not given
-    uint32_t voxels = 0; // 0: not given
-    uint32_t voxelRatio = 0;
+/// The files that a bake reads and writes; "": not given.
+struct BakeFiles {
+    std::string scene, output, picture, errorMap, json, sceneOut;
+    bool half = false; // the output, if it is an .exr
+};
+
+/// The patches that the lightmap has.
+struct PatchOptions {
+    uint32_t size = 512; // lightmap edge [texels]
+    bool conservative = false, unwrap = false;
+    double density = 0; // of unwrap [texels per m], 0: what fits
+};
+
+/// Says how light is gathered, and when that is enough.
+struct SolveOptions {
+    std::string method; // "": hybrid, or with the RTRad preset pure
+    std::string preset;
+    uint32_t passes = 0;                           // 0: not given
     double error = 0;                              // 0: not given
     double reflectivity = -1, distanceFactor = -1; // negative: not given
-    double density = 0;
-    double batchMs = 20;
-    std::string checkpoint, resume;
-    double checkpointEvery = 30; // [s]
-    uint32_t dilate = 4;
-    uint32_t samples = 0;       // 0: not given
-    uint32_t indirectScale = 0; // 0: not given
+};
+
+/// The options of the methods that follow directions.
+struct LinkOptions {
+    uint32_t samples = 0;           // 0: not given
+    std::string directions, rotate; // "": not given
+    uint32_t indirectScale = 0;     // 0: not given
     bool noSmooth = false, footprint = false;
-    bool layers = false;
-    std::string layerMemory;
+};
+
+struct LayerOptions {
+    bool on = false;
+    std::string memory; // "": not given
+};
+
+struct VoxelOptions {
+    uint32_t resolution = 0; // 0: not given
+    uint32_t ratio = 0;
+};
+
+/// The device, and how it works.
+struct MachineOptions {
+    std::string device, tracer = "auto", shaders;
+    double batchMs = 20;
+    bool deviceGather = false, validate = false;
+};
+
+/// The texels that are written.
+struct LightmapOptions {
+    std::string quantity; // "": not given
+    uint32_t dilate = 4;  // rings of texels filled around charts
+    bool noSew = false;
+};
+
+struct CheckpointOptions {
+    std::string file, resume; // "": none
+    double every = 30;        // [s]
+};
+
+/// The options that the user typed after `relume bake`.
+struct BakeOptions {
+    BakeFiles files;
+    PatchOptions patches;
+    SolveOptions solve;
+    LinkOptions links;
     PairOptions pairs; // and caches
-    bool noSew = false, half = false, conservative = false, unwrap = false, validate = false;
-    bool deviceGather = false;
+    LayerOptions layers;
+    VoxelOptions voxels;
+    MachineOptions machine;
+    LightmapOptions lightmap;
+    CheckpointOptions checkpoint;
 };
 
 void addBakeOptions(CLI::App& command, BakeOptions& options);

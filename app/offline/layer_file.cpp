@@ -1,6 +1,6 @@
 #include "app/offline/layer_file.h"
 
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 
@@ -38,10 +38,11 @@ std::string namesOf(const std::vector<LightSource>& lights) {
 
 } // namespace
 
-LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& desc,
+LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc,
                           const std::map<std::string, std::string>& attributes) {
     ASSERT(desc.quantity == Quantity::Lighting);
-    const auto& solver = dynamic_cast<LayerSolver&>(baker.solver());
+    ASSERT(baker.layers() != nullptr);
+    const LayerSolver& solver = *baker.layers();
     LayeredImage image;
     image.composite = baker.lightmap(desc);
     image.composite.attributes = attributes;

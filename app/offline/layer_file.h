@@ -10,11 +10,11 @@
 
 namespace relume {
 
-/// Returns the lightmap of a layered bake (whose solver is a LayerSolver) as it stands, light by light: each
+/// Returns the lightmap of a bake that has layers (Baker::layers) as it stands, light by light: each
 /// layer with its weight, light and level, and with what it does not show of the scene any more. Seams are
 /// filled as in the composite, which is the sum of the others and bears these attributes. desc.quantity must
 /// be lighting.
-LayeredImage layeredImage(Baker& baker, const Scene& scene, const LightmapDesc& desc,
+LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc,
                           const std::map<std::string, std::string>& attributes);
 
 /// Writes the image by writeLayeredExr, and a line to the log about each layer.

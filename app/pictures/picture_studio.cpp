@@ -7,7 +7,7 @@
 
 namespace relume {
 
-PictureStudio::PictureStudio(const BakeOptions& options) : context_({.debug = options.validate}) {
+PictureStudio::PictureStudio(const BakeOptions& options) : context_({.debug = options.machine.validate}) {
     spdlog::info("pictures: {}, by EGL ({})", gl::describeContext(), context_.platform());
 }
 
@@ -27,7 +27,8 @@ FloatImage PictureStudio::take(const LightmapTexture& lightmap, const DrawSettin
 
 PictureBake::PictureBake(const BakeOptions& options, const BakeRequest& request,
                          const PreparedScene& prepared)
-    : device_({.select = options.device, .validation = options.validate}), size_(request.bake.size) {
+    : device_({.select = options.machine.device, .validation = options.machine.validate}),
+      size_(request.bake.size) {
     spdlog::info("device: {} ({})", device_.info().name, device_.info().driver);
     baker_ = std::make_unique<Baker>(device_, prepared.scene, prepared.mesh, request.bake);
     spdlog::info("{} patches", baker_->patches().count);

@@ -82,8 +82,8 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 }
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {
-    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb")->required();
-    command.add_option("-o,--output", o.bake.output, "Picture to write, .png")->required();
+    command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("-o,--output", o.bake.files.output, "Picture to write, .png")->required();
     addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
     CLI::Option* lightmap = command.get_option("--lightmap");
@@ -100,8 +100,8 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
 }
 
 ShotRequest resolveShotOptions(const ShotOptions& o) {
-    if (!o.bake.output.ends_with(".png"))
-        throw UsageError("--output: '" + o.bake.output + "' does not end in .png");
+    if (!o.bake.files.output.ends_with(".png"))
+        throw UsageError("--output: '" + o.bake.files.output + "' does not end in .png");
     return resolvePictureOptions(o);
 }
 
@@ -134,7 +134,7 @@ ViewCamera chooseCamera(const ShotOptions& o, const Scene& scene, const WorldMes
     if (!o.eye.empty())
         camera = cameraAt(parsePoint("--eye", o.eye), parsePoint("--target", o.target), bounds);
     else if (!o.camera.empty() && named == scene.cameras.end())
-        throw Error(o.bake.scene + ": has no camera " + inQuotes(o.camera) + ": " + cameraNames(scene));
+        throw Error(o.bake.files.scene + ": has no camera " + inQuotes(o.camera) + ": " + cameraNames(scene));
     else if (!o.camera.empty())
         camera = cameraOfFile(*named, bounds);
     else if (!scene.cameras.empty())

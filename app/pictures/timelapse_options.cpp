@@ -48,10 +48,10 @@ void checkOutput(const std::string& path) {
 } // namespace
 
 void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
-    command.add_option("scene", o.shot.bake.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("scene", o.shot.bake.files.scene, "glTF scene, .gltf or .glb")->required();
     command
         .add_option(
-            "-o,--output", o.shot.bake.output,
+            "-o,--output", o.shot.bake.files.output,
             "Folder for frame_0001.png and so on, made where there is none; or a video, FILE.mp4, for "
             "which ffmpeg must be installed")
         ->required();
@@ -78,8 +78,8 @@ void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
 }
 
 TimelapseRequest resolveTimelapseOptions(const TimelapseOptions& o) {
-    checkOutput(o.shot.bake.output);
-    const bool video = isVideo(o.shot.bake.output);
+    checkOutput(o.shot.bake.files.output);
+    const bool video = isVideo(o.shot.bake.files.output);
     TimelapseRequest request;
     request.shot = resolvePictureOptions(o.shot);
     if (request.shot.draw.view != View::Lit && request.shot.draw.view != View::Lighting) {

@@ -4,6 +4,7 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_edit_transform.h"
 #include "assets/gltf/gltf_light_json.h"
+#include "assets/model/light_names.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -19,22 +20,6 @@ namespace {
 
 constexpr const char* kPunctual = "KHR_lights_punctual";
 constexpr double kHalfPi = 1.57079632679489662;
-
-const char* typeName(LightType type) {
-    switch (type) {
-    case LightType::Point:
-        return "point";
-    case LightType::Spot:
-        return "spot";
-    case LightType::Directional:
-        return "directional";
-    case LightType::Rectangle:
-        return "rectangle";
-    case LightType::Disc:
-        return "disc";
-    }
-    return "";
-}
 
 Carried carriedAs(const Light& light) {
     return isAreaLight(light.type) ? Carried::AreaLight : Carried::Light;
@@ -121,7 +106,7 @@ void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light
             entry["name"] = light.name;
         }
     }
-    if (anew) entry["type"] = typeName(light.type);
+    if (anew) entry["type"] = lightTypeName(light.type);
     if (!before || before->color != light.color) setNumbers(entry["color"], numbersOf(light.color));
     if (!before || before->intensity != light.intensity) setNumber(entry["intensity"], light.intensity);
     const auto member = [&](const JsonPath& path, float value, bool changed, bool belongs) {
@@ -149,7 +134,7 @@ void LightEdit::writeArea(int index, const Light& light, const Light* before) co
     if (area.is_null()) area = EditedJson::object();
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) area["name"] = light.name;
-    if (anew) area["type"] = typeName(light.type);
+    if (anew) area["type"] = lightTypeName(light.type);
     if (!before || before->color != light.color) setNumbers(area["color"], numbersOf(light.color));
     if (!before || before->intensity != light.intensity) setNumber(area["intensity"], light.intensity);
     if (light.type == LightType::Rectangle) {

@@ -1,10 +1,12 @@
 #include "bake/baker/baker.h"
 
+#include "assets/base/clock.h"
+#include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
 #include "bake/baker/inside_search.h"
-#include "bake/baker/make_solver.h"
 #include "bake/baker/object_mover.h"
+#include "bake/layers/layer_solver.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/texture_group.h"
 #include "bake/vk/commands.h"
@@ -33,19 +35,15 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-bool usesVoxels(const BakeSettings& settings) {
-    return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
-}
-
 } // namespace
 
-std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
-                               uint64_t limit) {
+std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings,
+                               const SceneExtent& scene, uint64_t limit) {
     const uint32_t size = settings.size;
     const auto bytes = [&](uint32_t edge) {
         BakeSettings smaller = settings;
         smaller.size = edge;
-        return deviceBytes(smaller, triangles, device.info().software());
+        return deviceBytes(smaller, scene, device.info().software());
     };
     const uint64_t needed = bytes(size);
     const uint32_t imageLimit = std::min(kMaxSize, device.limits().maxImageDimension2D);
@@ -59,33 +57,36 @@ std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& set
            (fits > 0 ? "--size " + std::to_string(fits) + " fits" : "no size fits, close other programs");
 }
 
-uint64_t Baker::deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software) {
+uint64_t Baker::deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software) {
     const uint64_t texels = uint64_t{settings.size} * settings.size;
-    // The CIT pass' images are gone before the solver's buffers come.
-    const uint64_t cit = texels * (4 * sizeof(glm::vec4) + sizeof(uint32_t)) + texels * sizeof(glm::vec4);
-    const uint64_t perPatch =
-        sizeof(shader::Patch) + sizeof(shader::PatchEdges) + 5 * sizeof(glm::vec4) + 2 * sizeof(uint32_t);
-    const auto chunks = static_cast<uint32_t>(texels / shader::kChunk + 1);
-    // A software device's memory is the host's, which holds the patches and the light once more.
-    constexpr uint64_t kHostBytes = 180;
-    const uint64_t solve =
-        texels * (perPatch + (software ? kHostBytes : 0)) + solverBytes(chunks, software, settings.solver);
-    constexpr uint64_t kBytesPerTriangle =
-        400; // corners, hit table, acceleration structure while it is built
-    const uint64_t voxels = usesVoxels(settings) ? VoxelMap::bytes(settings.voxels.resolution) : 0;
-    return std::max(cit, solve) + triangles * kBytesPerTriangle + voxels;
+    const SolverExtent all{.chunkCount = static_cast<uint32_t>(texels / shader::kChunk + 1),
+                           .texels = texels,
+                           .software = software,
+                           .skyPixels = scene.skyPixels,
+                           .skyRows = scene.skyRows};
+    return memoryNeeds(settings, scene, all).total();
 }
 
 Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
              PhaseHook phaseHook)
-    : device_(device), scene_(scene), settings_(settings), phaseHook_(std::move(phaseHook)) {
+    : Baker(device, scene, nullptr, std::move(mesh), settings, std::move(phaseHook)) {}
+
+Baker::Baker(const vk::Device& device, Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+             PhaseHook phaseHook)
+    : Baker(device, scene, &scene, std::move(mesh), settings, std::move(phaseHook)) {}
+
+Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, WorldMesh mesh,
+             const BakeSettings& settings, PhaseHook phaseHook)
+    : device_(device), scene_(scene), editable_(editable), settings_(settings),
+      phaseHook_(std::move(phaseHook)) {
     const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
-    const std::string problem = sizeProblem(device, settings, mesh.triangleCount(), limit);
+    const std::string problem = sizeProblem(device, settings, extentOf(scene, mesh.triangleCount()), limit);
     if (!problem.empty()) throw Error(problem);
     const bool rtrad = settings.solver.transport.rtrad;
     PhaseClock clock(phases_);
     onPhase("cit");
     {
+        const vk::MemoryOwner owner("cit");
         const TextureGroup group = rasterizeTextureGroup(
             device, scene, mesh,
             {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
@@ -99,7 +100,10 @@ Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const
                      "lower the base colour",
                      patches_.clampedAlbedo);
     }
-    light_ = std::make_unique<LightBuffers>(device, patches_);
+    {
+        const vk::MemoryOwner owner("surface");
+        light_ = std::make_unique<LightBuffers>(device, patches_);
+    }
     colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
 
@@ -117,6 +121,7 @@ Baker::~Baker() = default;
 
 // Makes the tracers. Triangles tell whether a patch lies inside something: a voxel knows no inside.
 void Baker::makeTracers() {
+    const vk::MemoryOwner owner("trace");
     std::string why = "as asked for";
     TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
     if (kind == TracerKind::Auto) kind = chooseTracer(device_.info(), why);
@@ -175,31 +180,70 @@ void Baker::onPhase(const char* phase, double done) const {
 }
 
 void Baker::resetSolver(const SolverSettings& settings) {
-    solver_.reset(); // before the new one takes its memory
+    solver_ = {}; // before the new one takes its memory
     settings_.solver = settings;
     solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
+}
+
+void Baker::restart(const SceneEdits& wanted, const SolverSettings& settings) {
+    ASSERT(editable_ && wanted.sky.file == scene_.sky.file);
+    ASSERT(!differenceBetween(scene_, wanted).objects);
+    applyEdits(*editable_, wanted);
+    updateMaterials();
+    resetSolver(settings);
+}
+
+Applied Baker::apply(const BakeEdits& edits) {
+    const SceneDifference difference = differenceBetween(scene_, edits.scene);
+    LayerSolver* const layers = solver_.layers;
+    const Applied applied =
+        decideEdit(difference, {.follows = editable_ && layers,
+                                .fits = layers && layers->holds(edits.scene.lights.size()),
+                                .atRest = layers && layers->atRest()});
+    if (applied != Applied::Now) return applied;
+    const SceneEdits before = difference.objects ? editsOf(scene_) : SceneEdits();
+    applyEdits(*editable_, edits.scene);
+    std::optional<ObjectMove> move;
+    if (difference.objects) {
+        move = moveObjects(edits.atlas);
+        if (!move) {
+            applyEdits(*editable_, before);
+            return Applied::NeedsNewBake;
+        }
+    }
+    if (difference.colours) updateMaterials();
+    if (move) layers->moveObjects(*move);
+    layers->edit(edits.mix);
+    return Applied::Now;
 }
 
 void Baker::updateMaterials() {
     colours_->update(device_, scene_.materials, patches_, *light_);
 }
 
-std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas& atlas) {
-    std::optional<ObjectMove> move = mover_ ? mover_->follow(atlas, *tracer_) : std::nullopt;
-    if (!move) return {};
-    invalid_ = mover_->invalidPatches();
-    if (mover_->repainted()) colours_->updateAll(device_, scene_.materials, patches_, *light_);
+// Moves, hides and shows objects as the scene has them now. Returns nothing where that cannot be followed;
+// then all is as it was.
+std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas* atlas) {
+    if (!mover_ || atlas == nullptr) return {};
+    const Clock::time_point start = Clock::now();
+    std::optional<ObjectMove> move = mover_->follow(*atlas, *tracer_);
+    if (move) {
+        invalid_ = mover_->invalidPatches();
+        if (mover_->repainted()) colours_->updateAll(device_, scene_.materials, patches_, *light_);
+        if (move->texels) ++moves_.texels;
+    }
+    moves_.seconds += secondsSince(start);
     return move;
 }
 
 FloatImage Baker::lightmap(LightmapDesc desc) const {
     desc.rtrad = settings_.solver.transport.rtrad;
     desc.reflectivity = settings_.solver.transport.reflectivity;
-    return makeLightmap(patches_, solver_->light(), desc);
+    return makeLightmap(patches_, solver_.solver->light(), desc);
 }
 
 FloatImage Baker::errorMap() const {
-    const std::vector<float> errors = solver_->errors();
+    const std::vector<float> errors = solver_.solver->errors();
     if (errors.empty())
         throw Error("--error-map: one pass says nothing about its error: let the bake run for two or more");
     std::vector<glm::vec4> grey;

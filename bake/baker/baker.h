@@ -7,30 +7,28 @@
 #include <utility>
 #include <vector>
 
+#include "bake/baker/bake_settings.h"
+#include "bake/baker/edit_decision.h"
+#include "bake/baker/make_solver.h"
+#include "bake/baker/memory_needs.h"
 #include "bake/output/lightmap.h"
-#include "bake/solver/solver.h"
 #include "bake/surface/surface_colours.h"
-#include "bake/trace/make_tracer.h"
-#include "bake/trace/voxel_map.h"
 
 namespace relume {
 
-struct LightmapAtlas;
 struct ObjectMove;
 class ObjectMover;
-
-struct BakeSettings {
-    uint32_t size = 512; // lightmap edge [texels]
-    bool conservative = false;
-    TracerKind tracer = TracerKind::Auto;
-    VoxelSettings voxels;  // of the voxel tracer; a ratio above 0 mixes it with `tracer`
-    SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
-};
 
 /// The seconds of one named phase.
 struct PhaseTime {
     std::string name;
     double seconds = 0;
+};
+
+/// Counts over all moves of objects that a bake has followed.
+struct MoveCounters {
+    uint64_t texels = 0; // moves after which some texels have another patch, or one of them has none
+    double seconds = 0;  // for patches, triangles and tracer
 };
 
 /// One bake of one scene: CIT, patches, tracer, solver. The constructor prepares everything; then step the
@@ -47,20 +45,27 @@ public:
     using PhaseHook = std::function<void(const char* phase)>;
     Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
           PhaseHook phaseHook = {});
+    /// Does likewise for a scene that edits may change: nobody but apply() and restart() may do so from now
+    /// on.
+    Baker(const vk::Device& device, Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+          PhaseHook phaseHook = {});
     ~Baker();
 
-    Solver& solver() { return *solver_; }
+    Solver& solver() { return *solver_.solver; }
+    /// Returns the same solver where each light has a layer, else nullptr.
+    LayerSolver* layers() { return solver_.layers; }
+    const LayerSolver* layers() const { return solver_.layers; }
     /// Makes another solver of the same patches, which starts from no light; `transport` must stay as it is.
     /// Throws Error when its method cannot run: then there is no solver any more.
     void resetSolver(const SolverSettings& settings);
-    /// Takes over colours and strengths of materials as the scene has them now; not whether they are masked
-    /// or emit at all. This is for a solver that follows edits, which must be told afterwards.
-    void updateMaterials();
-    /// Moves, hides and shows objects as the scene has them now: for a solver that follows edits
-    /// (LayerSolver::moveObjects must be told of what comes back). Returns nothing where that cannot be
-    /// followed; then all is as it was, and another Baker is needed. The atlas is the one that the mesh was
-    /// made with.
-    std::optional<ObjectMove> moveObjects(const LightmapAtlas& atlas);
+    /// Does so after changing lights, sky and colours as wanted; objects and the sky's picture must be those
+    /// that are baked.
+    void restart(const SceneEdits& wanted, const SolverSettings& settings);
+    /// Edits what is baked: takes over what differs from the scene, and tells the solver, even where nothing
+    /// does. After a Later the caller asks again, or forgets the edit for a newer one.
+    Applied apply(const BakeEdits& edits);
+    /// Returns what all moves of objects so far have come to.
+    const MoveCounters& moves() const { return moves_; }
     Tracer& tracer() { return *tracer_; }
     /// Returns the tracer's name and why it was taken: "embree (software device)".
     const std::string& tracerChoice() const { return tracerChoice_; }
@@ -76,18 +81,23 @@ public:
 
     /// Returns what is wrong with the size where `limit` bytes may be taken, and which one fits; "" when it
     /// fits itself.
-    static std::string sizeProblem(const vk::Device& device, const BakeSettings& settings, uint64_t triangles,
-                                   uint64_t limit);
+    static std::string sizeProblem(const vk::Device& device, const BakeSettings& settings,
+                                   const SceneExtent& scene, uint64_t limit);
     /// Returns the device bytes that a bake of this size takes when every texel is covered.
-    static uint64_t deviceBytes(const BakeSettings& settings, uint64_t triangles, bool software);
+    static uint64_t deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
 private:
+    Baker(const vk::Device& device, const Scene& scene, Scene* editable, WorldMesh mesh,
+          const BakeSettings& settings, PhaseHook phaseHook);
     void makeTracers();
     void findInvalid();
+    std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
+    void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;
 
     const vk::Device& device_;
     const Scene& scene_;
+    Scene* editable_; // scene_, where it may be changed
     BakeSettings settings_;
     PhaseHook phaseHook_;
     PatchSet patches_;
@@ -95,10 +105,11 @@ private:
     std::unique_ptr<SurfaceColours> colours_;
     std::unique_ptr<ObjectMover> mover_; // where layers are baked, whose solver follows edits
     std::unique_ptr<Tracer> tracer_;
-    std::unique_ptr<Solver> solver_;
+    MadeSolver solver_;
     std::string tracerChoice_;
     std::vector<PhaseTime> phases_;
     uint32_t invalid_ = 0;
+    MoveCounters moves_;
 };
 
 } // namespace relume

@@ -31,7 +31,7 @@ class InsideBatch {
 public:
     InsideBatch(const InsideSearch& search, uint32_t mostChunks)
         : search_(search), commands_(search.device),
-          links_(search.device, {.size = uint64_t{mostChunks} * search.samples * kChunk * sizeof(uint32_t),
+          links_(search.device, {.size = insideBytes(mostChunks, search.samples),
                                  .memory = vk::Memory::Host,
                                  .name = "links"}) {}
 
@@ -113,6 +113,10 @@ private:
 };
 
 } // namespace
+
+uint64_t insideBytes(uint32_t chunks, uint32_t samples) {
+    return uint64_t{std::min(chunks, kMostInsideChunks)} * samples * kChunk * sizeof(uint32_t);
+}
 
 std::vector<uint32_t> findInside(const InsideSearch& search) {
     const uint32_t chunks = search.patches.chunkCount();

@@ -24,5 +24,7 @@ struct InsideSearch {
 /// Returns the patches that lie inside something (liesInside), ascending. It works in short batches of
 /// closest hits.
 std::vector<uint32_t> findInside(const InsideSearch& search);
+/// Returns the device bytes that it takes.
+uint64_t insideBytes(uint32_t chunks, uint32_t samples);
 
 } // namespace relume

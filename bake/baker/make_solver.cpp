@@ -1,9 +1,15 @@
 #include "bake/baker/make_solver.h"
 
 #include "assets/base/log.h"
+#include "bake/layers/layer_memory.h"
 #include "bake/layers/layer_solver.h"
+#include "bake/links/link_memory.h"
 #include "bake/links/link_solver.h"
+#include "bake/pairs/pair_memory.h"
 #include "bake/pairs/pair_solver.h"
+
+#include <algorithm>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -12,30 +18,57 @@ namespace {
 constexpr double kLinkMemoryShare = 1.0 / 3.0;
 // Layers may take this share.
 constexpr double kLayerShare = 1.0 / 3.0;
+// All of a solver's memory, its caches included, may take this share: the driver needs some of its own.
+constexpr double kMostShare = 0.9;
+
+// Says how much memory caches may take where the settings do not: their share, but no more than the solver's
+// own buffers leave.
+void shareMemory(const SolverInput& input, SolverSettings& settings) {
+    SolverSettings bare = settings;
+    bare.cache.kind = CacheSettings::Kind::None;
+    const uint64_t size = input.patches.scene.size;
+    const SolverExtent extent{.chunkCount = input.patches.chunkCount(),
+                              .texels = size * size,
+                              .software = input.device.info().software(),
+                              .skyPixels = input.scene.sky.pixels.size(),
+                              .skyRows = input.scene.sky.height};
+    const auto free = static_cast<double>(input.device.freeMemory());
+    const auto own = static_cast<double>(solverBytes(extent, bare));
+    const double left = std::max(0.0, kMostShare * free - own) / (settings.layers.on ? 2 : 1);
+    if (settings.cache.bytes == 0)
+        settings.cache.bytes = static_cast<uint64_t>(std::min(kLinkMemoryShare * free, left));
+    if (settings.layers.bytes == 0)
+        settings.layers.bytes = static_cast<uint64_t>(std::min(kLayerShare * free, left));
+}
 
 } // namespace
 
-std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings) {
+MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings) {
     SolverSettings complete = settings;
-    if (complete.cache.bytes == 0)
-        complete.cache.bytes =
-            static_cast<uint64_t>(kLinkMemoryShare * static_cast<double>(input.device.freeMemory()));
-    if (complete.layers.bytes == 0)
-        complete.layers.bytes =
-            static_cast<uint64_t>(kLayerShare * static_cast<double>(input.device.freeMemory()));
-    if (isPairMethod(settings.method)) return std::make_unique<PairSolver>(input, complete);
+    shareMemory(input, complete);
+    if (isPairMethod(settings.method)) {
+        const vk::MemoryOwner owner(kPairsOwner);
+        return {.solver = std::make_unique<PairSolver>(input, complete)};
+    }
     if (settings.layers.on) {
-        const std::string tooMany = LayerSolver::problem(input.scene, input.patches, complete.layers.bytes);
-        if (!settings.layers.optional || tooMany.empty())
-            return std::make_unique<LayerSolver>(input, complete);
+        const vk::MemoryOwner owner(kLayersOwner);
+        const std::string tooMany = layerProblem(input.scene, input.patches, complete.layers.bytes);
+        if (!settings.layers.optional || tooMany.empty()) {
+            auto layers = std::make_unique<LayerSolver>(input, complete);
+            LayerSolver* const known = layers.get();
+            return {.solver = std::move(layers), .layers = known};
+        }
         spdlog::warn("all lights are baked as one: {}", tooMany);
     }
-    return std::make_unique<LinkSolver>(input, complete);
+    const vk::MemoryOwner owner(kLinksOwner);
+    return {.solver = std::make_unique<LinkSolver>(input, complete)};
 }
 
-uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
-    if (!isPairMethod(settings.method)) return LinkSolver::bytes(chunkCount, software, settings);
-    return PairSolver::bytes(chunkCount, software, settings);
+uint64_t solverBytes(const SolverExtent& extent, const SolverSettings& settings) {
+    if (isPairMethod(settings.method)) return pairSolverBytes(extent, settings);
+    if (!settings.layers.on) return linkSolverBytes(extent, settings);
+    const uint64_t layers = layerSolverBytes(extent, settings);
+    return settings.layers.optional ? std::max(layers, linkSolverBytes(extent, settings)) : layers;
 }
 
 } // namespace relume

@@ -3,13 +3,23 @@
 #include <memory>
 
 #include "bake/solver/solver.h"
+#include "bake/solver/solver_extent.h"
 
 namespace relume {
 
-/// Makes a solver. Throws Error when the method cannot run (too many pairs, not enough memory).
-std::unique_ptr<Solver> makeSolver(const SolverInput& input, const SolverSettings& settings);
+class LayerSolver;
 
-/// Returns the device bytes of a solver's own buffers, beside LightBuffers, for patches in so many chunks.
-uint64_t solverBytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
+/// A solver, and what more is known of it.
+struct MadeSolver {
+    std::unique_ptr<Solver> solver;
+    LayerSolver* layers = nullptr; // the same one, where each light has a layer
+};
+
+/// Makes a solver. Throws Error when the method cannot run (too many pairs, not enough memory).
+MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings);
+
+/// Returns the most device bytes that a solver's own buffers take at a time, beside LightBuffers, layers and
+/// what is kept in caches, but for the links of one sample pass of LinkSolver.
+uint64_t solverBytes(const SolverExtent& extent, const SolverSettings& settings);
 
 } // namespace relume

@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What is left of a geometric series of bounces after one of its terms.
+/// Holds what is left of a geometric series of bounces after one of its terms.
 struct SeriesRest {
     double ratio = 0; // of the last two changes
     double error = 0; // what is still to come, relative to the mean light; 1 where the series does not fall

@@ -8,15 +8,16 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// Every patch samples all of so few mesh lights; of more, each patch picks some in every sample pass.
-constexpr uint32_t kAllEmitters = 4;
 constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
-constexpr uint32_t kLeastLinks = 16;   // of a sample pass
 // A batch has so many chunks: their targets are 16 KiB each for 16 points.
 constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
 
 uint32_t mostChunks(uint32_t chunkCount, bool software) {
     return std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks);
+}
+
+uint32_t wordsOfPoints(uint32_t targets) {
+    return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
 }
 
 } // namespace
@@ -30,13 +31,9 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     groups_.clear();
     uint32_t picks = 0, targets = 0;
     for (const EmitterSet& set : groups) {
-        const auto emitters = static_cast<uint32_t>(set.polygons.size());
-        const bool all = emitters <= kAllEmitters;
-        groups_.push_back({.polygons = vk::makeBuffer(device_, set.polygons, "emitters"),
-                           .nodes = vk::makeBuffer(device_, set.nodes, "light tree"),
-                           .picks = all ? emitters : std::max(links_ / kPointsPerPick, kReplicates),
-                           .points = all ? links_ : kPointsPerPick,
-                           .all = all});
+        groups_.push_back({samplingOf(static_cast<uint32_t>(set.polygons.size()), links_),
+                           vk::makeBuffer(device_, set.polygons, "emitters"),
+                           vk::makeBuffer(device_, set.nodes, "light tree")});
         picks = std::max(picks, groups_.back().picks);
         targets = std::max(targets, groups_.back().targets());
     }
@@ -47,18 +44,25 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     }
     if (targets <= targetsRoom_) return;
     targetsRoom_ = targets;
-    const uint64_t words = (targets + kTargetsPerWord - 1) / kTargetsPerWord;
+    const uint64_t words = wordsOfPoints(targets);
     targets_ =
         vk::Buffer(device_, {.size = places * targets * sizeof(glm::vec4), .name = "points on emitters"});
     bits_ = vk::Buffer(device_, {.size = places * words * sizeof(uint32_t), .name = "seen points"});
 }
 
-// Counts the bytes of the largest sample pass where few directions are taken: what a small scene takes does
-// not matter.
-uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software) {
-    constexpr uint64_t kPickBytes = 128; // and bits
-    return uint64_t{mostChunks(chunkCount, software)} * kChunk *
-           (kAllEmitters * kLeastLinks * sizeof(glm::vec4) + kPickBytes);
+EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, uint32_t links) {
+    if (polygons <= kAllEmitters) return {.picks = polygons, .points = links, .all = true};
+    return {.picks = std::max(links / kPointsPerPick, kReplicates), .points = kPointsPerPick, .all = false};
+}
+
+uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, uint32_t links, uint32_t polygons) {
+    const Sampling sampling = samplingOf(polygons, links);
+    const uint64_t places = uint64_t{mostChunks(chunkCount, software)} * kChunk;
+    // A binary tree has fewer than two nodes per polygon.
+    const uint64_t tables = polygons * (sizeof(shader::EmitterPolygon) + 2 * sizeof(shader::EmitterNode)) +
+                            sizeof(shader::EmitterNode);
+    return tables + places * ((sampling.picks + sampling.targets()) * sizeof(glm::vec4) +
+                              wordsOfPoints(sampling.targets()) * sizeof(uint32_t));
 }
 
 void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {

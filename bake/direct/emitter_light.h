@@ -42,16 +42,24 @@ public:
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 
-    /// Returns the bytes of its buffers, for a scene with mesh lights.
-    static uint64_t bytes(uint32_t chunkCount, bool software);
+    /// Every patch samples all of so few polygons; of more, each patch picks some in every sample pass. No
+    /// number of polygons takes more memory.
+    static constexpr uint32_t kAllEmitters = 4;
+    /// Returns the bytes of its buffers for groups of at most so many polygons, and so many directions per
+    /// sample pass.
+    static uint64_t bytes(uint32_t chunkCount, bool software, uint32_t links, uint32_t polygons);
 
 private:
-    struct Group {
-        vk::Buffer polygons, nodes; // EmitterPolygon, EmitterNode
-        uint32_t picks = 0;  // of mesh lights, per patch and sample pass; all of them where there are few
+    /// The points that a patch takes of a group in a sample pass.
+    struct Sampling {
+        uint32_t picks = 0;  // of mesh lights; all of them where there are few
         uint32_t points = 0; // on each picked mesh light
         bool all = true;     // pick i is mesh light i
         uint32_t targets() const { return picks * points; }
+    };
+    static Sampling samplingOf(uint32_t polygons, uint32_t links);
+    struct Group : Sampling {
+        vk::Buffer polygons, nodes; // EmitterPolygon, EmitterNode
     };
 
     const vk::Device& device_;

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "bake/base/shader_types.h"
-#include "bake/base/worker_pool.h"
+#include "assets/base/worker_pool.h"
 
 namespace relume {
 

@@ -12,8 +12,7 @@ namespace {
 using shader::kChunk;
 using shader::kReplicates;
 
-// A group has so many rays per patch: two words of bits. A light with more is a group by itself.
-constexpr uint32_t kGroupRays = 64;
+constexpr uint32_t kGroupRays = LampLight::kMostGroupRays;
 // A batch of such groups has so many chunks, whose targets are 64 KiB each; of smaller groups it has more.
 constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
 constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
@@ -101,9 +100,24 @@ void LampLight::group(const std::vector<uint32_t>& sets) {
     bits_ = vk::Buffer(device_, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
 }
 
-uint64_t LampLight::bytes(uint32_t chunkCount, bool software) {
-    const uint64_t places = uint64_t{mostChunks(chunkCount, software, kGroupRays)} * kChunk;
-    return places * (kGroupRays * sizeof(glm::vec4) + wordsOf(kGroupRays) * sizeof(uint32_t));
+uint32_t LampLight::groupRays(const Count& lights, uint32_t samples) {
+    const uint64_t all = uint64_t{lights.extended} * samples + lights.points;
+    const uint64_t most = std::max(kGroupRays, lights.extended > 0 ? samples : 1u);
+    return static_cast<uint32_t>(std::min(all, most));
+}
+
+uint64_t LampLight::tableBytes(const Count& lights, uint64_t skyPixels, uint64_t skyRows) {
+    constexpr uint64_t kLeastBytes = 3 * sizeof(glm::vec4); // of three tables, which are never empty
+    // So many lights are counted in any case: their number may not be known yet.
+    constexpr uint64_t kLeastLights = 64;
+    const uint64_t count = std::max(kLeastLights, uint64_t{lights.extended} + lights.points);
+    return kLeastBytes + count * sizeof(shader::Lamp) + skyPixels * sizeof(glm::vec4) +
+           skyRows * sizeof(float);
+}
+
+uint64_t LampLight::bytes(uint32_t chunkCount, bool software, uint32_t rays) {
+    const uint64_t places = uint64_t{mostChunks(chunkCount, software, rays)} * kChunk;
+    return places * (rays * sizeof(glm::vec4) + wordsOf(rays) * sizeof(uint32_t));
 }
 
 shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) const {

@@ -68,8 +68,18 @@ public:
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 
-    /// Returns the bytes of its buffers, for a scene with analytic lights.
-    static uint64_t bytes(uint32_t chunkCount, bool software);
+    /// The lights that share groups: those with an extent take Desc::samples rays each, the others one.
+    struct Count {
+        uint32_t extended = 0, points = 0;
+    };
+    /// Returns the most rays per patch of a group; many lights take no more than kMostGroupRays.
+    static uint32_t groupRays(const Count& lights, uint32_t samples);
+    static constexpr uint32_t kMostGroupRays =
+        64; // two words of bits; a light with more is a group by itself
+    /// Returns the bytes of a batch, where the largest group has so many rays; 0 for none.
+    static uint64_t bytes(uint32_t chunkCount, bool software, uint32_t rays);
+    /// Returns the bytes of its tables of lights and of the sky's picture.
+    static uint64_t tableBytes(const Count& lights, uint64_t skyPixels, uint64_t skyRows);
 
 private:
     struct Group {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bake/base/shader_types.h"
-#include "bake/base/worker_pool.h"
+#include "assets/base/worker_pool.h"
 
 namespace relume {
 

@@ -12,30 +12,61 @@ using shader::kChunk;
 } // namespace
 
 LinkCache::LinkCache(const vk::Device& device, const Desc& desc)
-    : device_(device), desc_(desc),
-      roundBytes_(uint64_t{desc.chunkCount} * desc.links * kChunk * sizeof(uint32_t)) {}
+    : device_(device), desc_(desc), chunkBytes_(uint64_t{desc.links} * kChunk * sizeof(uint32_t)),
+      roundChunks_(desc.oneRound
+                       ? static_cast<uint32_t>(std::min<uint64_t>(desc.chunkCount, desc.bytes / chunkBytes_))
+                       : desc.chunkCount) {
+    if (desc.oneRound) keepIfRoom(0);
+}
+
+uint64_t LinkCache::mostBytes(const Desc& desc) {
+    const uint64_t chunkBytes = uint64_t{desc.links} * kChunk * sizeof(uint32_t);
+    const uint64_t batch = std::min(desc.batch, desc.chunkCount) * chunkBytes;
+    if (!desc.oneRound) return batch;
+    const uint64_t kept = std::min<uint64_t>(desc.chunkCount, desc.bytes / chunkBytes);
+    return kept * chunkBytes + (kept < desc.chunkCount ? batch : 0);
+}
+
+// Takes the memory for the links of a sample pass, where they come next and there is room.
+void LinkCache::keepIfRoom(uint32_t round) {
+    if (round != kept_.size() || roundChunks_ == 0) return;
+    const uint64_t bytes = roundChunks_ * chunkBytes_;
+    if ((uint64_t{round} + 1) * bytes > desc_.bytes) return;
+    const vk::MemoryOwner owner(kOwner);
+    kept_.push_back(
+        {vk::Buffer(device_, {.size = bytes, .name = "links"}), std::vector<uint8_t>(roundChunks_, 0)});
+}
 
 LinkCache::Place LinkCache::find(uint32_t round, uint32_t first, uint32_t most) {
-    const uint64_t perChunk = uint64_t{desc_.links} * kChunk;
-    if (round == kept_.size() && (round + 1) * roundBytes_ <= desc_.bytes)
-        kept_.push_back({vk::Buffer(device_, {.size = roundBytes_, .name = "links"}),
-                         std::vector<uint8_t>(desc_.chunkCount, 0)});
-    if (round >= kept_.size()) {
+    const uint32_t slot = desc_.oneRound ? 0 : round;
+    keepIfRoom(slot);
+    if (slot >= kept_.size() || first >= roundChunks_) {
         if (!staging_)
-            staging_ = vk::Buffer(
-                device_, {.size = desc_.batch * perChunk * sizeof(uint32_t), .name = "links of a batch"});
+            staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
         return {&staging_, 0, false, std::min(most, desc_.batch)};
     }
-    const Round& kept = kept_[round];
+    const Round& kept = kept_[slot];
     const auto from = kept.known.begin() + first;
-    const auto end = from + std::min(most, desc_.chunkCount - first);
+    const auto end = from + std::min(most, roundChunks_ - first);
     const bool known = *from != 0;
     const auto count = static_cast<uint32_t>(std::find(from, end, known ? 0 : 1) - from);
-    return {&kept.links, first * perChunk, known, count};
+    return {&kept.links, uint64_t{first} * desc_.links * kChunk, known, count};
 }
 
 void LinkCache::note(uint32_t round, ChunkRange range) {
-    if (round < kept_.size()) std::fill_n(kept_[round].known.begin() + range.first, range.count, uint8_t{1});
+    const uint32_t slot = desc_.oneRound ? 0 : round;
+    if (slot >= kept_.size() || range.first >= roundChunks_) return;
+    const uint32_t count = std::min(range.count, roundChunks_ - range.first);
+    std::fill_n(kept_[slot].known.begin() + range.first, count, uint8_t{1});
+}
+
+void LinkCache::forget() {
+    for (Round& round : kept_)
+        std::fill(round.known.begin(), round.known.end(), uint8_t{0});
+}
+
+uint64_t LinkCache::bytes() const {
+    return kept_.size() * roundChunks_ * chunkBytes_;
 }
 
 } // namespace relume

@@ -9,17 +9,26 @@
 
 namespace relume {
 
-/// Keeps the links of all sample passes as long as there is memory: light is gathered over them again without
-/// a ray (the transport cache). It knows where links are, not how they are traced.
+/// Keeps links as long as there is memory: light is gathered over them again without a ray (the transport
+/// cache). It knows where links are, not how they are traced.
 class LinkCache {
 public:
     struct Desc {
         uint32_t chunkCount = 0;
         uint32_t links = 16; // per patch and sample pass
         uint32_t batch = 1;  // chunks of a batch of links that are not kept, at most
-        uint64_t bytes = 0;  // at most; whole sample passes are kept, the first ones
+        uint64_t bytes = 0;  // at most
+        // Whole sample passes are kept, the first ones, and memory is taken as they come. Or those of one
+        // sample pass at a time are kept, of the first chunks where there is no room for all; memory for
+        // these is taken at once.
+        bool oneRound = false;
     };
     LinkCache(const vk::Device& device, const Desc& desc);
+    /// Returns the most bytes that such a cache takes; where sample passes are kept as they come, without
+    /// these.
+    static uint64_t mostBytes(const Desc& desc);
+    /// The ledger counts kept links as those of this owner (vk::MemoryOwner).
+    static constexpr const char* kOwner = "link cache";
 
     struct Place {
         const vk::Buffer* links = nullptr; // uint[chunk][links][64]
@@ -31,19 +40,25 @@ public:
     Place find(uint32_t round, uint32_t first, uint32_t most);
     /// Notes that the links of these chunks were traced to where find() said.
     void note(uint32_t round, ChunkRange range);
+    /// Forgets all links, but keeps the memory.
+    void forget();
 
-    uint64_t bytes() const { return kept_.size() * roundBytes_; } // in use
+    uint64_t bytes() const; // in use
     uint32_t rounds() const { return static_cast<uint32_t>(kept_.size()); }
+    /// Returns how much of a sample pass is kept, where one is kept at a time.
+    double share() const { return static_cast<double>(roundChunks_) / desc_.chunkCount; }
 
 private:
     struct Round {
         vk::Buffer links;
-        std::vector<uint8_t> known; // per chunk
+        std::vector<uint8_t> known; // per chunk that is kept
     };
+    void keepIfRoom(uint32_t round);
 
     const vk::Device& device_;
     Desc desc_;
-    uint64_t roundBytes_;
+    uint64_t chunkBytes_;
+    uint32_t roundChunks_;   // kept of a sample pass
     std::deque<Round> kept_; // a Place points into it while more are added
     vk::Buffer staging_;     // of a batch beyond the kept ones
 };

@@ -4,6 +4,7 @@
 #include "bake/direct/emitter_light.h"
 #include "bake/direct/lamp_light.h"
 #include "bake/gather/host_links.h"
+#include "bake/gather/link_cache.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -24,11 +25,18 @@ constexpr uint32_t kLeastSamples = 16, kMostSamples = 64; // per patch and sampl
 // A submit has at most so many chunks.
 constexpr uint32_t kGpuBatch = 8192, kSoftwareBatch = 512;
 
+// Sums over a chunk, of either kind [bytes].
+constexpr uint64_t kSumBytes = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
+
 uint64_t vec4s(uint64_t count) {
     return count * sizeof(glm::vec4);
 }
 
 } // namespace
+
+uint32_t linkBatchChunks(uint32_t chunks, bool software) {
+    return std::min(chunks, software ? kSoftwareBatch : kGpuBatch);
+}
 
 uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software) {
     const uint32_t filling = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
@@ -48,17 +56,9 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         neighbours = vk::makeBuffer(device, desc.coarse->neighbours, "coarse neighbours");
         coarseSums = vk::Buffer(device, {.size = vec4s(kReplicates * receiverCount), .name = "coarse sums"});
     }
-    batchChunks = std::min(chunks, device.info().software() ? kSoftwareBatch : kGpuBatch);
+    batchChunks = linkBatchChunks(chunks, device.info().software());
     if (desc.direct)
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
-    if (desc.linkBytes) {
-        const uint64_t chunkBytes = uint64_t{desc.linksOfRound} * kChunk * sizeof(uint32_t);
-        const uint32_t linkChunks = desc.coarse ? desc.coarse->chunkCount() : chunks;
-        keptChunks = static_cast<uint32_t>(std::min<uint64_t>(linkChunks, *desc.linkBytes / chunkBytes));
-        links =
-            vk::Buffer(device, {.size = std::max<uint64_t>(16, keptChunks * chunkBytes), .name = "links"});
-        linksStaging = vk::Buffer(device, {.size = batchChunks * chunkBytes, .name = "links of a batch"});
-    }
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
     direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
     if (desc.smooth) {
@@ -69,28 +69,22 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
                 vk::Buffer(device, {.size = receiverCount * sizeof(float), .name = "coarse distances"});
     }
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
-    constexpr uint64_t kSums = std::max(sizeof(shader::ResolveSums), sizeof(glm::vec4));
-    chunkSums = vk::Buffer(device, {.size = chunks * kSums, .name = "sums per chunk"});
-    sums = vk::Buffer(device, {.size = kSums, .name = "sums over chunks"});
+    chunkSums = vk::Buffer(device, {.size = chunks * kSumBytes, .name = "sums per chunk"});
+    sums = vk::Buffer(device, {.size = kSumBytes, .name = "sums over chunks"});
     rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 }
 
-uint64_t LinkBuffers::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
-    const uint64_t count = uint64_t{chunkCount} * kChunk;
-    const bool hybrid = settings.method == Method::Hybrid;
-    const uint64_t sums = kReplicates * (2 + (hybrid && settings.links.smooth ? 1 : 0)); // with direct light
-    const uint64_t kept = settings.cache.keepsLinks() ? kLeastSamples * sizeof(uint32_t) : 0;
-    // Charts a texel wide have so many receivers; those of compact ones are fewer.
-    const uint64_t scale = settings.links.indirectScale, receivers = count / scale;
+uint64_t LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers) {
+    const uint64_t count = extent.patches();
     const uint64_t coarse =
-        scale > 1
-            ? count * sizeof(shader::CoarseTaps) +
-                  receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates))
-            : 0;
-    const uint64_t packed = software ? 0 : (settings.layers.on ? 2 : 1) * sizeof(glm::uvec2);
-    const uint64_t undo = settings.live && !(hybrid && settings.links.smooth) ? kReplicates : 0;
-    return count * (vec4s(sums + undo + 2) + packed + 3 * sizeof(uint32_t)) + receivers * kept + coarse +
-           EmitterLight::bytes(chunkCount, software) + LampLight::bytes(chunkCount, software);
+        receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates)) +
+        (receivers > 0 ? count * sizeof(shader::CoarseTaps) : 0);
+    const uint64_t direct = desc.direct ? vec4s(kReplicates) : 0;
+    const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(float) : 0;
+    const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(float) : 0;
+    return count * (sizeof(uint32_t) + vec4s(kReplicates + 2) + direct + smooth) +
+           extent.texels * sizeof(uint32_t) + coarse + coarseDistances +
+           (uint64_t{extent.chunkCount} + 1) * kSumBytes + shader::kRayCounters * sizeof(uint32_t);
 }
 
 uint32_t smoothingReach(float sigma) {
@@ -275,7 +269,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .patches = light.patches.address(),
         .patchChart = buffers.patchChart.address(),
         .texelToPatch = buffers.texelToPatch.address(),
-        .sums = buffers.linkSums.address(),
+        .sums = (work.sums ? *work.sums : buffers.linkSums).address(),
         .rows = buffers.rows ? buffers.rows.address() : 0,
         .directSums = work.directRounds > 0 && buffers.directSums ? buffers.directSums.address() : 0,
         .result = buffers.result.address(),

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
-#include "bake/base/worker_pool.h"
+#include "assets/base/worker_pool.h"
 #include "bake/gather/coarse_patches.h"
 #include "bake/solver/solver.h"
+#include "bake/solver/solver_extent.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/vk/program.h"
 
@@ -16,12 +16,13 @@ namespace relume {
 /// more than are asked for. samples is the number of directions per patch in all, 0 for what the error needs.
 uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software);
 
+/// Returns how many of so many chunks a batch of links has at most.
+uint32_t linkBatchChunks(uint32_t chunks, bool software);
+
 /// The buffers of the link methods. "Sums" hold each replicate's samples by themselves:
 /// vec4[kReplicates][patches].
 struct LinkBuffers {
     vk::Buffer patchChart, texelToPatch;
-    vk::Buffer links;        // uint[chunk][links of a sample pass][64], of the first keptChunks chunks
-    vk::Buffer linksStaging; // of one batch beyond these
     vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
@@ -31,7 +32,6 @@ struct LinkBuffers {
     vk::Buffer sums;          // or over all of them
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
-    uint32_t keptChunks = 0;
     // These are there where links are followed from fewer patches than there are.
     vk::Buffer receivers, taps, neighbours; // Patch, CoarseTaps, CoarseNeighbours
     vk::Buffer coarseDistances;             // as distances, per receiver
@@ -39,17 +39,13 @@ struct LinkBuffers {
     uint32_t receiverCount = 0;             // padding included; 0: all patches are receivers
 
     struct Desc {
-        uint32_t linksOfRound = 16;
         bool direct = false; // direct light is sampled
         bool smooth = false;
-        const CoarsePatches* coarse = nullptr;
-        // At most so much for links that later bounces gather again; nothing: the solver keeps all links
-        // elsewhere, so that there are none here.
-        std::optional<uint64_t> linkBytes = {};
+        const CoarsePatches* coarse = nullptr; // bytes() takes their number instead
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
-    /// Returns their bytes, with those of direct light but without those of footprints.
-    static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
+    /// Returns their bytes. Whoever makes `packed` counts it.
+    static uint64_t bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers);
 };
 
 /// Returns how far smoothing looks [texels], 0 for not at all. sigma is its width [texels].
@@ -64,8 +60,7 @@ glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
 class LinkGatherPass {
 public:
     LinkGatherPass(const vk::Device& device, const TransportSettings& settings)
-        : pool_(device.info().software() && !settings.deviceGather ? std::make_unique<WorkerPool>(0)
-                                                                   : nullptr),
+        : pool_(device.info().software() && !settings.deviceGather ? &device.workers() : nullptr),
           pack_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "pack")),
           gather_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "links")),
           distance_(device, "link_distance"), interpolate_(device, "interpolate"),
@@ -85,7 +80,7 @@ public:
     };
     /// Tells whether record gathers at once, on the host; what it reads must be there by then.
     bool onCpu() const { return pool_ != nullptr; }
-    WorkerPool& pool() const { return *pool_; } // the host's, where it gathers there
+    WorkerPool& pool() const { return *pool_; } // where it gathers on the host
     /// Makes radiance, without emission, after a bounce from ligIn to ligOut that the host gathered. full and
     /// changes are as HostSend has them.
     void sendOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
@@ -114,7 +109,7 @@ public:
 private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
 
-    std::unique_ptr<WorkerPool> pool_;
+    WorkerPool* pool_; // the device's; nullptr: shaders gather
     vk::ComputeProgram pack_, gather_, distance_, interpolate_, compose_;
 };
 
@@ -131,10 +126,11 @@ public:
     void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                       uint32_t samples) const;
     struct Work {
-        uint32_t size = 0;         // lightmap edge [texels]
-        uint32_t samples = 0;      // links per patch in linkSums
-        uint32_t directRounds = 0; // in directSums; 0: no direct light
-        float sigma = 0;           // of smoothing [texels], 0: none
+        uint32_t size = 0;                // lightmap edge [texels]
+        uint32_t samples = 0;             // links per patch in linkSums
+        uint32_t directRounds = 0;        // in directSums; 0: no direct light
+        float sigma = 0;                  // of smoothing [texels], 0: none
+        const vk::Buffer* sums = nullptr; // in place of linkSums
     };
     /// Makes result, and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

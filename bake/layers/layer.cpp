@@ -79,6 +79,13 @@ double Layer::directShare() const {
     return share + (1.0 - share) / shader::kPenumbraRounds;
 }
 
+uint32_t Layer::rays() const {
+    uint32_t rays = 0;
+    for (const DirectPart& part : parts)
+        rays += part.rays;
+    return rays;
+}
+
 std::string staleReason(const Layer& layer) {
     if (layer.has() || layer.source.weight == glm::vec3(0.0f)) return "";
     const bool group = layer.source.key.kind == LightKey::Kind::Group;

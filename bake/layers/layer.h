@@ -22,8 +22,8 @@ struct LightPattern {
     // A group lists the members that shine, in the order of lightSources(), without the fields that follow.
     std::vector<LightPattern> members;
     std::vector<glm::vec3> weights; // of these members
-    uint64_t surfaces = 0;          // hash of the surfaces' base colours
-    uint64_t objects = 0;           // hash of where objects stand
+    uint64_t surfaces = 0;          // SceneState of the surfaces' base colours
+    uint64_t objects = 0;           // SceneState of where objects stand
 
     bool operator==(const LightPattern&) const = default;
 };
@@ -41,6 +41,7 @@ struct LayerLevel {
 struct DirectPart {
     bool emitters = false;
     uint32_t group = 0;
+    uint32_t rays = 0; // per patch and sample pass; 0: nothing in it shines
 };
 
 /// One light's share of the lightmap for a unit of its weight, or a group's share: direct light and all
@@ -77,11 +78,16 @@ struct Layer {
     std::vector<uint32_t> redoSteps; // its directSteps then; empty: redo is made in one
     bool converged = false;          // error below the aim, or all samples taken
     std::unique_ptr<Layer> before;   // shown until there is a result
-    bool covered = false;            // LayerSolver's stand-in is shown in its place
+    bool covered = false;            // LayerMixer's stand-in is shown in its place
 
     /// Returns the share of the patches that takes a sample pass of direct light, in the mean; 1 before the
     /// first one.
     double directShare() const;
+    /// Returns the rays per patch and sample pass of its direct light; 0: nothing in it shines.
+    uint32_t rays() const;
+    /// Tells whether it adds to the picture: its weight is not 0.
+    bool shines() const { return source.weight != glm::vec3(0.0f); }
+    bool isGroup() const { return source.key.kind == LightKey::Kind::Group; }
     /// Tells whether direct is somewhere still of where objects were.
     bool isOutdated() const { return !stale.empty() && !begun; }
     /// Tells whether the next step of repairing direct light takes the chunk, too.

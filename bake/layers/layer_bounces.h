@@ -57,7 +57,7 @@ public:
     const vk::Buffer& changes() const { return totals_; }
     uint32_t lanes() const { return lanesOf_; }
     /// Returns the sums of a lane other than the first one: vec4[kReplicates][patches].
-    vk::Buffer& sums(uint32_t lane) { return beside_[lane - 1].sums; }
+    const vk::Buffer& sums(uint32_t lane) const { return beside_[lane - 1].sums; }
 
 private:
     struct Beside {

@@ -9,10 +9,10 @@ using shader::kChunk;
 
 } // namespace
 
-void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
-                             const vk::Buffer& sums, const Penumbra& penumbra, uint32_t rounds) const {
-    shader::LayerDirectPush push{.sums = sums.address(),
-                                 .direct = layer.direct->address(),
+void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const DirectWork& work,
+                             const Penumbra& penumbra) const {
+    shader::LayerDirectPush push{.sums = work.sums.address(),
+                                 .direct = work.direct.address(),
                                  .parts = penumbra.parts.address(),
                                  .penumbra = penumbra.lights.address(),
                                  .patchCount = light.chunkCount * kChunk,
@@ -21,7 +21,7 @@ void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, con
     const uint32_t every[] = {shader::kPenumbraRounds, 1};
     for (int i = 0; i < 2; ++i) {
         const auto taken = [&](uint32_t of) { return (of + every[i] - 1) / every[i]; };
-        const uint32_t all = taken(layer.directRounds + rounds), added = all - taken(layer.directRounds);
+        const uint32_t all = taken(work.before + work.added), added = all - taken(work.before);
         if (added == 0) continue;
         push.scale[i] = 1.0f / static_cast<float>(added);
         push.share[i] = static_cast<float>(added) / static_cast<float>(all);

@@ -17,10 +17,15 @@ public:
         : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix"),
           mixDirect_(device, "layer_mix_direct") {}
 
-    /// Takes the sums of `rounds` new sample passes, vec4[kReplicates][patches], into layer.direct, which
-    /// holds layer.directRounds of them. penumbra is that of the layer, at least where it matters.
-    void recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
-                      const vk::Buffer& sums, const Penumbra& penumbra, uint32_t rounds) const;
+    /// Direct light of a layer, and what is new of it.
+    struct DirectWork {
+        const vk::Buffer& direct; // of `before` sample passes, written
+        const vk::Buffer& sums;   // of `added` new ones, vec4[kReplicates][patches]
+        uint32_t before = 0, added = 0;
+    };
+    /// Takes new sample passes into direct light. penumbra is that of the layer, at least where it matters.
+    void recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const DirectWork& work,
+                      const Penumbra& penumbra) const;
     /// Makes layer.result = layer.direct + indirect, and in chunkSums a vec4 per chunk: light, variance of
     /// the direct part, number of patches. indirect is laid out as result; nullptr stands for none.
     void recordResult(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bake/base/retrace_types.h"
-#include "bake/base/worker_pool.h"
+#include "assets/base/worker_pool.h"
 #include "bake/surface/patches.h"
 
 namespace relume {

@@ -9,8 +9,8 @@ namespace relume {
 /// A triangle or parallelogram of the mesh with all that varies linearly over it: at (s, t) a quantity is [0]
 /// + s [1] + t [2], with s and t in [0, 1], and s + t <= 1 for a triangle.
 struct EmitterSurface {
-    glm::dvec3 position[3];
-    glm::dvec2 emissionUv[3], baseUv[3];
+    glm::dvec3 position[3] = {};
+    glm::dvec2 emissionUv[3] = {}, baseUv[3] = {};
     double alpha[3] = {1, 0, 0}; // of the vertex colours
     double area = 0;             // [m^2]
     bool isTriangle = true;

@@ -41,14 +41,8 @@ Footprints::Footprints(const vk::Device& device, const PatchSet& patches)
     steps_ = vk::makeBuffer(device, stepsOf(pyramid), "steps of the pyramid");
 }
 
-vk::Buffer Footprints::makeRadiance(const vk::Device& device) const {
-    return {device, {.size = (uint64_t{patchCount_} + nodeCount_) * sizeof(glm::vec4), .name = "radiance"}};
-}
-
-// Every node has two children or more, so there are fewer of them than patches; in compact charts a third as
-// many.
-uint64_t Footprints::bytes(uint64_t patchCount) {
-    return patchCount * (sizeof(shader::PyramidNode) + sizeof(glm::vec4) + 2 * sizeof(glm::uvec2));
+uint64_t Footprints::bytes(uint64_t patches, uint64_t nodes) {
+    return nodes * sizeof(shader::PyramidNode) + (patches + nodes) * sizeof(glm::uvec2);
 }
 
 void Footprints::recordLevels(VkCommandBuffer cmd, const vk::Buffer& radiance) const {

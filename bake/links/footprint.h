@@ -14,8 +14,8 @@ public:
     /// Throws Error.
     Footprints(const vk::Device& device, const PatchSet& patches);
 
-    /// Makes what takes the place of LightBuffers::radiance: a vec4 per patch (padding included) and node.
-    vk::Buffer makeRadiance(const vk::Device& device) const;
+    /// Returns the bytes that LightBuffers::radiance then has: a vec4 per patch (padding included) and node.
+    uint64_t radianceBytes() const { return (uint64_t{patchCount_} + nodeCount_) * sizeof(glm::vec4); }
     /// Makes what nodes send from what patches send. It sets the barriers between the levels; the caller sets
     /// those around it, here and below.
     void recordLevels(VkCommandBuffer cmd, const vk::Buffer& radiance) const;
@@ -30,8 +30,9 @@ public:
     void recordLinks(VkCommandBuffer cmd, VkDeviceAddress patches, const Work& work) const;
 
     VkDeviceAddress nodes() const { return nodes_.address(); } // PyramidNode[]
-    /// Returns the device bytes for so many patches, at most.
-    static uint64_t bytes(uint64_t patchCount);
+    /// Returns the device bytes for so many patches and nodes, without those of radianceBytes().
+    static uint64_t bytes(uint64_t patches, uint64_t nodes);
+    uint32_t nodeCount() const { return nodeCount_; }
 
 private:
     uint32_t patchCount_ = 0, nodeCount_ = 0;

@@ -20,38 +20,33 @@ constexpr double kLookSeconds = 1.0 / 60.0, kLookShare = 0.1;
 
 // A coarser grid's chunk is seen when light of one of its receivers goes into a patch that is.
 void LinkSolver::setPriority(std::vector<uint8_t> chunkSeen) {
-    ASSERT(chunkSeen.empty() || chunkSeen.size() == input_.patches.chunkCount());
-    seenPatches_ = std::move(chunkSeen);
-    seenReceivers_.assign(seenPatches_.empty() ? 0 : coarse_.chunkCount(), 0);
+    ASSERT(chunkSeen.empty() || chunkSeen.size() == kit_.input.patches.chunkCount());
+    kit_.seen = std::move(chunkSeen);
+    seenReceivers_.assign(kit_.seen.empty() ? 0 : coarse_.chunkCount(), 0);
     const std::vector<shader::CoarseTaps>& taps = coarse_.taps;
-    for (size_t i = 0; i < taps.size() && !seenPatches_.empty(); ++i) {
-        if (seenPatches_[i / kChunk] == 0) continue;
+    for (size_t i = 0; i < taps.size() && !kit_.seen.empty(); ++i) {
+        if (kit_.seen[i / kChunk] == 0) continue;
         const shader::CoarseTaps& t = taps[i];
         const glm::uvec4 receivers(t.receiver0, t.receiver1, t.receiver2, t.receiver3);
         for (int k = 0; k < 4; ++k)
             if (t.weights[k] != 0.0f) seenReceivers_[receivers[k] / kChunk] = 1;
     }
-    if (state_.stage != Stage::Plan) order_.prefer(seenOfStage());
-}
-
-// Tells whether there are sums of a sample pass in which every patch has its bounces.
-bool LinkSolver::hasSolution() const {
-    return state_.linkRounds > 0 || (hybrid_ && settings_.passes == 1 && state_.directRounds > 0);
+    if (state_.stage != Stage::Plan) kit_.order.prefer(seenOfStage());
 }
 
 // Makes a sample pass's result at its end, where a viewer waits for one and there is time. It does so once:
 // the width of smoothing is what the look before said. light() and the end make theirs anew.
 void LinkSolver::look() {
-    const uint32_t rounds = state_.directRounds + state_.linkRounds;
-    if (!stale_ || !hasSolution() || !live_.asked || rounds == live_.rounds) return;
+    const uint32_t rounds = state_.rounds();
+    if (!stale_ || !schedule_.hasSolution(state_) || !live_.asked || rounds == live_.rounds) return;
     const double pause = std::max(kLookSeconds, live_.cost / kLookShare);
     if (live_.resolves > 0 && secondsSince(live_.looked) < pause) return;
     live_.looked = Clock::now();
-    const State before = state_;
+    const LinkState before = state_;
     SmoothingWidth width = live_.width.value_or(state_.width);
-    const shader::ResolveSums sums = resolveOnce(buffers_.rows ? width.sigma : 0.0);
+    const shader::ResolveSums sums = errors_.resolve(state_, kit_.buffers.rows ? width.sigma : 0.0);
     learn(sums);
-    if (buffers_.rows) width.adapt(sums);
+    if (kit_.buffers.rows) width.adapt(sums);
     live_.width = width;
     state_ = before;
     live_.cost = secondsSince(live_.looked);
@@ -61,17 +56,17 @@ void LinkSolver::look() {
 }
 
 LiveLight LinkSolver::liveLight() {
-    ASSERT(settings_.live);
+    ASSERT(kit_.settings.live);
     if (passBoundary()) look();
     live_.asked = true;
     std::vector<ChunkRange> changed;
     if (live_.resolves == 0)
         changed = showUnfinished();
     else if (live_.resolves != live_.shown)
-        changed = {{0, input_.patches.chunkCount()}};
+        changed = {{0, kit_.input.patches.chunkCount()}};
     live_.shown = live_.resolves;
     if (!changed.empty()) ++live_.version;
-    return {&buffers_.result, live_.version, live_.complete || done_, std::move(changed)};
+    return {&kit_.buffers.result, live_.version, live_.complete || done_, std::move(changed)};
 }
 
 // Shows the light that bounces on and, where the bounce under way has been, the light of that one. After a
@@ -79,47 +74,47 @@ LiveLight LinkSolver::liveLight() {
 std::vector<ChunkRange> LinkSolver::showUnfinished() {
     std::vector<ChunkRange> ranges = merged(std::exchange(live_.ranges, {}));
     if (!live_.all && ranges.empty()) return {};
-    const LightBuffers& light = input_.light;
+    const LightBuffers& light = kit_.input.light;
     const bool inLinks = state_.stage == Stage::Links;
-    const std::vector<ChunkRange> all = {{0, input_.patches.chunkCount()}};
-    VkCommandBuffer cmd = commands_.begin();
+    const std::vector<ChunkRange> all = {{0, kit_.input.patches.chunkCount()}};
+    VkCommandBuffer cmd = kit_.commands.begin();
     if (live_.all) {
-        const bool bounces = inLinks || hasSolution() || !hasDirect();
-        recordCopy(cmd, bounces ? light.ligIn : buffers_.direct, buffers_.result, all);
+        const bool bounces = inLinks || schedule_.hasSolution(state_) || !hasDirect();
+        recordCopy(cmd, bounces ? light.ligIn : kit_.buffers.direct, kit_.buffers.result, all);
         vk::barrier(cmd);
     }
-    recordCopy(cmd, inLinks ? light.ligOut : buffers_.direct, buffers_.result, ranges);
+    recordCopy(cmd, inLinks ? light.ligOut : kit_.buffers.direct, kit_.buffers.result, ranges);
     vk::barrier(cmd);
-    commands_.run();
+    kit_.commands.run();
     return std::exchange(live_.all, false) ? all : ranges;
 }
 
 const vk::Buffer& LinkSolver::sumsOfStage() const {
-    return state_.stage == Stage::Direct ? buffers_.directSums : buffers_.linkSums;
+    return state_.stage == Stage::Direct ? kit_.buffers.directSums : kit_.buffers.linkSums;
 }
 
 // Keeps the sums in what smoothing is made with, which lies idle within a sample pass. With a coarser grid,
 // links add to sums only when all of them are there.
 void LinkSolver::recordUndo(VkCommandBuffer cmd) {
-    live_.undoable = settings_.live;
-    if (!settings_.live || (state_.stage == Stage::Links && coarse_.count > 0)) return;
+    live_.undoable = kit_.settings.live;
+    if (!kit_.settings.live || (state_.stage == Stage::Links && coarse_.count > 0)) return;
     const vk::Buffer& sums = sumsOfStage();
     const VkBufferCopy all{0, 0, sums.size()};
-    vkCmdCopyBuffer(cmd, sums.handle(), (undo_ ? undo_ : buffers_.rows).handle(), 1, &all);
+    vkCmdCopyBuffer(cmd, sums.handle(), (undo_ ? undo_ : kit_.buffers.rows).handle(), 1, &all);
 }
 
 void LinkSolver::undo() {
     const vk::Buffer& sums = sumsOfStage();
     const VkBufferCopy all{0, 0, sums.size()};
-    VkCommandBuffer cmd = commands_.begin();
-    vkCmdCopyBuffer(cmd, (undo_ ? undo_ : buffers_.rows).handle(), sums.handle(), 1, &all);
+    VkCommandBuffer cmd = kit_.commands.begin();
+    vkCmdCopyBuffer(cmd, (undo_ ? undo_ : kit_.buffers.rows).handle(), sums.handle(), 1, &all);
     vk::barrier(cmd);
     if (state_.stage == Stage::Direct) {
-        gatherPass_.recordDirectMean(cmd, input_.light, buffers_, state_.directRounds);
+        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directRounds);
         vk::barrier(cmd);
     }
     vk::hostBarrier(cmd);
-    commands_.run();
+    kit_.commands.run();
 }
 
 void LinkSolver::abortPass() {
@@ -133,11 +128,11 @@ void LinkSolver::abortPass() {
     }
     if (adds) undo();
     if (direct) {
-        const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
+        const auto counters =
+            vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
         progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
     } else if (state_.linkRounds == 0) { // convergence begins anew
-        state_.change = state_.ratio = 0;
-        state_.iterationError = 1;
+        state_.series = {};
         state_.settling = {};
     }
     progress_.passes -= state_.bounce;

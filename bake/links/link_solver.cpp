@@ -1,13 +1,13 @@
 #include "bake/links/link_solver.h"
 
-#include "bake/base/series.h"
-#include "bake/direct/point_trace.h"
+#include "bake/base/finite_light.h"
 #include "bake/links/directions.h"
+#include "bake/links/link_memory.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
+#include <type_traits>
 
 namespace relume {
 namespace {
@@ -16,211 +16,187 @@ using shader::kChunk;
 
 // A submit interpolates so many chunks: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
+// Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
+// square.
+constexpr double kBesideGrid = 0.1;
 
-EmitterLight makeEmitters(const SolverInput& input, bool hybrid, uint32_t links) {
+static_assert(std::is_trivially_copyable_v<LinkState>);
+static_assert(kMostBounces == Solver::kMaxPasses);
+
+uint32_t linksOf(const SolverInput& input, const SolverSettings& settings) {
+    return linksOfRound(input.patches.count, settings.links.samples, input.device.info().software());
+}
+
+EmitterLight makeEmitters(const SolverInput& input, const SolverSettings& settings) {
     const PatchSet& patches = input.patches;
-    EmitterLight light(input.device, patches, links);
+    EmitterLight light(input.device, patches, linksOf(input, settings));
+    const bool hybrid = settings.method == Method::Hybrid;
     light.setGroups({hybrid ? buildEmitters(input.scene, patches.scene.mesh, {.size = patches.scene.size})
                             : EmitterSet{}});
     return light;
 }
 
+// Returns the patches that links start from.
+const std::vector<shader::Patch>& receiversOf(const SolverInput& input, const CoarsePatches& coarse) {
+    return coarse.count > 0 ? coarse.receivers : input.patches.scene.patches;
+}
+
+// Hybrid keeps emission out of what patches send: it is direct light's.
+SolverSettings withTransport(SolverSettings settings) {
+    settings.transport.reflectedOnly = settings.method == Method::Hybrid;
+    return settings;
+}
+
 } // namespace
 
 LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
-    : input_(input), settings_(settings), hybrid_(settings.method == Method::Hybrid),
-      linksOfRound_(
-          relume::linksOfRound(input.patches.count, settings.links.samples, input.device.info().software())),
-      emitters_(makeEmitters(input, hybrid_, linksOfRound_)),
-      lamps_(input.device, input.scene, input.patches, {.samples = linksOfRound_}),
+    : emitters_(makeEmitters(input, settings)),
+      lamps_(input.device, input.scene, input.patches, {.samples = linksOf(input, settings)}),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
-      buffers_(input.device, input.patches,
-               {.linksOfRound = linksOfRound_,
-                .direct = hasDirect(),
-                .smooth = hybrid_ && settings.links.smooth,
-                .coarse = coarse_.count > 0 ? &coarse_ : nullptr,
-                .linkBytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
-      radiancePass_(input.device), gatherPass_(input.device, settings.transport), resolvePass_(input.device),
-      commands_(input.device), timestamps_(input.device, 3),
-      order_(std::max(input.patches.chunkCount(), coarse_.chunkCount())) {
+      kit_(input, {.settings = withTransport(settings),
+                   .linksOfRound = linksOf(input, settings),
+                   .buffers = {.direct = hasDirect(),
+                               .smooth = settings.method == Method::Hybrid && settings.links.smooth,
+                               .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
+                   .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
+                   .progress = progress_,
+                   .batchMs = batchMs_}),
+      batches_(kit_, {.chunkCount = static_cast<uint32_t>(receiversOf(input, coarse_).size() / kChunk),
+                      .links = kit_.linksOfRound,
+                      .batch = kit_.buffers.batchChunks,
+                      .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
+                      .oneRound = true}),
+      errors_(kit_), senders_(receiversOf(input, coarse_)), schedule_(rules()), disc_(makeDisc()),
+      radiancePass_(input.device) {
     batchMs_ = settings.batchMs;
-    settings_.transport.reflectedOnly = hybrid_;
     const PatchSet& patches = input.patches;
-    if (settings.links.footprint) {
-        footprints_.emplace(input.device, patches);
-        input.light.radiance = footprints_->makeRadiance(input.device);
-    } else if (input.light.radiance.size() != LightBuffers::lightBytes(patches)) { // another solver's nodes
-        input.light.radiance =
-            vk::Buffer(input.device, {.size = LightBuffers::lightBytes(patches), .name = "radiance"});
-    }
-    if (!gatherPass_.onCpu())
-        buffers_.packed = vk::Buffer(
+    LinkBuffers& buffers = kit_.buffers;
+    if (settings.links.footprint) footprints_.emplace(input.device, patches);
+    input.light.resizeRadiance(input.device, footprints_ ? footprints_->radianceBytes() : kit_.lightBytes());
+    if (!kit_.gatherPass.onCpu())
+        buffers.packed = vk::Buffer(
             input.device, {.size = input.light.radiance.size() / sizeof(glm::vec4) * sizeof(glm::uvec2),
                            .name = "packed radiance"});
-    const std::vector<shader::Patch>& receivers =
-        coarse_.count > 0 ? coarse_.receivers : patches.scene.patches;
-    senders_.assign(receivers.size() / kChunk, 0);
-    for (size_t i = 0; i < receivers.size(); ++i)
-        senders_[i / kChunk] += (receivers[i].flags & shader::kPatchSends) != 0;
-
-    if (settings.links.directions == DirectionSet::Lec) makeDisc();
-    VkCommandBuffer cmd = commands_.begin();
-    for (const vk::Buffer* buffer :
-         {&buffers_.linkSums, &buffers_.directSums, &buffers_.direct, &buffers_.rays, &buffers_.result,
-          &input.light.ligIn, &input.light.ligOut}) {
+    VkCommandBuffer cmd = kit_.commands.begin();
+    for (const vk::Buffer* buffer : {&buffers.linkSums, &buffers.directSums, &buffers.direct, &buffers.rays,
+                                     &buffers.result, &input.light.ligIn, &input.light.ligOut}) {
         if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     }
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
+    kit_.run(cmd);
     light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
-    if (settings.live && !buffers_.rows)
-        undo_ = vk::Buffer(input.device, {.size = buffers_.linkSums.size(), .name = "sums before the round"});
-    const uint64_t kept = uint64_t{buffers_.keptChunks} * linksOfRound_ * kChunk * sizeof(uint32_t);
-    progress_.cacheBytes = kept;
-    traced_.assign(buffers_.keptChunks, 0);
-    progress_.cachedShare = static_cast<double>(buffers_.keptChunks) / static_cast<double>(senders_.size());
+    if (settings.live && !buffers.rows)
+        undo_ = vk::Buffer(input.device, {.size = buffers.linkSums.size(), .name = "sums before the round"});
+    progress_.cacheBytes = batches_.cache().bytes();
+    progress_.cachedShare = batches_.cache().share();
+}
+
+LinkRules LinkSolver::rules() const {
+    const SolverSettings& settings = kit_.settings;
+    const double linkShare = static_cast<double>(senders_.chunks()) / kit_.chunkCount();
+    return {.hybrid = settings.method == Method::Hybrid,
+            .hasDirect = hasDirect(),
+            .linksOfRound = kit_.linksOfRound,
+            .samples = settings.links.samples,
+            .passes = settings.passes,
+            .error = settings.error,
+            .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
+            .linkCost = kit_.linksOfRound * linkShare};
 }
 
 // Makes the directions' set. Each replicate goes through it once; where the error decides how many sample
 // passes there will be, once per sample pass: a set that is broken off is less even.
-void LinkSolver::makeDisc() {
-    const uint32_t rounds = settings_.links.samples > 0 ? roundsWanted() : 1;
-    discCount_ = rounds * linksOfRound_ / shader::kReplicates;
+LinkSolver::Disc LinkSolver::makeDisc() const {
+    if (kit_.settings.links.directions != DirectionSet::Lec) return {};
+    const uint32_t rounds = kit_.settings.links.samples > 0 ? schedule_.roundsWanted() : 1;
+    const uint32_t count = rounds * kit_.linksOfRound / shader::kReplicates;
     std::vector<glm::vec2> points;
-    points.reserve(discCount_);
-    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(discCount_)))
+    points.reserve(count);
+    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
         points.emplace_back(p);
-    disc_ = vk::makeBuffer(input_.device, points, "directions");
+    return {vk::makeBuffer(kit_.input.device, points, "directions"), count};
 }
 
 void LinkSolver::step() {
     if (done_) return;
+    const vk::MemoryOwner owner(kLinksOwner);
     const auto start = Clock::now();
     if (state_.stage == Stage::Plan) plan();
     if (state_.stage == Stage::Direct)
         directBatch();
     else if (state_.stage == Stage::Links)
         linkBatch();
-    progress_.passFraction = 1.0 - static_cast<double>(order_.left()) / std::max(1u, order_.count());
+    progress_.passFraction = 1.0 - static_cast<double>(kit_.order.left()) / std::max(1u, kit_.order.count());
     progress_.seconds += secondsSince(start);
 }
 
 // Plans direct light first, then links; then whichever takes more of the error away for its rays.
 void LinkSolver::plan() {
-    const uint32_t rounds = state_.directRounds + state_.linkRounds;
     // With a number of samples alone, errors decide nothing.
-    if (settings_.error > 0 && rounds > 0 && rounds >= state_.nextCheck) check();
-    if (progress_.converged || gridLimits_ || enoughRounds()) {
+    if (schedule_.wantsCheck(state_)) check();
+    if (progress_.converged || gridLimits_ || schedule_.isDone(state_)) {
         if (stale_) resolve();
         done_ = true;
         return;
     }
-    if (settings_.live) look();
-    begin(wantsDirect() ? Stage::Direct : Stage::Links);
+    if (kit_.settings.live) look();
+    begin(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links);
 }
 
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
     state_.bounce = 0;
     if (stage == Stage::Links) {
-        std::fill(traced_.begin(), traced_.end(), uint8_t{0});
-        beginBounce();
-    } else {
-        order_.begin(chunksOfStage(), seenOfStage());
-        VkCommandBuffer cmd = commands_.begin();
-        vkCmdFillBuffer(cmd, buffers_.rays.handle(), 0, VK_WHOLE_SIZE, 0);
-        recordUndo(cmd);
-        vk::barrier(cmd);
-        commands_.run();
+        batches_.cache().forget();
+        return beginBounce();
     }
-}
-
-uint32_t LinkSolver::roundsWanted() const {
-    const uint32_t limit = settings_.links.samples > 0 ? settings_.links.samples : kMaxSamples;
-    return (limit + linksOfRound_ - 1) / linksOfRound_;
-}
-
-// Returns how many directions share the result. Each direction stands for its share of the whole result.
-// Where the error decides how many there will be, it is that of what is there so far: the mean over sample
-// passes of something that falls as 1 / rounds falls to nothing, too.
-uint32_t LinkSolver::footprintSamples() const {
-    return linksOfRound_ * (settings_.links.samples > 0 ? roundsWanted() : state_.linkRounds + 1);
-}
-
-bool LinkSolver::linksDone() const {
-    return state_.linkRounds >= roundsWanted() || (hybrid_ && settings_.passes == 1);
-}
-
-bool LinkSolver::directDone() const {
-    return !hasDirect() || state_.directRounds >= roundsWanted();
-}
-
-bool LinkSolver::enoughRounds() const {
-    return linksDone() && directDone();
-}
-
-bool LinkSolver::wantsDirect() const {
-    if (directDone()) return false;
-    if (state_.directRounds == 0 || linksDone()) return true;
-    if (state_.linkRounds == 0) return false;
-    if (settings_.links.samples > 0) return state_.directRounds <= state_.linkRounds;
-    const double linkShare = static_cast<double>(senders_.size()) / input_.patches.chunkCount();
-    // Variance falls as 1 / rounds at least; this is what one more takes away, for its cost.
-    const auto gain = [](double variance, double then, double now, double cost) {
-        return variance * then / (now * now * cost);
-    };
-    return gain(state_.directVariance, state_.directAtCheck, state_.directRounds,
-                kSegmentCost * (emitters_.rays(0) + lamps_.rays())) >
-           gain(state_.indirectVariance, state_.linksAtCheck, state_.linkRounds, linksOfRound_ * linkShare);
-}
-
-ChunkRange LinkSolver::nextRange(const BatchRate& rate, uint32_t most) const {
-    const double limit = std::clamp(rate.wanted(batchMs_), 1.0, std::max(1.0, static_cast<double>(most)));
-    return order_.next(static_cast<uint32_t>(limit), static_cast<uint32_t>(rate.perMs() * kWorthASubmit));
+    kit_.order.begin(chunksOfStage(), seenOfStage());
+    VkCommandBuffer cmd = kit_.commands.begin();
+    vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+    recordUndo(cmd);
+    vk::barrier(cmd);
+    kit_.commands.run();
 }
 
 const std::vector<uint8_t>& LinkSolver::seenOfStage() const {
-    return state_.stage == Stage::Links && coarse_.count > 0 ? seenReceivers_ : seenPatches_;
+    return state_.stage == Stage::Links && coarse_.count > 0 ? seenReceivers_ : kit_.seen;
 }
 
 // Direct light is every patch's own; links may start at fewer.
 uint32_t LinkSolver::chunksOfStage() const {
-    return state_.stage == Stage::Links ? static_cast<uint32_t>(senders_.size())
-                                        : input_.patches.chunkCount();
+    return state_.stage == Stage::Links ? senders_.chunks() : kit_.chunkCount();
+}
+
+template<typename Lights>
+void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
+    const LightBuffers& light = kit_.input.light;
+    const LinkBuffers& buffers = kit_.buffers;
+    const typename Lights::Work work{.group = group, .round = state_.directRounds, .range = range};
+    const PointTimes times = tracePoints(
+        {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(work, buffers.rays),
+        [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },
+        [&](VkCommandBuffer cmd) {
+            lights.recordGather(cmd, light, work, buffers.directSums, buffers.direct);
+        });
+    progress_.traceSeconds += times.trace;
+    progress_.gatherSeconds += times.gather;
 }
 
 void LinkSolver::directBatch() {
-    const uint32_t batch = std::min(buffers_.batchChunks, emitters_.batchChunks());
+    const uint32_t batch = std::min(kit_.buffers.batchChunks, emitters_.batchChunks());
     const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
-    const ChunkRange range = nextRange(directRate_, most);
+    const ChunkRange range = kit_.nextRange(directRate_, most);
     const auto start = Clock::now();
-    const PointTracer on{commands_, timestamps_, input_.tracer};
-    const auto note = [&](const PointTimes& times) {
-        progress_.traceSeconds += times.trace;
-        progress_.gatherSeconds += times.gather;
-    };
-    if (emitters_.rays(0) > 0) {
-        const EmitterLight::Work work{.group = 0, .round = state_.directRounds, .range = range};
-        const auto samples = [&](VkCommandBuffer cmd) { emitters_.recordSamples(cmd, input_.light, work); };
-        note(tracePoints(on, emitters_.segments(work, buffers_.rays), samples, [&](VkCommandBuffer cmd) {
-            emitters_.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
-        }));
-    }
-    for (uint32_t group = 0; group < lamps_.groups(); ++group) {
-        const LampLight::Work work{.group = group, .round = state_.directRounds, .range = range};
-        const auto samples = [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, input_.light, work); };
-        note(tracePoints(on, lamps_.segments(work, buffers_.rays), samples, [&](VkCommandBuffer cmd) {
-            lamps_.recordGather(cmd, input_.light, work, buffers_.directSums, buffers_.direct);
-        }));
-    }
+    if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range);
+    for (uint32_t group = 0; group < lamps_.groups(); ++group)
+        traceDirect(lamps_, group, range);
     directRate_.note(range.count, batchMs_, secondsSince(start));
-    order_.finish(range);
-    if (settings_.live && !hasSolution()) live_.ranges.push_back(range);
-    if (order_.left() > 0) return;
-    const auto counters = vk::readBuffer<uint32_t>(input_.device, buffers_.rays, shader::kRayCounters);
+    kit_.order.finish(range);
+    if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
+    if (kit_.order.left() > 0) return;
+    const auto counters =
+        vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
     progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
     ++state_.directRounds;
     stale_ = true;
@@ -229,203 +205,200 @@ void LinkSolver::directBatch() {
 
 // Makes what links read: radiance of patches and, where they have footprints, of nodes.
 void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
-    radiancePass_.record(cmd, input_.light, settings_.transport);
+    const LightBuffers& light = kit_.input.light;
+    radiancePass_.record(cmd, light, kit_.settings.transport);
     if (footprints_) {
         vk::barrier(cmd);
-        footprints_->recordLevels(cmd, input_.light.radiance);
+        footprints_->recordLevels(cmd, light.radiance);
     }
     vk::barrier(cmd);
-    gatherPass_.recordPack(cmd, input_.light, buffers_);
+    kit_.gatherPass.recordPack(cmd, light, kit_.buffers);
 }
 
 void LinkSolver::beginBounce() {
-    const bool counted = settings_.passes > 0;
-    // Hybrid's first pass is its direct light.
-    const uint32_t bounces = hybrid_ ? settings_.passes - 1 : settings_.passes;
-    if (counted)
-        state_.last = state_.bounce + 1 >= bounces;
-    else if (state_.linkRounds > 0)
-        state_.last = true;
-    else if (state_.bounce == 0)
-        state_.last = false;
-    VkCommandBuffer cmd = commands_.begin();
+    const LinkBuffers& buffers = kit_.buffers;
+    state_.last = schedule_.isLastBounce(state_);
+    VkCommandBuffer cmd = kit_.commands.begin();
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
-        const uint32_t samples = counted ? 0 : state_.linkRounds * linksOfRound_;
-        gatherPass_.recordCompose(cmd, input_.light, buffers_, hasDirect() ? &buffers_.direct : nullptr,
-                                  samples);
+        const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
+        kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples);
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
-    if (buffers_.coarseSums) vkCmdFillBuffer(cmd, buffers_.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    order_.begin(chunksOfStage(), seenOfStage());
-    if (!hasSolution()) {
+    if (buffers.coarseSums) vkCmdFillBuffer(cmd, buffers.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
+    kit_.run(cmd);
+    kit_.order.begin(chunksOfStage(), seenOfStage());
+    if (!schedule_.hasSolution(state_)) {
         live_.all = true;
         live_.ranges.clear();
     }
 }
 
+// Mostly links are there from the sample pass's second bounce on; after a restore they are traced once more.
 void LinkSolver::linkBatch() {
-    // Mostly links are there from the sample pass's second bounce on; after a restore they are traced once
-    // more.
-    const uint32_t next = order_.next(1, 0).first;
-    const bool kept = next < buffers_.keptChunks;
-    const auto known = traced_.begin() + std::min(next, buffers_.keptChunks);
-    const bool trace = !kept || *known == 0;
-    const auto alike = static_cast<uint32_t>(std::find(known, traced_.end(), trace ? 1 : 0) - known);
-    const uint32_t room = kept ? alike : buffers_.batchChunks;
-    const ChunkRange range =
-        trace ? nextRange(traceRate_, std::min(room, buffers_.batchChunks)) : nextRange(gatherRate_, room);
-    const uint64_t offset = kept ? uint64_t{range.first} * linksOfRound_ * kChunk : 0; // [words]
-    const vk::Buffer& links = kept ? buffers_.links : buffers_.linksStaging;
-    const auto start = Clock::now();
-    const ClosestWork closest{.receivers = coarse_.count > 0 ? &buffers_.receivers : nullptr,
-                              .receiversHost = coarse_.count > 0 ? coarse_.receivers.data() : nullptr,
-                              .firstChunk = range.first,
-                              .chunkCount = range.count,
-                              .firstSample = state_.linkRounds * linksOfRound_,
-                              .sampleCount = linksOfRound_,
-                              .rotation = settings_.links.rotation,
-                              .disc = disc_ ? &disc_ : nullptr,
-                              .discCount = discCount_,
-                              .links = &links,
-                              .linksOffset = offset};
-    const LinkGatherPass::Work work{.links = &links,
-                                    .linksOffset = offset,
-                                    .nodes = footprints_ ? footprints_->nodes() : 0,
-                                    .samples = linksOfRound_,
-                                    .direct = hasDirect() ? &buffers_.direct : nullptr,
-                                    .accumulate = state_.last,
-                                    .range = range};
-    if (gatherPass_.onCpu() && !input_.tracer.records() && !footprints_)
-        linksAtOnce(trace ? &closest : nullptr, work);
-    else
-        linksBySubmit(trace ? &closest : nullptr, work);
-    (trace ? traceRate_ : gatherRate_).note(range.count, batchMs_, secondsSince(start));
-    const auto first = senders_.begin() + range.first;
-    const uint64_t count = std::accumulate(first, first + range.count, uint64_t{0}) * linksOfRound_;
-    (trace ? progress_.rays : progress_.raysSaved) += count;
-    if (kept) std::fill_n(known, range.count, uint8_t{1});
+    const bool coarse = coarse_.count > 0;
+    LinkBatches::Portion portion = batches_.next(state_.linkRounds);
+    portion.closest.receivers = coarse ? &kit_.buffers.receivers : nullptr;
+    portion.closest.receiversHost = coarse ? coarse_.receivers.data() : nullptr;
+    portion.closest.disc = disc_.points ? &disc_.points : nullptr;
+    portion.closest.discCount = disc_.count;
+    portion.gather.nodes = footprints_ ? footprints_->nodes() : 0;
+    portion.gather.direct = direct();
+    portion.gather.accumulate = state_.last;
+    const bool atOnce = batches_.onCpu() && !footprints_;
+    const auto recordDistances = [&](VkCommandBuffer cmd) {
+        if (wantsDistances())
+            kit_.gatherPass.recordDistances(cmd, kit_.input.light, kit_.buffers, portion.gather);
+    };
+    batches_.run(portion,
+                 {.begin = {},
+                  .traced =
+                      [&](VkCommandBuffer cmd) {
+                          if (portion.trace && footprints_) recordFootprints(cmd, portion);
+                      },
+                  .gather =
+                      [&](VkCommandBuffer cmd) {
+                          kit_.gatherPass.record(cmd, kit_.input.light, kit_.buffers, portion.gather);
+                          if (!atOnce) recordDistances(cmd);
+                      },
+                  .endRecords = [&] { return wantsDistances(); },
+                  .end =
+                      [&](VkCommandBuffer cmd) {
+                          if (atOnce) recordDistances(cmd);
+                      }},
+                 atOnce);
+    const uint64_t count = senders_.count(portion.range) * kit_.linksOfRound;
+    (portion.trace ? progress_.rays : progress_.raysSaved) += count;
     progress_.pairs += count;
-    order_.finish(range);
-    if (settings_.live && !hasSolution() && coarse_.count == 0) live_.ranges.push_back(range);
-    if (order_.left() == 0) endBounce();
+    batches_.finish(state_.linkRounds, portion);
+    if (kit_.settings.live && !schedule_.hasSolution(state_) && !coarse)
+        live_.ranges.push_back(portion.range);
+    if (kit_.order.left() == 0) endBounce();
 }
 
-// Traces and gathers without a submit, which would take longer than a small batch where the CPU does both.
-void LinkSolver::linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work) {
-    const auto start = Clock::now();
-    if (closest) input_.tracer.closest(VK_NULL_HANDLE, *closest);
-    const double traced = secondsSince(start);
-    gatherPass_.record(VK_NULL_HANDLE, input_.light, buffers_, work);
-    progress_.traceSeconds += traced;
-    progress_.gatherSeconds += secondsSince(start) - traced;
-    if (!wantsDistances()) return;
-    VkCommandBuffer cmd = commands_.begin();
-    gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
+void LinkSolver::recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const {
+    const vk::Buffer& patches = kit_.input.light.patches;
+    const vk::Buffer& receivers = coarse_.count > 0 ? kit_.buffers.receivers : patches;
+    footprints_->recordLinks(cmd, patches.address(),
+                             {.receivers = receivers.address(),
+                              .links = portion.gather.address(),
+                              .firstChunk = portion.range.first,
+                              .chunkCount = portion.range.count,
+                              .sampleCount = kit_.linksOfRound,
+                              .samples = schedule_.footprintSamples(state_)});
     vk::barrier(cmd);
-    commands_.run();
-}
-
-void LinkSolver::linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work) {
-    VkCommandBuffer cmd = commands_.begin();
-    timestamps_.reset(cmd);
-    timestamps_.mark(cmd, 0);
-    const auto start = Clock::now();
-    if (closest) input_.tracer.closest(cmd, *closest);
-    const double cpuTrace = secondsSince(start);
-    vk::barrier(cmd);
-    timestamps_.mark(cmd, 1);
-    if (closest && footprints_) {
-        const vk::Buffer& receivers = coarse_.count > 0 ? buffers_.receivers : input_.light.patches;
-        footprints_->recordLinks(cmd, input_.light.patches.address(),
-                                 {.receivers = receivers.address(),
-                                  .links = work.address(),
-                                  .firstChunk = work.range.first,
-                                  .chunkCount = work.range.count,
-                                  .sampleCount = linksOfRound_,
-                                  .samples = footprintSamples()});
-        vk::barrier(cmd);
-    }
-    if (gatherPass_.onCpu()) { // which then counts into the time between the same two marks
-        vk::hostBarrier(cmd);
-        commands_.run();
-        cmd = commands_.begin();
-    }
-    gatherPass_.record(cmd, input_.light, buffers_, work);
-    if (wantsDistances()) gatherPass_.recordDistances(cmd, input_.light, buffers_, work);
-    timestamps_.mark(cmd, 2);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    progress_.traceSeconds +=
-        input_.tracer.onCpu() && closest ? cpuTrace : 1e-3 * timestamps_.milliseconds(0, 1);
-    progress_.gatherSeconds += 1e-3 * timestamps_.milliseconds(1, 2);
 }
 
 // Interpolates from the receivers of the coarser grid to all patches.
 void LinkSolver::interpolate() {
-    const uint32_t chunks = input_.patches.chunkCount();
-    const bool distances = buffers_.distances && state_.linkRounds == 0 && state_.last;
+    const uint32_t chunks = kit_.chunkCount();
     for (uint32_t first = 0; first < chunks; first += kInterpolatedChunks) {
-        VkCommandBuffer cmd = commands_.begin();
-        gatherPass_.recordInterpolate(cmd, input_.light, buffers_,
-                                      {.samples = linksOfRound_,
-                                       .direct = hasDirect() ? &buffers_.direct : nullptr,
-                                       .accumulate = state_.last,
-                                       .distances = distances,
-                                       .range = {first, std::min(kInterpolatedChunks, chunks - first)}});
+        VkCommandBuffer cmd = kit_.commands.begin();
+        kit_.gatherPass.recordInterpolate(cmd, kit_.input.light, kit_.buffers,
+                                          {.samples = kit_.linksOfRound,
+                                           .direct = direct(),
+                                           .accumulate = state_.last,
+                                           .distances = wantsDistances(),
+                                           .range = {first, std::min(kInterpolatedChunks, chunks - first)}});
         vk::barrier(cmd);
-        commands_.run();
+        kit_.commands.run();
     }
 }
 
 void LinkSolver::endBounce() {
     if (coarse_.count > 0) interpolate();
     ++progress_.passes;
-    const bool settling = settings_.passes == 0 && state_.linkRounds == 0 && !state_.last;
-    if (settling) measureChange();
-    std::swap(input_.light.ligIn, input_.light.ligOut);
+    const bool settling = schedule_.converges(state_);
+    if (settling) {
+        const glm::dvec4 total = errors_.change();
+        const double mean = state_.series.learn(total);
+        if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
+        state_.settling.add(mean);
+    }
+    kit_.input.light.turn();
     ++state_.bounce;
     if (!state_.last) {
-        const double aim = settings_.error > 0 ? kIterationShare * settings_.error : kLeastIterationError;
-        if (settling) state_.last = state_.iterationError <= aim || state_.bounce + 1 >= kMaxPasses;
+        if (settling) state_.last = schedule_.hasConverged(state_);
         return beginBounce();
     }
-    if (settings_.passes == 0) {
-        state_.iterationError *= state_.ratio; // this bounce's own share
+    if (kit_.settings.passes == 0) {
+        state_.series.error *= state_.series.ratio; // this bounce's own share
         if (state_.linkRounds == 0)
             state_.settling.bounce();
         else
             state_.settling.round(state_.linkRounds);
     } else
-        state_.iterationError = 0; // what more bounces would add is not asked for
+        state_.series.error = 0; // what more bounces would add is not asked for
     ++state_.linkRounds;
-    progress_.samples = state_.linkRounds * linksOfRound_;
+    progress_.samples = state_.linkRounds * kit_.linksOfRound;
     stale_ = true;
     state_.stage = Stage::Plan;
 }
 
-void LinkSolver::measureChange() {
-    VkCommandBuffer cmd = commands_.begin();
-    resolvePass_.recordChange(cmd, input_.light, buffers_);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-    const glm::dvec4 total =
-        sumsOf(vk::readBuffer<glm::vec4>(input_.device, buffers_.chunkSums, input_.patches.chunkCount()));
-    const double change = total.z > 0 ? std::sqrt(total.x / (3.0 * total.z)) : 0.0;
-    const double mean = total.z > 0 ? total.y / (3.0 * total.z) : 0.0;
-    if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
-    state_.settling.add(mean);
-    if (const std::optional<SeriesRest> rest = seriesRest(state_.change, change, mean)) {
-        state_.ratio = rest->ratio;
-        state_.iterationError = rest->error;
+// Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
+void LinkSolver::check() {
+    state_.nextCheck = state_.rounds() + 1;
+    if (!schedule_.hasSolution(state_)) return; // no bounces yet
+    resolve();
+    const double aim = kit_.settings.error;
+    progress_.converged = progress_.error <= aim;
+    state_.nextCheck = schedule_.nextCheck(state_, progress_.error);
+    // No number of samples makes up for a grid that is too coarse.
+    const double grid2 = progress_.gridError * progress_.gridError;
+    gridLimits_ =
+        progress_.gridError > aim && progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
+}
+
+void LinkSolver::resolve() {
+    const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
+    learn(kit_.buffers.rows ? state_.width.settle(at) : at(0.0));
+    stale_ = false;
+    light_.clear();
+}
+
+// Learns what sums over all patches say, and that there is a new result.
+void LinkSolver::learn(const shader::ResolveSums& sums) {
+    requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
+    state_.directVariance = sums.direct;
+    state_.indirectVariance = smoothedVariance(sums);
+    state_.directAtCheck = state_.directRounds;
+    state_.linksAtCheck = state_.linkRounds;
+    progress_.error = 0;
+    if (sums.light > 0) {
+        state_.coarseVariance = errors_.coarseVariance(state_, sums.count);
+        progress_.gridError = relativeError({sums.light, sums.count, state_.coarseVariance}, 0.0);
+        const double variance = state_.directVariance + state_.indirectVariance + state_.coarseVariance;
+        const double iteration = schedule_.directAlone() ? 0.0 : state_.series.error;
+        progress_.error = relativeError({sums.light, sums.count, variance}, iteration);
     }
-    state_.change = change;
+    if (!schedule_.hasSolution(state_)) {
+        live_.all = true; // this result is without what has arrived since
+        return;
+    }
+    ++live_.resolves;
+    live_.complete = live_.complete || kit_.settings.passes > 0 || state_.settling.left <= kMostDimmer;
+}
+
+// Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
+// about widths and variances must not decide what comes next: looking changes no byte.
+const std::vector<glm::vec4>& LinkSolver::light() {
+    if (stale_ && state_.stage == Stage::Plan && state_.rounds() > 0) {
+        const LinkState before = state_;
+        resolve();
+        state_ = before;
+    }
+    if (light_.empty())
+        light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result,
+                                           kit_.input.patches.scene.patches.size());
+    return light_;
+}
+
+std::vector<float> LinkSolver::errors() {
+    std::vector<float> result;
+    for (const glm::vec4& v : light())
+        result.push_back(v.w);
+    return result;
 }
 
 SolverState LinkSolver::state() {
@@ -434,35 +407,29 @@ SolverState LinkSolver::state() {
 }
 
 std::vector<StatePart> LinkSolver::stateParts() {
+    const LightBuffers& light = kit_.input.light;
+    const LinkBuffers& buffers = kit_.buffers;
     std::vector<StatePart> parts;
     for (const vk::Buffer* buffer :
-         {&input_.light.ligIn, &input_.light.ligOut, &buffers_.linkSums, &buffers_.directSums,
-          &buffers_.direct, &buffers_.distances, &buffers_.coarseSums, &buffers_.rays}) {
-        if (*buffer) parts.push_back(part(input_.device, *buffer));
+         {&std::as_const(light.ligIn), &std::as_const(light.ligOut), &buffers.linkSums, &buffers.directSums,
+          &buffers.direct, &buffers.distances, &buffers.coarseSums, &buffers.rays}) {
+        if (*buffer) parts.push_back(part(kit_.input.device, *buffer));
     }
-    parts.push_back(part(order_));
+    parts.push_back(part(kit_.order));
     return parts;
 }
 
 void LinkSolver::restore(const SolverState& state) {
-    state_ = takeState<State>(state);
-    order_.restore(chunksOfStage(), seenOfStage());
+    state_ = takeState<LinkState>(state);
+    kit_.order.restore(chunksOfStage(), seenOfStage());
     done_ = false;
     stale_ = true;
     live_ = {.version = live_.version};
-    std::fill(traced_.begin(), traced_.end(), uint8_t{0});
+    batches_.cache().forget();
     if (state_.stage != Stage::Links) return;
-    VkCommandBuffer cmd = commands_.begin();
+    VkCommandBuffer cmd = kit_.commands.begin();
     recordRadiance(cmd);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-}
-
-uint64_t LinkSolver::bytes(uint32_t chunkCount, bool software, const SolverSettings& settings) {
-    const uint64_t patches = uint64_t{chunkCount} * shader::kChunk;
-    return LinkBuffers::bytes(chunkCount, software, settings) +
-           (settings.links.footprint ? Footprints::bytes(patches) : 0);
+    kit_.run(cmd);
 }
 
 } // namespace relume

@@ -1,17 +1,17 @@
 #pragma once
 
+#include <optional>
+
 #include "assets/base/clock.h"
-#include "bake/base/batch_rate.h"
-#include "bake/base/settling.h"
 #include "bake/direct/emitter_light.h"
 #include "bake/direct/lamp_light.h"
-#include "bake/gather/link_passes.h"
+#include "bake/direct/point_trace.h"
+#include "bake/gather/chunk_senders.h"
+#include "bake/gather/link_batches.h"
 #include "bake/gather/radiance_pass.h"
-#include "bake/gather/smoothing_width.h"
+#include "bake/gather/sample_plan.h"
 #include "bake/links/footprint.h"
-#include "bake/vk/commands.h"
-
-#include <optional>
+#include "bake/links/link_errors.h"
 
 namespace relume {
 
@@ -24,8 +24,6 @@ class LinkSolver final : public Solver {
 public:
     /// Throws Error.
     LinkSolver(const SolverInput& input, const SolverSettings& settings);
-    /// Returns the device bytes of its buffers, for patches in so many chunks.
-    static uint64_t bytes(uint32_t chunkCount, bool software, const SolverSettings& settings);
 
     void step() override;
     /// Returns direct and (smoothed) indirect light; w is the standard error.
@@ -40,89 +38,63 @@ public:
     void abortPass() override;
     LiveLight liveLight() override;
 
-    /// Beyond so many directions per patch no error is worth the time.
-    static constexpr uint32_t kMaxSamples = 65536;
+    static constexpr uint32_t kMaxSamples = kMaxSamplesOfPatch;
 
 private:
-    enum class Stage : uint32_t { Plan, Direct, Links };
-    /// Everything that decides what comes next, except for the sums, the light and the order of chunks.
-    struct State {
-        Stage stage = Stage::Plan;
-        uint32_t directRounds = 0, linkRounds = 0; // finished
-        uint32_t bounce = 0;                       // of the current sample pass
-        uint32_t nextCheck = 0;                    // sample passes of both kinds before the next check
-        bool last = false;                         // this bounce is the sample pass's last one: it counts
-        double change = 0;                         // RMS of the last bounce [cd/m^2]
-        double ratio = 0;                          // of the last two changes
-        double iterationError = 1, directVariance = 0, indirectVariance = 0,
-               coarseVariance = 0; // of the light, R, G and B of all patches together
-        SmoothingWidth width;
-        uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
-        Settling settling;                            // of the first sample pass, then of the result
+    using Stage = LinkState::Stage;
+    /// The directions of DirectionSet::Lec.
+    struct Disc {
+        vk::Buffer points; // vec2[count]
+        uint32_t count = 0;
     };
 
-    void makeDisc();
+    Disc makeDisc() const;
+    LinkRules rules() const;
     void plan();
     void begin(Stage stage);
-    uint32_t roundsWanted() const;
-    uint32_t footprintSamples() const;
-    bool linksDone() const;
-    bool directDone() const;
-    bool enoughRounds() const;
-    bool wantsDirect() const;
     /// Tells whether there is direct light: of mesh lights, which hybrid samples, or of analytic lights.
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
+    const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
     void directBatch();
+    template<typename Lights>
+    void traceDirect(const Lights& lights, uint32_t group, ChunkRange range);
     void linkBatch();
-    void linksAtOnce(const ClosestWork* closest, const LinkGatherPass::Work& work);
-    void linksBySubmit(const ClosestWork* closest, const LinkGatherPass::Work& work);
-    bool wantsDistances() const { return buffers_.distances && state_.linkRounds == 0 && state_.last; }
+    void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
+    bool wantsDistances() const { return kit_.buffers.distances && state_.linkRounds == 0 && state_.last; }
     void recordRadiance(VkCommandBuffer cmd);
     void beginBounce();
     void interpolate();
     void endBounce();
     uint32_t chunksOfStage() const;
-    void measureChange();
+    const std::vector<uint8_t>& seenOfStage() const;
     void check();
     void resolve();
-    shader::ResolveSums resolveOnce(double sigma);
-    double coarseVariance(double patches);
     void learn(const shader::ResolveSums& sums);
-    ChunkRange nextRange(const BatchRate& rate, uint32_t most) const;
-    const std::vector<uint8_t>& seenOfStage() const;
 
     // These serve a viewer and are in link_live.cpp.
-    bool hasSolution() const;
     void look();
     std::vector<ChunkRange> showUnfinished();
     const vk::Buffer& sumsOfStage() const;
     void recordUndo(VkCommandBuffer cmd);
     void undo();
 
-    const SolverInput input_;
-    SolverSettings settings_;
-    bool hybrid_;
-    uint32_t linksOfRound_;
     EmitterLight emitters_; // one group; hybrid's
     LampLight lamps_;
     CoarsePatches coarse_; // empty: links start at all patches
-    LinkBuffers buffers_;
+    LinkKit kit_;          // seen: chunks of patches that come first
+    LinkBatches batches_;
+    LinkErrors errors_;
+    ChunkSenders senders_; // of patches where links start
+    LinkSchedule schedule_;
     std::optional<Footprints> footprints_;
-    vk::Buffer disc_; // vec2[discCount_] of DirectionSet::Lec
-    uint32_t discCount_ = 0;
+    Disc disc_;
     RadiancePass radiancePass_;
-    LinkGatherPass gatherPass_;
-    ResolvePass resolvePass_;
-    vk::Commands commands_;
-    vk::Timestamps timestamps_;
-    State state_;
-    ChunkOrder order_;                                 // of the sample pass's chunks
-    std::vector<uint8_t> seenPatches_, seenReceivers_; // chunks that come first
-    BatchRate directRate_, traceRate_, gatherRate_;
-    std::vector<uint32_t> senders_; // of each chunk with links: patches that take part
-    bool gridLimits_ = false;       // more samples are of no use
-    bool stale_ = true;             // light_ is behind the sums
-    std::vector<glm::vec4> light_;  // empty: not read back yet
+    LinkState state_;
+    std::vector<uint8_t> seenReceivers_; // chunks of the coarser grid that come first
+    BatchRate directRate_;
+    bool gridLimits_ = false;      // more samples are of no use
+    bool stale_ = true;            // light_ is behind the sums
+    std::vector<glm::vec4> light_; // empty: not read back yet
     /// Keeps what a viewer has seen. Before the first solution `result` holds what there is, later the
     /// results of sample passes.
     struct Live {
@@ -138,8 +110,7 @@ private:
         bool undoable = false;               // what `undo` goes back to is there
     };
     Live live_;
-    vk::Buffer undo_;             // vec4[kReplicates][patches]; none where `rows` serves
-    std::vector<uint8_t> traced_; // per chunk whose links are kept: whether this sample pass traced them
+    vk::Buffer undo_; // vec4[kReplicates][patches]; none where `rows` serves
 };
 
 } // namespace relume

@@ -15,6 +15,10 @@ using shader::kSuperBlocks;
 // Allocations are few, and none is so large that a fragmented heap refuses it.
 constexpr uint64_t kBlockBytes = uint64_t{256} << 20;
 
+uint64_t keyOf(uint32_t row, uint32_t column) {
+    return uint64_t{row} << 32 | column;
+}
+
 } // namespace
 
 uint32_t UnitMask::count() const {
@@ -39,6 +43,7 @@ BitsCache::BitsCache(const vk::Device& device, const Desc& desc)
 // Takes the next piece of memory: what is still wanted, at most kBlockBytes.
 bool BitsCache::grow() {
     const uint64_t slots = std::min(slotsOfBlock_, slots_ - next_);
+    const vk::MemoryOwner owner(kOwner);
     try {
         blocks_.emplace_back(device_,
                              vk::Buffer::Desc{.size = slots * desc_.slotBytes, .name = "visibility cache"});
@@ -52,8 +57,13 @@ bool BitsCache::grow() {
     return true;
 }
 
+const BitsCache::Entry* BitsCache::peek(uint32_t row, uint32_t column) const {
+    const auto found = entries_.find(keyOf(row, column));
+    return found != entries_.end() ? &found->second : nullptr;
+}
+
 BitsCache::Entry* BitsCache::find(uint32_t row, uint32_t column) {
-    const uint64_t key = uint64_t{row} << 32 | column;
+    const uint64_t key = keyOf(row, column);
     const auto found = entries_.find(key);
     if (found != entries_.end()) return &found->second;
     if (next_ >= slots_) return nullptr;

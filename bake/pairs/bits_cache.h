@@ -41,9 +41,13 @@ public:
         uint64_t maxBytes = 0;
     };
     BitsCache(const vk::Device& device, const Desc& desc);
+    /// The ledger counts kept bits as those of this owner (vk::MemoryOwner).
+    static constexpr const char* kOwner = "bits cache";
 
     /// Returns the super-block's entry; null when it is not kept and no room is left. Pointers stay valid.
     Entry* find(uint32_t row, uint32_t column);
+    /// Returns the super-block's entry where it is kept already, else nullptr.
+    const Entry* peek(uint32_t row, uint32_t column) const;
     uint64_t bytes() const { return bytes_; } // taken so far
     bool full() const { return next_ >= slots_; }
     /// Forgets the units of columns (chunks) whose senders have changed. Returns the share of units that is

@@ -1,11 +1,9 @@
-// This part of PairSolver makes the direct light of analytic lights, which no patch sends. It is found once,
-// before the first pass, and each pass adds to it.
-#include "bake/pairs/pair_solver.h"
-
-#include "assets/base/clock.h"
-#include "bake/direct/point_trace.h"
+#include "bake/pairs/pair_lamps.h"
 
 #include <algorithm>
+
+#include "assets/base/clock.h"
+#include "bake/pairs/pair_memory.h"
 
 namespace relume {
 namespace {
@@ -18,64 +16,51 @@ constexpr double kFirstChunks = 4;
 
 } // namespace
 
-void PairSolver::makeLamps() {
-    if (lamps_.empty()) return;
-    const uint64_t bytes = LightBuffers::lightBytes(patches_);
-    lampSums_ = vk::Buffer(device_, {.size = shader::kReplicates * bytes, .name = "lamp sums"});
-    direct_ = vk::Buffer(device_, {.size = bytes, .name = "direct light"});
-    clearCounters();
-    clearLamps();
+PairLamps::PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches)
+    : chunks_(patches.chunkCount()), lamps_(device, scene, patches, {.samples = kPairLampRays}) {
+    if (empty()) return;
+    const uint64_t bytes = LightBuffers::lightBytes(patches);
+    sums_ = vk::Buffer(device, {.size = shader::kReplicates * bytes, .name = "lamp sums"});
+    direct_ = vk::Buffer(device, {.size = bytes, .name = "direct light"});
 }
 
-void PairSolver::clearLamps() {
-    state_.lampRounds = state_.lampChunk = 0;
-    VkCommandBuffer cmd = commands_.begin();
-    vkCmdFillBuffer(cmd, lampSums_.handle(), 0, VK_WHOLE_SIZE, 0);
+bool PairLamps::done() const {
+    return empty() || place_.rounds == kRounds;
+}
+
+double PairLamps::fraction() const {
+    return (place_.rounds + static_cast<double>(place_.chunk) / chunks_) / kRounds;
+}
+
+void PairLamps::clear(vk::Commands& commands) {
+    place_ = {};
+    VkCommandBuffer cmd = commands.begin();
+    vkCmdFillBuffer(cmd, sums_.handle(), 0, VK_WHOLE_SIZE, 0);
     vkCmdFillBuffer(cmd, direct_.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
-    commands_.run();
+    commands.run();
 }
 
-// Clears the counters of rays; rays so far are noted before.
-void PairSolver::clearCounters() {
-    VkCommandBuffer cmd = commands_.begin();
-    vkCmdFillBuffer(cmd, rays_.handle(), 0, VK_WHOLE_SIZE, 0);
-    vk::barrier(cmd);
-    vk::hostBarrier(cmd);
-    commands_.run();
-}
-
-bool PairSolver::lampsDone() const {
-    return lamps_.empty() || state_.lampRounds == kRounds;
-}
-
-void PairSolver::lampBatch() {
+PointTimes PairLamps::batch(const Batch& batch) {
     const auto start = Clock::now();
-    const uint32_t left = patches_.chunkCount() - state_.lampChunk;
-    const double wanted = lampRate_ > 0 ? lampRate_ * batchMs_ : kFirstChunks;
+    const uint32_t left = chunks_ - place_.chunk;
+    const double wanted = rate_ > 0 ? rate_ * batch.aim : kFirstChunks;
     const auto count = static_cast<uint32_t>(
         std::clamp(wanted, 1.0, static_cast<double>(std::min(left, lamps_.batchChunks()))));
-    const PointTracer on{commands_, timestamps_, tracer_};
+    PointTimes all;
     for (uint32_t group = 0; group < lamps_.groups(); ++group) {
-        const LampLight::Work work{
-            .group = group, .round = state_.lampRounds, .range = {state_.lampChunk, count}};
+        const LampLight::Work work{.group = group, .round = place_.rounds, .range = {place_.chunk, count}};
         const PointTimes times = tracePoints(
-            on, lamps_.segments(work, rays_),
-            [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, light_, work); },
-            [&](VkCommandBuffer cmd) { lamps_.recordGather(cmd, light_, work, lampSums_, direct_); });
-        progress_.traceSeconds += times.trace;
-        progress_.gatherSeconds += times.gather;
+            batch.on, lamps_.segments(work, batch.rays),
+            [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, batch.light, work); },
+            [&](VkCommandBuffer cmd) { lamps_.recordGather(cmd, batch.light, work, sums_, direct_); });
+        all.trace += times.trace;
+        all.gather += times.gather;
     }
-    lampRate_ = count / std::max(1e-3, 1e3 * secondsSince(start));
-    state_.lampChunk += count;
-    const double done = state_.lampRounds + static_cast<double>(state_.lampChunk) / patches_.chunkCount();
-    progress_.passFraction = done / kRounds;
-    if (state_.lampChunk < patches_.chunkCount()) return;
-    state_.lampChunk = 0;
-    if (++state_.lampRounds < kRounds) return;
-    progress_.passFraction = 0;
-    progress_.rays = raysSoFar();
-    clearCounters();
+    rate_ = count / std::max(1e-3, 1e3 * secondsSince(start));
+    place_.chunk += count;
+    if (place_.chunk == chunks_) place_ = {.rounds = place_.rounds + 1, .chunk = 0};
+    return all;
 }
 
 } // namespace relume

@@ -30,9 +30,10 @@ PairBuffers::PairBuffers(const vk::Device& device, uint64_t superCount, SenderKi
     partial = vk::Buffer(device, {.size = slots * kPartialBytes, .name = "partial sums"});
 }
 
-uint64_t PairBuffers::bytes(uint64_t superCount, bool software) {
+uint64_t PairBuffers::bytes(uint64_t superCount, SenderKind kind, bool bothEnds, bool software) {
+    const uint64_t transposed = kind == SenderKind::Patches ? superBytes(false) : 0;
     return std::min(superCapacity(software), superCount + 1) *
-           (sizeof(SuperBlock) + superBytes(false) + superBytes(true) + kPartialBytes);
+           (sizeof(SuperBlock) + transposed + superBytes(bothEnds) + kPartialBytes);
 }
 
 BitsRing::BitsRing(const vk::Device& device, uint32_t slots, uint64_t bytes)
@@ -44,9 +45,9 @@ uint32_t* BitsRing::host(uint64_t slot) const {
 }
 
 GatherPass::GatherPass(const vk::Device& device, SenderKind kind, const TransportSettings& settings)
-    : kind_(kind), pool_(device.info().software() && !settings.deviceGather && !settings.rtrad
-                             ? std::make_unique<WorkerPool>(0)
-                             : nullptr),
+    : kind_(kind),
+      pool_(device.info().software() && !settings.deviceGather && !settings.rtrad ? &device.workers()
+                                                                                  : nullptr),
       reduce_(device, "reduce") {
     if (pool_) return;
     transpose_ = vk::ComputeProgram(device, "transpose");

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "bake/base/worker_pool.h"
+#include "assets/base/worker_pool.h"
 #include "bake/solver/transport.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/trace/tracer.h"
@@ -27,7 +27,8 @@ struct PairBuffers {
     PairBuffers() = default;
     /// Makes buffers for superCount super-blocks in all, with as many per batch as pay on the device.
     PairBuffers(const vk::Device& device, uint64_t superCount, SenderKind kind);
-    static uint64_t bytes(uint64_t superCount, bool software); // at most, with BitsRing's
+    /// Returns their bytes, and those of a BitsRing beside them; bothEnds as superBytes() has it.
+    static uint64_t bytes(uint64_t superCount, SenderKind kind, bool bothEnds, bool software);
 };
 
 /// Holds bits until they are gathered: super-blocks take turns.
@@ -81,7 +82,7 @@ private:
     void gatherOnCpu(const Desc& desc) const;
 
     SenderKind kind_;
-    std::unique_ptr<WorkerPool> pool_;
+    WorkerPool* pool_; // the device's; nullptr: shaders gather
     vk::ComputeProgram transpose_, gather_, reduce_;
 };
 

@@ -70,6 +70,7 @@ void PairSenders::setList(SenderList list) {
     if (kind_ != SenderKind::Drawn)
         for (shader::Sender& sender : traced_)
             sender.count = std::min(sender.count, 1u);
+    buffers_ = {}; // before its successor takes memory
     buffers_.senders = vk::makeBuffer(device_, traced_, "senders");
     buffers_.members = vk::makeBuffer(device_, list_.members, "members of senders");
     if (kind_ != SenderKind::Drawn) {
@@ -86,6 +87,14 @@ void PairSenders::setList(SenderList list) {
              .members = list_.members,
              .senderBuffer = &buffers_.senders,
              .memberBuffer = &buffers_.members};
+}
+
+uint64_t PairSenders::bytes(uint64_t senders, uint64_t members, SenderKind kind) {
+    const uint64_t shapes = kind == SenderKind::Drawn ? 0
+                                                      : sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
+                                                            sizeof(glm::vec4); // and radiance
+    return senders * (sizeof(shader::Sender) + shapes) + members * sizeof(uint32_t) +
+           senders / kChunk * (sizeof(shader::ChunkBounds) + sizeof(uint32_t));
 }
 
 void PairSenders::prepare(const std::vector<glm::vec4>& light, double threshold) {

@@ -28,6 +28,9 @@ public:
     /// Returns, for RTRad, the window of senders that a receiver skips beside itself [texels].
     uint32_t skippedWindow() const { return adaptive_ ? 1 : pairs_.window; }
 
+    /// Returns the device bytes of a list of so many senders, padding included, that have so many members.
+    static uint64_t bytes(uint64_t senders, uint64_t members, SenderKind kind);
+
 private:
     void setList(SenderList list);
     void listSending(const std::vector<uint32_t>& chunkSends);

@@ -68,8 +68,8 @@ StatePart Solver::part(ChunkOrder& order) {
             }};
 }
 
-void Solver::recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
-                        const std::vector<ChunkRange>& ranges) {
+void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
+                const std::vector<ChunkRange>& ranges) {
     constexpr VkDeviceSize kChunkBytes = shader::kChunk * sizeof(glm::vec4);
     std::vector<VkBufferCopy> regions;
     for (const ChunkRange& range : ranges)

@@ -204,9 +204,6 @@ protected:
     }
     static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
     static StatePart part(ChunkOrder& order);
-    /// Copies ranges of a buffer of one vec4 per patch.
-    static void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
-                           const std::vector<ChunkRange>& ranges);
 
     bool done_ = false;
     double batchMs_ = 20.0; // aim of one submit
@@ -215,6 +212,10 @@ protected:
 private:
     void takeState(const SolverState& state, void* own, size_t size);
 };
+
+/// Copies ranges of a buffer of one vec4 per patch.
+void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
+                const std::vector<ChunkRange>& ranges);
 
 /// A solver's input; all of it must outlive the solver.
 struct SolverInput {

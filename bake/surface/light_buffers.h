@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "bake/surface/patch_set.h"
 #include "bake/vk/buffer.h"
 
@@ -31,6 +33,21 @@ struct LightBuffers {
           ligIn(device, {.size = lightBytes(set), .name = "ligIn"}),
           ligOut(device, {.size = lightBytes(set), .name = "ligOut"}), chunkCount(set.chunkCount()) {}
 
+    /// Makes radiance as large as a solver needs it, which may have more places than there are patches. What
+    /// was in it is lost where the size changes. The old one stays until the new one is there.
+    void resizeRadiance(const vk::Device& device, VkDeviceSize bytes) {
+        if (radiance.size() != bytes) radiance = vk::Buffer(device, {.size = bytes, .name = "radiance"});
+    }
+    /// Makes what was gathered what the next bounce starts from.
+    void turn() { std::swap(ligIn, ligOut); }
+
+    /// Returns their bytes for patches in so many chunks.
+    static uint64_t bytes(uint32_t chunks) {
+        constexpr uint64_t kLight = 5 * sizeof(glm::vec4); // albedo, emission, radiance, ligIn, ligOut
+        return uint64_t{chunks} *
+               (shader::kChunk * (sizeof(shader::Patch) + sizeof(shader::PatchEdges) + kLight) +
+                sizeof(shader::ChunkBounds) + sizeof(uint32_t));
+    }
     static VkDeviceSize lightBytes(const PatchSet& set) {
         return set.scene.patches.size() * sizeof(glm::vec4);
     }

@@ -78,10 +78,9 @@ void SurfaceColours::update(const vk::Device& device, const std::vector<Material
     const bool albedo = std::any_of(changed.begin(), changed.end(), [](Changed c) { return c.albedo; });
     const bool emission = std::any_of(changed.begin(), changed.end(), [](Changed c) { return c.emission; });
     if (!albedo && !emission) return;
-    if (!pool_) pool_ = std::make_unique<WorkerPool>(0);
     std::vector<uint8_t> dirty((patches.material.size() + kBlock - 1) / kBlock);
     std::vector<int64_t> clamped(dirty.size());
-    pool_->run(static_cast<uint32_t>(dirty.size()), [&](uint32_t block) {
+    device.workers().run(static_cast<uint32_t>(dirty.size()), [&](uint32_t block) {
         dirty[block] = updateBlock(now, changed, patches, block, clamped[block]) ? 1 : 0;
     });
     const int64_t more = std::accumulate(clamped.begin(), clamped.end(), int64_t{0});

@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "bake/base/worker_pool.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/surface/patch_material.h"
 #include "bake/vk/commands.h"
@@ -22,6 +21,11 @@ public:
     /// Updates all patches, also where their patterns have changed.
     void updateAll(const vk::Device& device, const std::vector<Material>& materials, PatchSet& patches,
                    LightBuffers& light);
+
+    /// Returns the device bytes for patches in so many chunks, from the first update of base colours on.
+    static uint64_t bytes(uint32_t chunks) {
+        return uint64_t{chunks} * shader::kChunk * (sizeof(uint32_t) + sizeof(glm::vec4));
+    }
 
 private:
     struct Changed {
@@ -42,8 +46,7 @@ private:
     void recolour(const vk::Device& device, const std::vector<Material>& materials,
                   const std::vector<Changed>& changed, const PatchSet& patches, const LightBuffers& light);
 
-    std::vector<Material> applied_;    // with glTF's default material as the last one
-    std::unique_ptr<WorkerPool> pool_; // from the first update on
+    std::vector<Material> applied_; // with glTF's default material as the last one
     std::unique_ptr<OnDevice> onDevice_;
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -21,7 +20,7 @@ namespace {
 constexpr uint32_t kLeafMax = 4;
 constexpr uint32_t kBins = 32;
 constexpr float kNodeCost = 1.5f;   // of visiting a node, in triangle tests: measured on an H100
-constexpr uint32_t kTaskMin = 8192; // triangles below which a thread of its own costs more than it saves
+constexpr uint32_t kTaskMin = 8192; // triangles below which another thread costs more than it saves
 constexpr uint32_t kTaskLevels = 4; // levels that may fork: 16 pieces, enough to even out on a few cores
 
 struct BvhItem {
@@ -84,7 +83,8 @@ struct Piece {
 
 class BvhBuilder {
 public:
-    BvhBuilder(std::vector<BvhItem>& items, float margin) : items_(items), margin_(margin) {}
+    BvhBuilder(std::vector<BvhItem>& items, float margin, WorkerPool* pool)
+        : items_(items), margin_(margin), pool_(pool) {}
 
     // Adds a tree over items [first, last) and returns its root's number: that of a node or, negative, of a
     // leaf.
@@ -98,6 +98,7 @@ private:
 
     std::vector<BvhItem>& items_;
     float margin_; // [m], added around boxes
+    WorkerPool* pool_;
 };
 
 void BvhBuilder::sweep(std::span<const Bin> bins, int axis, Split& best) {
@@ -193,12 +194,16 @@ int BvhBuilder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t leve
     const size_t index = piece.nodes.size();
     piece.nodes.emplace_back();
     piece.depth = std::max(piece.depth, level + 1);
-    int child0, child1;
-    if (level < kTaskLevels && last - first >= kTaskMin) {
+    int child0 = 0, child1 = 0;
+    if (pool_ != nullptr && level < kTaskLevels && last - first >= kTaskMin) {
         Piece right;
-        auto other = std::async(std::launch::async, [&] { return build(right, middle, last, level + 1); });
-        child0 = build(piece, first, middle, level + 1);
-        child1 = append(piece, right, other.get());
+        pool_->run(2, [&](uint32_t side) {
+            if (side == 0)
+                child0 = build(piece, first, middle, level + 1);
+            else
+                child1 = build(right, middle, last, level + 1);
+        });
+        child1 = append(piece, right, child1);
     } else {
         child0 = build(piece, first, middle, level + 1);
         child1 = build(piece, middle, last, level + 1);
@@ -268,16 +273,16 @@ float bvhMargin(float reach) {
     return 4 * std::numeric_limits<float>::epsilon() * reach;
 }
 
-Bvh buildBvh(const WorldMesh& mesh) {
+Bvh buildBvh(const WorldMesh& mesh, WorkerPool* pool) {
     std::vector<uint32_t> all(mesh.triangleCount());
     std::iota(all.begin(), all.end(), 0u);
-    return buildBvh(mesh, {.triangles = all, .margin = bvhMargin(bvhReach(mesh))});
+    return buildBvh(mesh, {.triangles = all, .margin = bvhMargin(bvhReach(mesh)), .pool = pool});
 }
 
 Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc) {
     ASSERT(!desc.triangles.empty() && desc.triangles.size() < kMostBvhTriangles);
     std::vector<BvhItem> items = itemsOf(mesh, desc.triangles);
-    BvhBuilder builder(items, desc.margin);
+    BvhBuilder builder(items, desc.margin, desc.pool);
     Piece piece;
     piece.nodes.reserve(items.size());
     const int root = builder.build(piece, 0, uint32_t(items.size()), desc.level);

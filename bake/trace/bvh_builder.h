@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assets/atlas/world_mesh.h"
+#include "assets/base/worker_pool.h"
 #include "bake/base/shader_types.h"
 
 namespace relume {
@@ -54,13 +55,14 @@ float bvhMargin(float reach);
 
 /// Builds a binary tree over all triangles by the surface area heuristic, with at most 4 triangles to a leaf;
 /// masked ones carry bit 31 in their id. The same mesh gives the same tree on any machine. It must have at
-/// least one triangle, and fewer than kMostBvhTriangles.
-Bvh buildBvh(const WorldMesh& mesh);
+/// least one triangle, and fewer than kMostBvhTriangles. Without a pool it is built on this thread alone.
+Bvh buildBvh(const WorldMesh& mesh, WorkerPool* pool = nullptr);
 
 struct BvhDesc {
     std::span<const uint32_t> triangles; // of the mesh, at least one
     float margin = 0;                    // bvhMargin()
     uint32_t level = 0;                  // nodes above its root
+    WorkerPool* pool = nullptr;          // to build on; nullptr: on this thread alone
 };
 /// Builds the same over some triangles; `depth` counts the nodes above, too.
 Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc);

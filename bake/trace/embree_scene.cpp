@@ -10,7 +10,6 @@
 #include <type_traits>
 
 #include "assets/base/error.h"
-#include "bake/base/worker_pool.h"
 #include "bake/trace/embree_api.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
@@ -89,7 +88,7 @@ void keepSolid(const RTCFilterFunctionNArguments* args) {
 } // namespace
 
 struct EmbreeScene::Impl {
-    Impl(const TraceScene& traceScene, uint32_t threads);
+    Impl(const TraceScene& traceScene, WorkerPool& workers);
     void attach(uint32_t first, uint32_t last, bool masked);
     struct Block {
         const PatchChunk& a;   // receivers
@@ -110,14 +109,15 @@ struct EmbreeScene::Impl {
     uint32_t targets(const Patch* patches, const glm::vec4* ends, uint32_t count, uint32_t* bits) const;
 
     const TraceScene& scene;
-    WorkerPool pool;
+    WorkerPool& pool;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease> device;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease> embree;
     std::vector<PatchChunk> chunks;
     Bvh bvh; // for shafts
 };
 
-EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads) : scene(traceScene), pool(threads) {
+EmbreeScene::Impl::Impl(const TraceScene& traceScene, WorkerPool& workers)
+    : scene(traceScene), pool(workers) {
     const std::string config = "threads=" + std::to_string(pool.size());
     device.reset(rtcNewDevice(config.c_str()));
     if (!device)
@@ -129,7 +129,7 @@ EmbreeScene::Impl::Impl(const TraceScene& traceScene, uint32_t threads) : scene(
 // Makes what only blocks need, when they are asked for, from patches as they are marked by then.
 void EmbreeScene::Impl::prepareBlocks() {
     chunks = buildChunks(scene.patches, scene.rtrad);
-    bvh = buildBvh(scene.mesh);
+    bvh = buildBvh(scene.mesh, &pool);
 }
 
 void EmbreeScene::Impl::build() {
@@ -490,8 +490,8 @@ void EmbreeScene::segments(const SegmentArrays& work) {
     });
 }
 
-EmbreeScene::EmbreeScene(const TraceScene& scene, uint32_t threads)
-    : impl_(std::make_unique<Impl>(scene, threads)) {}
+EmbreeScene::EmbreeScene(const TraceScene& scene, WorkerPool& pool)
+    : impl_(std::make_unique<Impl>(scene, pool)) {}
 EmbreeScene::~EmbreeScene() = default;
 
 } // namespace relume

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "assets/base/worker_pool.h"
 #include "bake/base/retrace_types.h"
 #include "bake/surface/trace_scene.h"
 #include "bake/trace/tracer.h"
@@ -48,13 +49,12 @@ struct RetraceArrays {
     bool silent = false;
 };
 
-/// The scene in Embree, traced in packets by all cores; it needs no Vulkan. It borrows the TraceScene.
-/// Results do not depend on the number of threads.
+/// The scene in Embree, traced in packets by a pool of threads; it needs no Vulkan. It borrows the
+/// TraceScene. Results do not depend on the number of threads.
 class EmbreeScene {
 public:
-    /// Builds the scene; 0 threads means one per core, or RELUME_THREADS. Throws Error when Embree cannot
-    /// build.
-    explicit EmbreeScene(const TraceScene& scene, uint32_t threads = 0);
+    /// Builds the scene. The pool must outlive it. Throws Error when Embree cannot build.
+    EmbreeScene(const TraceScene& scene, WorkerPool& pool);
     ~EmbreeScene();
 
     /// Does what Tracer::occlusion does. The bits of a skipped unit are left as they were, since nobody reads

@@ -15,7 +15,8 @@ T* mappedAs(const vk::Buffer* buffer, uint64_t count) {
 
 class EmbreeTracer : public Tracer {
 public:
-    explicit EmbreeTracer(const TraceScene& scene) : chunkCount_(scene.chunkCount()), scene_(scene) {}
+    EmbreeTracer(const TraceScene& scene, WorkerPool& pool)
+        : chunkCount_(scene.chunkCount()), scene_(scene, pool) {}
     const char* name() const override { return "embree"; }
     bool onCpu() const override { return true; }
 
@@ -79,8 +80,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene) {
-    return std::make_unique<EmbreeTracer>(scene);
+std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene, WorkerPool& pool) {
+    return std::make_unique<EmbreeTracer>(scene, pool);
 }
 
 } // namespace relume

@@ -2,11 +2,12 @@
 
 #include <memory>
 
+#include "assets/base/worker_pool.h"
 #include "bake/trace/tracer.h"
 
 namespace relume {
 
-/// Makes the tracer that runs on the CPU, by Embree.
-std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene);
+/// Makes the tracer that runs on the CPU, by Embree and on the threads of a pool that outlives it.
+std::unique_ptr<Tracer> makeEmbreeTracer(const TraceScene& scene, WorkerPool& pool);
 
 } // namespace relume

@@ -211,7 +211,7 @@ private:
 class BvhTracer final : public ComputeTracer {
 public:
     BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
-        : ComputeTracer(device, scene, patches, "bvh"), tree_(scene.mesh) {
+        : ComputeTracer(device, scene, patches, "bvh"), tree_(scene.mesh, &device.workers()) {
         put(nodes_, tree_.bvh().nodes, {}, "bvh nodes");
         put(triangles_, tree_.bvh().triangles, {}, "bvh triangles");
         buffers_.setAccel(nodes_.address(), triangles_.address());

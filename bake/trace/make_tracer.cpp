@@ -93,7 +93,7 @@ std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, co
     case TracerKind::Voxel:
         return makeVoxelTracer(device, scene, patches, {.resolution = voxels.resolution});
     default:
-        return makeEmbreeTracer(scene);
+        return makeEmbreeTracer(scene, device.workers());
     }
 }
 

@@ -60,7 +60,7 @@ float areaOf(const BvhTriangle& triangle) {
 
 } // namespace
 
-MovingBvh::MovingBvh(const WorldMesh& mesh) {
+MovingBvh::MovingBvh(const WorldMesh& mesh, WorkerPool* pool) : pool_(pool) {
     build(mesh, bvhReach(mesh));
 }
 
@@ -70,7 +70,7 @@ void MovingBvh::build(const WorldMesh& mesh, float reach) {
     std::vector<uint32_t> all(mesh.triangleCount());
     for (uint32_t t = 0; t < all.size(); ++t)
         all[t] = t;
-    bvh_ = buildBvh(mesh, {.triangles = all, .margin = margin_});
+    bvh_ = buildBvh(mesh, {.triangles = all, .margin = margin_, .pool = pool_});
     nodes_ = uint32_t(bvh_.nodes.size());
     depth_ = bvh_.depth;
     area_ = 0;
@@ -207,7 +207,7 @@ void MovingBvh::join(const WorldMesh& mesh) {
     int child = kNoTriangle;
     bvh_.depth = depth_ + 1;
     if (!there.empty()) {
-        const Bvh own = buildBvh(mesh, {.triangles = there, .margin = margin_, .level = 1});
+        const Bvh own = buildBvh(mesh, {.triangles = there, .margin = margin_, .level = 1, .pool = pool_});
         const auto base = int(bvh_.nodes.size());
         const auto first = uint32_t(bvh_.triangles.size());
         const auto moved = [&](int below) {

@@ -13,7 +13,7 @@ namespace relume {
 /// hits what it would in a tree built anew.
 class MovingBvh {
 public:
-    explicit MovingBvh(const WorldMesh& mesh);
+    explicit MovingBvh(const WorldMesh& mesh, WorkerPool* pool = nullptr); // buildBvh()
 
     /// Returns the tree that the shaders walk. Nodes come before their children, but for the root of the tree
     /// that was built first, once triangles have left it.
@@ -37,6 +37,7 @@ private:
     void refit(const std::vector<uint32_t>& leaves, Change& change);
     void join(const WorldMesh& mesh);
 
+    WorkerPool* pool_;
     Bvh bvh_;
     float reach_ = 0, margin_ = 0;   // [m], those that boxes were made for
     uint32_t nodes_ = 0, depth_ = 0; // of the tree of those that have not moved, the joining node not counted

@@ -115,9 +115,14 @@ private:
     shader::CvmPush push_{};
 };
 
+uint64_t VoxelMap::bytes(uint32_t resolution, uint64_t setVoxels) {
+    return sizeof(shader::VoxelGrid) +
+           (2 * wordCount(resolution) + setVoxels * shader::kVoxelSides) * sizeof(uint32_t);
+}
+
 uint64_t VoxelMap::bytes(uint32_t resolution) {
-    const uint64_t layers = 2 * 6 * uint64_t{resolution} * resolution;
-    return (2 * wordCount(resolution) + layers * shader::kVoxelSides) * sizeof(uint32_t);
+    constexpr uint64_t kLayers = 2, kFaces = 6;
+    return bytes(resolution, kLayers * kFaces * resolution * resolution);
 }
 
 VoxelMap::VoxelMap(const vk::Device& device, const TraceScene& scene, const VoxelSettings& settings,

@@ -32,7 +32,9 @@ public:
     /// Returns the bits, 32 voxels to a word, x fastest; asks the device.
     std::vector<uint32_t> readBits(const vk::Device& device) const;
 
-    /// Returns the device bytes of a map with two layers of set voxels over each of the box's faces.
+    /// Returns the device bytes of a map that has links, with so many set voxels.
+    static uint64_t bytes(uint32_t resolution, uint64_t setVoxels);
+    /// Returns them for two layers of set voxels over each of the box's faces.
     static uint64_t bytes(uint32_t resolution);
 
 private:

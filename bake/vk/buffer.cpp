@@ -44,14 +44,15 @@ void Buffer::create(const Desc& desc) {
     const uint32_t type = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
     VkMemoryAllocateFlagsInfo byAddress{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     byAddress.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    memory_ = allocateMemory(*device_, needs.size, type, &byAddress, what);
-    VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_, 0));
+    memory_ = allocateMemory(
+        *device_, {.size = needs.size, .type = type, .chain = &byAddress, .name = desc.name, .what = what});
+    VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_.handle(), 0));
 
     const VkMemoryPropertyFlags properties = device_->memoryProperties(type);
     constexpr VkMemoryPropertyFlags coherent =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     if ((properties & coherent) == coherent)
-        VK_CHECK(vkMapMemory(device_->handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_));
+        VK_CHECK(vkMapMemory(device_->handle(), memory_.handle(), 0, VK_WHOLE_SIZE, 0, &mapped_));
     size_ = desc.size;
     VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
     addressInfo.buffer = buffer_;
@@ -65,7 +66,7 @@ Buffer::~Buffer() {
 
 Buffer::Buffer(Buffer&& other) noexcept
     : device_(std::exchange(other.device_, nullptr)), buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
-      memory_(std::exchange(other.memory_, VK_NULL_HANDLE)), size_(std::exchange(other.size_, 0)),
+      memory_(std::move(other.memory_)), size_(std::exchange(other.size_, 0)),
       address_(std::exchange(other.address_, 0)), mapped_(std::exchange(other.mapped_, nullptr)) {}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
@@ -73,7 +74,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     release();
     device_ = std::exchange(other.device_, nullptr);
     buffer_ = std::exchange(other.buffer_, VK_NULL_HANDLE);
-    memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+    memory_ = std::move(other.memory_);
     size_ = std::exchange(other.size_, 0);
     address_ = std::exchange(other.address_, 0);
     mapped_ = std::exchange(other.mapped_, nullptr);
@@ -83,9 +84,8 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 void Buffer::release() {
     if (device_ == nullptr) return;
     vkDestroyBuffer(device_->handle(), buffer_, nullptr);
-    vkFreeMemory(device_->handle(), memory_, nullptr); // unmaps
+    memory_.release();
     buffer_ = VK_NULL_HANDLE;
-    memory_ = VK_NULL_HANDLE;
 }
 
 void upload(const Device& device, const Buffer& buffer, const void* data, VkDeviceSize size,

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/vk/device.h"
+#include "bake/vk/memory_block.h"
 
 namespace relume::vk {
 
@@ -45,7 +45,7 @@ private:
     void release();
     const Device* device_ = nullptr;
     VkBuffer buffer_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    MemoryBlock memory_;
     VkDeviceSize size_ = 0;
     VkDeviceAddress address_ = 0;
     void* mapped_ = nullptr;

@@ -3,6 +3,7 @@
 #include "assets/base/log.h"
 #include "bake/vk/device_info.h"
 #include "bake/vk/instance.h"
+#include "bake/vk/memory_ledger.h"
 #include "bake/vk/pipeline_cache.h"
 #include "bake/vk/staging.h"
 
@@ -100,7 +101,9 @@ Device::Device(const Desc& desc) {
         }
         choose(desc.select);
         if (desc.chosen) desc.chosen(info_);
+        workers_ = std::make_unique<WorkerPool>(0);
         createDevice();
+        ledger_ = std::make_unique<MemoryLedger>();
         pipelineCache_ = loadPipelineCache(device_, info_);
         staging_ = std::make_unique<Staging>(*this);
     } catch (...) {

@@ -12,6 +12,7 @@
 #include <volk.h>
 
 #include "assets/base/error.h"
+#include "assets/base/worker_pool.h"
 
 namespace relume::vk {
 
@@ -53,6 +54,7 @@ const char* deviceTypeName(VkPhysicalDeviceType type);
 /// Returns all Vulkan devices of this machine; the list is empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
+class MemoryLedger;
 class Staging;
 
 /// An instance, a device and one queue with graphics and compute. It outlives everything made from it.
@@ -63,8 +65,8 @@ public:
                             // of the name
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
-        // Called before the logical device is made: a software driver's threads inherit the priority that the
-        // calling thread has then.
+        // Called before the logical device and its pool of threads are made: these threads, and those of a
+        // software driver, inherit the priority that the calling thread has then.
         std::function<void(const DeviceInfo&)> chosen = {};
     };
     /// Throws Error where there is no loader, no driver or no such device, and names what a device lacks.
@@ -108,6 +110,9 @@ public:
     static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
     Staging& staging() const { return *staging_; }
+    /// Returns the pool for the CPU's share of all work on this device: nobody makes threads of his own.
+    WorkerPool& workers() const { return *workers_; }
+    MemoryLedger& ledger() const { return *ledger_; } // of all memory that is allocated on it
 
 private:
     friend VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
@@ -134,6 +139,8 @@ private:
     bool anisotropy_ = false;
     mutable std::mutex queueMutex_;
     VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+    std::unique_ptr<WorkerPool> workers_;
+    std::unique_ptr<MemoryLedger> ledger_;
     std::unique_ptr<Staging> staging_;
     std::atomic<uint32_t> validationMessages_{0};
 };

@@ -90,9 +90,11 @@ void Image2D::create(const Desc& desc) {
 
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(device_->handle(), image_, &needs);
-    memory_ =
-        allocateMemory(*device_, needs.size, device_->deviceMemoryType(needs.memoryTypeBits), nullptr, what);
-    VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_, 0));
+    memory_ = allocateMemory(*device_, {.size = needs.size,
+                                        .type = device_->deviceMemoryType(needs.memoryTypeBits),
+                                        .name = desc.name,
+                                        .what = what});
+    VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_.handle(), 0));
     device_->setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), desc.name);
 
     constexpr VkImageUsageFlags viewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
@@ -120,7 +122,7 @@ Image2D& Image2D::operator=(Image2D&& other) noexcept {
     release();
     device_ = std::exchange(other.device_, nullptr);
     image_ = std::exchange(other.image_, VK_NULL_HANDLE);
-    memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+    memory_ = std::move(other.memory_);
     view_ = std::exchange(other.view_, VK_NULL_HANDLE);
     width_ = std::exchange(other.width_, 0);
     height_ = std::exchange(other.height_, 0);
@@ -133,7 +135,7 @@ void Image2D::release() {
     if (device_ == nullptr) return;
     vkDestroyImageView(device_->handle(), view_, nullptr);
     vkDestroyImage(device_->handle(), image_, nullptr);
-    vkFreeMemory(device_->handle(), memory_, nullptr);
+    memory_.release();
 }
 
 void uploadPixels(const Device& device, const Image2D& image, const void* pixels, VkDeviceSize size) {

@@ -33,7 +33,7 @@ private:
     void release();
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    MemoryBlock memory_;
     VkImageView view_ = VK_NULL_HANDLE;
     uint32_t width_ = 0, height_ = 0, mips_ = 0;
     VkFormat format_ = VK_FORMAT_UNDEFINED;

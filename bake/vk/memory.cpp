@@ -14,18 +14,20 @@ void checkMemory(const Device& device, VkResult result, const char* call, const 
     check(result, call);
 }
 
-VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, const void* chain,
-                              const std::string& what) {
-    if (type == ~0u)
-        throw Error(device.info().name + ": no memory type for " + what + ": try another --device");
-    if (size > device.heapSize(type)) // asking all the same is against Vulkan's rules
-        checkMemory(device, VK_ERROR_OUT_OF_DEVICE_MEMORY, "", what);
-    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, chain};
-    info.allocationSize = size;
-    info.memoryTypeIndex = type;
+MemoryBlock allocateMemory(const Device& device, const MemoryDesc& desc) {
+    if (desc.type == ~0u)
+        throw Error(device.info().name + ": no memory type for " + desc.what + ": try another --device");
+    // Asking for more than the heap has is against Vulkan's rules.
+    if (desc.size > device.heapSize(desc.type) || !device.ledger().admit())
+        checkMemory(device, VK_ERROR_OUT_OF_DEVICE_MEMORY, "", desc.what);
+    MemoryLedger::Account& account = device.ledger().open(desc.name);
+    VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, desc.chain};
+    info.allocationSize = desc.size;
+    info.memoryTypeIndex = desc.type;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    checkMemory(device, vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory", what);
-    return memory;
+    checkMemory(device, vkAllocateMemory(device.handle(), &info, nullptr, &memory), "vkAllocateMemory",
+                desc.what);
+    return {device, memory, desc.size, account};
 }
 
 } // namespace relume::vk

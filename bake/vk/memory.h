@@ -2,14 +2,19 @@
 
 #include <string>
 
-#include "bake/vk/device.h"
+#include "bake/vk/memory_block.h"
 
 namespace relume::vk {
 
-/// Allocates memory of `type` (~0u: there is none); `chain` is what follows VkMemoryAllocateInfo. Throws
-/// Error naming `what` ("buffer 'bits' of 3 MiB") and the free memory.
-VkDeviceMemory allocateMemory(const Device& device, VkDeviceSize size, uint32_t type, const void* chain,
-                              const std::string& what);
+struct MemoryDesc {
+    VkDeviceSize size = 0;       // [bytes]
+    uint32_t type = ~0u;         // ~0u: there is none
+    const void* chain = nullptr; // what follows VkMemoryAllocateInfo
+    const char* name = "";       // for the device's ledger
+    std::string what;            // for an Error: "buffer 'bits' of 3 MiB"
+};
+/// Allocates memory and counts it. Throws Error naming what it is for, and the free memory.
+MemoryBlock allocateMemory(const Device& device, const MemoryDesc& desc);
 /// Checks as check() does, but names `what` where it is out of memory.
 void checkMemory(const Device& device, VkResult result, const char* call, const std::string& what);
 

@@ -86,9 +86,12 @@ void SharedImage::create(const Desc& desc) {
     dedicated.image = image_;
     VkExportMemoryAllocateInfo exported{VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO, &dedicated};
     exported.handleTypes = kHandleType;
-    memory_ = allocateMemory(*device_, needs.size, device_->deviceMemoryType(needs.memoryTypeBits), &exported,
-                             what);
-    VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_, 0));
+    memory_ = allocateMemory(*device_, {.size = needs.size,
+                                        .type = device_->deviceMemoryType(needs.memoryTypeBits),
+                                        .chain = &exported,
+                                        .name = desc.name,
+                                        .what = what});
+    VK_CHECK(vkBindImageMemory(device_->handle(), image_, memory_.handle(), 0));
     device_->setName(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), desc.name);
 }
 
@@ -128,7 +131,7 @@ void SharedImage::release(VkCommandBuffer cmd) const {
 
 int SharedImage::exportFd() const {
     VkMemoryGetFdInfoKHR info{VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR};
-    info.memory = memory_;
+    info.memory = memory_.handle();
     info.handleType = kHandleType;
     int fd = -1;
     VK_CHECK(vkGetMemoryFdKHR(device_->handle(), &info, &fd));
@@ -148,7 +151,7 @@ SharedImage& SharedImage::operator=(SharedImage&& other) noexcept {
     destroy();
     device_ = std::exchange(other.device_, nullptr);
     image_ = std::exchange(other.image_, VK_NULL_HANDLE);
-    memory_ = std::exchange(other.memory_, VK_NULL_HANDLE);
+    memory_ = std::move(other.memory_);
     memorySize_ = std::exchange(other.memorySize_, 0);
     width_ = std::exchange(other.width_, 0);
     height_ = std::exchange(other.height_, 0);
@@ -158,7 +161,7 @@ SharedImage& SharedImage::operator=(SharedImage&& other) noexcept {
 void SharedImage::destroy() {
     if (device_ == nullptr) return;
     vkDestroyImage(device_->handle(), image_, nullptr);
-    vkFreeMemory(device_->handle(), memory_, nullptr);
+    memory_.release();
 }
 
 } // namespace relume::vk

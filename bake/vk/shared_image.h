@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/vk/device.h"
+#include "bake/vk/memory_block.h"
 
 namespace relume::vk {
 
@@ -47,7 +47,7 @@ private:
 
     const Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    MemoryBlock memory_;
     VkDeviceSize memorySize_ = 0;
     uint32_t width_ = 0, height_ = 0;
 };

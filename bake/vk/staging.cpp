@@ -22,6 +22,7 @@ void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, cons
 
 // Returns the window that stays, or makes `large` for a copy for which that one is too small.
 const Buffer& Staging::windowFor(VkDeviceSize size, Buffer& large) {
+    const MemoryOwner owner("staging");
     if (size <= kKeptBytes) {
         if (!window_)
             window_ = Buffer(device_, {.size = kKeptBytes, .memory = Memory::Host, .name = "staging"});

@@ -55,8 +55,9 @@ void flattenScene(benchmark::State& state) {
 BENCHMARK(flattenScene)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void buildTree(benchmark::State& state) {
+    WorkerPool pool(0);
     for (auto _ : state)
-        benchmark::DoNotOptimize(buildBvh(mesh()));
+        benchmark::DoNotOptimize(buildBvh(mesh(), &pool));
     countTriangles(state);
 }
 BENCHMARK(buildTree)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -1,27 +1,257 @@
 // This checks how much of the device's memory a bake takes.
-#include "bake/baker/baker.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "bake/baker/make_solver.h"
+#include "bake/gather/coarse_patches.h"
+#include "bake/gather/link_cache.h"
+#include "bake/links/patch_pyramid.h"
+#include "bake/pairs/bits_cache.h"
+#include "bake/pairs/sender_list.h"
+#include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
+#include "tests/gpu/light_at.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <ostream>
+#include <utility>
+
 namespace relume {
+namespace {
+
+constexpr double kTolerance = 0.02; // of what is estimated beyond what is taken
+constexpr uint32_t kMeshLights = 4, kPanels = 5;
+
+/// Makes a closed room with as many mesh lights and panels as take the most memory.
+Scene brightRoom() {
+    SceneMaker maker(128);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.5f), 40);
+    for (uint32_t i = 0; i < kMeshLights; ++i)
+        maker.quad({0.2f + 0.4f * static_cast<float>(i), 0.8f, 1.9f}, 0.4f * kY, 0.3f * kX,
+                   maker.material(0.0f, 5.0f), glm::uvec2(8));
+    Scene scene = maker.scene();
+    for (uint32_t i = 0; i < kPanels; ++i) {
+        scene.lights.push_back(lightAt(LightType::Rectangle,
+                                       {0.3f + 0.3f * static_cast<float>(i), 0.5f, 1.7f}, 10.0f,
+                                       "Panel " + std::to_string(i)));
+        scene.lights.back().size = {0.2f, 0.2f};
+    }
+    return scene;
+}
+
+constexpr LightExtent kLights{.polygons = kMeshLights, .polygonsOfOne = 1, .extended = kPanels};
+
+/// Holds what a bake took of the device's memory.
+struct Taken {
+    uint64_t cit = 0, surface = 0, trace = 0;
+    uint64_t inside = 0;  // before the solver came, beside what stays
+    uint64_t solver = 0;  // at most at a time, caches and layers included
+    uint64_t caches = 0;  // as they say it
+    uint64_t counted = 0; // the same, as the ledger says it
+    uint64_t layers = 0;
+    uint64_t all = 0; // at most at a time
+    uint64_t senders = 0;
+};
+
+/// Sums up the bytes of these names, whoever owns them.
+template<size_t N>
+uint64_t bytesNamed(const vk::MemoryLedger& ledger, const std::array<const char*, N>& names) {
+    uint64_t sum = 0;
+    for (const auto& [key, bytes] : ledger.entries())
+        if (std::find(names.begin(), names.end(), key.name) != names.end()) sum += bytes;
+    return sum;
+}
+
+constexpr std::array kLayerNames = {"layer", "direct light of a layer", "direct light of all layers",
+                                    "light of lights grouped anew"};
+
+/// Bakes to the end; `patches` gets what was baked.
+Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
+    vk::MemoryLedger& ledger = testDevice().ledger();
+    const uint64_t before = ledger.bytes();
+    Taken taken;
+    uint64_t base = before;
+    std::string phase;
+    ledger.resetPeak();
+    const auto next = [&](const char* name) {
+        const uint64_t most = ledger.peak() - base;
+        taken.all = std::max(taken.all, ledger.peak() - before);
+        if (phase == "cit") taken.cit = most;
+        const bool searched = phase == "tracer" || phase == "validity";
+        if (searched) taken.inside = std::max(taken.inside, most - ledger.bytesOf("trace"));
+        if (std::string(name) == "solver set-up") taken.surface = ledger.bytesOf("surface");
+        if (phase != name && std::string(name) != "validity") base = ledger.bytes();
+        phase = name;
+        ledger.resetPeak();
+    };
+    Baker baker(testDevice(), scene, flatten(scene, buildAtlas(scene, desc.size)), settingsOf(desc), next);
+    while (!baker.solver().done()) {
+        baker.solver().step();
+        if (desc.live) (void)baker.solver().liveLight();
+        taken.senders =
+            std::max(taken.senders, bytesNamed(ledger, std::array{"senders"}) / sizeof(shader::Sender));
+    }
+    (void)baker.solver().light();
+    taken.solver = ledger.peak() - base;
+    taken.all = std::max(taken.all, ledger.peak() - before);
+    taken.trace = ledger.bytesOf("trace");
+    taken.caches = baker.solver().progress().cacheBytes;
+    taken.counted = ledger.bytesOf(BitsCache::kOwner) + ledger.bytesOf(LinkCache::kOwner);
+    taken.layers = bytesNamed(ledger, kLayerNames);
+    patches = baker.patches();
+    return taken;
+}
+
+/// Expects that the estimate is not below what was taken, nor much above it.
+void expectClose(uint64_t estimate, uint64_t taken, const char* what) {
+    EXPECT_GE(estimate, taken) << what;
+    EXPECT_LE(static_cast<double>(estimate), (1.0 + kTolerance) * static_cast<double>(taken)) << what;
+}
+
+struct MemoryCase {
+    const char* name;
+    BakeDesc desc;
+};
+
+void PrintTo(const MemoryCase& one, std::ostream* stream) {
+    *stream << one.name;
+}
+
+class BakeMemoryOf : public testing::TestWithParam<MemoryCase> {};
+
+BakeDesc described(BakeDesc desc) {
+    desc.size = 128;
+    if (isPairMethod(desc.method)) {
+        desc.passes = 2;
+    } else {
+        desc.samples = 32;
+        desc.passes = desc.layers ? 0 : 2;
+    }
+    return desc;
+}
+
+SolverExtent extentOf(const BakeDesc& desc, const PatchSet& patches, const Taken& taken) {
+    SolverExtent extent{.chunkCount = patches.chunkCount(),
+                        .texels = uint64_t{desc.size} * desc.size,
+                        .software = testDevice().info().software(),
+                        .lights = kLights};
+    if (desc.method == Method::Adaptive)
+        extent.senders = taken.senders;
+    else if (isPairMethod(desc.method) && desc.method != Method::Pure)
+        extent.senders = desc.rtrad ? rtradSenders(patches, desc.pairs.window, false).senders.size()
+                                    : windowSenders(patches, desc.pairs.window).senders.size();
+    if (desc.indirectScale > 1)
+        extent.receivers = buildCoarsePatches(patches, desc.indirectScale).receivers.size();
+    if (desc.footprint) extent.nodes = buildPatchPyramid(patches).nodes.size();
+    return extent;
+}
+
+} // namespace
+
+TEST_P(BakeMemoryOf, WhatIsEstimatedIsWhatIsTaken) {
+    const BakeDesc desc = described(GetParam().desc);
+    const Scene scene = brightRoom();
+    PatchSet patches;
+    const uint64_t before = testDevice().ledger().bytes();
+    const Taken taken = measure(scene, desc, patches);
+    EXPECT_EQ(testDevice().ledger().bytes(), before) << "all is given back";
+
+    const BakeSettings settings = settingsOf(desc);
+    const SolverExtent extent = extentOf(desc, patches, taken);
+    const MemoryNeeds needs =
+        memoryNeeds(settings, extentOf(scene, patches.scene.mesh.triangleCount()), extent);
+    expectClose(needs.cit, taken.cit, "images of the CIT pass");
+    expectClose(needs.surface, taken.surface, "patches and their light");
+    EXPECT_GE(needs.trace, taken.trace);
+    EXPECT_EQ(taken.counted, taken.caches) << "bits and links that are kept";
+    if (settings.solver.transport.rtrad)
+        EXPECT_EQ(needs.inside, 0u);
+    else
+        expectClose(needs.inside, taken.inside, "search for patches inside something");
+    // LinkSolver counts the links that it keeps, the others' caches say themselves what they take.
+    const bool linksCounted = !isPairMethod(desc.method) && !desc.layers;
+    expectClose(needs.solver, taken.solver - taken.layers - (linksCounted ? 0 : taken.caches), "solver");
+    EXPECT_GE(needs.total(), taken.all - taken.layers - (linksCounted ? 0 : taken.caches));
+
+    // What is not known about the scene is taken as large as it can get.
+    SolverExtent unknown = extent;
+    unknown.lights.reset();
+    unknown.senders.reset();
+    unknown.receivers.reset();
+    unknown.nodes.reset();
+    EXPECT_GE(solverBytes(unknown, settings.solver), needs.solver);
+    EXPECT_GE(
+        Baker::deviceBytes(settings, extentOf(scene, patches.scene.mesh.triangleCount()), extent.software),
+        taken.all - taken.layers - (linksCounted ? 0 : taken.caches));
+}
+
+constexpr CacheSettings kNoCache{.kind = CacheSettings::Kind::None};
+// So much holds some super-blocks, or the links of some chunks: what does not fit needs a place of its own.
+constexpr CacheSettings kSmallCache{.bytes = uint64_t{1} << 20};
+constexpr PairSettings kWindow{.window = 2};
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, BakeMemoryOf,
+    testing::Values(
+        MemoryCase{"pure", {.method = Method::Pure, .cache = kSmallCache}},
+        MemoryCase{"pureLive", {.method = Method::Pure, .cache = kNoCache, .live = true}},
+        MemoryCase{"pureRtrad", {.method = Method::Pure, .cache = kSmallCache, .rtrad = true}},
+        MemoryCase{"static", {.method = Method::Static, .cache = kNoCache, .pairs = kWindow}},
+        MemoryCase{"montecarlo", {.method = Method::MonteCarlo, .cache = kSmallCache, .pairs = kWindow}},
+        MemoryCase{"montecarloRtrad",
+                   {.method = Method::MonteCarlo, .cache = kNoCache, .pairs = kWindow, .rtrad = true}},
+        MemoryCase{"mipmapped", {.method = Method::Mipmapped, .cache = kSmallCache, .pairs = kWindow}},
+        MemoryCase{"adaptive", {.method = Method::Adaptive, .cache = kNoCache}},
+        MemoryCase{"adaptiveOnDevice", {.method = Method::Adaptive, .cache = kNoCache, .deviceGather = true}},
+        MemoryCase{"directional", {.method = Method::Directional}},
+        MemoryCase{"directionalLive", {.method = Method::Directional, .cache = kSmallCache, .live = true}},
+        MemoryCase{"directionalLec", {.method = Method::Directional, .directions = DirectionSet::Lec}},
+        MemoryCase{"hybrid", {.method = Method::Hybrid, .smooth = true}},
+        MemoryCase{"hybridLive", {.method = Method::Hybrid, .smooth = true, .live = true}},
+        MemoryCase{"hybridRough", {.method = Method::Hybrid, .cache = kNoCache, .live = true}},
+        MemoryCase{"hybridOnDevice", {.method = Method::Hybrid, .smooth = true, .deviceGather = true}},
+        MemoryCase{"hybridCoarse", {.method = Method::Hybrid, .smooth = true, .indirectScale = 2}},
+        MemoryCase{"hybridFootprint", {.method = Method::Hybrid, .smooth = true, .footprint = true}},
+        MemoryCase{"footprintOnDevice",
+                   {.method = Method::Directional, .footprint = true, .deviceGather = true, .live = true}},
+        MemoryCase{"layers", {.method = Method::Hybrid, .smooth = true, .cache = kNoCache, .layers = true}},
+        MemoryCase{"layersRough", {.method = Method::Hybrid, .cache = kSmallCache, .layers = true}},
+        MemoryCase{
+            "layersLive",
+            {.method = Method::Hybrid, .smooth = true, .cache = kNoCache, .live = true, .layers = true}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(BakeMemory, AVoxelMapTakesWhatItSays) {
+    vk::MemoryLedger& ledger = testDevice().ledger();
+    const Scene scene = brightRoom();
+    const auto baker = makeBaker(scene, {.size = 128, .passes = 1, .method = Method::Hybrid, .samples = 16});
+    const uint64_t before = ledger.bytes();
+    constexpr uint32_t kResolution = 64;
+    const VoxelMap map(testDevice(), baker->patches().scene, {.resolution = kResolution},
+                       baker->light().patches.address());
+    expectClose(VoxelMap::bytes(kResolution, map.setVoxels()), ledger.bytes() - before, "voxel map");
+    EXPECT_GE(VoxelMap::bytes(kResolution), ledger.bytes() - before);
+}
 
 TEST(BakeMemory, ASizeThatDoesNotFitIsRefusedWithOneThatDoes) {
     const vk::Device& device = testDevice();
     BakeSettings settings;
     settings.size = 2048;
-    constexpr uint64_t kTriangles = 1000, kLimit = uint64_t{512} << 20;
-    const std::string problem = Baker::sizeProblem(device, settings, kTriangles, kLimit);
+    constexpr SceneExtent kExtent{.triangles = 1000};
+    constexpr uint64_t kLimit = uint64_t{512} << 20;
+    const std::string problem = Baker::sizeProblem(device, settings, kExtent, kLimit);
     ASSERT_TRUE(problem.ends_with(" fits")) << problem;
     const size_t end = problem.rfind(" fits"), begin = problem.rfind(' ', end - 1);
     const auto fits = static_cast<uint32_t>(std::stoul(problem.substr(begin, end - begin)));
     EXPECT_GE(fits, 64u);
     EXPECT_LT(fits, settings.size);
     settings.size = fits;
-    EXPECT_EQ(Baker::sizeProblem(device, settings, kTriangles, kLimit), "");
+    EXPECT_EQ(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
     settings.size = fits + 64;
-    EXPECT_NE(Baker::sizeProblem(device, settings, kTriangles, kLimit), "");
-    EXPECT_NE(Baker::sizeProblem(device, settings, kTriangles, 0).find("no size fits"), std::string::npos);
+    EXPECT_NE(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
+    EXPECT_NE(Baker::sizeProblem(device, settings, kExtent, 0).find("no size fits"), std::string::npos);
 }
 
 } // namespace relume

@@ -187,8 +187,7 @@ std::array<TexelRect, 6> SceneMaker::sphere(glm::vec3 centre, float radius,
     return rects;
 }
 
-std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
-    const LightmapAtlas atlas = buildAtlas(scene, desc.size);
+BakeSettings settingsOf(const BakeDesc& desc) {
     BakeSettings settings;
     settings.size = desc.size;
     settings.tracer = desc.tracer;
@@ -210,7 +209,27 @@ std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
     settings.solver.live = desc.live;
     settings.solver.layers = {.on = desc.layers, .bytes = desc.layerBytes};
     if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
-    return std::make_unique<Baker>(testDevice(), scene, flatten(scene, atlas), settings);
+    return settings;
+}
+
+namespace {
+
+WorldMesh meshOf(const Scene& scene, uint32_t size) {
+    return flatten(scene, buildAtlas(scene, size));
+}
+
+const vk::Device& deviceOf(const BakeDesc& desc) {
+    return desc.device != nullptr ? *desc.device : testDevice();
+}
+
+} // namespace
+
+std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc) {
+    return std::make_unique<Baker>(deviceOf(desc), scene, meshOf(scene, desc.size), settingsOf(desc));
+}
+
+std::unique_ptr<Baker> makeEditableBaker(Scene& scene, const BakeDesc& desc) {
+    return std::make_unique<Baker>(deviceOf(desc), scene, meshOf(scene, desc.size), settingsOf(desc));
 }
 
 Baked bakeScene(const Scene& scene, const BakeDesc& desc) {

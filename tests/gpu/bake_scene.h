@@ -86,7 +86,8 @@ struct BakeDesc {
     bool deviceGather = false;
     bool live = false;
     bool layers = false;
-    uint64_t layerBytes = 0; // at most; 0: as much as there is
+    uint64_t layerBytes = 0;            // at most; 0: as much as there is
+    const vk::Device* device = nullptr; // nullptr: testDevice()
 };
 
 struct Baked {
@@ -96,11 +97,15 @@ struct Baked {
     uint32_t invalid = 0;
 };
 
-/// Bakes on the test device. Texels beside the charts stay empty.
+BakeSettings settingsOf(const BakeDesc& desc);
+
+/// Bakes on the test device, or the description's own. Texels beside the charts stay empty.
 Baked bakeScene(const Scene& scene, const BakeDesc& desc);
 
-/// Makes a Baker of the scene on the test device, not yet stepped.
+/// Makes a Baker of the scene, likewise, not yet stepped.
 std::unique_ptr<Baker> makeBaker(const Scene& scene, const BakeDesc& desc);
+/// Makes one of a scene that it may edit (Baker::apply).
+std::unique_ptr<Baker> makeEditableBaker(Scene& scene, const BakeDesc& desc);
 
 /// Returns the tracers that run on the test device.
 std::vector<TracerKind> tracersOfTestDevice();

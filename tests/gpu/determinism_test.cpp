@@ -97,11 +97,14 @@ TEST(Determinism, NumberOfThreadsGivesTheSameBytes) {
     if (!tracerProblem(TracerKind::Embree, testDevice().info()).empty())
         GTEST_SKIP() << "embree does not run on this device";
     const Scene scene = generateScene("cornell_geom");
-    const BakeDesc desc{.size = 64, .tracer = TracerKind::Embree, .passes = 2};
     std::vector<FloatImage> maps;
     for (const char* threads : {"1", "2", "5"}) {
         const ThreadCount count(threads);
-        maps.push_back(bakeScene(scene, desc).lighting);
+        const vk::Device device({.select = std::to_string(testDevice().info().index), .validation = true});
+        EXPECT_EQ(device.workers().size(), std::stoul(threads));
+        maps.push_back(
+            bakeScene(scene, {.size = 64, .tracer = TracerKind::Embree, .passes = 2, .device = &device})
+                .lighting);
     }
     expectSameBytes(maps[0], maps[1]);
     expectSameBytes(maps[0], maps[2]);

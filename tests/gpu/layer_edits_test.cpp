@@ -159,7 +159,7 @@ TEST(Layers, WhileAllAreSeenAtOnceLightsAreEditedAsEver) {
     const auto seen = [&] {
         const uint64_t from = bake.solver().liveLight().version;
         for (int i = 0; i < 2000 && bake.solver().liveLight().version == from; ++i) {
-            bake.solver().edit({}); // each step is a frame in which the mouse was moved
+            bake.editNow(); // each step is a frame in which the mouse was moved
             bake.solver().step();
             EXPECT_GT(distance(before, bake.light()), off);
         }
@@ -177,7 +177,7 @@ TEST(Layers, WhileAllAreSeenAtOnceLightsAreEditedAsEver) {
     uint64_t version = bake.solver().liveLight().version, versions = 0;
     for (int i = 0; i < 400; ++i) { // and a light that is dragged on and on
         bake.scene.lights[0].transform = at({0.3f + 0.002f * i, 0.5f, 1.2f});
-        bake.solver().edit({});
+        bake.editNow();
         bake.solver().step();
         const uint64_t now = bake.solver().liveLight().version;
         versions += now != version;
@@ -205,7 +205,7 @@ TEST(Layers, ALightUnmutedWhileAllAreSeenAtOnceIsBaked) {
     while (!bake.solver().current())
         bake.solver().step();
     bake.solver().step(); // a layer is under way
-    bake.solver().edit({});
+    bake.editNow();
     bake.finish();
     EXPECT_TRUE(sameBytes(bake.light(), freshLight(bake.scene, desc)));
 }
@@ -262,7 +262,7 @@ TEST(Layers, ALightThatIsDraggedIsSeenAndEndsAsAFreshBake) {
     uint64_t version = bake.solver().liveLight().version, seen = 0;
     for (int i = 0; i < 300; ++i) {
         bake.scene.lights[0].transform = at({0.3f + 0.004f * i, 0.5f, 1.2f});
-        bake.solver().edit({});
+        bake.editNow();
         bake.solver().step();
         const LiveLight live = bake.solver().liveLight();
         EXPECT_TRUE(live.complete) << "what was shown stays until there is more";
@@ -289,7 +289,7 @@ TEST(Layers, WithoutItsLastLightAPictureIsDark) {
     };
     EXPECT_GT(meanOf(shown()), 0.0);
     bake.scene.lights.clear();
-    bake.solver().edit({});
+    bake.editNow();
     bake.finish();
     EXPECT_EQ(meanOf(shown()), 0.0);
 }

@@ -212,10 +212,7 @@ TEST(LayerGroups, AnObjectThatMovesIsAFreshBake) {
     const LightmapAtlas atlas = buildAtlas(start, desc.size);
     for (const size_t instance : {5u, 4u}) { // the shelf, a plate that shines
         bake.scene.instances[instance].transform = at({-0.2f, 0.1f, 0.05f});
-        const std::optional<ObjectMove> move = bake.baker().moveObjects(atlas);
-        ASSERT_TRUE(move);
-        bake.solver().moveObjects(*move);
-        bake.solver().edit({});
+        bake.editNow({}, &atlas);
         expectFresh(bake, desc, "moved");
     }
 }
@@ -229,10 +226,8 @@ TEST(LayerGroups, AGroupThatWasOffWhileAnObjectMovedIsAFreshBake) {
     bake.edit(sky);
     bake.finish();
     bake.scene.instances[5].transform = at({-0.2f, 0.1f, 0.05f});
-    const std::optional<ObjectMove> move = bake.baker().moveObjects(buildAtlas(start, desc.size));
-    ASSERT_TRUE(move);
-    bake.solver().moveObjects(*move);
-    bake.solver().edit(sky);
+    const LightmapAtlas atlas = buildAtlas(start, desc.size);
+    bake.editNow(sky, &atlas);
     bake.finish();
     bake.edit();
     expectFresh(bake, desc, "on again");

@@ -5,6 +5,8 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/light_at.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -36,24 +38,31 @@ inline Scene room(float albedo = 0.6f) {
 inline constexpr BakeDesc kQuick{
     .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
 
-/// Holds a bake of layers whose scene is edited.
+/// Holds a bake of layers whose scene is edited: the bake follows `scene` when it is told.
 class Layered {
 public:
     explicit Layered(Scene start, const BakeDesc& desc = kQuick)
-        : scene(std::move(start)), baker_(makeBaker(scene, desc)) {}
+        : scene(std::move(start)), baked_(scene), baker_(makeEditableBaker(baked_, desc)) {}
 
     Baker& baker() { return *baker_; }
-    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    LayerSolver& solver() { return *baker_->layers(); }
     const SolverProgress& progress() { return solver().progress(); }
     void finish() {
         while (!solver().done())
             solver().step();
     }
+    /// Has the bake follow the scene at once; with the atlas of its start where objects have moved.
+    void editNow(const LightMix& mix = {}, const LightmapAtlas* atlas = nullptr) {
+        ASSERT_EQ(apply(mix, atlas), Applied::Now);
+    }
+    /// Does so when the solver is at rest.
     void edit(const LightMix& mix = {}) {
         while (!solver().atRest())
             solver().step();
-        baker_->updateMaterials();
-        solver().edit(mix);
+        editNow(mix);
+    }
+    Applied apply(const LightMix& mix = {}, const LightmapAtlas* atlas = nullptr) {
+        return baker_->apply({.scene = editsOf(scene), .mix = mix, .atlas = atlas});
     }
     Light4 light() { return solver().light(); }
     Light4 layer(size_t i) { return solver().layerLight(*solver().layers()[i]); }
@@ -63,6 +72,7 @@ public:
     Scene scene;
 
 private:
+    Scene baked_;
     std::unique_ptr<Baker> baker_;
 };
 

@@ -46,15 +46,16 @@ constexpr BakeDesc kQuickMoving{.size = kMovingSize,
                                 .smooth = true,
                                 .layers = true};
 
-/// Holds a bake of layers whose scene is edited.
+/// Holds a bake of layers whose scene is edited: the bake follows `scene` when it is told.
 class Moving {
 public:
     explicit Moving(Scene start, const BakeDesc& desc = kQuickMoving)
-        : scene(std::move(start)), atlas_(buildAtlas(scene, desc.size)), baker_(makeBaker(scene, desc)) {
+        : scene(std::move(start)), baked_(scene), atlas_(buildAtlas(scene, desc.size)),
+          baker_(makeEditableBaker(baked_, desc)) {
         finish();
     }
 
-    LayerSolver& solver() { return dynamic_cast<LayerSolver&>(baker_->solver()); }
+    LayerSolver& solver() { return *baker_->layers(); }
     Baker& baker() { return *baker_; }
     uint64_t rays() { return solver().progress().rays; }
     void finish() {
@@ -65,12 +66,9 @@ public:
     bool follow() {
         while (!solver().atRest())
             solver().step();
-        const std::optional<ObjectMove> move = baker_->moveObjects(atlas_);
-        if (!move) return false;
-        solver().moveObjects(*move);
-        solver().edit({});
-        return true;
+        return apply() == Applied::Now;
     }
+    Applied apply() { return baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas_}); }
     void put(size_t first, size_t last, const glm::mat4& transform) {
         for (size_t i = first; i < last; ++i)
             scene.instances[i].transform = transform * scene.instances[i].transform;
@@ -91,6 +89,7 @@ public:
     Scene scene;
 
 private:
+    Scene baked_;
     LightmapAtlas atlas_;
     std::unique_ptr<Baker> baker_;
 };
@@ -247,7 +246,7 @@ TEST_P(ObjectEdits, AnObjectThatIsDraggedOnAndOnIsSeen) {
             EXPECT_TRUE(layer->before && layer->before->has()) << "those of places in between take memory";
     }
     bake.scene.lights[0].transform = by({0.4f, 0.5f, 1.2f});
-    bake.solver().edit({});
+    ASSERT_EQ(bake.apply(), Applied::Now);
     while (!bake.solver().done()) {
         bake.solver().step();
         EXPECT_GT(distance(bake.light(), before), 0.1);

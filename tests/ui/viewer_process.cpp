@@ -220,13 +220,21 @@ bool ViewerProcess::runs() {
     return !ended(0);
 }
 
-long ViewerProcess::residentKiB() const {
+double ViewerProcess::statusMiB(std::string_view name) const {
+    constexpr double kKibiInMebi = 1024;
     std::ifstream file("/proc/" + std::to_string(pid_) + "/status");
-    for (std::string line; std::getline(file, line);) {
-        if (!line.starts_with("VmRSS:")) continue;
-        return std::strtol(line.c_str() + 6, nullptr, 10);
-    }
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with(name)) return std::strtod(line.c_str() + name.size(), nullptr) / kKibiInMebi;
     return 0;
+}
+
+// The rest of the newest line that begins so.
+std::string ViewerProcess::last(std::string_view kind) {
+    const std::lock_guard lock(mutex_);
+    const size_t at = output_.rfind(kind);
+    if (at == std::string::npos) return "";
+    const size_t begin = at + kind.size();
+    return output_.substr(begin, output_.find('\n', begin) - begin);
 }
 
 } // namespace relume

@@ -2,10 +2,12 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -57,13 +59,21 @@ public:
     /// Its exit status (128 + signal) when it ends within so many seconds.
     std::optional<int> ended(double seconds);
     bool runs();
-    /// Memory that it has in use [KiB].
-    long residentKiB() const;
+    /// The memory that it has in use [MiB]: anonymous, which is its own and the drivers', or shared. The
+    /// software device keeps its memory in the latter.
+    double anonymousMiB() const { return statusMiB("RssAnon:"); }
+    double sharedMiB() const { return statusMiB("RssShmem:"); }
+    /// The device memory that keeps links [MiB], as it told last.
+    double linksMiB() { return std::strtod(last("links: ").c_str(), nullptr); }
+    /// The state of the bake, as it told last: "paused".
+    std::string phase() { return last("bake: "); }
     pid_t pid() const { return pid_; }
 
 private:
     void listen(int stream);
     uint64_t inputs();
+    std::string last(std::string_view kind);
+    double statusMiB(std::string_view name) const;
     bool waitFor(const std::function<bool()>& there, double seconds);
 
     std::string display_;

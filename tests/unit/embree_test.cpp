@@ -111,7 +111,8 @@ struct Bits {
 };
 
 Bits traceBits(const TraceScene& scene, uint32_t threads) {
-    EmbreeScene embree(scene, threads);
+    WorkerPool pool(threads);
+    EmbreeScene embree(scene, pool);
     Bits bits;
     const uint32_t rows = (scene.chunkCount() + shader::kSuper - 1) / shader::kSuper;
     for (uint32_t row = 0; row < rows; ++row)
@@ -131,7 +132,8 @@ Bits traceBits(const TraceScene& scene, uint32_t threads) {
 
 std::vector<uint32_t> traceLinks(const TraceScene& scene, uint32_t threads, Rotation rotation,
                                  uint32_t firstSample = 0, uint32_t sampleCount = 8) {
-    EmbreeScene embree(scene, threads);
+    WorkerPool pool(threads);
+    EmbreeScene embree(scene, pool);
     std::vector<uint32_t> links(size_t(scene.patches.size()) * sampleCount, 12345);
     embree.closest({.firstChunk = 0,
                     .chunkCount = scene.chunkCount(),
@@ -212,7 +214,8 @@ TEST(Embree, resultsDoNotDependOnTheNumberOfThreads) {
 TEST(Embree, partsOfTheWorkGiveTheSameBitsAndLeaveSkippedUnitsAlone) {
     const TraceScene scene = furnishedRoom();
     const Bits whole = traceBits(scene, 2);
-    EmbreeScene embree(scene, 2);
+    WorkerPool pool(2);
+    EmbreeScene embree(scene, pool);
     std::vector<uint32_t> sends(scene.chunkCount(), 0);
     sends[3] = 1;
     constexpr uint32_t kUnits = 40, kMark = 0xabcdabcdu, kKnown = 7; // a unit of every super-block
@@ -261,13 +264,15 @@ TEST(Embree, listsGiveTheBitsOfTheDrawnPatches) {
     bits.words.assign(size_t(bits.units()) * kBlockWords, 0);
     const std::vector<uint32_t> sends(columns, 1);
     const std::vector<uint32_t*> addresses = bits.addresses();
-    EmbreeScene(scene, 2).occlusion({.supers = bits.supers,
-                                     .bits = addresses,
-                                     .firstUnit = 0,
-                                     .unitCount = bits.units(),
-                                     .sends = sends.data(),
-                                     .senders = senders,
-                                     .members = members});
+    WorkerPool pool(2);
+    EmbreeScene(scene, pool)
+        .occlusion({.supers = bits.supers,
+                    .bits = addresses,
+                    .firstUnit = 0,
+                    .unitCount = bits.units(),
+                    .sends = sends.data(),
+                    .senders = senders,
+                    .members = members});
     uint32_t seen = 0, others = 0;
     for (uint32_t i = 0; i < scene.patches.size(); i += 3) {
         const uint32_t key = scene.patches[i / kChunk * kChunk].flags >> 8;
@@ -314,7 +319,8 @@ TEST(Embree, linksOfADiscAreThoseOfBruteForce) {
     for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
         disc.emplace_back(p);
     std::vector<uint32_t> links(size_t(scene.patches.size()) * 8, 12345);
-    EmbreeScene embree(scene, 2);
+    WorkerPool pool(2);
+    EmbreeScene embree(scene, pool);
     embree.closest({.firstChunk = 0,
                     .chunkCount = scene.chunkCount(),
                     .firstSample = 16,

@@ -90,6 +90,13 @@ TEST_F(PlacedObject, ItsPivotGoesAlong) {
     EXPECT_LT(glm::distance(pivotOf(scene_, edits_, 1).value(), glm::vec3(5, 4, -1)), 1e-4f);
 }
 
+TEST_F(PlacedObject, ItsBoundsGoAlong) {
+    const glm::vec3 middle = placedBounds(scene_, edits_, 1).centre();
+    EXPECT_LT(glm::distance(middle, glm::vec3(5, 1, 0)), 1e-4f);
+    edits_.placements[1].transform = glm::translate(kOne, {0, 3, -1}) * plate_;
+    EXPECT_LT(glm::distance(placedBounds(scene_, edits_, 1).centre(), glm::vec3(5, 4, -1)), 1e-4f);
+}
+
 TEST_F(PlacedObject, ASurfaceIsWhereTheEditPutIt) {
     const glm::vec3 towards(0, 0.6f, 0.8f);
     EXPECT_LT(glm::distance(placedNormalAt(scene_, edits_, 0, {0, 0, 0}, towards), {0, 1, 0}), 1e-4f);

@@ -61,6 +61,14 @@ TEST_F(PreferencesFile, ComesBackAsItWas) {
     EXPECT_EQ(after.bookmarks.at("one.glb").front().camera.yfov, 0.5f);
 }
 
+TEST(Preferences, BookmarksOfASceneHaveNamesOfTheirOwn) {
+    Preferences preferences;
+    preferences.bookmarks["one.glb"] = {{"corner", {}}, {"bookmark 3", {}}};
+    EXPECT_EQ(preferences.addBookmark("one.glb", {}), "bookmark 4") << "3 is taken";
+    EXPECT_EQ(preferences.addBookmark("two.glb", {}), "bookmark 1");
+    EXPECT_EQ(preferences.bookmarks["one.glb"].size(), 3u);
+}
+
 // JSON holds only UTF-8, which names of files need not be.
 TEST_F(PreferencesFile, NamesThatAreNoUtf8ComeBack) {
     Preferences before;

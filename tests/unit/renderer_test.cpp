@@ -93,8 +93,8 @@ TEST(GlslSource, NamesFileAndLineOfAnError) {
 
 ShotOptions shot() {
     ShotOptions options;
-    options.bake.scene = "room.glb";
-    options.bake.output = "shot.png";
+    options.bake.files.scene = "room.glb";
+    options.bake.files.output = "shot.png";
     return options;
 }
 

@@ -3,7 +3,7 @@
 #include "app/edit/edit_options.h"
 
 #include "app/edit/scene_names.h"
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "app/text/near_names.h"
 #include "assets/base/error.h"
 #include "assets/gltf/gltf_edit.h"

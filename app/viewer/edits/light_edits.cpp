@@ -1,6 +1,6 @@
 #include "app/viewer/edits/light_edits.h"
 
-#include "app/text/light_names.h"
+#include "assets/model/light_names.h"
 #include "assets/base/error.h"
 
 #include <algorithm>

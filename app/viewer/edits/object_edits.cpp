@@ -54,6 +54,16 @@ std::optional<glm::vec3> pivotOf(const LoadedScene& scene, const SceneEdits& edi
     return glm::vec3(placementOf(scene, edits, instance) * glm::vec4(box.centre(), 1.0f));
 }
 
+Box placedBounds(const LoadedScene& scene, const SceneEdits& edits, uint32_t instance) {
+    const WorldMesh& mesh = scene.prepared.mesh;
+    const glm::mat4 placement = placementOf(scene, edits, instance);
+    Box box;
+    for (size_t i = 0; i < mesh.triangleCount(); ++i)
+        for (size_t k = 0; k < 3 && mesh.instance[i] == instance; ++k)
+            box.add(glm::vec3(placement * glm::vec4(mesh.positions[3 * i + k], 1.0f)));
+    return box;
+}
+
 glm::vec3 placedNormalAt(const LoadedScene& scene, const SceneEdits& edits, uint32_t instance,
                          const glm::vec3& position, const glm::vec3& towards) {
     const glm::mat4 placement = placementOf(scene, edits, instance), back = glm::inverse(placement);

@@ -18,6 +18,8 @@ glm::mat4 placementOf(const LoadedScene& scene, const SceneEdits& edits, uint32_
 /// Returns the middle of an instance's bounds [m], about which it is turned and which moves along with it, or
 /// nothing where it has no triangles.
 std::optional<glm::vec3> pivotOf(const LoadedScene& scene, const SceneEdits& edits, uint32_t instance);
+/// Returns the bounds of an instance as it is edited [m]; empty where it has no triangles.
+Box placedBounds(const LoadedScene& scene, const SceneEdits& edits, uint32_t instance);
 /// Returns what normalAt() does, for a surface of the scene as it is edited.
 glm::vec3 placedNormalAt(const LoadedScene& scene, const SceneEdits& edits, uint32_t instance,
                          const glm::vec3& position, const glm::vec3& towards);

@@ -12,6 +12,7 @@
 #include "app/viewer/state/shortcuts.h"
 #include "app/viewer/state/view_state.h"
 #include "app/viewer/window/frame_figures.h"
+#include "app/viewer/window/messages.h"
 
 namespace relume {
 
@@ -24,6 +25,7 @@ struct PanelContext {
     Preferences& preferences;
     const FrameFigures& figures;
     const LogBuffer& log;
+    const Messages& messages;
     const LightList& lights;
     LightPreviews& previews;
     const PublishedMap* map; // the one that is shown, nullptr: none yet

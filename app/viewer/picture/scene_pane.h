@@ -21,6 +21,7 @@ class ScenePane {
 public:
     /// Makes an empty pane. `software` says that the CPU draws OpenGL and leaves out what costs it most.
     explicit ScenePane(bool software) : software_(software) {}
+    bool software() const { return software_; }
 
     /// Sets the scene, which is not read afterwards; nullptr: none.
     void setScene(const LoadedScene* scene);

@@ -4,6 +4,7 @@
 #include "app/viewer/panels/profiler_panel.h"
 #include "app/viewer/panels/view_panel.h"
 #include "app/viewer/panels/widgets.h"
+#include "app/viewer/picture/shown_lights.h"
 #include "app/viewer/state/views.h"
 
 #include <algorithm>
@@ -82,6 +83,27 @@ void drawMenu(const PanelContext& context, const std::string& group) {
     }
 }
 
+void drawMessages(const Messages& messages, const PictureArea& area) {
+    const std::vector<Messages::Message>& shown = messages.shown();
+    if (shown.empty()) return;
+    ImGui::SetNextWindowPos({area.corner.x + 0.5f * area.size.x, area.corner.y + ImGui::GetFontSize()},
+                            ImGuiCond_Always, {0.5f, 0.0f});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(0.9f * area.size.x, 1.0f), area.size.y});
+    ImGui::Begin("messages", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav);
+    for (const Messages::Message& message : shown) {
+        const ImVec4 colour = message.bad ? ImVec4(1.0f, 0.55f, 0.45f, 1.0f) : ImVec4(0.9f, 0.9f, 0.9f, 1.0f);
+        ImGui::PushStyleColor(ImGuiCol_Text, colour);
+        ImGui::PushTextWrapPos(std::max(0.85f * area.size.x, 1.0f));
+        ImGui::TextUnformatted(message.text.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::PopStyleColor();
+    }
+    ImGui::End();
+}
+
 } // namespace
 
 std::string statusLine(const BakeStatus& status) {
@@ -107,14 +129,6 @@ std::string statusLine(const BakeStatus& status) {
     if (progress.error < 1.0) text += fmt::format(", error {:.2g}", progress.error);
     if (status.phase == Phase::Baking) text += fmt::format(", {:.1f} Mrays/s", status.raysPerSecond * 1e-6);
     return text;
-}
-
-std::string viewTitle(const ViewState& view, const LightList& lights, const std::vector<LightGroup>& groups) {
-    const ViewEntry& entry = viewEntries()[view.view];
-    const LightSource* source = view.light ? lights.find(*view.light) : nullptr;
-    if (entry.content != MapContent::Layer || source == nullptr) return entry.title;
-    const LightGroup* group = groupWith(groups, source->key);
-    return group != nullptr ? "Lights: " + group->source.name : "Light: " + source->name;
 }
 
 float Ui::drawMenus(const PanelContext& context) {
@@ -244,31 +258,10 @@ void Ui::drawHelp() {
     ImGui::End();
 }
 
-void Ui::drawMessages(const Area& area) {
-    const std::vector<Messages::Message>& shown = messages_.shown();
-    if (shown.empty()) return;
-    ImGui::SetNextWindowPos({area.corner.x + 0.5f * area.size.x, area.corner.y + ImGui::GetFontSize()},
-                            ImGuiCond_Always, {0.5f, 0.0f});
-    ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(0.9f * area.size.x, 1.0f), area.size.y});
-    ImGui::Begin("messages", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
-                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav);
-    for (const Messages::Message& message : shown) {
-        const ImVec4 colour = message.bad ? ImVec4(1.0f, 0.55f, 0.45f, 1.0f) : ImVec4(0.9f, 0.9f, 0.9f, 1.0f);
-        ImGui::PushStyleColor(ImGuiCol_Text, colour);
-        ImGui::PushTextWrapPos(std::max(0.85f * area.size.x, 1.0f));
-        ImGui::TextUnformatted(message.text.c_str());
-        ImGui::PopTextWrapPos();
-        ImGui::PopStyleColor();
-    }
-    ImGui::End();
-}
-
-Ui::Area Ui::draw(const PanelContext& context, bool hidden, float scale) {
+PictureArea Ui::draw(const PanelContext& context, float scale) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    Area area{{0, 0}, {window.x, window.y}};
-    if (!hidden) {
+    PictureArea area{{0, 0}, {window.x, window.y}};
+    if (!context.view.bare) {
         const float top = drawMenus(context), bottom = drawStatus(context);
         drawSide(context, top, bottom, scale);
         const float left = context.preferences.panelWidth * scale;
@@ -280,7 +273,7 @@ Ui::Area Ui::draw(const PanelContext& context, bool hidden, float scale) {
         files_.draw();
         question_.draw();
     }
-    drawMessages(area);
+    drawMessages(context.messages, area);
     return area;
 }
 

@@ -47,10 +47,10 @@ DisplayMode displayModeOf(const std::string& display) {
 }
 
 void addViewOptions(CLI::App& command, ViewOptions& o) {
-    command.add_option("scene", o.bake.scene, "glTF scene, .gltf or .glb (default: none yet)");
+    command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb (default: none yet)");
     addSizeOption(command, "--size", o.bake);
     addSolverOptions(command, o.bake);
-    command.add_option("--preset", o.bake.preset, "rtrad: the reference implementation to the letter")
+    command.add_option("--preset", o.bake.solve.preset, "rtrad: the reference implementation to the letter")
         ->check(oneOf({"rtrad"}));
     command.add_option("--budget", o.budget, "Aim of one batch in milliseconds while the camera is still")
         ->capture_default_str()
@@ -68,10 +68,10 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
 }
 
 ViewerDesc resolveViewOptions(const ViewOptions& o) {
-    ViewerDesc desc{.scene = o.bake.scene,
+    ViewerDesc desc{.scene = o.bake.files.scene,
                     .request = resolveBakeOptions(o.bake),
-                    .device = o.bake.device,
-                    .validation = o.bake.validate,
+                    .device = o.bake.machine.device,
+                    .validation = o.bake.machine.validate,
                     .display = displayModeOf(o.display),
                     .budgetMs = o.budget,
                     .watch = o.watch,

@@ -1,36 +1,27 @@
 #include "app/viewer/shell/viewer.h"
 
+#include "app/offline/progress.h"
+#include "app/viewer/picture/picture_labels.h"
 #include "app/viewer/state/views.h"
 #include "assets/base/error.h"
 #include "renderer/gl/debug.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace relume {
 namespace {
 
-using Phase = BakeStatus::Phase;
-
 // Without anything to draw, the viewer looks at what runs beside it after so long [s].
 constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleWatching = 0.25, kIdleFence = 0.01;
-constexpr double kRestsAfter = 0.25;  // [s] without a move until the camera counts as still
-constexpr double kMovingShare = 0.25; // of the budget: what a batch has while the camera moves
-constexpr double kLeastBatchMs = 1;
-constexpr uint64_t kNoMapVersion = ~uint64_t{0}; // of the lightmap before there is one: always the same
 // Frames are drawn hardly faster than the monitor shows them: just so much that vsync decides, where it
 // works.
 constexpr double kLimiterSlack = 1.05;
 
-constexpr double kTilesEvery = 0.2; // [s] while the camera moves
-
-const char* contentName(MapContent content) {
-    for (const ViewEntry& entry : viewEntries())
-        if (entry.readsMap && entry.content == content && content != MapContent::Light) return entry.name;
-    return "light";
+Preferences keptPreferences() {
+    const std::string path = preferencesPath();
+    return path.empty() ? Preferences{} : readPreferences(path);
 }
 
 Window::Desc windowDesc(const ViewerDesc& desc, const Preferences& preferences) {
@@ -48,34 +39,42 @@ void clearWindow(Window& window) {
     window.swap();
 }
 
-bool sameFactors(const std::vector<Material>& a, const std::vector<Material>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Material& x, const Material& y) {
-        return x.baseColor == y.baseColor && x.emission == y.emission;
-    });
-}
-
 } // namespace
 
 Viewer::Viewer(const ViewerDesc& desc)
-    : desc_(desc), start_(Clock::now()), preferencesPath_(preferencesPath()),
-      preferences_(preferencesPath_.empty() ? Preferences{} : readPreferences(preferencesPath_)),
-      window_(windowDesc(desc, preferences_)), gui_(window_), software_(gl::isSoftware()), pane_(software_),
-      items_(desc.logActions) {
-    clearWindow(window_); // there at once, whatever takes its time below
-    spdlog::info("window: {}", gl::describeContext());
-    view_.filter = preferences_.filter;
-    view_.tone = preferences_.tone;
+    : desc_(desc), feedback_(desc.logActions), preferences_(keptPreferences()),
+      window_(windowDesc(desc, preferences_)), gui_(window_), session_(startBake(), desc.request),
+      picture_(session_, bake_->exchange(), feedback_, gl::isSoftware()),
+      baking_(session_, *bake_, feedback_, desc.budgetMs),
+      lights_(session_, baking_.status(), picture_, feedback_), comparison_(picture_, feedback_),
+      editing_(session_, comparison_, progress_, feedback_), inspection_(*bake_, picture_),
+      previews_(session_, *bake_, picture_),
+      shots_(picture_, preferences_, feedback_, [this] { return captionLines(); }), ui_(desc.logActions),
+      lightKeys_(session_, picture_, lights_, editing_, feedback_),
+      skyKeys_(session_, picture_, lights_, editing_, feedback_),
+      mover_(session_, picture_, lights_, editing_, feedback_), files_({.session = session_,
+                                                                        .editing = editing_,
+                                                                        .window = window_,
+                                                                        .dialog = ui_.files(),
+                                                                        .question = ui_.question(),
+                                                                        .preferences = preferences_,
+                                                                        .feedback = feedback_}),
+      screenLog_(feedback_) {
+    ViewState& view = picture_.state();
+    view.filter = preferences_.filter;
+    view.tone = preferences_.tone;
     // Four samples per pixel would cost a CPU most of a frame.
     constexpr uint32_t kSamples = 4;
-    view_.samples = preferences_.samples.value_or(software_ ? 0 : kSamples);
-    vsync_ = preferences_.vsync;
-    window_.setVsync(vsync_);
-    startBake();
-    if (!desc_.scene.empty()) open(desc_.scene);
-    session_->watchFile(desc_.watch);
+    view.samples = preferences_.samples.value_or(picture_.pane().software() ? 0 : kSamples);
+    if (!desc_.scene.empty()) files_.open(desc_.scene);
+    session_.watchFile(desc_.watch);
 }
 
-void Viewer::startBake() {
+// Shows an empty window at once, whatever takes its time afterwards, and starts the thread that bakes.
+LiveBake& Viewer::startBake() {
+    clearWindow(window_);
+    spdlog::info("window: {}", gl::describeContext());
+    window_.setVsync(preferences_.vsync);
     const gl::GlSharing sharing = gl::querySharing();
     bake_ = std::make_unique<LiveBake>(
         LiveBake::Desc{.device = desc_.device,
@@ -83,10 +82,8 @@ void Viewer::startBake() {
                        .display = desc_.display,
                        .host = {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids},
                        .batchMs = desc_.budgetMs});
-    batchMs_ = desc_.budgetMs;
     bake_->setWake([] { Window::wake(); });
-    session_ = std::make_unique<Session>(*bake_, desc_.request);
-    bridge_ = std::make_unique<LightmapBridge>(bake_->exchange());
+    return *bake_;
 }
 
 Viewer::~Viewer() {
@@ -101,17 +98,13 @@ Viewer::~Viewer() {
 }
 
 void Viewer::savePreferences() {
-    preferences_.filter = view_.filter;
-    preferences_.tone = view_.tone;
+    preferences_.filter = picture_.state().filter;
+    preferences_.tone = picture_.state().tone;
     try {
-        if (!preferencesPath_.empty()) writePreferences(preferencesPath_, preferences_);
+        if (const std::string path = preferencesPath(); !path.empty()) writePreferences(path, preferences_);
     } catch (const Error& error) {
         spdlog::warn("{}", error.what());
     }
-}
-
-double Viewer::now() const {
-    return secondsSince(start_);
 }
 
 float Viewer::pixelsPerPoint() const {
@@ -120,330 +113,199 @@ float Viewer::pixelsPerPoint() const {
 }
 
 double Viewer::idleSeconds(double time) const {
-    double idle = kIdle;
-    if (status_.phase == Phase::Baking || status_.phase == Phase::Preparing) idle = kIdleBaking;
-    if (session_->watchesFile()) idle = std::min(idle, kIdleWatching);
-    if (session_->loading()) idle = std::min(idle, kIdleLoading);
-    if (!skies_.reading().empty()) idle = std::min(idle, kIdleLoading);
-    const bool previews =
-        previewsDue_ || pane_.surfacesPending() || (previews_.wanted && bake_->exchange().hasProbe());
-    if (bridge_->waiting() || pane_.tilesPending() || previews) idle = std::min(idle, kIdleFence);
-    if (time - moved_ < kRestsAfter) idle = std::min(idle, kRestsAfter); // then the bake gets its budget back
-    const double message = ui_.messages().nextExpiry(time + idle);
+    double idle = baking_.busy() ? kIdleBaking : kIdle;
+    if (session_.watchesFile()) idle = std::min(idle, kIdleWatching);
+    if (session_.loading() || skyKeys_.reading()) idle = std::min(idle, kIdleLoading);
+    if (picture_.waitsForMaps() || picture_.pane().tilesPending() || previews_.underWay())
+        idle = std::min(idle, kIdleFence);
+    // Once the camera rests, the bake gets its budget back.
+    if (!picture_.rests(time)) idle = std::min(idle, SceneView::kRestsAfter);
+    const double message = feedback_.messages().nextExpiry(time + idle);
     return std::clamp(message - time, 0.0, idle);
 }
 
 void Viewer::run() {
-    while (!closes()) {
+    double begun = 0; // when the last frame began
+    while (!files_.ends()) {
         const double limit = 1.0 / (kLimiterSlack * window_.refreshRate());
-        const double before = now();
+        const double before = feedback_.now();
         const double idle = idleSeconds(before);
-        const double wait =
-            window_.minimised() ? idle : std::max(pacer_.wait(before, idle), frameStart_ + limit - before);
+        const double wait = window_.minimised()
+                                ? idle
+                                : std::max(feedback_.pacer().wait(before, idle), begun + limit - before);
         handle(window_.wait(std::max(wait, 0.0)));
-        const double time = now();
+        const double time = feedback_.now();
         follow(time);
-        const Redraw redraw = pacer_.due(time);
-        tellSettled();
-        if (!redraw.any || time < frameStart_ + limit || window_.minimised()) continue;
-        frameStart_ = time;
+        const Redraw redraw = feedback_.pacer().due(time);
+        screenLog_.tellSettled(settled());
+        if (!redraw.any || time < begun + limit || window_.minimised()) continue;
+        begun = time;
         frame(redraw);
     }
-    tell("window", "closed");
+    feedback_.tell("window", "closed");
 }
 
 void Viewer::follow(double time) {
     followScene();
     followBake(time);
-    followCamera(time);
-    followPreviews(time);
-    followLog();
-    const bool messages = !ui_.messages().shown().empty();
-    ui_.messages().expire(time);
-    if (messages && ui_.messages().shown().empty()) pacer_.input();
-    if (vsync_ != preferences_.vsync) {
-        vsync_ = preferences_.vsync;
-        window_.setVsync(vsync_);
+    if (ui_.question().isOpen()) input_.releaseKeys(); // their releases go to the question
+    picture_.fly(input_.flight(), time);
+    if (previews_.follow(lights_.list().sources(), baking_.status().groups, mover_.held(), time)) {
+        feedback_.tell("preview", "drawn");
+        feedback_.pacer().statusChanged();
     }
-    if (sceneDirty_) pacer_.sceneChanged();
-    if (window_.minimised() != told_.minimised) {
-        told_.minimised = window_.minimised();
-        tell("window", told_.minimised ? "minimised" : "shown");
-    }
-    if (window_.size() != told_.size && !window_.minimised()) {
-        told_.size = window_.size();
-        tell("window", fmt::format("{} x {}", told_.size.x, told_.size.y));
-    }
+    feedback_.followLog(log_);
+    feedback_.expireMessages(time);
+    window_.setVsync(preferences_.vsync);
+    if (feedback_.sceneIsChanged()) feedback_.pacer().sceneChanged();
+    screenLog_.tellWindow(window_.size(), window_.minimised());
 }
 
 void Viewer::followScene() {
-    if (session_->update()) {
-        const LoadedScene& scene = *session_->scene();
-        pane_.setScene(&scene);
-        materials_ = scene.prepared.scene.materials;
-        view_.selected = -1;
-        view_.seenTexel.reset();
-        view_.light.reset();
-        drag_.reset();
-        previews_.clear();
-        previewed_.reset();
-        badSky_.clear();
-        newestEdit_.clear();
-        editedAt_ = now();
-        ownReference_ = false;
-        if (!session_->sceneWasKept()) {
-            ViewCamera camera = scene.view;
-            const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
-            const auto named = std::find_if(cameras.begin(), cameras.end(), [&](const Camera& candidate) {
-                return candidate.name == desc_.camera;
-            });
-            if (named != cameras.end())
-                camera = cameraOfFile(*named, scene.geometry.bounds);
-            else if (!desc_.camera.empty())
-                note(scene.prepared.scene.path + ": has no camera '" + desc_.camera + "'", true);
-            camera_.set(camera, scene.geometry.bounds);
-            camera_.setHome(camera);
-            preferences_.addRecent(scene.prepared.scene.path);
-        }
-        path_ = scenePath();
-        askedBake_ = 0;
-        tell("scene", scene.prepared.scene.path);
-        changeScene();
+    if (session_.update()) takeScene();
+    if (!session_.lastError().empty()) {
+        feedback_.showError(session_.lastError()); // the log has told it, too
+        session_.clearError();
     }
-    if (!session_->lastError().empty()) {
-        ui_.messages().add(session_->lastError(), true, now()); // the log has told it, too
-        session_->clearError();
-    }
-    followLights();
-    followSky();
-    followFile();
+    lights_.follow();
+    skyKeys_.follow();
+    files_.follow();
 }
 
-void Viewer::showMaterials(std::vector<Material> materials) {
-    if (sameFactors(materials_, materials)) return;
-    materials_ = std::move(materials);
-    pane_.setMaterials(materials_);
-    changeScene();
+void Viewer::takeScene() {
+    const LoadedScene& scene = *session_.scene();
+    picture_.pane().setScene(&scene);
+    picture_.state().selected = -1;
+    picture_.state().seenTexel.reset();
+    lights_.sceneCame();
+    mover_.sceneCame();
+    previews_.sceneCame();
+    skyKeys_.sceneCame();
+    progress_.sceneCame(feedback_.now());
+    comparison_.sceneCame();
+    if (!session_.sceneWasKept()) {
+        const ViewCamera camera = firstCamera();
+        picture_.camera().set(camera, scene.geometry.bounds);
+        picture_.camera().setHome(camera);
+    }
+    files_.sceneCame();
+    inspection_.sceneCame();
+    feedback_.tell("scene", scene.prepared.scene.path);
+    feedback_.sceneChanged();
+}
+
+// Returns the camera that a scene is seen by at first: the one that was asked for, else its own.
+ViewCamera Viewer::firstCamera() {
+    const LoadedScene& scene = *session_.scene();
+    const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
+    const auto named = std::find_if(cameras.begin(), cameras.end(),
+                                    [&](const Camera& camera) { return camera.name == desc_.camera; });
+    if (named != cameras.end()) return cameraOfFile(*named, scene.geometry.bounds);
+    if (!desc_.camera.empty())
+        feedback_.note(scene.prepared.scene.path + ": has no camera '" + desc_.camera + "'", true);
+    return scene.view;
 }
 
 void Viewer::followBake(double time) {
-    BakeStatus status = bake_->status();
-    // An edit may be answered between two looks: then the bake was done before, and is done again.
-    if (status.phase != status_.phase || (status.bake != status_.bake && status.phase == Phase::Done)) {
-        pacer_.input();
-        tell("bake", phaseName(status.phase));
+    baking_.follow();
+    if (picture_.takeMap()) screenLog_.tellMap(*picture_.newestMap());
+    if (progress_.update(baking_.status(), picture_.map(), session_.newestBake(), time)) {
+        feedback_.tell("badge", badgeName(progress_.badge().state));
+        feedback_.pacer().input();
     }
-    if (status.phase == Phase::Baking || status.phase == Phase::Preparing || session_->loading() ||
-        status.doing != status_.doing)
-        pacer_.statusChanged();
-    status_ = std::move(status);
-    if (bridge_->update()) followMap();
-    followBadge(time);
-    inspect();
-    followInspected();
-    if (!pane_.adapting())
-        settling_ = false;
-    else if (settling_)
-        pacer_.sceneChanged(); // the user waits for it
-    else
-        pacer_.newMap();
-    const bool moves = time - moved_ < kRestsAfter;
-    const double wanted = moves ? std::max(kMovingShare * desc_.budgetMs, kLeastBatchMs) : desc_.budgetMs;
-    if (wanted == batchMs_) return;
-    batchMs_ = wanted;
-    bake_->setBatchMs(wanted);
+    if (inspection_.follow(baking_.status(), lights_.list(), time)) feedback_.sceneChanged();
+    feedback_.followExposure(picture_.pane().adapting());
+    baking_.setBudget(desc_.budgetMs, !picture_.rests(time));
 }
 
-void Viewer::followMap() {
-    mapVersion_ = newVersion();
-    if (view_.uv || viewEntries()[view_.view].readsMap) pacer_.newMap();
-    const PublishedMap& map = *bridge_->map();
-    const std::string told =
-        std::string(contentName(map.content)) + (map.complete ? " complete" : " partial");
-    if (told != told_.map) tell("map", told);
-    told_.map = told;
-}
-
-// Tells whoever listens that what was asked for is on the screen: nothing is left to be drawn, and the map is
-// the one that the view shows. The number of inputs says which of them have been taken.
-void Viewer::tellSettled() {
-    const PublishedMap* shown = bridge_->map();
-    const bool asked =
-        shown == nullptr || (shown->content == inspected_.content && shown->light == inspected_.light);
-    const bool settled =
-        asked && pacer_.settled() && !pane_.adapting() && !bridge_->waiting() && !session_->loading();
-    if (settled && !told_.settled) tell("settled", std::to_string(told_.inputs));
-    told_.settled = settled;
-}
-
-// Follows what is seen beside maps: links of a patch, voxels, and the tiles that the camera sees.
-void Viewer::followInspected() {
-    if (const std::optional<InspectPaths> paths = bake_->takePaths()) {
-        pane_.setPaths(*paths);
-        changeScene();
-    }
-    if (const std::optional<InspectVoxels> voxels = bake_->takeVoxels()) {
-        pane_.setVoxels(*voxels);
-        changeScene();
-    }
-    const bool bakes =
-        status_.phase == Phase::Baking || status_.phase == Phase::Paused || status_.phase == Phase::Done;
-    if (!bakes || session_->scene() == nullptr) return;
-    const bool another = askedBake_ != status_.bake;
-    if (viewEntries()[view_.view].voxels && (another || askedVoxels_ != view_.voxels)) {
-        askedVoxels_ = view_.voxels;
-        bake_->askVoxels(askedVoxels_);
-    }
-    if (std::optional<std::vector<uint32_t>> tiles = pane_.seenTiles())
-        bake_->setSeenTiles(std::move(*tiles));
-    const double time = now();
-    const bool moved = moved_ > tilesAsked_;
-    if (another || (moved && (time - moved_ > kRestsAfter || time - tilesAsked_ > kTilesEvery))) {
-        tilesAsked_ = time;
-        pane_.askTiles(look());
-    }
-    askedBake_ = status_.bake;
-}
-
-void Viewer::inspect() {
-    const ViewEntry& entry = viewEntries()[view_.view];
-    InspectRequest request;
-    if (entry.readsMap) request.content = entry.content;
-    if (hasMips(request.content)) request.mip = view_.mip;
-    if (request.content == MapContent::Layer) {
-        const LightSource* source = view_.light ? lights_.find(*view_.light) : nullptr;
-        if (source == nullptr) return;
-        if (const LightGroup* group = groupWith(status_.groups, source->key)) source = &group->source;
-        request.light = source->key;
-        request.weight = source->weight;
-    }
-    if (request.content == MapContent::Leaves) request.preview = view_.preview;
-    if (request.content == MapContent::Seen) {
-        if (!view_.seenTexel) return; // nothing was chosen yet
-        request.texel = *view_.seenTexel;
-    }
-    if (request == inspected_) return;
-    inspected_ = request;
-    bake_->inspect(request);
-}
-
-void Viewer::followCamera(double time) {
-    updateFlight();
-    if (camera_.fly(time - flown_)) cameraMoved();
-    flown_ = time;
-    pacer_.animate(camera_.flying());
-}
-
-// Shows as well what is logged as an error: it went wrong beside the main thread.
-void Viewer::followLog() {
-    const uint64_t count = log_.count();
-    if (count == logSeen_) return;
-    const std::vector<LogLine> lines = log_.linesSince(logSeen_);
-    logSeen_ = count;
-    for (const LogLine& line : lines)
-        if (line.level >= spdlog::level::err) ui_.messages().add(line.text, true, now());
-    pacer_.input();
+// Tells whether what was asked for is on the screen: nothing is left to be drawn, and the map is the one that
+// the view shows.
+bool Viewer::settled() const {
+    const PublishedMap* shown = picture_.newestMap();
+    const bool asked = shown == nullptr || inspection_.asksFor(*shown);
+    return asked && feedback_.pacer().settled() && !picture_.pane().adapting() && !picture_.waitsForMaps() &&
+           !session_.loading();
 }
 
 PanelContext Viewer::context() {
-    return {.session = *session_,
-            .status = status_,
-            .view = view_,
-            .camera = camera_,
+    return {.session = session_,
+            .status = baking_.status(),
+            .view = picture_.state(),
+            .camera = picture_.camera(),
             .preferences = preferences_,
             .figures = figures_,
             .log = log_,
-            .lights = lights_,
-            .previews = previews_,
-            .map = map(),
-            .exposure = pane_.exposure(),
+            .messages = feedback_.messages(),
+            .lights = lights_.list(),
+            .previews = previews_.previews(),
+            .map = picture_.map(),
+            .exposure = picture_.pane().exposure(),
             .budgetMs = desc_.budgetMs,
-            .recording = capture_.recording(),
+            .recording = shots_.recording(),
             .perform = [this](Action action, int argument) { perform(action, argument); },
-            .sceneChanged = [this] { changeScene(); },
-            .edit = [this](const std::string& name, const Document& next) { edit(name, next); },
-            .endEdit = [this] { endEdit(); },
-            .open = [this](const std::string& path) { open(path); },
-            .selectLight = [this](const LightKey& key) { selectLight(key); },
-            .items = items_};
+            .sceneChanged = [this] { feedback_.sceneChanged(); },
+            .edit = [this](const std::string& name, const Document& next) { editing_.edit(name, next); },
+            .endEdit = [this] { editing_.end(); },
+            .open = [this](const std::string& path) { files_.open(path); },
+            .selectLight = [this](const LightKey& key) { lights_.select(key); },
+            .items = ui_.items()};
 }
 
-const PublishedMap* Viewer::map() const {
-    const PublishedMap* newest = bridge_->map();
-    return newest != nullptr && newest->bake >= session_->firstBake() ? newest : nullptr;
+std::vector<std::string> Viewer::captionLines() const {
+    const std::string path = files_.path();
+    const BakeStatus& status = baking_.status();
+    std::vector<std::string> lines = {path.substr(path.find_last_of('/') + 1), statusLine(status)};
+    if (lights_.alone()) lines.push_back(viewTitle(picture_.state(), lights_.list(), status.groups));
+    lines.push_back(fmt::format("{} of solving", formatDuration(status.progress.seconds)));
+    return lines;
 }
 
-LightmapTexture Viewer::lightmap() const {
-    LightmapTexture texture{.size = session_->document().bake.size};
-    if (map() == nullptr) {
-        texture.version = kNoMapVersion;
-        return texture;
+// Draws what lies over the picture of the scene.
+void Viewer::drawOverlay() {
+    const bool mayHold = !input_.pressed() && overScene(input_.cursor());
+    mover_.draw(mayHold ? std::optional(input_.cursor()) : std::nullopt, ui_.items());
+    if (session_.scene() == nullptr) return;
+    if (comparison_.shown()) {
+        const ui::ItemLog::Scope scope(ui_.items(), "Wipe");
+        ui_.items().add("Line", glm::ivec2(glm::round(comparison_.grip())));
+        comparison_.draw();
     }
-    texture = bridge_->texture();
-    texture.version = mapVersion_;
-    return texture;
-}
-
-ScenePane::Look Viewer::look() const {
-    return {.camera = camera_.camera(), .state = view_, .lightmap = lightmap(), .map = map()};
-}
-
-// Draws the picture of the scene, a new one or the last one, behind the panels.
-void Viewer::drawScene(bool anew) {
-    const float pixels = pixelsPerPoint();
-    const glm::uvec2 window = window_.size();
-    const auto toPixels = [&](float points) { return static_cast<uint32_t>(std::lround(points * pixels)); };
-    const glm::uvec2 corner(toPixels(area_.corner.x),
-                            window.y - std::min(window.y, toPixels(area_.corner.y + area_.size.y)));
-    const glm::uvec2 size =
-        glm::max(glm::uvec2(toPixels(area_.size.x), toPixels(area_.size.y)), glm::uvec2(1));
-    const bool resized = pane_.picture().width() != size.x || pane_.picture().height() != size.y;
-    if (anew || resized) {
-        pane_.draw(look(), size);
-        ++figures_.drawn;
-        sceneDirty_ = false;
-        recordDue_ = true;
-    } else {
-        ++figures_.repeated;
-    }
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, static_cast<GLsizei>(window.x), static_cast<GLsizei>(window.y));
-    glDisable(GL_SCISSOR_TEST);
-    glClearColor(0, 0, 0, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    pane_.show(corner);
+    if (!picture_.state().bare) drawBadge(progress_.badge(), picture_.area());
 }
 
 void Viewer::frame(const Redraw& redraw) {
-    const double begin = now();
-    if (!gui_.animates()) scale_ = window_.contentScale() / pixelsPerPoint() * preferences_.uiScale;
-    gui_.begin(scale_);
-    previews_.wanted = false; // the panel says
-    area_ = ui_.draw(context(), hidden_, scale_);
+    const double begin = feedback_.now();
+    const float pixels = pixelsPerPoint();
+    const float scale =
+        gui_.animates() ? picture_.scale() : window_.contentScale() / pixels * preferences_.uiScale;
+    gui_.begin(scale);
+    previews_.previews().wanted = false; // the panel says
+    picture_.place(ui_.draw(context(), scale), scale, pixels);
     drawOverlay();
-    drawProgress();
-    const double drawnUi = now();
-    const bool anew = redraw.scene || sceneDirty_;
-    drawScene(anew);
-    const double drawnScene = now();
+    const double drawnUi = feedback_.now();
+    const bool anew = redraw.scene || feedback_.sceneIsChanged();
+    const bool drew = picture_.draw(anew, window_.size());
+    ++(drew ? figures_.drawn : figures_.repeated);
+    if (drew) shots_.pictureDrawn();
+    const double drawnScene = feedback_.now();
     gui_.end();
-    captureFrame(begin);
-    const double beforeSwap = now();
+    shots_.takeFrame(begin, window_.size());
+    const double beforeSwap = feedback_.now();
     window_.swap();
-    const double end = now();
+    const double end = feedback_.now();
     figures_.span("panels").cpu = 1e3 * (drawnUi - begin);
     figures_.span("scene").cpu = 1e3 * (drawnScene - drawnUi);
     figures_.span("swap").cpu = 1e3 * (end - beforeSwap);
     figures_.addFrame(1e3 * (end - begin));
-    for (const gl::Timer::Pass& pass : pane_.endFrame()) {
+    for (const gl::Timer::Pass& pass : picture_.pane().endFrame()) {
         FrameFigures::Span& span = figures_.span("drawing: " + pass.name);
         span.cpu = pass.cpuMs;
         span.gpu = pass.gpuMs;
     }
-    figures_.drawCalls = pane_.counts().drawn;
-    figures_.culled = pane_.counts().culled;
+    figures_.drawCalls = picture_.pane().counts().drawn;
+    figures_.culled = picture_.pane().counts().culled;
     // A GPU's swap waits for the monitor, while the CPU's draws.
-    pacer_.drawn({anew, true}, end, software_ ? end - begin : beforeSwap - begin);
+    feedback_.pacer().drawn({anew, true}, end, picture_.pane().software() ? end - begin : beforeSwap - begin);
 }
 
 } // namespace relume

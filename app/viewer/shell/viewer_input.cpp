@@ -1,9 +1,10 @@
+// This is the part of the viewer that hands input and actions to whom they concern.
+#include "app/viewer/edits/object_edits.h"
 #include "app/viewer/shell/viewer.h"
-
+#include "app/viewer/state/view_actions.h"
 #include "app/viewer/state/views.h"
-
-#include <algorithm>
-#include <cmath>
+#include "assets/base/error.h"
+#include "shaders/shader_library.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -11,45 +12,16 @@
 namespace relume {
 namespace {
 
-constexpr double kClickSlack = 4;   // a hand moves so far while it clicks [screen coordinates]
-constexpr float kUvZoomStep = 1.2f; // of one step of a wheel
-
-bool isFunctionKey(int key) {
-    return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25;
-}
-
-// Returns the direction of flight of a place on the keyboard. Places, not letters, lie together on every
-// layout.
-glm::ivec3 flightOf(int place) {
-    switch (place) {
-    case GLFW_KEY_D:
-        return {1, 0, 0};
-    case GLFW_KEY_A:
-        return {-1, 0, 0};
-    case GLFW_KEY_E:
-        return {0, 1, 0};
-    case GLFW_KEY_Q:
-        return {0, -1, 0};
-    case GLFW_KEY_W:
-        return {0, 0, 1};
-    case GLFW_KEY_S:
-        return {0, 0, -1};
-    default:
-        return {0, 0, 0};
-    }
-}
-
-const char* dragName(int button, int mods) {
-    if (button == GLFW_MOUSE_BUTTON_RIGHT) return "look";
-    return button == GLFW_MOUSE_BUTTON_MIDDLE || (mods & GLFW_MOD_SHIFT) != 0 ? "pan" : "orbit";
+// Tells whether an action is from `first` to `last` in the order in which they are declared.
+bool within(Action action, Action first, Action last) {
+    return action >= first && action <= last;
 }
 
 } // namespace
 
 void Viewer::handle(const std::vector<WindowEvent>& events) {
-    if (!events.empty()) pacer_.input();
-    told_.inputs += events.size();
-    told_.settled = told_.settled && events.empty();
+    if (!events.empty()) feedback_.pacer().input();
+    screenLog_.countInputs(events.size());
     for (const WindowEvent& event : events) {
         gui_.feed(event);
         switch (event.kind) {
@@ -67,12 +39,12 @@ void Viewer::handle(const std::vector<WindowEvent>& events) {
             break;
         case WindowEvent::Kind::Drop:
             if (!event.paths.empty()) {
-                tell("dropped", event.paths.front());
-                open(event.paths.front());
+                feedback_.tell("dropped", event.paths.front());
+                files_.open(event.paths.front());
             }
             break;
         case WindowEvent::Kind::Focus:
-            if (!event.pressed) keys_.clear(); // their releases go to another window
+            if (!event.pressed) input_.releaseKeys(); // their releases go to another window
             break;
         default:
             break;
@@ -85,145 +57,170 @@ void Viewer::onKey(const WindowEvent& event) {
         if (event.pressed) ui_.question().answer(event.code);
         return;
     }
+    input_.followModifiers(event);
+    if (mover_.held()) return mover_.takeKey(event, input_.cursor(), input_.control());
     const bool typing = gui_.wantsKeyboard();
-    fast_ = (event.mods & GLFW_MOD_SHIFT) != 0;
-    // A press of Ctrl itself does not count among its modifiers.
-    const bool control = event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL;
-    control_ = control ? event.pressed : (event.mods & GLFW_MOD_CONTROL) != 0;
-    if (drag_) return control ? dragGizmo(cursor_) : onDragKey(event);
-    if (flightOf(event.place) != glm::ivec3(0)) {
-        std::erase(keys_, event.place);
-        const bool alone = (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) == 0;
-        if (event.pressed && alone && !typing) {
-            keys_.push_back(event.place);
-            if (!event.repeated) tell("action", "fly");
-            return;
-        }
+    if (input_.takeFlightKey(event, typing)) {
+        if (!event.repeated) feedback_.tell("action", "fly");
+        return;
     }
-    if (!event.pressed) return;
-    const Shortcut* shortcut = findShortcut(event.code, event.mods);
-    if (shortcut == nullptr) return;
-    const bool repeats = shortcut->action == Action::Darker || shortcut->action == Action::Brighter ||
-                         shortcut->action == Action::Undo || shortcut->action == Action::Redo ||
-                         shortcut->action == Action::LightStrength || shortcut->action == Action::Nudge;
-    if (event.repeated && !repeats) return;
-    // Letters, and Ctrl with one, go to the text while one types; Esc leaves a field, or closes a dialog.
-    const bool closes = shortcut->action == Action::Close && ui_.files().isOpen();
-    if (typing && !closes && !isFunctionKey(event.code) && shortcut->action != Action::Quit) return;
-    perform(shortcut->action, shortcut->argument);
+    const KeyFocus focus{.typing = typing, .fileDialog = ui_.files().isOpen()};
+    if (const Shortcut* shortcut = meantShortcut(event, focus)) perform(shortcut->action, shortcut->argument);
 }
 
 bool Viewer::overScene(const glm::dvec2& at) const {
-    const glm::vec2 p(at), low = area_.corner, high = area_.corner + area_.size;
-    return p.x >= low.x && p.y >= low.y && p.x < high.x && p.y < high.y && !gui_.wantsMouse();
+    return picture_.area().has(at) && !gui_.wantsMouse();
 }
 
 void Viewer::onButton(const WindowEvent& event) {
-    cursor_ = event.at;
-    if (wipeDrag_) {
-        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) wipeDrag_ = false;
+    input_.setCursor(event.at);
+    const bool left = event.code == GLFW_MOUSE_BUTTON_LEFT, ends = left && !event.pressed;
+    if (comparison_.held()) {
+        if (ends) comparison_.release();
         return;
     }
-    if (drag_) {
-        if (!event.pressed && event.code == GLFW_MOUSE_BUTTON_LEFT) endDrag();
+    if (mover_.held()) {
+        if (ends) mover_.release();
         return;
     }
     if (!event.pressed) {
-        if (!camera_.dragging() || event.code != button_) return;
-        camera_.end();
-        const bool moved = glm::distance(event.at, pressed_) > kClickSlack;
-        if (moved)
-            tell("action", dragName(event.code, event.mods));
-        else if (event.code == GLFW_MOUSE_BUTTON_LEFT)
+        const HeldInput::Release ended = input_.release(event.code, event.at);
+        if (ended == HeldInput::Release::Nothing) return;
+        picture_.camera().end();
+        if (ended == HeldInput::Release::Drag)
+            feedback_.tell("action", cameraDragName(event.code, event.mods));
+        else if (left)
             onClick(event);
         return;
     }
-    if (camera_.dragging() || !overScene(event.at)) return;
-    if (event.code == GLFW_MOUSE_BUTTON_LEFT && overWipe(event.at)) {
-        wipeDrag_ = true;
-        return;
-    }
-    if (event.code == GLFW_MOUSE_BUTTON_LEFT && pressGizmo(event.at)) return;
-    button_ = event.code;
-    pressed_ = event.at;
-    dragged_ = false;
-    if (event.code == GLFW_MOUSE_BUTTON_LEFT)
-        camera_.begin((event.mods & GLFW_MOD_SHIFT) != 0 ? CameraControl::Drag::Pan
-                                                         : CameraControl::Drag::Orbit);
-    else if (event.code == GLFW_MOUSE_BUTTON_MIDDLE)
-        camera_.begin(CameraControl::Drag::Pan);
-    else if (event.code == GLFW_MOUSE_BUTTON_RIGHT)
-        camera_.begin(CameraControl::Drag::Look);
+    if (input_.pressed() || !overScene(event.at)) return;
+    if (left && (comparison_.press(event.at) || mover_.press(event.at))) return;
+    const CameraControl::Drag drag = cameraDragOf(event.code, event.mods);
+    if (drag == CameraControl::Drag::None) return;
+    input_.press(event.code, event.at);
+    picture_.camera().begin(drag);
 }
 
 void Viewer::onCursor(const WindowEvent& event) {
-    const glm::dvec2 before = cursor_;
-    cursor_ = event.at;
-    if (wipeDrag_) return dragWipe(event.at);
-    if (drag_) return dragGizmo(event.at);
-    // A click that trembles is no drag: it would leave the camera a little beside.
-    if (!camera_.dragging() || area_.size.y <= 0) return;
-    if (!dragged_ && glm::distance(event.at, pressed_) <= kClickSlack) return;
-    const glm::dvec2 way = (event.at - (dragged_ ? before : pressed_)) / double(area_.size.y);
-    dragged_ = true;
-    if (view_.uv) {
-        view_.uvWindow = pan(view_.uvWindow, glm::vec2(way) * area_.size.y, area_.size);
-        changeScene();
-    } else if (camera_.move(static_cast<float>(way.x), static_cast<float>(way.y))) {
-        cameraMoved();
-    }
+    const std::optional<glm::dvec2> way = input_.drag(event.at);
+    if (comparison_.held()) return comparison_.drag(event.at);
+    if (mover_.held()) return mover_.drag(event.at, input_.control());
+    if (way) picture_.drag(*way);
 }
 
 void Viewer::onScroll(const WindowEvent& event) {
-    if (!overScene(cursor_)) return;
-    const auto steps = static_cast<float>(event.at.y);
-    if (view_.uv) {
-        view_.uvWindow =
-            zoom(view_.uvWindow, std::pow(kUvZoomStep, steps), glm::vec2(cursor_) - area_.corner, area_.size);
-        changeScene();
-    } else {
-        camera_.zoomBy(steps);
-        cameraMoved();
-    }
-    tell("action", "zoom");
-}
-
-void Viewer::updateFlight() {
-    glm::ivec3 held(0);
-    for (const int key : keys_)
-        held += flightOf(key);
-    camera_.setFlight({held, fast_});
-}
-
-void Viewer::cameraMoved() {
-    moved_ = now();
-    changeScene();
+    if (!overScene(input_.cursor())) return;
+    picture_.zoom(static_cast<float>(event.at.y), input_.cursor());
+    feedback_.tell("action", "zoom");
 }
 
 // Selects an instance or, with Ctrl or in its own view, the patch to see from.
 void Viewer::onClick(const WindowEvent& event) {
-    if (showsLights())
-        if (const std::optional<LightKey> icon = iconAt(stage(), pointAt(event.at))) return selectLight(icon);
-    const glm::vec2 pixel = (glm::vec2(event.at) - area_.corner) * pixelsPerPoint();
-    const std::optional<Pick> pick = pane_.pick(look(), pixel);
+    if (const std::optional<LightKey> icon = mover_.iconAt(event.at)) return lights_.select(*icon);
+    ViewState& view = picture_.state();
+    const std::optional<Pick> pick = picture_.pick(event.at);
     const size_t seen = viewIndex("seen");
-    const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view_.view == seen;
+    const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view.view == seen;
     if (patch && pick && pick->lightmapUv) {
-        const uint32_t size = session_->document().bake.size;
-        view_.seenTexel = pick->texel.y * size + pick->texel.x;
-        view_.view = seen;
-        tell("action", "see from " + std::to_string(*view_.seenTexel));
-    } else if (!patch && !view_.uv) {
-        const int instance = pick ? static_cast<int>(pick->instance) : -1;
-        view_.selected = instance == view_.selected ? -1 : instance;
-        tell("action", "select " + std::to_string(view_.selected));
-        view_.light.reset();
-        if (view_.selected >= 0) {
-            const LightKey emitter{LightKey::Kind::Emitter, pick->instance, pick->material};
-            if (lights_.find(emitter) != nullptr) selectLight(emitter);
-        }
+        view.seenTexel = pick->texel.y * session_.document().bake.size + pick->texel.x;
+        view.view = seen;
+        feedback_.tell("action", "see from " + std::to_string(*view.seenTexel));
+    } else if (!patch && !view.uv) {
+        lights_.selectObject(pick);
     }
-    changeScene();
+    feedback_.sceneChanged();
+}
+
+void Viewer::perform(Action action, int argument) {
+    feedback_.tell("action", shortcutOf(action, argument).name);
+    feedback_.pacer().input();
+    if (within(action, Action::Open, Action::Quit)) return files_.perform(action);
+    if (within(action, Action::MakePass, Action::Reset)) return baking_.perform(action);
+    if (within(action, Action::AddLight, Action::LightStrength)) return lightKeys_.perform(action, argument);
+    if (within(action, Action::Wipe, Action::StoreReference)) return comparison_.perform(action);
+    if (within(action, Action::View, Action::AutomaticExposure)) return performView(action, argument);
+    if (within(action, Action::FrameAll, Action::StoreBookmark)) return performCamera(action);
+    if (within(action, Action::Screenshot, Action::Caption)) return shots_.perform(action);
+    ViewState& view = picture_.state();
+    switch (action) {
+    case Action::Undo:
+        return editing_.undo();
+    case Action::Redo:
+        return editing_.redo();
+    case Action::Close:
+        if (!ui_.closeDialog()) baking_.abortPass();
+        return;
+    case Action::SkyPicture:
+        return skyKeys_.choose(ui_.files(), files_.folder());
+    case Action::NoSkyPicture:
+        return skyKeys_.clear();
+    case Action::Nudge:
+    case Action::HideObject:
+    case Action::ShowObjects:
+        return mover_.perform(action, argument);
+    case Action::Gizmo:
+        view.gizmo = static_cast<GizmoMode>(argument);
+        return;
+    case Action::LightIcons:
+        view.lightIcons = !view.lightIcons;
+        return;
+    case Action::ReloadShaders:
+        return reloadShaders();
+    case Action::Help:
+        return ui_.toggleHelp();
+    case Action::HideUi:
+        view.bare = !view.bare;
+        return;
+    case Action::Panel:
+        return ui_.showPanel(static_cast<size_t>(argument));
+    default:
+        return;
+    }
+}
+
+void Viewer::performView(Action action, int argument) {
+    const bool alone =
+        action == Action::View && viewEntries()[static_cast<size_t>(argument)].content == MapContent::Layer;
+    if (alone) return lights_.toggleAlone();
+    const std::string told = changeView(picture_.state(), action, argument, picture_.pane().exposure());
+    if (!told.empty()) feedback_.note(told);
+    feedback_.sceneChanged();
+}
+
+void Viewer::performCamera(Action action) {
+    const LoadedScene* scene = session_.scene();
+    if (scene == nullptr) return;
+    if (action == Action::StoreBookmark) return storeBookmark();
+    if (action == Action::FrameAll) return picture_.frameAll();
+    CameraControl& camera = picture_.camera();
+    if (action == Action::FrameSelected) {
+        const int selected = picture_.state().selected;
+        if (selected < 0) return feedback_.note("nothing is selected: click something");
+        const Box bounds = placedBounds(*scene, session_.document().edits, static_cast<uint32_t>(selected));
+        camera.frame(bounds, picture_.area().aspect());
+    } else {
+        camera.reset();
+    }
+    picture_.cameraMoved();
+}
+
+void Viewer::storeBookmark() {
+    const std::string name = preferences_.addBookmark(files_.path(), picture_.camera().camera());
+    savePreferences();
+    feedback_.note("stored " + name);
+}
+
+void Viewer::reloadShaders() {
+    if (shaderFolder().empty())
+        return feedback_.note("the shaders are built in: start with --shaders FOLDER, a copy of them");
+    try {
+        picture_.pane().reload();
+        bake_->reloadShaders();
+        feedback_.note("shaders reloaded");
+    } catch (const Error& error) {
+        spdlog::error("{}", error.what()); // shown as well: Feedback::followLog()
+    }
+    feedback_.sceneChanged();
 }
 
 } // namespace relume

@@ -14,6 +14,7 @@
 #include <sstream>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace relume {
@@ -162,6 +163,19 @@ Json toJson(const Preferences& p) {
 }
 
 } // namespace
+
+std::string Preferences::addBookmark(const std::string& scene, const ViewCamera& camera) {
+    std::vector<Bookmark>& marks = bookmarks[scene];
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(marks.begin(), marks.end(),
+                           [&](const Bookmark& mark) { return mark.name == name; });
+    };
+    size_t number = marks.size() + 1;
+    while (taken(fmt::format("bookmark {}", number)))
+        ++number;
+    marks.push_back({fmt::format("bookmark {}", number), camera});
+    return marks.back().name;
+}
 
 void Preferences::addRecent(const std::string& path) {
     std::error_code code;

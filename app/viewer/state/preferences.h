@@ -35,6 +35,8 @@ struct Preferences {
     std::string captureFolder; // "": defaultCaptureFolder()
 
     void addRecent(const std::string& path);
+    /// Keeps a camera for a scene, and returns its name, which no other of that scene has.
+    std::string addBookmark(const std::string& scene, const ViewCamera& camera);
 };
 
 /// Returns $XDG_CONFIG_HOME/relume/preferences.json, or the same in ~/.config; "" where there is neither.

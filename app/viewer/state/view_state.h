@@ -25,6 +25,7 @@ struct ViewState {
     bool lightIcons = true;
     GizmoMode gizmo = GizmoMode::Translate; // of a selected analytic light or object
 
+    bool bare = false;   // panels, and what lies over the picture, are hidden
     bool wipe = false;   // the reference is shown left of the line
     float wipeAt = 0.5f; // the line, as a share of the picture's width
 

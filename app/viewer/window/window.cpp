@@ -183,6 +183,8 @@ void Window::setTitle(const std::string& title) {
 }
 
 void Window::setVsync(bool on) {
+    if (vsync_ == on) return;
+    vsync_ = on;
     glfwSwapInterval(on ? 1 : 0);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,7 +66,8 @@ private:
     GLFWwindow* window_ = nullptr;
     float contentScale_ = 1;
     double refreshRate_ = 60;
-    glm::dvec2 cursor_{0.0}; // [screen coordinates], where the newest event saw it
+    std::optional<bool> vsync_; // as it was set last
+    glm::dvec2 cursor_{0.0};    // [screen coordinates], where the newest event saw it
     std::vector<WindowEvent> events_;
 };
 

@@ -1,0 +1,63 @@
+#include "app/live/bake_meter.h"
+
+#include "app/live/layer_remark.h"
+#include "app/offline/layer_file.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+// Measuring is slower than telling progress, because it asks the device about rays and the driver about
+// memory.
+constexpr double kMeasureSeconds = 0.25;
+// The convergence curve keeps so many points: more than a screen has columns.
+constexpr size_t kMaxHistory = 4096;
+
+} // namespace
+
+void addPoint(std::vector<ConvergencePoint>& history, const ConvergencePoint& point, size_t most) {
+    if (point.error >= 1 || (!history.empty() && history.back().error == point.error)) return;
+    history.push_back(point);
+    if (history.size() <= most) return;
+    for (size_t i = 0; 2 * i < history.size(); ++i)
+        history[i] = history[2 * i];
+    history.resize((history.size() + 1) / 2);
+}
+
+void BakeMeter::begin(BakeStatus& status) {
+    status.progress = {};
+    status.rays = 0;
+    status.history.clear();
+    status.raysPerSecond = 0;
+    status.secondsLeft = -1;
+    rays_.clear();
+}
+
+void BakeMeter::update(BakeStatus& status, Baker& baker, const BakeSettings& settings,
+                       const vk::Device& device) {
+    Solver& solver = baker.solver();
+    const bool baking = status.phase == BakeStatus::Phase::Baking;
+    if (!baking) status.rays = solver.raysSoFar(); // because nothing more will be measured
+    const SolverProgress& now = solver.progress();
+    status.progress = now;
+    status.rays = std::max(status.rays, now.rays);
+    const LayerSolver* layers = baker.layers();
+    status.stale = layers ? staleReasons(*layers) : std::vector<std::string>();
+    status.groups = layers ? groupsOf(*layers) : std::vector<LightGroup>();
+    addPoint(status.history, {now.seconds, now.error}, kMaxHistory);
+    status.secondsLeft = baking ? secondsUntil(status.history, settings.solver.error) : -1.0;
+    if (secondsSince(measured_) >= kMeasureSeconds) measure(status, solver, device);
+}
+
+void BakeMeter::measure(BakeStatus& status, Solver& solver, const vk::Device& device) {
+    measured_ = Clock::now();
+    status.rays = solver.raysSoFar();
+    rays_.add(solver.progress().seconds, status.rays);
+    status.raysPerSecond = rays_.perSecond();
+    const uint64_t all = device.info().deviceMemory;
+    status.deviceBytes = all - std::min(device.freeMemory(), all);
+    status.validationMessages = device.validationMessages();
+}
+
+} // namespace relume

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/live/map_decision.h"
+#include "bake/show/publisher.h"
+#include "bake/solver/solver.h"
+
+namespace relume {
+
+/// The publisher that maps are drawn with, and what goes with each of them.
+struct MapSource {
+    std::unique_ptr<Publisher> publisher;
+    uint64_t bake = 0;                    // its number
+    bool radiance = false, filled = true; // as PublishedMap has them
+};
+
+/// Keeps a bake's light as texels: the light of the bake before is there until the new one has light to show
+/// in its place. Only the bake thread uses it.
+class LightMaps {
+public:
+    /// Begins with a bake. With keepLight the light before stays until there is a solution with all bounces.
+    void begin(MapSource source, bool keepLight);
+    /// Says that the same bake goes on with another number, as its lights or surfaces were edited.
+    void edited(uint64_t number, const PatchSet& patches);
+    /// Ends the bake. Its texels stay if they were drawn.
+    void end();
+
+    /// Asks the solver for its light and takes note of what has changed. decide() and draw() are told what it
+    /// answers.
+    LiveLight ask(Solver& solver);
+    /// Decides on the next map, where the newest one shows something else or not.
+    LightMapStep decide(const LiveLight& live, bool otherOnScreen) const;
+    /// Returns the edge of the lightmap that such a step shows [texels].
+    uint32_t size(LightMapStep step) const;
+    /// Draws the solver's light, where the step says so, and returns what the map is of.
+    MapSource& draw(LightMapStep step, const LiveLight& live);
+
+private:
+    MapSource light_, next_; // next_ takes light_'s place once there is a solution
+    bool keepLight_ = false;
+    std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
+    uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
+    bool edited_ = false;             // since the newest map
+};
+
+} // namespace relume

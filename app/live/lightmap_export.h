@@ -1,0 +1,14 @@
+#pragma once
+
+#include <functional>
+
+#include "app/live/bake_desk.h"
+
+namespace relume {
+
+/// Writes the lightmap of a bake as it stands; the log tells how it went. At the end the file has the bytes
+/// of a bake without a window. Before, it has what is on screen, which lightNow() returns for each patch.
+void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSettings& settings,
+                    const std::function<std::vector<glm::vec4>()>& lightNow);
+
+} // namespace relume

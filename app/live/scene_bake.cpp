@@ -1,0 +1,74 @@
+#include "app/live/scene_bake.h"
+
+#include "app/live/layer_remark.h"
+#include "app/offline/solve.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/sky_picture.h"
+
+#include <utility>
+
+namespace relume {
+
+std::string SceneBake::remark() const {
+    return layers() ? "" : layerRemark(wantsLayers_, settings().solver, *baker_, scene_);
+}
+
+Applied SceneBake::edit(const Start& start) {
+    const BakeRecipe wanted{.scene = start.scene, .settings = start.settings, .rings = start.rings};
+    if (due_ || !layers() || !differOnlyInEdits(recipe_, wanted)) return Applied::NeedsNewBake;
+    return baker_->apply({.scene = start.edits, .mix = start.mix, .atlas = &start.scene->atlas});
+}
+
+bool SceneBake::keepsPatches(const Start& start) const {
+    return baker_ && start.scene == recipe_.scene && !differenceBetween(scene_, start.edits).any() &&
+           samePatches(start.settings, settings());
+}
+
+void SceneBake::takeUp(const Start& start, double batchMs) {
+    due_ = true;
+    recipe_.settings = bakeable(start.settings, batchMs);
+    recipe_.rings = start.rings;
+    wantsLayers_ = start.settings.solver.layers.on;
+}
+
+void SceneBake::make(const vk::Device& device, const Start& start) {
+    baker_.reset(); // before the new one takes its memory
+    scene_ = start.scene->scene;
+    const bool moved = differenceBetween(scene_, start.edits).objects;
+    applyEdits(scene_, start.edits);
+    readEditedPicture(scene_.sky);
+    recipe_.scene = start.scene;
+    makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
+}
+
+void SceneBake::makeAgain(const vk::Device& device) {
+    WorldMesh mesh = baker_->patches().scene.mesh;
+    baker_.reset();
+    makeBaker(device, std::move(mesh));
+}
+
+void SceneBake::makeBaker(const vk::Device& device, WorldMesh mesh) {
+    baker_ = std::make_unique<Baker>(device, scene_, std::move(mesh), settings());
+    due_ = false;
+    spdlog::info("{} patches", baker_->patches().count);
+    warnIfDark(scene_, baker_->patches());
+}
+
+void SceneBake::makeSolver() {
+    baker_->resetSolver(settings().solver);
+    due_ = false;
+}
+
+void SceneBake::mix(const LightMix& mix) {
+    if (!layers()) return;
+    const Applied applied = baker_->apply({.scene = editsOf(scene_), .mix = mix});
+    ASSERT(applied == Applied::Now);
+}
+
+void SceneBake::end() {
+    baker_.reset();
+    recipe_.scene = nullptr;
+}
+
+} // namespace relume

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/live/bake_desk.h"
+#include "app/live/bake_recipe.h"
+
+namespace relume {
+
+/// The bake that a viewer shows: of one scene with its edits. An edit is followed with what there is as far
+/// as that goes. Only the bake thread uses it.
+class SceneBake {
+public:
+    using Start = BakeOrders::Start;
+
+    /// Returns nullptr until a bake was made, and after one was given up.
+    Baker* baker() const { return baker_.get(); }
+    /// Returns its layers, or nullptr.
+    const LayerSolver* layers() const { return baker_ ? baker_->layers() : nullptr; }
+    const BakeSettings& settings() const { return recipe_.settings; }
+    uint32_t rings() const { return recipe_.rings; }
+    /// Tells why there are no layers though they were asked for, with the remedy; "" where nothing is
+    /// missing.
+    std::string remark() const;
+
+    /// Edits the bake where the start asks for no more than that.
+    Applied edit(const Start& start);
+    /// Tells whether the start is of the same scene with the same edits, and wants the same patches.
+    bool keepsPatches(const Start& start) const;
+
+    /// Takes up what the start wants beside its scene. A baker or a solver is to be made next; until then the
+    /// former one follows no edit.
+    void takeUp(const Start& start, double batchMs);
+    /// Makes the bake. Throws Error, and what ends a preparation: then there is none.
+    void make(const vk::Device& device, const Start& start);
+    /// Makes it anew as it is, with the shaders as they are now. Throws likewise.
+    void makeAgain(const vk::Device& device);
+    /// Makes another solver, which starts from no light.
+    void makeSolver();
+    /// Weighs the lights of a bake that was just made.
+    void mix(const LightMix& mix);
+    /// Gives up the bake.
+    void end();
+
+private:
+    void makeBaker(const vk::Device& device, WorldMesh mesh);
+
+    Scene scene_;                  // with the edits; the baker changes it
+    BakeRecipe recipe_;            // scene: nullptr where there is none, or it was given up
+    bool due_ = false;             // the recipe was taken up, and nothing was made by it yet
+    bool wantsLayers_ = true;      // they are asked for, even if the settings cannot have them
+    std::unique_ptr<Baker> baker_; // of scene_
+};
+
+} // namespace relume

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "app/live/live_bake.h"
+#include "app/viewer/picture/scene_view.h"
+
+namespace relume {
+
+/// Returns what the bake is to show for a view, or nothing where that is not chosen yet: a light, a patch.
+std::optional<InspectRequest> inspectionOf(const ViewState& view, const LightList& lights,
+                                           const std::vector<LightGroup>& groups);
+
+/// Asks the bake for what the view shows: which map, links of a patch, voxels. It tells the bake which tiles
+/// the camera sees.
+class Inspection {
+public:
+    /// Both arguments must outlive it.
+    Inspection(LiveBake& bake, SceneView& picture) : bake_(bake), picture_(picture) {}
+
+    /// Says that another scene came.
+    void sceneCame() { askedBake_ = 0; }
+    /// Asks for what the view shows now, and takes what was answered. Returns whether the picture changed.
+    bool follow(const BakeStatus& status, const LightList& lights, double time);
+    /// Tells whether a map is the one that was asked for.
+    bool asksFor(const PublishedMap& map) const;
+
+private:
+    bool takeAnswers();
+    void askBesideMaps(const BakeStatus& status, double time);
+
+    LiveBake& bake_;
+    SceneView& picture_;
+    InspectRequest asked_;
+    uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
+    uint32_t askedVoxels_ = 0;
+    double tilesAsked_ = -1e9; // [s]
+};
+
+} // namespace relume

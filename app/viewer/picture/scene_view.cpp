@@ -1,0 +1,130 @@
+#include "app/viewer/picture/scene_view.h"
+
+#include "app/viewer/state/views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+namespace relume {
+namespace {
+
+constexpr uint64_t kNoMapVersion = ~uint64_t{0}; // of the lightmap before there is one: always the same
+constexpr float kUvZoomStep = 1.2f;              // of one step of a wheel
+
+} // namespace
+
+SceneView::SceneView(const Session& session, LightmapExchange& exchange, Feedback& feedback, bool software)
+    : session_(session), feedback_(feedback), pane_(software), bridge_(exchange) {}
+
+bool SceneView::takeMap() {
+    if (!bridge_.update()) return false;
+    mapVersion_ = newVersion();
+    if (state_.uv || viewEntries()[state_.view].readsMap) feedback_.pacer().newMap();
+    return true;
+}
+
+const PublishedMap* SceneView::map() const {
+    const PublishedMap* newest = bridge_.map();
+    return newest != nullptr && newest->bake >= session_.firstBake() ? newest : nullptr;
+}
+
+ScenePane::Look SceneView::look() const {
+    LightmapTexture lightmap{.size = session_.document().bake.size, .version = kNoMapVersion};
+    if (map() != nullptr) {
+        lightmap = bridge_.texture();
+        lightmap.version = mapVersion_;
+    }
+    return {.camera = camera_.camera(), .state = state_, .lightmap = lightmap, .map = map()};
+}
+
+void SceneView::place(const PictureArea& area, float scale, float pixels) {
+    area_ = area;
+    scale_ = scale;
+    pixels_ = pixels;
+}
+
+std::optional<Pick> SceneView::pick(const glm::dvec2& at, std::optional<uint32_t> without) {
+    return pane_.pick(look(), (glm::vec2(at) - area_.corner) * pixels_, without);
+}
+
+LightSpot SceneView::lightSpot() {
+    const ViewCamera& camera = camera_.camera();
+    const glm::dvec2 middle = area_.corner + 0.5f * area_.size;
+    const std::optional<Pick> seen = state_.uv ? std::nullopt : pick(middle);
+    const PublishedMap* newest = map();
+    const bool light = newest != nullptr && newest->content == MapContent::Light && !newest->radiance;
+    return {.camera = glm::inverse(viewMatrix(camera)),
+            .seen = seen ? seen->position : camera.target,
+            .lighting = light ? newest->ambient : glm::vec3(0.0f)};
+}
+
+bool SceneView::showsLights() const {
+    return session_.scene() != nullptr && !state_.uv && !state_.bare;
+}
+
+bool SceneView::draw(bool anew, const glm::uvec2& window) {
+    const auto toPixels = [&](float points) { return static_cast<uint32_t>(std::lround(points * pixels_)); };
+    const glm::uvec2 corner(toPixels(area_.corner.x),
+                            window.y - std::min(window.y, toPixels(area_.corner.y + area_.size.y)));
+    const glm::uvec2 size =
+        glm::max(glm::uvec2(toPixels(area_.size.x), toPixels(area_.size.y)), glm::uvec2(1));
+    const bool resized = pane_.picture().width() != size.x || pane_.picture().height() != size.y;
+    if (anew || resized) {
+        pane_.draw(look(), size);
+        feedback_.sceneDrawn();
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, static_cast<GLsizei>(window.x), static_cast<GLsizei>(window.y));
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    pane_.show(corner);
+    return anew || resized;
+}
+
+void SceneView::drag(const glm::dvec2& way) {
+    if (area_.size.y <= 0) return;
+    if (state_.uv) {
+        state_.uvWindow = pan(state_.uvWindow, glm::vec2(way), area_.size);
+        feedback_.sceneChanged();
+        return;
+    }
+    const glm::dvec2 share = way / static_cast<double>(area_.size.y);
+    if (camera_.move(static_cast<float>(share.x), static_cast<float>(share.y))) cameraMoved();
+}
+
+void SceneView::zoom(float steps, const glm::dvec2& at) {
+    if (state_.uv) {
+        state_.uvWindow = relume::zoom(state_.uvWindow, std::pow(kUvZoomStep, steps),
+                                       glm::vec2(at) - area_.corner, area_.size);
+        feedback_.sceneChanged();
+        return;
+    }
+    camera_.zoomBy(steps);
+    cameraMoved();
+}
+
+void SceneView::fly(const CameraControl::Flight& flight, double time) {
+    camera_.setFlight(flight);
+    if (camera_.fly(time - flown_)) cameraMoved();
+    flown_ = time;
+    feedback_.pacer().animate(camera_.flying());
+}
+
+void SceneView::frameAll() {
+    if (session_.scene() == nullptr) return;
+    if (state_.uv)
+        state_.uvWindow = {};
+    else
+        camera_.frame(session_.scene()->geometry.bounds, area_.aspect());
+    cameraMoved();
+}
+
+void SceneView::cameraMoved() {
+    moved_ = feedback_.now();
+    feedback_.sceneChanged();
+}
+
+} // namespace relume

@@ -1,0 +1,194 @@
+#include "app/viewer/shell/scene_files.h"
+
+#include "app/edit/scene_edit.h"
+#include "app/offline/command_files.h"
+#include "assets/base/warnings.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string absolutePath(const std::string& path) {
+    std::error_code code;
+    const fs::path whole = fs::absolute(path, code);
+    return code ? path : whole.lexically_normal().string();
+}
+
+std::string fileName(const std::string& path) {
+    return fs::path(path).filename().string();
+}
+
+} // namespace
+
+std::string SceneFiles::path() const {
+    const std::string path = desc_.session.path();
+    return path.empty() ? "" : absolutePath(path);
+}
+
+std::string SceneFiles::folder() const {
+    const std::string scene = path();
+    return scene.empty() ? "" : fs::path(scene).parent_path().string() + "/";
+}
+
+void SceneFiles::perform(Action action) {
+    switch (action) {
+    case Action::Watch:
+        return desc_.session.watchFile(!desc_.session.watchesFile());
+    case Action::Quit:
+        return leave({});
+    case Action::Open:
+        return desc_.dialog.open({.title = "Open scene",
+                                  .path = folder(),
+                                  .endings = {".glb", ".gltf"},
+                                  .recent = desc_.preferences.recent,
+                                  .done = [this](const std::string& chosen) { open(chosen); }});
+    default:
+        break;
+    }
+    if (path().empty()) return desc_.feedback.note("there is no scene to write anything of", true);
+    if (action == Action::Save) return save("");
+    if (action == Action::SaveAs) return askToSaveAs();
+    askToExport();
+}
+
+void SceneFiles::askToSaveAs() {
+    const fs::path scene(path());
+    const std::string ending = scene.extension().string();
+    std::string name = (scene.parent_path() / scene.stem()).string();
+    if (!name.ends_with("_edited")) name += "_edited";
+    desc_.dialog.open({.title = "Save scene",
+                       .path = freePath(name + ending),
+                       .endings = {ending},
+                       .recent = {},
+                       .saves = true,
+                       .done = [this](const std::string& chosen) { save(chosen); }});
+}
+
+void SceneFiles::askToExport() {
+    const fs::path scene(path());
+    const std::string name = (scene.parent_path() / scene.stem()).string() + "_lightmap.exr";
+    desc_.dialog.open({.title = "Export lightmap",
+                       .path = freePath(name),
+                       .endings = {".exr", ".png"},
+                       .recent = {},
+                       .saves = true,
+                       .done = [this](const std::string& chosen) { exportLightmap(chosen); }});
+}
+
+void SceneFiles::open(const std::string& path) {
+    desc_.feedback.pacer().input();
+    leave({path});
+}
+
+void SceneFiles::exportLightmap(const std::string& path) {
+    Session& session = desc_.session;
+    desc_.feedback.tell("export", path);
+    if (!path.ends_with(".exr") && !path.ends_with(".png"))
+        return desc_.feedback.note(path + ": a lightmap ends in .exr or .png", true);
+    const std::string problem =
+        CommandFiles().readsScene("the scene", session.path()).writes("the lightmap", path).clash();
+    if (!problem.empty()) return desc_.feedback.note(problem, true);
+    session.bake().exportLightmap(
+        {.path = path, .lightmap = session.document().lightmap, .scene = session.path()});
+    desc_.feedback.note("writing " + path);
+}
+
+void SceneFiles::save(const std::string& path) {
+    desc_.editing.end();
+    desc_.feedback.tell("save", path.empty() ? desc_.session.path() : path);
+    const std::string problem = CommandFiles()
+                                    .readsScene("the scene", desc_.session.path())
+                                    .writes("the saved scene", path)
+                                    .mayBe("the saved scene", "the scene")
+                                    .clash();
+    if (!problem.empty()) return desc_.feedback.note(problem, true);
+    desc_.session.save(path);
+    desc_.feedback.pacer().input();
+}
+
+// Goes where the user wants to, and asks first where edits would be lost.
+void SceneFiles::leave(const Departure::Goal& goal) {
+    const bool unsaved = desc_.session.dirty();
+    go(departure_.want(goal, unsaved));
+    if (!unsaved) return;
+    using Answer = Departure::Answer;
+    const std::string text = fmt::format("{} has edits that are not saved.", fileName(desc_.session.path()));
+    const std::string what = goal.scene ? "open" : "quit";
+    const auto saveFirst = [this] {
+        save("");
+        go(departure_.answer(Answer::Save));
+    };
+    desc_.feedback.tell("ask", text);
+    desc_.question.ask(
+        text, {{"Save and " + what + " (Enter)", GLFW_KEY_ENTER, saveFirst},
+               {"Do not save (D)", GLFW_KEY_D, [this] { go(departure_.answer(Answer::Discard)); }},
+               {"Cancel (Esc)", GLFW_KEY_ESCAPE, [this] { go(departure_.answer(Answer::Cancel)); }}});
+    desc_.feedback.pacer().input();
+}
+
+void SceneFiles::go(const std::optional<Departure::Goal>& goal) {
+    if (!goal) return;
+    if (goal->scene)
+        desc_.session.open(*goal->scene);
+    else
+        desc_.window.close();
+}
+
+bool SceneFiles::ends() {
+    if (!desc_.window.closing()) return false;
+    if (departure_.closing(desc_.session.dirty()) == Departure::Closing::Ends) return true;
+    desc_.window.keepOpen();
+    leave({});
+    return false;
+}
+
+void SceneFiles::sceneCame() {
+    path_ = path();
+    if (!desc_.session.sceneWasKept())
+        desc_.preferences.addRecent(desc_.session.scene()->prepared.scene.path);
+}
+
+void SceneFiles::followSaves() {
+    Session& session = desc_.session;
+    if (session.saves() == saves_) return;
+    saves_ = session.saves();
+    // The file that the scene was saved as gets the bookmarks.
+    const std::string saved = path();
+    const auto known = desc_.preferences.bookmarks.find(path_);
+    if (saved != path_ && known != desc_.preferences.bookmarks.end()) {
+        const std::vector<Bookmark> marks = known->second;
+        desc_.preferences.bookmarks.try_emplace(saved, marks);
+    }
+    path_ = saved;
+    desc_.preferences.addRecent(session.path());
+    desc_.feedback.tell("saved", session.path());
+    const std::string unsaved = unsavedPart(session.document().edits);
+    desc_.feedback.note("saved " + session.path() + (unsaved.empty() ? "" : ": " + unsaved));
+}
+
+void SceneFiles::followTitle() {
+    const Session& session = desc_.session;
+    if (session.scene() == nullptr) return;
+    const std::string title = fileName(session.path()) + (session.dirty() ? "*" : "") + " - Relume";
+    if (title == title_) return;
+    title_ = title;
+    desc_.window.setTitle(title);
+    desc_.feedback.tell("title", title);
+}
+
+void SceneFiles::follow() {
+    followSaves();
+    go(departure_.followSave(desc_.session.saving(), desc_.session.dirty()));
+    followTitle();
+}
+
+} // namespace relume

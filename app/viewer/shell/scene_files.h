@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+
+#include "app/live/session.h"
+#include "app/viewer/shell/editing.h"
+#include "app/viewer/shell/file_dialog.h"
+#include "app/viewer/shell/question.h"
+#include "app/viewer/state/departure.h"
+#include "app/viewer/state/preferences.h"
+#include "app/viewer/state/shortcuts.h"
+#include "app/viewer/window/window.h"
+
+namespace relume {
+
+/// Opens and saves scenes, exports lightmaps and ends the viewer, with the dialogs that this takes. No edits
+/// are lost without a question.
+class SceneFiles {
+public:
+    /// Names what it works on, which must outlive it.
+    struct Desc {
+        Session& session;
+        Editing& editing;
+        Window& window;
+        FileDialog& dialog;
+        Question& question;
+        Preferences& preferences;
+        Feedback& feedback;
+    };
+    explicit SceneFiles(const Desc& desc) : desc_(desc) {}
+
+    /// Returns the scene's absolute path, by which bookmarks are kept; "" without a scene.
+    std::string path() const;
+    /// Returns the scene's folder with a slash behind it, where dialogs begin; "" without a scene.
+    std::string folder() const;
+    /// Does an action from Open to Quit.
+    void perform(Action action);
+    void open(const std::string& path);
+
+    /// Says that another scene came.
+    void sceneCame();
+    /// Follows the scene's file: the title tells what is not saved, and what waited for a save goes on.
+    void follow();
+    /// Tells whether the viewer ends. A window that the user closed asks first.
+    bool ends();
+
+private:
+    void askToSaveAs();
+    void askToExport();
+    void save(const std::string& path);
+    void exportLightmap(const std::string& path);
+    void leave(const Departure::Goal& goal);
+    void go(const std::optional<Departure::Goal>& goal);
+    void followSaves();
+    void followTitle();
+
+    Desc desc_;
+    Departure departure_;
+    uint64_t saves_ = 0;       // how many saves were told
+    std::string title_, path_; // of the window, and of the scene when it was loaded or saved
+};
+
+} // namespace relume

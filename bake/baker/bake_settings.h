@@ -1,0 +1,17 @@
+#pragma once
+
+#include "bake/solver/solver.h"
+#include "bake/trace/make_tracer.h"
+#include "bake/trace/voxel_map.h"
+
+namespace relume {
+
+struct BakeSettings {
+    uint32_t size = 512; // lightmap edge [texels]
+    bool conservative = false;
+    TracerKind tracer = TracerKind::Auto;
+    VoxelSettings voxels;  // of the voxel tracer; a ratio above 0 mixes it with `tracer`
+    SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
+};
+
+} // namespace relume

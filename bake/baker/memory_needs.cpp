@@ -1,0 +1,69 @@
+#include "bake/baker/memory_needs.h"
+
+#include <algorithm>
+
+#include "bake/baker/inside_search.h"
+#include "bake/baker/make_solver.h"
+#include "bake/baker/object_mover.h"
+#include "bake/pairs/pair_memory.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/surface/surface_colours.h"
+
+namespace relume {
+namespace {
+
+// The images of the CIT pass have so many bytes per texel; the largest is read back beside them.
+constexpr uint64_t kCitTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t) + sizeof(glm::vec4);
+// Corners, hit table, and the acceleration structure while it is built.
+constexpr uint64_t kTriangleBytes = 400;
+// The host's copies of a patch and of its light.
+constexpr uint64_t kHostBytes = 180;
+constexpr uint64_t kPictureTexelBytes = 4;
+
+// Embree's tables are the host's own.
+bool tracesOnHost(const BakeSettings& settings, bool software) {
+    return software && (settings.tracer == TracerKind::Auto || settings.tracer == TracerKind::Embree);
+}
+
+} // namespace
+
+SceneExtent extentOf(const Scene& scene, uint64_t triangles) {
+    SceneExtent extent{.triangles = triangles,
+                       .skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
+                       .skyRows = scene.sky.height};
+    for (const Image& image : scene.images)
+        extent.pictureBytes += uint64_t{image.width} * image.height * kPictureTexelBytes;
+    return extent;
+}
+
+bool usesVoxels(const BakeSettings& settings) {
+    return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
+}
+
+uint64_t MemoryNeeds::total() const {
+    return std::max(cit, surface + trace + std::max(inside, solver + edits) + host);
+}
+
+MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver) {
+    const uint64_t triangles = scene.triangles * kTriangleBytes;
+    // A picture's mips take a third as much again.
+    const uint64_t pictures = scene.pictureBytes + scene.pictureBytes / 3;
+    // Whose a texel and whose a patch is.
+    const uint64_t tables = solver.texels * sizeof(uint32_t) + solver.patches() * sizeof(uint32_t);
+    MemoryNeeds needs;
+    needs.cit = solver.texels * kCitTexelBytes + triangles + pictures;
+    needs.surface = LightBuffers::bytes(solver.chunkCount);
+    needs.trace = triangles;
+    if (!tracesOnHost(settings, solver.software)) needs.trace += tables;
+    // Its pass has the tables once more.
+    if (usesVoxels(settings)) needs.trace += VoxelMap::bytes(settings.voxels.resolution) + 2 * tables;
+    if (!settings.solver.transport.rtrad)
+        needs.inside = insideBytes(solver.chunkCount, ObjectMover::kInsideSamples);
+    needs.solver = solverBytes(solver, settings.solver);
+    if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
+    if (solver.software)
+        needs.host = kHostBytes * solver.patches() + pairSenderBytes(solver, settings.solver);
+    return needs;
+}
+
+} // namespace relume

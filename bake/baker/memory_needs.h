@@ -1,0 +1,37 @@
+#pragma once
+
+#include "assets/model/scene.h"
+#include "bake/baker/bake_settings.h"
+#include "bake/solver/solver_extent.h"
+
+namespace relume {
+
+/// Holds what a scene brings along that takes device memory by itself.
+struct SceneExtent {
+    uint64_t triangles = 0;
+    uint64_t pictureBytes = 0; // of textures, without mips
+    uint64_t skyPixels = 0, skyRows = 0;
+};
+SceneExtent extentOf(const Scene& scene, uint64_t triangles);
+
+/// The device bytes of a bake, by what takes them. Caches that grow as long as there is memory are not
+/// counted, but for the links of one sample pass.
+struct MemoryNeeds {
+    uint64_t cit = 0;     // images and buffers of the CIT pass, which are gone before the rest comes
+    uint64_t surface = 0; // patches and their light
+    uint64_t trace = 0;   // the tracer's tables and voxels
+    uint64_t inside = 0;  // of the search for patches inside something, gone before the solver comes
+    uint64_t solver = 0;
+    uint64_t edits = 0; // to follow edits of colours
+    uint64_t host = 0;  // a software device's memory is the host's, which holds much of this once more
+
+    /// Returns the most that is taken at a time.
+    uint64_t total() const;
+};
+/// Returns what a bake needs; `solver.texels` is settings.size squared.
+MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver);
+
+/// Tells whether rays march through voxels, all or some of them.
+bool usesVoxels(const BakeSettings& settings);
+
+} // namespace relume

@@ -1,0 +1,88 @@
+#include "bake/gather/link_batches.h"
+
+#include "assets/base/clock.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+void record(const std::function<void(VkCommandBuffer)>& step, VkCommandBuffer cmd) {
+    if (step) step(cmd);
+}
+
+} // namespace
+
+LinkBatches::Portion LinkBatches::next(uint32_t round, double spent) {
+    const uint32_t first = kit_.order.next(1, 0).first;
+    const LinkCache::Place place = cache_.find(round, first, kit_.order.count() - first);
+    const bool trace = !place.known;
+    const ChunkRange range = trace
+                                 ? kit_.nextRange(traceRate_, std::min(place.count, kit_.buffers.batchChunks))
+                                 : kit_.nextRange(gatherRate_, place.count, 1, spent);
+    return {
+        .trace = trace,
+        .range = range,
+        .closest = {.firstChunk = range.first,
+                    .chunkCount = range.count,
+                    .firstSample = round * kit_.linksOfRound,
+                    .sampleCount = kit_.linksOfRound,
+                    .rotation = kit_.settings.links.rotation,
+                    .links = place.links,
+                    .linksOffset = place.offset},
+        .gather = {
+            .links = place.links, .linksOffset = place.offset, .samples = kit_.linksOfRound, .range = range}};
+}
+
+void LinkBatches::finish(uint32_t round, const Portion& portion) {
+    cache_.note(round, portion.range);
+    kit_.order.finish(portion.range);
+}
+
+void LinkBatches::run(const Portion& portion, const Steps& steps, bool atOnce) {
+    const auto start = Clock::now();
+    atOnce ? runAtOnce(portion, steps) : runBySubmit(portion, steps);
+    (portion.trace ? traceRate_ : gatherRate_).note(portion.range.count, kit_.batchMs, secondsSince(start));
+}
+
+void LinkBatches::runAtOnce(const Portion& portion, const Steps& steps) {
+    record(steps.begin, VK_NULL_HANDLE);
+    const auto start = Clock::now();
+    if (portion.trace) kit_.input.tracer.closest(VK_NULL_HANDLE, portion.closest);
+    const double traced = secondsSince(start);
+    record(steps.traced, VK_NULL_HANDLE);
+    steps.gather(VK_NULL_HANDLE);
+    kit_.progress.traceSeconds += traced;
+    kit_.progress.gatherSeconds += secondsSince(start) - traced;
+    if (!steps.endRecords()) return record(steps.end, VK_NULL_HANDLE);
+    VkCommandBuffer cmd = kit_.commands.begin();
+    record(steps.end, cmd);
+    kit_.run(cmd);
+}
+
+void LinkBatches::runBySubmit(const Portion& portion, const Steps& steps) {
+    vk::Timestamps& timestamps = kit_.timestamps;
+    VkCommandBuffer cmd = kit_.commands.begin();
+    record(steps.begin, cmd);
+    timestamps.reset(cmd);
+    timestamps.mark(cmd, 0);
+    const auto start = Clock::now();
+    if (portion.trace) kit_.input.tracer.closest(cmd, portion.closest);
+    const double cpuTrace = secondsSince(start);
+    vk::barrier(cmd);
+    timestamps.mark(cmd, 1);
+    record(steps.traced, cmd);
+    if (kit_.gatherPass.onCpu()) { // which then counts into the time between the same two marks
+        kit_.run(cmd);
+        cmd = kit_.commands.begin();
+    }
+    steps.gather(cmd);
+    timestamps.mark(cmd, 2);
+    record(steps.end, cmd);
+    kit_.run(cmd);
+    kit_.progress.traceSeconds +=
+        kit_.input.tracer.onCpu() && portion.trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
+    kit_.progress.gatherSeconds += 1e-3 * timestamps.milliseconds(1, 2);
+}
+
+} // namespace relume

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+
+#include "bake/gather/link_cache.h"
+#include "bake/gather/link_kit.h"
+
+namespace relume {
+
+/// Batches over links: which chunks come next, their links from the cache or traced anew, and how many of
+/// them take the time that a batch may take. The solver says what is gathered over them.
+class LinkBatches {
+public:
+    LinkBatches(LinkKit& kit, const LinkCache::Desc& cache) : kit_(kit), cache_(kit.input.device, cache) {}
+
+    /// Chunks whose links are in one place, all of them there or all to be traced.
+    struct Portion {
+        bool trace = false;
+        ChunkRange range;
+        ClosestWork closest;         // where they are to be traced
+        LinkGatherPass::Work gather; // links, samples and range
+    };
+    /// Returns the next portion of the pass over the links of this sample pass. `spent` is the number of
+    /// chunks in the batch so far.
+    Portion next(uint32_t round, double spent = 0);
+    /// Notes that these links are there and that their chunks are done.
+    void finish(uint32_t round, const Portion& portion);
+
+    /// The solver's share of a batch. Each is called once, in this order; an empty one records nothing.
+    struct Steps {
+        std::function<void(VkCommandBuffer)> begin;  // ahead of all
+        std::function<void(VkCommandBuffer)> traced; // behind the links that were traced
+        std::function<void(VkCommandBuffer)> gather; // with a null buffer: at once
+        // Behind what was gathered at once: tells whether `end` records.
+        std::function<bool()> endRecords;
+        std::function<void(VkCommandBuffer)> end; // null where it does not
+    };
+    /// Runs a batch of one portion and measures it. Where the CPU traces and gathers there is no submit,
+    /// which would take longer than a small batch; `atOnce` says that this is possible for what the steps
+    /// record.
+    void run(const Portion& portion, const Steps& steps, bool atOnce);
+    /// Tells whether the CPU traces and gathers.
+    bool onCpu() const { return kit_.gatherPass.onCpu() && !kit_.input.tracer.records(); }
+
+    /// Returns how many chunks whose links are there make a batch.
+    double wanted() const { return gatherRate_.wanted(kit_.batchMs); }
+    /// Takes note of a batch of these that took `seconds`.
+    void note(double chunks, double seconds) { gatherRate_.note(chunks, kit_.batchMs, seconds); }
+    LinkCache& cache() { return cache_; }
+    const LinkCache& cache() const { return cache_; }
+
+private:
+    void runAtOnce(const Portion& portion, const Steps& steps);
+    void runBySubmit(const Portion& portion, const Steps& steps);
+
+    LinkKit& kit_;
+    LinkCache cache_;
+    BatchRate traceRate_, gatherRate_;
+};
+
+} // namespace relume

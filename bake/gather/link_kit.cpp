@@ -1,0 +1,51 @@
+#include "bake/gather/link_kit.h"
+
+#include "bake/base/shader_types.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace relume {
+
+LinkKit::LinkKit(const SolverInput& from, const Desc& desc)
+    : input(from), settings(desc.settings), linksOfRound(desc.linksOfRound),
+      buffers(from.device, from.patches, desc.buffers), gatherPass(from.device, settings.transport),
+      commands(from.device), timestamps(from.device, 3 * kMostPortions), order(desc.chunks),
+      progress(desc.progress), batchMs(desc.batchMs) {}
+
+ChunkRange LinkKit::nextRange(const BatchRate& rate, uint32_t most, double cost, double done) const {
+    const double limit =
+        std::clamp((rate.wanted(batchMs) - done) / cost, 1.0, std::max(1.0, static_cast<double>(most)));
+    return order.next(static_cast<uint32_t>(limit),
+                      static_cast<uint32_t>(rate.perMs() / cost * kWorthASubmit));
+}
+
+void LinkKit::reserveBack(VkDeviceSize bytes) {
+    if (back_ && back_.size() >= bytes) return;
+    back_ = vk::Buffer(input.device, {.size = bytes, .memory = vk::Memory::Host, .name = "sums for the CPU"});
+}
+
+void LinkKit::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at) {
+    vk::barrier(cmd);
+    const VkBufferCopy all{0, at, bytes};
+    vkCmdCopyBuffer(cmd, from.handle(), back_.handle(), 1, &all);
+}
+
+void LinkKit::run(VkCommandBuffer cmd) {
+    vk::barrier(cmd);
+    vk::hostBarrier(cmd);
+    commands.run();
+}
+
+void LinkKit::recordRayCount(VkCommandBuffer cmd) {
+    recordBack(cmd, buffers.rays, buffers.rays.size());
+    vk::barrier(cmd);
+    vkCmdFillBuffer(cmd, buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+}
+
+void LinkKit::countRays() {
+    const auto* counters = back<uint32_t>();
+    progress.rays = std::accumulate(counters, counters + shader::kRayCounters, progress.rays);
+}
+
+} // namespace relume

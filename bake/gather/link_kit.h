@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/base/batch_rate.h"
+#include "bake/base/chunk_order.h"
+#include "bake/gather/link_passes.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+
+/// Holds what the parts of a solver that gathers over links work with: what is baked, the buffers of what is
+/// under way, commands, the order of chunks and the counters.
+class LinkKit {
+public:
+    /// A submit holds at most so many portions of a pass: marks of time are between them.
+    static constexpr uint32_t kMostPortions = 32;
+
+    struct Desc {
+        SolverSettings settings;
+        uint32_t linksOfRound = 16; // links per patch and sample pass
+        LinkBuffers::Desc buffers;
+        uint32_t chunks = 0;      // at most in a pass
+        SolverProgress& progress; // the solver's, as the aim is; both must outlive the kit
+        const double& batchMs;    // aim of one submit
+    };
+    LinkKit(const SolverInput& input, const Desc& desc);
+
+    const SolverInput input;
+    const SolverSettings settings;
+    const uint32_t linksOfRound;
+    LinkBuffers buffers;
+    LinkGatherPass gatherPass;
+    vk::Commands commands;
+    vk::Timestamps timestamps;
+    ChunkOrder order;          // of the pass under way
+    std::vector<uint8_t> seen; // chunks that come first
+    SolverProgress& progress;
+    const double& batchMs; // aim of one submit
+
+    uint32_t chunkCount() const { return input.patches.chunkCount(); }
+    VkDeviceSize lightBytes() const { return LightBuffers::lightBytes(input.patches); }
+    /// Begins a pass over all chunks.
+    void beginPass() { order.begin(chunkCount(), seen); }
+    /// Returns the next chunks. cost is that of a chunk over that of those that the rate is of; done is the
+    /// number of these in the batch so far.
+    ChunkRange nextRange(const BatchRate& rate, uint32_t most, double cost = 1, double done = 0) const;
+
+    /// Makes room for so many bytes that the CPU reads after a submit.
+    void reserveBack(VkDeviceSize bytes);
+    /// Copies there, whose former contents are over with.
+    void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at = 0);
+    /// Returns what was copied to this place [bytes]; where the CPU gathers it writes there itself.
+    template<typename T>
+    T* back(VkDeviceSize at = 0) const {
+        return reinterpret_cast<T*>(back_.as<uint8_t>() + at);
+    }
+    /// Submits and waits, with the barriers for what comes next and for the CPU.
+    void run(VkCommandBuffer cmd);
+    /// Reads the counters of rays back and begins to count anew; countRays() takes them into the progress
+    /// after the submit.
+    void recordRayCount(VkCommandBuffer cmd);
+    void countRays();
+
+private:
+    vk::Buffer back_; // sums per chunk, or counters of rays
+};
+
+} // namespace relume

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+namespace relume {
+
+/// Beyond so many directions or points per patch no error is worth the time.
+constexpr uint32_t kMaxSamplesOfPatch = 65536;
+
+/// Part of the error of light: its variance falls as one over the sample passes that it is made of.
+struct SampledPart {
+    uint32_t rounds = 0;    // so far
+    uint32_t most = 0;      // sample passes that there can be
+    double variance = 0;    // of the part, as it is
+    double costOfRound = 1; // in the same unit as the other part's
+};
+
+/// Returns what one more sample pass after `now` of them takes away from the part's variance, for its cost.
+/// The variance is as it was after part.rounds of them; it falls as 1 / rounds at least.
+double gainOfRound(const SampledPart& part, uint32_t now);
+
+struct Rounds {
+    uint32_t first = 0, second = 0;
+
+    bool operator==(const Rounds&) const = default;
+};
+
+/// Returns the sample passes that cost least of those by which both variances come to `allowed` in all (a
+/// Lagrange multiplier: their number goes as the root of variance over cost). They are no more than a few
+/// times as many as there are, for what is known of the variances is not exact. They are steps of a ladder,
+/// so that layers meet on them. Of one part at least there are more than before, while there can be.
+Rounds roundsFor(const SampledPart& first, const SampledPart& second, double allowed);
+
+} // namespace relume

@@ -1,0 +1,96 @@
+#include "bake/layers/device_gather.h"
+
+#include "assets/base/error.h"
+
+#include <span>
+#include <utility>
+
+namespace relume {
+namespace {
+
+// These are floats per chunk.
+constexpr uint32_t kResolveValues = sizeof(shader::ResolveSums) / sizeof(float);
+constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
+
+} // namespace
+
+DeviceGather::DeviceGather(LinkKit& kit, const LayerPass& pass)
+    : kit_(kit), layerPass_(pass), bounces_(kit.input.device, kit.input.light, kit.buffers.linkSums),
+      resolvePass_(kit.input.device), chunkSums_(kit.input.device) {}
+
+void DeviceGather::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) {
+    bounces_.recordStart(cmd, light);
+}
+
+void DeviceGather::recordSend(VkCommandBuffer cmd) {
+    vk::barrier(cmd);
+    bounces_.recordSend(cmd, kit_.settings.transport.reflectivity);
+}
+
+void DeviceGather::startAtOnce(const vk::Buffer&) {
+    ASSERT(false); // a GPU needs a submit
+}
+
+void DeviceGather::recordGather(VkCommandBuffer cmd, const Work& work) {
+    std::vector<VkDeviceAddress> links = {work.links.address()};
+    links.insert(links.end(), work.following.begin(), work.following.end());
+    const uint32_t sums = work.links.newSums ? shader::kNewSums : shader::kMoreSums;
+    bounces_.record(cmd, {.links = std::move(links),
+                          .samples = work.links.samples,
+                          .range = work.links.range,
+                          .sums = work.links.output ? shader::kNoSums : sums,
+                          .keeps = work.keeps,
+                          .ends = work.ends,
+                          .scale = work.scale,
+                          .reflectivity = kit_.settings.transport.reflectivity,
+                          .changes = work.changes});
+}
+
+// The kernel has made the light and what is sent; they only change places.
+void DeviceGather::recordPassEnd(VkCommandBuffer cmd, const PassEnd&) {
+    vk::barrier(cmd);
+    bounces_.endPass();
+}
+
+void DeviceGather::recordChanges(VkCommandBuffer cmd) {
+    bounces_.recordChanges(cmd);
+    kit_.recordBack(cmd, bounces_.changes(), bounces_.changes().size());
+}
+
+glm::dvec4 DeviceGather::change(uint32_t slot, uint32_t lane) const {
+    return kit_.back<glm::vec4>()[slot * bounces_.lanes() + lane];
+}
+
+// Reads back the sum over all chunks.
+void DeviceGather::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDeviceSize at) {
+    vk::barrier(cmd);
+    chunkSums_.record(cmd, {.values = kit_.buffers.chunkSums.address(),
+                            .sums = kit_.buffers.sums.address(),
+                            .chunkCount = kit_.chunkCount(),
+                            .width = width});
+    kit_.recordBack(cmd, kit_.buffers.sums, width * sizeof(float), at);
+}
+
+LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t linkRounds, double sigma) {
+    const LightBuffers& light = kit_.input.light;
+    const LinkBuffers& buffers = kit_.buffers;
+    VkCommandBuffer cmd = kit_.commands.begin();
+    if (linkRounds > 0) {
+        resolvePass_.record(cmd, light, buffers,
+                            {.size = kit_.input.patches.scene.size,
+                             .samples = linkRounds * kit_.linksOfRound,
+                             .sigma = static_cast<float>(sigma),
+                             .sums = lane > 0 ? &bounces_.sums(lane) : nullptr});
+        recordChunkSums(cmd, kResolveValues, 0);
+        vk::barrier(cmd);
+    }
+    layerPass_.recordResult(cmd, light, layer, linkRounds > 0 ? &buffers.result : nullptr, buffers.chunkSums);
+    recordChunkSums(cmd, kResultValues, sizeof(shader::ResolveSums));
+    kit_.run(cmd);
+    LevelSums sums;
+    if (linkRounds > 0) sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
+    sums.result = *kit_.back<glm::vec4>(sizeof(shader::ResolveSums));
+    return sums;
+}
+
+} // namespace relume

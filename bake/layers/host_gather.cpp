@@ -1,0 +1,88 @@
+#include "bake/layers/host_gather.h"
+
+#include "bake/gather/host_resolve.h"
+
+#include <span>
+#include <utility>
+
+namespace relume {
+
+HostGather::HostGather(LinkKit& kit, const ChunkSenders& senders)
+    : kit_(kit), senders_(senders), radiancePass_(kit.input.device), resolvePass_(kit.input.device) {}
+
+void HostGather::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) {
+    const vk::Buffer& ligIn = kit_.input.light.ligIn;
+    const VkBufferCopy all{0, 0, ligIn.size()};
+    vkCmdCopyBuffer(cmd, light.front()->handle(), ligIn.handle(), 1, &all);
+}
+
+void HostGather::recordSend(VkCommandBuffer cmd) {
+    vk::barrier(cmd);
+    radiancePass_.record(cmd, kit_.input.light, kit_.settings.transport);
+}
+
+void HostGather::startAtOnce(const vk::Buffer& light) {
+    kit_.gatherPass.startOnCpu(kit_.input.light, kit_.settings.transport.reflectivity, senders_.full(),
+                               light);
+}
+
+void HostGather::recordNewSums(VkCommandBuffer cmd) {
+    vkCmdFillBuffer(cmd, kit_.buffers.linkSums.handle(), 0, VK_WHOLE_SIZE, 0);
+}
+
+void HostGather::recordGather(VkCommandBuffer cmd, const Work& work) {
+    LinkGatherPass::Work links = work.links;
+    links.direct = direct_;
+    kit_.gatherPass.record(cmd, kit_.input.light, kit_.buffers, links);
+}
+
+void HostGather::recordPassEnd(VkCommandBuffer cmd, const PassEnd& end) {
+    LightBuffers& light = kit_.input.light;
+    const uint32_t chunks = kit_.chunkCount();
+    const size_t first = size_t{end.changes.value_or(0)} * chunks; // of the changes that are told
+    if (end.bounce) {
+        kit_.gatherPass.sendOnCpu(light, kit_.settings.transport.reflectivity, senders_.full(),
+                                  end.changes ? kit_.back<glm::vec4>() + first : nullptr);
+        return light.turn();
+    }
+    light.turn();
+    vk::barrier(cmd);
+    kit_.gatherPass.recordCompose(cmd, light, kit_.buffers, direct_, end.samples);
+    if (end.changes) {
+        vk::barrier(cmd);
+        resolvePass_.recordChange(cmd, light, kit_.buffers);
+        kit_.recordBack(cmd, kit_.buffers.chunkSums, chunks * sizeof(glm::vec4), first * sizeof(glm::vec4));
+    }
+    recordSend(cmd);
+}
+
+glm::dvec4 HostGather::change(uint32_t slot, uint32_t) const {
+    const uint32_t chunks = kit_.chunkCount();
+    return sumsOf(std::span<const glm::vec4>(kit_.back<glm::vec4>() + size_t{slot} * chunks, chunks));
+}
+
+LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkRounds, double sigma) {
+    const LinkBuffers& buffers = kit_.buffers;
+    const uint32_t samples = linkRounds * kit_.linksOfRound;
+    const auto width = static_cast<float>(sigma);
+    const bool smooths = linkRounds > 0 && buffers.rows;
+    const float scale =
+        samples > 0 ? static_cast<float>(shader::kReplicates) / static_cast<float>(samples) : 0.0f;
+    const HostResolveSums sums =
+        resolveLayer(kit_.gatherPass.pool(), {.patches = kit_.input.light.patches.as<shader::Patch>(),
+                                              .patchChart = buffers.patchChart.as<uint32_t>(),
+                                              .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
+                                              .distances = smooths ? buffers.distances.as<float>() : nullptr,
+                                              .sums = buffers.linkSums.as<glm::vec4>(),
+                                              .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
+                                              .direct = layer.direct->as<glm::vec4>(),
+                                              .result = layer.result.as<glm::vec4>(),
+                                              .size = kit_.input.patches.scene.size,
+                                              .chunkCount = kit_.chunkCount(),
+                                              .reach = smooths ? smoothingReach(width) : 0,
+                                              .sigma = width,
+                                              .scale = scale});
+    return {sumsOf(sums.indirect), sumsOf(sums.result)};
+}
+
+} // namespace relume

@@ -1,0 +1,138 @@
+#include "bake/layers/layer_lights.h"
+
+#include "assets/base/clock.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace relume {
+namespace {
+
+using Kind = LightKey::Kind;
+
+} // namespace
+
+LayerLights::LayerLights(LinkKit& kit)
+    : kit_(kit), emitters_(kit.input.device, kit.input.patches, kPoints),
+      lamps_(kit.input.device, kit.input.scene, kit.input.patches, {.samples = kPoints, .chosen = true}) {}
+
+bool LayerLights::follow() {
+    emitterGroups_.clear();
+    return lamps_.updateReach(kit_.input.patches.scene.mesh);
+}
+
+size_t LayerLights::emitterCount() const {
+    size_t count = 0;
+    for (const EmitterGroup& group : emitterGroups_)
+        count += group.choices.size();
+    return count;
+}
+
+void LayerLights::assign(const std::vector<std::unique_ptr<Layer>>& layers) {
+    assignEmitters(layers);
+    const Scene& scene = kit_.input.scene;
+    std::vector<LampChoice> lamps;
+    const auto choose = [&](const LightKey& key, const glm::vec3& color, uint32_t layer) {
+        if (key.kind == Kind::Lamp) lamps.push_back({key.index, color, layer});
+        if (key.kind == Kind::Sky)
+            lamps.push_back({static_cast<uint32_t>(scene.lights.size()), color, layer});
+    };
+    uint32_t emitters = 0; // groups of layers before
+    for (uint32_t i = 0; i < layers.size(); ++i) {
+        Layer& layer = *layers[i];
+        layer.parts.clear();
+        bool shines = layer.source.key.kind == Kind::Emitter;
+        choose(layer.source.key, glm::vec3(1.0f), i);
+        for (const LightSource& member : layer.members) {
+            if (member.weight == glm::vec3(0.0f)) continue;
+            choose(member.key, member.weight, i);
+            shines = shines || member.key.kind == Kind::Emitter;
+        }
+        if (!shines) continue;
+        layer.parts.push_back({.emitters = true, .group = emitters, .rays = emitters_.rays(emitters)});
+        ++emitters;
+    }
+    lamps_.update(scene, lamps);
+    for (uint32_t i = 0; i < layers.size(); ++i)
+        for (const uint32_t group : lamps_.groupsOf(i))
+            layers[i]->parts.push_back({.emitters = false, .group = group, .rays = lamps_.rays(group)});
+}
+
+// Makes one group for each layer with mesh lights, in the layers' order.
+void LayerLights::assignEmitters(const std::vector<std::unique_ptr<Layer>>& layers) {
+    std::vector<EmitterGroup> groups;
+    for (const std::unique_ptr<Layer>& layer : layers) {
+        std::vector<EmitterChoice> choices;
+        if (layer->source.key.kind == Kind::Emitter) choices.push_back({layer->source.key});
+        for (const LightSource& member : layer->members)
+            if (member.key.kind == Kind::Emitter && member.weight != glm::vec3(0.0f))
+                choices.push_back({member.key, member.weight});
+        if (!choices.empty()) groups.push_back({std::move(choices), {}});
+    }
+    const auto same = [](const EmitterGroup& a, const EmitterGroup& b) { return a.choices == b.choices; };
+    if (std::equal(groups.begin(), groups.end(), emitterGroups_.begin(), emitterGroups_.end(), same)) return;
+    const TraceScene& scene = kit_.input.patches.scene;
+    std::vector<EmitterSet> sets;
+    for (EmitterGroup& group : groups) {
+        const auto known = std::find_if(emitterGroups_.begin(), emitterGroups_.end(),
+                                        [&](const EmitterGroup& other) { return same(group, other); });
+        group.set =
+            known != emitterGroups_.end()
+                ? std::move(known->set)
+                : buildEmitters(kit_.input.scene, scene.mesh, {.size = scene.size, .only = group.choices});
+        sets.push_back(group.set);
+    }
+    emitters_.setGroups(sets);
+    emitterGroups_ = std::move(groups);
+}
+
+bool LayerLights::onCpu(const DirectPart& part) const {
+    return !part.emitters && kit_.input.tracer.onCpu() && kit_.gatherPass.onCpu() && lamps_.onCpu(part.group);
+}
+
+void LayerLights::traceOnCpu(const Portion& portion) {
+    const LampLight::Work work{.group = portion.part.group,
+                               .round = portion.round,
+                               .range = portion.range,
+                               .penumbra = portion.penumbra};
+    WorkerPool& pool = kit_.gatherPass.pool();
+    lamps_.sampleOnCpu(pool, kit_.input.light, work);
+    const auto start = Clock::now();
+    kit_.input.tracer.segments(VK_NULL_HANDLE, lamps_.segments(work, kit_.buffers.rays));
+    const auto traced = Clock::now();
+    kit_.progress.traceSeconds += secondsSince(start);
+    lamps_.gatherOnCpu(pool, kit_.input.light, work, portion.newSums, kit_.buffers.directSums,
+                       kit_.buffers.direct);
+    kit_.progress.gatherSeconds += secondsSince(traced);
+}
+
+void LayerLights::trace(VkCommandBuffer cmd, const Portion& portion,
+                        const std::function<void(VkCommandBuffer)>& before) {
+    portion.part.emitters ? traceWith(emitters_, cmd, portion, before)
+                          : traceWith(lamps_, cmd, portion, before);
+}
+
+template<typename Lights>
+void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
+                            const std::function<void(VkCommandBuffer)>& before) {
+    const typename Lights::Work work{.group = portion.part.group,
+                                     .round = portion.round,
+                                     .range = portion.range,
+                                     .penumbra = portion.penumbra};
+    const LightBuffers& light = kit_.input.light;
+    const PointTracer on{kit_.commands, kit_.timestamps, kit_.input.tracer};
+    const SegmentWork segments = lights.segments(work, kit_.buffers.rays);
+    const auto samples = [&](VkCommandBuffer to) {
+        before(to);
+        lights.recordSamples(to, light, work);
+    };
+    const auto gather = [&](VkCommandBuffer to) {
+        lights.recordGather(to, light, work, kit_.buffers.directSums, kit_.buffers.direct);
+    };
+    if (cmd != VK_NULL_HANDLE) return recordPoints(cmd, on, segments, samples, gather, portion.mark);
+    const PointTimes times = tracePoints(on, segments, samples, gather);
+    kit_.progress.traceSeconds += times.trace;
+    kit_.progress.gatherSeconds += times.gather;
+}
+
+} // namespace relume

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "bake/layers/layer.h"
+
+namespace relume {
+
+/// Holds what a schedule goes by for a whole bake.
+struct ScheduleRules {
+    uint32_t pointsOfRound = 4; // points per patch and sample pass of direct light
+    uint32_t linksOfRound = 16; // links per patch and sample pass
+    uint32_t samples = 0;       // per patch, at most; 0: as many as the error needs
+    uint32_t passes = 0;        // bounces, the direct light included; 0: until they have converged
+    double error = 0.01;        // relRMSE that each layer is to have; 0: all samples are taken
+    bool live = false;          // a viewer looks
+    bool together = false;      // layers bounce side by side
+};
+
+/// Holds what is under way while the schedule is asked, besides the layers.
+struct ScheduleState {
+    /// The sum of all lights: an edit that changes every layer is seen by it at first.
+    struct Sum {
+        bool due = false;   // it is to be made
+        bool shown = false; // it is shown in place of the layers
+    };
+    Sum sum;
+    bool unseen = false; // colours or objects have changed, and there is no whole picture of it yet
+    std::optional<uint32_t> relinkRound; // sample pass whose links follow objects that moved now
+    struct Nothing {};
+    struct SumJob {};
+    struct LayerJob {
+        bool hasLevel = false; // the layer that leads the job
+    };
+    std::variant<Nothing, SumJob, LayerJob> job;
+};
+
+/// Decides what a layered bake does next. It is a pure function of the layers and of what is under way; the
+/// layers' buffers play no part.
+class LayerSchedule {
+public:
+    using Layers = std::vector<std::unique_ptr<Layer>>;
+
+    explicit LayerSchedule(const ScheduleRules& rules) : rules_(rules) {}
+
+    // These decide about levels.
+    /// Returns what a light that is moved shows at once: two sample passes, the second for its penumbra.
+    LayerLevel firstLevel() const;
+    /// Returns the level beyond which no error is worth the time.
+    LayerLevel lastLevel() const;
+    /// Tells whether this is the first level and others follow.
+    bool isHasty(LayerLevel target) const;
+    /// Returns the level to be made now. One that was there before is made in the steps that it was made in.
+    LayerLevel targetOf(const Layer& layer) const;
+    /// Tells whether the layer needs no further level.
+    bool isConverged(const Layer& layer) const;
+
+    // These decide about steps.
+    struct Done {};
+    struct Relink {};   // links follow objects that moved
+    struct Continue {}; // with the job under way
+    struct BeginSum {}; // of all lights
+    struct BeginLayer {
+        size_t layer = 0;
+        LayerLevel target;
+        bool directAlone = false; // bounces wait for other layers to come along
+    };
+    using Step = std::variant<Done, Relink, Continue, BeginSum, BeginLayer>;
+    Step next(const Layers& layers, const ScheduleState& state) const;
+    /// Tells whether the job under way is to be dropped before that: the sum of all lights is due.
+    static bool drops(const ScheduleState& state) {
+        return state.sum.due && std::holds_alternative<ScheduleState::LayerJob>(state.job);
+    }
+
+    /// Tells whether an edit is taken now: what comes again and again, sixty times a second, waits until the
+    /// picture of the one before is shown.
+    bool takesEdits(const Layers& layers, const ScheduleState& state) const;
+    /// Tells whether base colours and objects may be changed now.
+    bool atRest(const Layers& layers, const ScheduleState& state) const;
+    /// Returns others that are to go on and want as many links, gathered alike.
+    std::vector<size_t> companions(const Layers& layers, size_t index, LayerLevel target) const;
+
+    // These tell what is seen.
+    /// Tells whether the sum of all lights is wanted: what is shown stays until all layers are there. One
+    /// layer alone is seen as soon itself, unless it takes more links.
+    bool wantsSum(const Layers& layers, bool shown) const;
+    /// Tells whether it can be made, too: all that shines has direct light, made for where objects are.
+    bool canSum(const Layers& layers, bool shown) const;
+    /// Returns the sample passes of links that the sum takes.
+    uint32_t sumRounds() const;
+    /// Returns those that the sum of these layers takes: no more than the deepest of them has.
+    uint32_t sumRounds(const Layers& layers) const;
+    /// Tells whether what is shown is of the last edit that was adopted.
+    bool isWhole(const Layers& layers, const ScheduleState& state) const;
+    /// Returns a layer whose direct light is to be repaired before any layer goes on, those whose repair has
+    /// not begun first; nothing where there is none or nobody looks.
+    std::optional<size_t> dirtyLayer(const Layers& layers) const;
+    /// Returns how far the composite is off, as relRMSE, and whether all layers have what was asked for.
+    /// Layers share links, so that their errors may have one sign: they are added up.
+    struct Told {
+        double error = 1;
+        bool converged = false;
+    };
+    Told told(const Layers& layers) const;
+
+private:
+    Step nextLevelStep(const Layers& layers, const ScheduleState& state) const;
+    LayerLevel nextLevel(const Layer& layer) const;
+    std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
+    std::optional<size_t> nextLayer(const Layers& layers) const;
+    std::optional<size_t> directFirst(const Layers& layers, size_t index) const;
+    bool sumComesFirst(const Layers& layers, const ScheduleState& state) const;
+
+    ScheduleRules rules_;
+};
+
+} // namespace relume

@@ -1,0 +1,78 @@
+#include "bake/layers/relinker.h"
+
+#include "assets/base/clock.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace relume {
+
+void Relinker::follow(const ObjectMove& move) {
+    Relink relink;
+    // Where an object moved on, links of early sample passes have followed the moves before, or some of them.
+    ObjectMove early = move, late = move;
+    if (relink_) {
+        relink.earlyRounds = std::max(relink_->round, relink_->earlyRounds);
+        if (relink_->round < relink_->earlyRounds) early.add(relink_->early.move);
+        late.add(relink_->late.move);
+    }
+    const vk::Device& device = kit_.input.device;
+    const auto path = [&](const ObjectMove& way) {
+        return Path{way, vk::makeBuffer(device, way.boxes, "boxes"),
+                    vk::makeBuffer(device, way.changed, "changed patches")};
+    };
+    if (relink.earlyRounds > 0) relink.early = path(early);
+    relink.late = path(late);
+    const uint64_t most = uint64_t{kit_.buffers.batchChunks} * kit_.linksOfRound * shader::kChunk;
+    if (!kit_.input.tracer.onCpu())
+        relink.list = vk::Buffer(device, {.size = (most + 1) * sizeof(uint32_t), .name = "links to trace"});
+    relink_ = std::move(relink);
+}
+
+void Relinker::batch() {
+    Relink& relink = *relink_;
+    const uint32_t chunks = kit_.chunkCount();
+    if (relink.round < links_.rounds()) {
+        relink.chunk += retrace(relink, chunks - relink.chunk);
+        if (relink.chunk < chunks) return;
+        relink.chunk = 0;
+        if (++relink.round < links_.rounds()) return;
+    }
+    VkCommandBuffer cmd = kit_.commands.begin();
+    kit_.recordRayCount(cmd);
+    kit_.run(cmd);
+    kit_.countRays();
+    relink_.reset();
+}
+
+// Traces the links of the next chunks that are there. Returns how many chunks that settles.
+uint32_t Relinker::retrace(Relink& relink, uint32_t most) {
+    const LinkCache::Place place = links_.find(relink.round, relink.chunk, most);
+    if (!place.known) return place.count;
+    const double wanted = std::max(1.0, relink.rate.wanted(kit_.batchMs));
+    const auto count = static_cast<uint32_t>(
+        std::min<double>({wanted, double(place.count), double(kit_.buffers.batchChunks)}));
+    const auto start = Clock::now();
+    const Path& path = relink.round < relink.earlyRounds ? relink.early : relink.late;
+    const RetraceWork work{.closest = {.firstChunk = relink.chunk,
+                                       .chunkCount = count,
+                                       .firstSample = relink.round * kit_.linksOfRound,
+                                       .sampleCount = kit_.linksOfRound,
+                                       .rotation = kit_.settings.links.rotation,
+                                       .links = place.links,
+                                       .linksOffset = place.offset},
+                           .boxes = &path.boxes,
+                           .boxCount = static_cast<uint32_t>(path.move.boxes.size()),
+                           .changed = &path.changed,
+                           .list = &relink.list,
+                           .rays = &kit_.buffers.rays};
+    const bool records = kit_.input.tracer.records();
+    VkCommandBuffer cmd = records ? kit_.commands.begin() : VK_NULL_HANDLE;
+    kit_.input.tracer.retrace(cmd, work);
+    if (records) kit_.run(cmd);
+    relink.rate.note(count, kit_.batchMs, secondsSince(start));
+    kit_.progress.traceSeconds += secondsSince(start);
+    return count;
+}
+
+} // namespace relume

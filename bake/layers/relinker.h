@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+
+#include "bake/gather/link_batches.h"
+#include "bake/layers/object_move.h"
+
+namespace relume {
+
+/// Brings the links that are kept to where objects are now: those that may meet what moved are traced again,
+/// with the directions that they were made of.
+class Relinker {
+public:
+    Relinker(LinkKit& kit, LinkCache& links) : kit_(kit), links_(links) {}
+
+    /// Takes up a move. Where an object moves on while links still follow it, all ways count.
+    void follow(const ObjectMove& move);
+    /// Returns the sample pass whose links come next; nothing where all have followed.
+    std::optional<uint32_t> round() const { return relink_ ? std::optional(relink_->round) : std::nullopt; }
+    /// Traces a batch. Needs round().
+    void batch();
+
+private:
+    /// The places where objects were and are, for tracers.
+    struct Path {
+        ObjectMove move;
+        vk::Buffer boxes, changed;
+    };
+    /// Kept links on their way to where objects are now.
+    struct Relink {
+        Path early, late; // for the first earlyRounds sample passes, for the others
+        uint32_t earlyRounds = 0;
+        vk::Buffer list;
+        BatchRate rate;
+        uint32_t round = 0, chunk = 0; // next
+    };
+    uint32_t retrace(Relink& relink, uint32_t most);
+
+    LinkKit& kit_;
+    LinkCache& links_;
+    std::optional<Relink> relink_;
+};
+
+} // namespace relume

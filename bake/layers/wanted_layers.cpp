@@ -1,0 +1,104 @@
+#include "bake/layers/wanted_layers.h"
+
+#include "assets/base/log.h"
+#include "bake/layers/light_groups.h"
+#include "bake/surface/light_buffers.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace relume {
+namespace {
+
+constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+
+// Tells whether a light of this cache key is among those that shine in the group.
+bool isIn(const LightPattern& group, LightPattern light) {
+    light.surfaces = light.objects = 0; // the group has them
+    return std::find(group.members.begin(), group.members.end(), light) != group.members.end();
+}
+
+bool isDark(const LightSource& source) {
+    return source.weight == glm::vec3(0.0f);
+}
+
+// Tells whether the wanted layer has its light in a group that nobody took, or is a new group, which has it
+// once it is baked.
+bool standsIn(const LightPattern& pattern, bool isNew, const std::vector<std::unique_ptr<Layer>>& left) {
+    const bool group = pattern.kind == LightKey::Kind::Group;
+    const bool among = std::any_of(left.begin(), left.end(), [&](const std::unique_ptr<Layer>& layer) {
+        const Layer* shown = layer->shown();
+        const auto holds = [&](const LightPattern& light) { return isIn(shown->pattern, light); };
+        return shown &&
+               (group ? std::any_of(pattern.members.begin(), pattern.members.end(), holds) : holds(pattern));
+    });
+    return among || (group && isNew);
+}
+
+} // namespace
+
+std::vector<WantedLayer> wantedLayers(const Scene& scene, const LightMix& mix, uint64_t room,
+                                      const SceneState& state) {
+    std::vector<WantedLayer> wanted;
+    const auto weigh = [&](LightSource& source) {
+        if (!mix.shines(source.key)) source.weight = glm::vec3(0.0f);
+    };
+    for (LightGroup& group : groupLights(scene, lightSources(scene), room)) {
+        std::vector<LightSource>& members = group.members;
+        std::for_each(members.begin(), members.end(), weigh);
+        if (members.empty())
+            weigh(group.source);
+        else if (std::all_of(members.begin(), members.end(), isDark))
+            group.source.weight = glm::vec3(0.0f);
+        LightPattern pattern = patternOf(scene, group);
+        pattern.surfaces = state.surfaces;
+        pattern.objects = state.objects;
+        wanted.push_back({std::move(pattern), std::move(group.source), std::move(members)});
+    }
+    return wanted;
+}
+
+bool isRegrouped(const Layer& layer, const std::vector<WantedLayer>& wanted) {
+    return layer.isGroup() || std::any_of(wanted.begin(), wanted.end(), [&](const WantedLayer& group) {
+               return isIn(group.pattern, layer.pattern);
+           });
+}
+
+StandInPlan planStandIn(const std::vector<WantedLayer>& wanted,
+                        const std::vector<std::unique_ptr<Layer>>& taken,
+                        const std::vector<std::unique_ptr<Layer>>& left) {
+    StandInPlan plan;
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        const LightPattern& pattern = wanted[i].pattern;
+        plan.covered.push_back(standsIn(pattern, !taken[i], left));
+        plan.regroups = plan.regroups || (plan.covered.back() && pattern.kind != LightKey::Kind::Group);
+    }
+    for (const std::unique_ptr<Layer>& layer : left) {
+        if (!layer->shown() || layer->covered || !layer->shines()) continue;
+        bool joins = false;
+        for (size_t i = 0; i < wanted.size(); ++i)
+            joins = joins || (plan.covered[i] && isIn(wanted[i].pattern, layer->pattern));
+        plan.regroups = plan.regroups || joins;
+        if (joins || layer->isGroup()) plan.sum.push_back(layer.get());
+    }
+    if (!plan.regroups) plan.covered.assign(wanted.size(), false);
+    return plan;
+}
+
+uint64_t layerRoom(const PatchSet& patches, uint64_t bytes) {
+    return bytes / (2 * LightBuffers::lightBytes(patches));
+}
+
+std::string layerProblem(const Scene& scene, const PatchSet& patches, uint64_t bytes) {
+    const size_t lights = lightSources(scene).size();
+    const uint64_t room = layerRoom(patches, bytes);
+    if (lights <= room || room >= kLeastRoom) return "";
+    const uint64_t needed = std::min<uint64_t>(lights, kLeastRoom) * 2 * LightBuffers::lightBytes(patches);
+    return fmt::format(
+        "layers of {} lights take {:.1f} GiB{}, {:.1f} may be taken: use a smaller lightmap, or "
+        "bake without layers",
+        lights, static_cast<double>(needed) / kGiB, lights > kLeastRoom ? " in groups" : "",
+        static_cast<double>(bytes) / kGiB);
+}
+
+} // namespace relume

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "bake/gather/link_kit.h"
+#include "bake/links/link_schedule.h"
+
+namespace relume {
+
+/// Makes the result of a link solver from its sums, and finds how far it is off.
+class LinkErrors {
+public:
+    explicit LinkErrors(LinkKit& kit) : kit_(kit), pass_(kit.input.device) {}
+
+    /// Makes the result after the state's sample passes, smoothed by sigma [texels]. Returns what sums over
+    /// all patches say.
+    shader::ResolveSums resolve(const LinkState& state, double sigma) const;
+    /// Returns the variance that interpolation from a coarser grid leaves, R, G and B of so many patches
+    /// together: a share of how far the receivers themselves are from what their neighbours say.
+    double coarseVariance(const LinkState& state, double patches) const;
+    /// Compares the light of a bounce with the one before. Returns the sums over all patches as ChangePush
+    /// has them.
+    glm::dvec4 change() const;
+
+private:
+    LinkKit& kit_;
+    ResolvePass pass_;
+};
+
+} // namespace relume

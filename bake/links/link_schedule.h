@@ -1,0 +1,88 @@
+#pragma once
+
+#include "bake/base/light_error.h"
+#include "bake/base/settling.h"
+#include "bake/gather/smoothing_width.h"
+
+namespace relume {
+
+/// Everything that decides what a link solver does next, except for the sums, the light and the order of
+/// chunks. A checkpoint holds it byte by byte.
+struct LinkState {
+    enum class Stage : uint32_t { Plan, Direct, Links };
+    Stage stage = Stage::Plan;
+    uint32_t directRounds = 0, linkRounds = 0; // finished
+    uint32_t bounce = 0;                       // of the current sample pass
+    uint32_t nextCheck = 0;                    // sample passes of both kinds before the next check
+    bool last = false;                         // this bounce is the sample pass's last one: it counts
+    BounceSeries series;                       // of the first sample pass, then its last bounce's own share
+    // These are of the light, R, G and B of all patches together.
+    double directVariance = 0, indirectVariance = 0, coarseVariance = 0;
+    SmoothingWidth width;
+    uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
+    Settling settling;                            // of the first sample pass, then of the result
+
+    uint32_t rounds() const { return directRounds + linkRounds; }
+};
+
+/// No sample pass has more bounces.
+constexpr uint32_t kMostBounces = 256;
+
+/// Holds what a schedule goes by for a whole bake.
+struct LinkRules {
+    bool hybrid = false;
+    bool hasDirect = false; // rays go to lights
+    uint32_t linksOfRound = 16;
+    uint32_t samples = 0;                // per patch, at most; 0: as many as the error needs
+    uint32_t passes = 0;                 // bounces of each sample pass; 0: until they have converged
+    double error = 0.01;                 // relRMSE to be reached; 0: all samples are taken
+    double directCost = 1, linkCost = 1; // of a sample pass of each kind, in one unit
+};
+
+/// Decides what a link solver does next: a pure function of its state.
+class LinkSchedule {
+public:
+    explicit LinkSchedule(const LinkRules& rules) : rules_(rules) {}
+
+    /// Returns the sample passes of each kind at most.
+    uint32_t roundsWanted() const;
+    /// Returns how many directions share the result.
+    uint32_t footprintSamples(const LinkState& state) const;
+    /// Tells whether the error is to be found before the next sample pass.
+    bool wantsCheck(const LinkState& state) const {
+        return rules_.error > 0 && state.rounds() > 0 && state.rounds() >= state.nextCheck;
+    }
+    /// Returns the sample passes before the check after one that has told this error.
+    uint32_t nextCheck(const LinkState& state, double error) const;
+    /// Tells whether all sample passes are made.
+    bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
+    /// Tells whether direct light comes next: at first, then where it takes more of the variance away for its
+    /// cost.
+    bool wantsDirect(const LinkState& state) const;
+    /// Tells whether there are sums of a sample pass in which every patch has its bounces.
+    bool hasSolution(const LinkState& state) const {
+        return state.linkRounds > 0 || (directAlone() && state.directRounds > 0);
+    }
+    /// Tells whether direct light is all that is asked for.
+    bool directAlone() const { return rules_.hybrid && rules_.passes == 1; }
+    /// Tells whether the bounce that begins is its sample pass's last one.
+    bool isLastBounce(const LinkState& state) const;
+    /// Tells whether bounces of the first sample pass are followed until they have converged.
+    bool converges(const LinkState& state) const {
+        return rules_.passes == 0 && state.linkRounds == 0 && !state.last;
+    }
+    /// Tells whether these bounces have converged, so that the next one is the last.
+    bool hasConverged(const LinkState& state) const;
+
+private:
+    bool linksDone(const LinkState& state) const {
+        return state.linkRounds >= roundsWanted() || directAlone();
+    }
+    bool directDone(const LinkState& state) const {
+        return !rules_.hasDirect || state.directRounds >= roundsWanted();
+    }
+
+    LinkRules rules_;
+};
+
+} // namespace relume

@@ -1,0 +1,78 @@
+#include "bake/pairs/pair_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bake/base/finite_light.h"
+#include "bake/base/series.h"
+
+namespace relume {
+namespace {
+
+// One thread sums up the change of so many patches at a time.
+constexpr uint32_t kMeasured = 1u << 16;
+
+} // namespace
+
+PairLight::PairLight(const PatchSet& patches, std::vector<glm::vec4> start, bool dark)
+    : patches_(patches), dark_(dark), last_(std::move(start)), before_(last_) {}
+
+std::optional<double> PairLight::take(WorkerPool& pool,
+                                      const std::function<void(std::vector<glm::vec4>&)>& read) {
+    std::swap(last_, before_);
+    read(last_);
+    return measure(pool);
+}
+
+std::optional<double> PairLight::measure(WorkerPool& pool) {
+    const uint32_t pieces = (patches_.count + kMeasured - 1) / kMeasured;
+    std::vector<Sums> parts(pieces);
+    pool.run(pieces, [&](uint32_t k) { parts[k] = changeOf(k * kMeasured); });
+    Sums all;
+    for (const Sums& part : parts) {
+        all.squares += part.squares;
+        all.light += part.light;
+        all.count += part.count;
+    }
+    const double change = all.count > 0 ? std::sqrt(all.squares / static_cast<double>(all.count)) : 0.0;
+    const double mean = all.count > 0 ? all.light / static_cast<double>(all.count) : 0.0;
+    requireFiniteLight(mean, change);
+    const std::optional<SeriesRest> rest = seriesRest(state_.lastChange, change, mean);
+    if (rest) left_ = static_cast<float>(rest->ratio < 1.0 ? rest->ratio / (1.0 - rest->ratio) : 1.0);
+    state_.lastChange = change;
+    const bool first = state_.settling.mean < 0;
+    if (first && dark_) state_.settling.add(0.0);
+    state_.settling.add(mean);
+    return rest ? std::optional(rest->error) : std::nullopt;
+}
+
+// Sums up the change of the patches from `first` on.
+PairLight::Sums PairLight::changeOf(uint32_t first) const {
+    Sums sums;
+    for (uint32_t i = first; i < std::min(first + kMeasured, patches_.count); ++i) {
+        const uint32_t flags = patches_.scene.patches[i].flags;
+        if (!shader::patchIsShown(flags)) continue;
+        const glm::dvec3 change = glm::dvec3(last_[i]) - glm::dvec3(before_[i]);
+        sums.squares += glm::dot(change, change);
+        sums.light += double{last_[i].r} + last_[i].g + last_[i].b;
+        sums.count += 3;
+    }
+    return sums;
+}
+
+std::vector<float> PairLight::errors() const {
+    std::vector<float> errors(left_ ? last_.size() : 0);
+    for (size_t i = 0; i < errors.size(); ++i)
+        errors[i] = *left_ * glm::length(glm::vec3(last_[i] - before_[i])) / std::sqrt(3.0f);
+    return errors;
+}
+
+void PairLight::restore(const State& state, std::vector<glm::vec4> light) {
+    state_ = state;
+    last_ = std::move(light);
+    before_ = last_;
+    left_.reset();
+}
+
+} // namespace relume

@@ -1,0 +1,142 @@
+// What a link solver does next, as a pure function of its state.
+#include "bake/links/link_schedule.h"
+
+#include <gtest/gtest.h>
+
+namespace relume {
+namespace {
+
+constexpr LinkRules kRules{
+    .hybrid = true, .hasDirect = true, .linksOfRound = 16, .error = 0.01, .directCost = 4, .linkCost = 16};
+
+LinkRules with(void (*change)(LinkRules&)) {
+    LinkRules rules = kRules;
+    change(rules);
+    return rules;
+}
+
+LinkState after(uint32_t direct, uint32_t links) {
+    LinkState state;
+    state.directRounds = state.directAtCheck = direct;
+    state.linkRounds = state.linksAtCheck = links;
+    return state;
+}
+
+} // namespace
+
+TEST(LinkSchedule, DirectLightComesFirstThenLinks) {
+    const LinkSchedule schedule(kRules);
+    EXPECT_TRUE(schedule.wantsDirect(after(0, 0)));
+    EXPECT_FALSE(schedule.wantsDirect(after(1, 0)));
+}
+
+TEST(LinkSchedule, WhereNothingShinesDirectlyThereAreLinksAlone) {
+    const LinkSchedule schedule(with([](LinkRules& r) { r.hasDirect = false; }));
+    EXPECT_FALSE(schedule.wantsDirect(after(0, 0)));
+    EXPECT_FALSE(schedule.wantsDirect(after(0, 5)));
+}
+
+// One more sample pass takes v n / m^2 of a variance v that n of them left, m being those by now: 4 of 16 for
+// a quarter of the cost outweighs 8 of 32 at equal rounds, and no longer once direct light has had more.
+TEST(LinkSchedule, ThenComesWhatLowersTheVarianceMoreForItsCost) {
+    const LinkSchedule schedule(kRules);
+    LinkState state = after(4, 4);
+    state.directVariance = 4;
+    state.indirectVariance = 8;
+    EXPECT_TRUE(schedule.wantsDirect(state)); // 4 / (4 * 4) > 8 / (4 * 16)
+    state.directVariance = 1.9;
+    EXPECT_FALSE(schedule.wantsDirect(state)); // 1.9 / 16 < 8 / 64
+    state.directVariance = 4;
+    state.directRounds = 6;
+    EXPECT_FALSE(schedule.wantsDirect(state)); // 4 * 4 / (36 * 4) < 8 / 64
+    state.linkRounds = 8;
+    EXPECT_TRUE(schedule.wantsDirect(state)); // 8 * 4 / (64 * 16)
+}
+
+TEST(LinkSchedule, WithANumberOfSamplesBothTakeTurns) {
+    const LinkSchedule schedule(with([](LinkRules& r) { r.samples = 64; }));
+    EXPECT_EQ(schedule.roundsWanted(), 4u);
+    EXPECT_FALSE(schedule.wantsDirect(after(1, 0)));
+    EXPECT_TRUE(schedule.wantsDirect(after(1, 1)));
+    EXPECT_FALSE(schedule.wantsDirect(after(2, 1)));
+    EXPECT_TRUE(schedule.wantsDirect(after(3, 4))) << "links are done";
+    EXPECT_FALSE(schedule.isDone(after(3, 4)));
+    EXPECT_TRUE(schedule.isDone(after(4, 4)));
+}
+
+TEST(LinkSchedule, SamplePassesHoldWholeNumbersOfDirections) {
+    EXPECT_EQ(LinkSchedule(with([](LinkRules& r) { r.samples = 33; })).roundsWanted(), 3u);
+    EXPECT_EQ(LinkSchedule(kRules).roundsWanted(), 4096u) << "65536 in all";
+}
+
+TEST(LinkSchedule, OfOnePassHybridHasDirectLightAlone) {
+    const LinkSchedule hybrid(with([](LinkRules& r) { r.passes = 1; }));
+    EXPECT_TRUE(hybrid.directAlone());
+    EXPECT_TRUE(hybrid.hasSolution(after(1, 0)));
+    EXPECT_TRUE(hybrid.wantsDirect(after(5, 0)));
+    EXPECT_TRUE(hybrid.isDone(after(4096, 0)));
+    const LinkSchedule directional(with([](LinkRules& r) { r.passes = 1, r.hybrid = false; }));
+    EXPECT_FALSE(directional.directAlone());
+    EXPECT_FALSE(directional.hasSolution(after(1, 0)));
+    EXPECT_TRUE(directional.hasSolution(after(1, 1)));
+}
+
+TEST(LinkSchedule, BouncesAreCountedOrFollowedUntilTheyHaveConverged) {
+    LinkState state = after(1, 0);
+    const LinkSchedule converging(kRules);
+    EXPECT_FALSE(converging.isLastBounce(state));
+    EXPECT_TRUE(converging.converges(state));
+    state.last = true; // of the sample pass before
+    EXPECT_FALSE(converging.isLastBounce(state)) << "a new sample pass begins";
+    state.bounce = 3;
+    EXPECT_TRUE(converging.isLastBounce(state));
+    EXPECT_TRUE(converging.isLastBounce(after(1, 1))) << "later sample passes need one";
+
+    const LinkSchedule hybrid(with([](LinkRules& r) { r.passes = 3; })); // one is direct light
+    state = after(1, 2);
+    EXPECT_FALSE(hybrid.isLastBounce(state));
+    EXPECT_FALSE(hybrid.converges(after(1, 0)));
+    state.bounce = 1;
+    EXPECT_TRUE(hybrid.isLastBounce(state));
+    const LinkSchedule directional(with([](LinkRules& r) { r.passes = 3, r.hybrid = false; }));
+    EXPECT_FALSE(directional.isLastBounce(state));
+}
+
+TEST(LinkSchedule, BouncesHaveConvergedAtAShareOfTheErrorOrAtTheLimit) {
+    const LinkSchedule schedule(kRules);
+    LinkState state = after(1, 0);
+    state.series.error = 0.0021;
+    EXPECT_FALSE(schedule.hasConverged(state));
+    state.series.error = 0.0019;
+    EXPECT_TRUE(schedule.hasConverged(state));
+    const LinkSchedule exact(with([](LinkRules& r) { r.error = 0; }));
+    EXPECT_FALSE(exact.hasConverged(state));
+    state.series.error = 0.00009;
+    EXPECT_TRUE(exact.hasConverged(state));
+    state.series.error = 1;
+    state.bounce = kMostBounces - 1;
+    EXPECT_TRUE(exact.hasConverged(state));
+}
+
+TEST(LinkSchedule, TheErrorIsFoundAgainWhenItMayHaveFallenEnough) {
+    const LinkSchedule schedule(kRules);
+    EXPECT_FALSE(schedule.wantsCheck(after(0, 0)));
+    EXPECT_TRUE(schedule.wantsCheck(after(1, 1)));
+    LinkState state = after(50, 50);
+    EXPECT_EQ(schedule.nextCheck(state, 0.1), 200u) << "at twice as many, however far it is";
+    EXPECT_EQ(schedule.nextCheck(state, 0.015), 135u) << ".6 of 225 that it seems to need";
+    EXPECT_EQ(schedule.nextCheck(state, 0.0101), 101u);
+    state.nextCheck = 101;
+    EXPECT_FALSE(schedule.wantsCheck(state));
+    state.linkRounds = 51;
+    EXPECT_TRUE(schedule.wantsCheck(state));
+    EXPECT_FALSE(LinkSchedule(with([](LinkRules& r) { r.error = 0; })).wantsCheck(state));
+}
+
+TEST(LinkSchedule, ADirectionStandsForItsShareOfTheWholeResult) {
+    EXPECT_EQ(LinkSchedule(kRules).footprintSamples(after(1, 3)), 64u) << "this sample pass included";
+    const LinkSchedule counted(with([](LinkRules& r) { r.samples = 100; }));
+    EXPECT_EQ(counted.footprintSamples(after(1, 3)), 112u);
+}
+
+} // namespace relume
