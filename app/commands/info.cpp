@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/edit/scene_info.h"
 #include "assets/model/light_names.h"
 #include "app/text/option_checks.h"
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
     std::string scene;
+    GltfChoice choice;
     uint32_t size = 512;
     bool json = false;
 };
@@ -200,7 +202,7 @@ void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
 }
 
 void runInfo(const InfoOptions& options) {
-    const Scene scene = loadGltf(options.scene);
+    const Scene scene = loadGltf(options.scene, options.choice);
     const SceneInfo info = inspectScene(scene, options.size);
     if (options.json)
         printJson(scene, info, options.size);
@@ -216,6 +218,7 @@ void addInfoCommand(CLI::App& app) {
     command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
         ->required()
         ->type_name("SCENE");
+    addChoiceOptions(*command, options->choice);
     command->add_option("--size", options->size, "Lightmap edge [texels]")
         ->capture_default_str()
         ->check(wholeFrom(1, 65536));

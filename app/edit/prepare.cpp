@@ -3,14 +3,13 @@
 #include "assets/atlas/unwrap.h"
 #include "assets/base/clock.h"
 #include "assets/base/log.h"
-#include "assets/gltf/gltf.h"
 
 namespace relume {
 
 PreparedScene prepareScene(const PrepareDesc& desc) {
     PreparedScene result;
     const auto start = Clock::now();
-    result.scene = loadGltf(desc.path);
+    result.scene = loadGltf(desc.path, desc.choice);
     result.loadSeconds = secondsSince(start);
     for (const std::string& warning : result.scene.warnings)
         spdlog::warn("{}", warning);

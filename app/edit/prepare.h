@@ -4,6 +4,7 @@
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/world_mesh.h"
+#include "assets/gltf/gltf.h"
 
 namespace relume {
 
@@ -17,6 +18,7 @@ struct PreparedScene {
 
 struct PrepareDesc {
     std::string path;
+    GltfChoice choice;
     uint32_t size = 512; // lightmap edge [texels]
     bool unwrap = false; // make lightmap UVs for meshes without usable ones
     double density = 0;  // of the unwrap [texels/m], 0: fitted to the size

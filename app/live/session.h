@@ -25,8 +25,13 @@ public:
     /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
     /// when that cannot be read: then lastError() says why. With `keep` (the file changed) the camera and
     /// settings stay, and so do edits of materials, by name, and of objects and lights where the file's are
-    /// what they were. Where the file is still as it was loaded or saved, all edits stay.
+    /// what they were. Where the file is still as it was loaded or saved, all edits stay. Another file is
+    /// read by its own defaults.
     void open(const std::string& path, bool keep = false);
+    /// Loads the present scene's file by another choice of what it offers, as open() does without `keep`.
+    void choose(const GltfChoice& choice);
+    /// Returns the choice by which the present scene was read.
+    const GltfChoice& choice() const { return prepare_.choice; }
     bool loading() const { return loader_.loading(); }
     const std::string& loadingPath() const { return loader_.path(); }
     /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
@@ -83,12 +88,15 @@ private:
         bool keep = false;
         FileTime time;         // of its file
         bool sameFile = false; // the file is as it was read or saved before
+        GltfChoice choice;
     };
     /// Names the scene that is to be loaded next.
     struct Next {
         std::string path;
         bool keep = false;
+        GltfChoice choice;
     };
+    void load(const Next& next);
     void apply(const Document& next);
     void startBake(bool keepLight);
     bool finishLoading();

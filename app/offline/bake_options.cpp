@@ -1,5 +1,6 @@
 #include "app/offline/bake_options.h"
 
+#include "app/edit/choice_options.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "bake/links/link_solver.h"
@@ -183,6 +184,7 @@ CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("scene", o.files.scene, "glTF scene, .gltf or .glb")->required();
+    addChoiceOptions(command, o.files.choice);
     command.add_option("-o,--output", o.files.output, "Lightmap to write, .exr or .png")->required();
     command.add_option("--picture", o.files.picture, "Write the lightmap to this .png as well");
     addSizeOption(command, "--size", o);
@@ -243,6 +245,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
     BakeRequest request;
     request.prepare = {.path = o.files.scene,
+                       .choice = o.files.choice,
                        .size = o.patches.size,
                        .unwrap = o.patches.unwrap,
                        .density = o.patches.density};

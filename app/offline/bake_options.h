@@ -21,6 +21,7 @@ constexpr float kRtradReflectivity = 0.9f; // of RTRad's preset, unless told oth
 struct BakeFiles {
     std::string scene, output, picture, errorMap, json, sceneOut;
     bool half = false; // the output, if it is an .exr
+    GltfChoice choice; // of the scene
 };
 
 /// The patches that the lightmap has.

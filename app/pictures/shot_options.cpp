@@ -1,5 +1,6 @@
 #include "app/pictures/shot_options.h"
 
+#include "app/edit/choice_options.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -83,6 +84,7 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    addChoiceOptions(command, o.bake.files.choice);
     command.add_option("-o,--output", o.bake.files.output, "Picture to write, .png")->required();
     addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");

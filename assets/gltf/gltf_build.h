@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include "assets/base/warnings.h"
+#include "assets/gltf/gltf.h"
 #include "assets/gltf/gltf_size.h"
 #include "assets/model/scene.h"
 
@@ -15,6 +16,7 @@ namespace relume::gltf {
 /// Holds what the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
+    GltfChoice choice;
     tinygltf::Model model;        // without nodes, scenes and lights: the parser is slow for very many
     nlohmann::json nodes, scenes; // arrays as in the file
     nlohmann::json lights;        // the array of KHR_lights_punctual as in the file

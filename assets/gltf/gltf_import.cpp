@@ -124,9 +124,10 @@ double triangleCount(const Scene& scene) {
 
 } // namespace gltf
 
-Scene loadGltf(const std::string& path) {
+Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     gltf::Build build;
     build.path = path;
+    build.choice = choice;
     tellWatch("loading");
     gltf::File file = gltf::readFile(path);
     tellWatch("loading");

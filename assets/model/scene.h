@@ -138,6 +138,9 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     Sky sky;
+    // What the file offers to choose from: its scenes (a number stands for a scene without a name) and the
+    // variants of its materials.
+    std::vector<std::string> sceneNames, variantNames;
     std::vector<std::string> warnings; // what of the file is unsupported or was corrected, one line each
 };
 
