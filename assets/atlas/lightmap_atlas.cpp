@@ -132,7 +132,7 @@ MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings, u
     if (choice.texCoord >= 0 && !choice.quality.complete)
         warnings.add(
             name, fmt::format("has parts without TEXCOORD_{}, which block light only: run 'relume unwrap' or "
-                              "pass --unwrap",
+                              "leave out --no-unwrap",
                               choice.texCoord));
     return choice;
 }
@@ -241,7 +241,8 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
 
 std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas,
                                    Warnings& warnings) {
-    const char* mend = unwrapped ? "give its triangles an area" : "run 'relume unwrap' or pass --unwrap";
+    const char* mend =
+        unwrapped ? "give its triangles an area" : "run 'relume unwrap' or leave out --no-unwrap";
     std::vector<MeshChoice> choices(scene.meshes.size());
     std::vector<bool> chosen(scene.meshes.size());
     size_t usable = 0;
