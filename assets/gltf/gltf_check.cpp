@@ -15,8 +15,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                   "KHR_texture_transform", "KHR_mesh_quantization"};
+constexpr std::array kSupported = {"EXT_lights_area",
+                                   "EXT_texture_webp",
+                                   "KHR_lights_punctual",
+                                   "KHR_materials_emissive_strength",
+                                   "KHR_materials_pbrSpecularGlossiness",
+                                   "KHR_materials_transmission",
+                                   "KHR_materials_unlit",
+                                   "KHR_materials_variants",
+                                   "KHR_mesh_quantization",
+                                   "KHR_node_visibility",
+                                   "KHR_texture_basisu",
+                                   "KHR_texture_transform"};
 constexpr std::array kCompressions = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                       "MESHOPT_compression"};
 
@@ -378,10 +388,6 @@ void Checker::image(const json& value, const std::string& where) const {
     index(value, "bufferView", where, "bufferViews");
     text(value, "uri", where);
     text(value, "mimeType", where);
-    // The parser would hand these to the decoder as the wanted size; glTF does not have them.
-    if (member(value, "width") || member(value, "height")) fail(where + " has a width or height");
-    if ((member(value, "bufferView") != nullptr) == (member(value, "uri") != nullptr))
-        fail(where + " has neither or both of bufferView and uri");
 }
 
 /// Checks that each node has at most one parent: then a cycle cannot be reached from a root, and no walk is

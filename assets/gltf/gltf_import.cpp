@@ -5,6 +5,7 @@
 #include "assets/base/watch.h"
 #include "assets/gltf/gltf_build.h"
 #include "assets/gltf/gltf_check.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/gltf/gltf_file.h"
 #include "assets/model/scene_limits.h"
 
@@ -33,12 +34,13 @@ json takeArray(json& document, const char* section) {
     return taken;
 }
 
-json takeLights(json& document) {
-    const json::json_pointer extension("/extensions/KHR_lights_punctual");
-    if (!document.contains(extension)) return json::array();
-    json lights = takeArray(document[extension], "lights");
-    document["extensions"].erase("KHR_lights_punctual");
-    return lights;
+/// Takes the list of lights of an extension; it is empty where there is none, or none that is a list.
+json takeLights(json& document, const char* name) {
+    const auto extensions = document.find("extensions");
+    if (extensions == document.end() || !extensionOf(document, name)) return json::array();
+    json lights = takeArray((*extensions)[name], "lights");
+    extensions->erase(name);
+    return lights.is_array() ? lights : json::array();
 }
 
 /// Tells whether a path names a regular file, by its name alone; the parser's own function would wait for
@@ -68,7 +70,12 @@ bool readAll(std::vector<unsigned char>* out, std::string* error, const std::str
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
-    build.lights = takeLights(file.json);
+    build.materials = takeArray(file.json, "materials");
+    build.textures = takeArray(file.json, "textures");
+    build.samplers = takeArray(file.json, "samplers");
+    build.images = takeArray(file.json, "images");
+    build.lights = takeLights(file.json, kPunctualLights);
+    build.areaLights = takeLights(file.json, kAreaLights);
     build.defaultScene = file.json.value("scene", 0);
     file.json.erase("scene");
     const std::vector<uint8_t> bytes = withJson(file, file.json);
@@ -76,7 +83,6 @@ void parse(File file, Build& build) {
     file.bytes = {};
 
     tinygltf::TinyGLTF parser;
-    parser.SetImageLoader(keepImageBytes, nullptr);
     parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, nullptr});
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
     const unsigned int size = static_cast<unsigned int>(bytes.size());
@@ -135,11 +141,13 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     build.limit = gltf::checkSizes(file);
     tellWatch("loading");
     gltf::warnUnsupported(file, build);
+    gltf::chooseVariant(build, file.json);
     gltf::parse(std::move(file), build);
     build.scene.path = path;
     gltf::buildMaterials(build);
     gltf::buildMeshes(build);
     gltf::buildNodes(build);
+    gltf::markPanes(build);
     build.limit.require(gltf::Made::Triangles, gltf::triangleCount(build.scene));
     gltf::buildSky(build);
     if (build.scene.instances.empty())

@@ -1,6 +1,8 @@
 #include "assets/gltf/gltf_build.h"
 
+#include "assets/gltf/gltf_file.h"
 #include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/base/error.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -65,7 +67,12 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
-void addNode(Build& build, size_t index, const glm::mat4& world) {
+bool hasLight(const json& node) {
+    return extensionOf(node, kPunctualLights) || extensionOf(node, kAreaLights) ||
+           ownExtra(node, "areaLight");
+}
+
+void addNode(Build& build, size_t index, const glm::mat4& world, bool visible) {
     const json& node = build.nodes[index];
     if (!finite(world)) {
         build.warnings.add(labelOf(node, index), "has a transform that is not finite and is ignored");
@@ -78,6 +85,7 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
         if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
         instance.mesh = mesh;
         instance.transform = world;
+        instance.hidden = !visible;
         instance.node = static_cast<int>(index);
         build.scene.instances.push_back(std::move(instance));
     }
@@ -86,7 +94,10 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
             makeCamera(build.model.cameras[static_cast<size_t>(camera)], nameOf(node), world));
     if (member(node, "skin"))
         build.warnings.add(labelOf(node, index), "skins are not supported, the rest pose is used");
-    addLights(build, index, world);
+    if (visible)
+        addLights(build, index, world);
+    else if (hasLight(node))
+        build.warnings.add(labelOf(node, index), "is hidden, its light is left out");
     const json* extensions = member(node, "extensions");
     if (extensions && member(*extensions, "EXT_mesh_gpu_instancing"))
         build.warnings.add(labelOf(node, index),
@@ -138,12 +149,13 @@ void buildNodes(Build& build) {
     struct Visit {
         int node;
         glm::dmat4 parent;
+        bool visible; // its parent
     };
     std::vector<Visit> stack;
     const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.defaultScene);
     std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        stack.push_back({*root, glm::dmat4(1.0)});
+        stack.push_back({*root, glm::dmat4(1.0), true});
     while (!stack.empty()) {
         const Visit visit = stack.back();
         stack.pop_back();
@@ -152,10 +164,11 @@ void buildNodes(Build& build) {
         visited[index] = true;
         const json& node = build.nodes[index];
         const glm::dmat4 world = visit.parent * localTransform(node);
-        addNode(build, index, glm::mat4(world));
+        const bool visible = visit.visible && isVisible(node);
+        addNode(build, index, glm::mat4(world), visible);
         if (const json* children = member(node, "children"))
             for (auto child = children->rbegin(); child != children->rend(); ++child)
-                stack.push_back({child->get<int>(), world});
+                stack.push_back({child->get<int>(), world, visible});
     }
 }
 
