@@ -10,7 +10,6 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf.h"
 #include "assets/gltf/gltf_size.h"
-#include "assets/model/panes.h"
 #include "assets/model/scene.h"
 
 namespace relume::gltf {

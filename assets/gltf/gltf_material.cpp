@@ -2,6 +2,7 @@
 
 #include "assets/base/watch.h"
 #include "assets/gltf/gltf_value.h"
+#include "assets/model/panes.h"
 #include "assets/model/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
