@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,8 @@
 
 namespace relume::gltf {
 
+class NodePlaces;
+
 /// Holds what the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
@@ -22,9 +26,12 @@ struct Build {
     nlohmann::json nodes, scenes; // arrays as in the file
     nlohmann::json materials, textures, samplers, images; // likewise
     nlohmann::json lights;                                // the array of KHR_lights_punctual as in the file
-    nlohmann::json areaLights;                            // that of EXT_lights_area, unchecked
-    int defaultScene = 0;
-    int variant = -1; // of Scene::variantNames, -1: the file's own materials
+    nlohmann::json areaLights;        // that of EXT_lights_area, whose entries are not checked
+    nlohmann::json skins, animations; // arrays as in the file, whose entries are not checked
+    std::map<size_t, int> bentMeshes; // by node: the scene's mesh where it is not that of the file's number
+    std::set<size_t> skinnedNodes;    // whose meshes stand where their joints put them
+    int sceneNumber = 0;              // of the scene that is read
+    int variant = -1;                 // of Scene::variantNames, -1: the file's own materials
     SizeLimit limit;
     Scene scene;
     Warnings warnings;
@@ -54,17 +61,18 @@ int materialOf(const Build& build, const tinygltf::Primitive& primitive);
 /// Marks the materials that light passes, once all else is built, and warns about materials that blend.
 void markPanes(Build& build);
 
-/// Fills Scene::meshes, one per mesh of the file (empty where nothing of it is usable). Throws Error.
-void buildMeshes(Build& build);
+/// Fills Scene::meshes, one per mesh of the file (empty where nothing of it is usable), and one for each node
+/// whose skin or morph targets give it a shape of its own. Throws Error.
+void buildMeshes(Build& build, NodePlaces& places);
 
-/// Fills Scene::instances, cameras and lights from the default scene's nodes, or all root nodes where there
-/// is no scene. Walks without recursion. Throws Error.
-void buildNodes(Build& build);
+/// Fills Scene::instances, cameras and lights from the nodes of the scene that is read, or all root nodes
+/// where there is no scene. Walks without recursion. Throws Error.
+void buildNodes(Build& build, NodePlaces& places);
 
 /// Adds the lights of a node to Scene::lights: that of KHR_lights_punctual, and an area light of its extras.
 void addLights(Build& build, size_t node, const glm::mat4& world);
 
-/// Fills Scene::sky from the default scene's extras, its picture included. Throws Error.
+/// Fills Scene::sky from that scene's extras, its picture included. Throws Error.
 void buildSky(Build& build);
 
 /// Returns an image of the file (PNG, JPEG or WebP) as 8-bit RGBA. Returns nothing, and warns, where it is

@@ -16,8 +16,7 @@ const json* memberOf(const json& holder, const char* key) {
 
 const json* extensionOf(const json& holder, const char* name) {
     const json* extensions = memberOf(holder, "extensions");
-    const json* extension = extensions ? memberOf(*extensions, name) : nullptr;
-    return extension && extension->is_object() ? extension : nullptr;
+    return extensions ? memberOf(*extensions, name) : nullptr;
 }
 
 bool isVisible(const json& node) {

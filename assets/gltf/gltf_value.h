@@ -16,7 +16,7 @@ constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness
 /// Returns a member of `holder`, or nullptr where it is missing or `holder` is no object.
 const nlohmann::json* memberOf(const nlohmann::json& holder, const char* key);
 
-/// Returns the extension of this name, or nullptr where `holder` has none or it is no object.
+/// Returns the extension of this name, whatever its type is, or nullptr where `holder` has none.
 const nlohmann::json* extensionOf(const nlohmann::json& holder, const char* name);
 
 /// Tells whether a node is visible by itself (KHR_node_visibility); one below a node that is not is

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -85,7 +86,14 @@ void SceneFiles::askToExport() {
 
 void SceneFiles::open(const std::string& path) {
     desc_.feedback.pacer().input();
+    choice_.reset();
     leave({path});
+}
+
+void SceneFiles::choose(const GltfChoice& choice) {
+    desc_.feedback.pacer().input();
+    choice_ = choice;
+    leave({desc_.session.path()});
 }
 
 void SceneFiles::exportLightmap(const std::string& path) {
@@ -136,7 +144,9 @@ void SceneFiles::leave(const Departure::Goal& goal) {
 
 void SceneFiles::go(const std::optional<Departure::Goal>& goal) {
     if (!goal) return;
-    if (goal->scene)
+    if (goal->scene && choice_)
+        desc_.session.choose(*std::exchange(choice_, std::nullopt));
+    else if (goal->scene)
         desc_.session.open(*goal->scene);
     else
         desc_.window.close();

@@ -247,6 +247,7 @@ PanelContext Viewer::context() {
             .edit = [this](const std::string& name, const Document& next) { editing_.edit(name, next); },
             .endEdit = [this] { editing_.end(); },
             .open = [this](const std::string& path) { files_.open(path); },
+            .choose = [this](const GltfChoice& choice) { files_.choose(choice); },
             .selectLight = [this](const LightKey& key) { lights_.select(key); },
             .items = ui_.items()};
 }
