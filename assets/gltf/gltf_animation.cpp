@@ -51,7 +51,7 @@ const json* part(const json& holder, const char* key) {
 }
 
 /// Returns a member that is an index below `count`, or -1.
-int64_t indexBelow(const json& holder, const char* key, size_t count) {
+int64_t indexIn(const json& holder, const char* key, size_t count) {
     const json* value = part(holder, key);
     if (!value || !value->is_number_unsigned() || value->get<uint64_t>() >= count) return -1;
     return value->get<int64_t>();
@@ -65,7 +65,7 @@ std::string textOf(const json& holder, const char* key, const char* fallback) {
 /// Reads an accessor of a sampler; an empty list where it has none of so many components.
 const Values& AnimationReader::read(const json& sampler, const char* key, uint32_t components) {
     static const Values none;
-    const int64_t index = indexBelow(sampler, key, build_.model.accessors.size());
+    const int64_t index = indexIn(sampler, key, build_.model.accessors.size());
     if (index < 0) return none;
     const tinygltf::Accessor& accessor = build_.model.accessors[static_cast<size_t>(index)];
     if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)) !=
@@ -175,8 +175,8 @@ std::string AnimationReader::apply(const json& channel, double time, Poses& pose
     if (path != "translation" && path != "rotation" && path != "scale" && path != "weights")
         return "moves something else than nodes and morph targets, which is left out";
     if (!part(*target, "node")) return ""; // of an extension, or of nothing: glTF says to pass over it
-    const int64_t node = indexBelow(*target, "node", build_.nodes.size());
-    const int64_t sampler = indexBelow(channel, "sampler", samplers->size());
+    const int64_t node = indexIn(*target, "node", build_.nodes.size());
+    const int64_t sampler = indexIn(channel, "sampler", samplers->size());
     if (node < 0 || sampler < 0) return "is damaged";
     if (path != "weights" && build_.nodes[static_cast<size_t>(node)].contains("matrix"))
         return "moves a node that has a matrix, which glTF does not allow";
