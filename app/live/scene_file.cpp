@@ -55,12 +55,10 @@ bool SceneFile::differs(const SceneEdits& edits) const {
     const auto sameMaterial = [](const Material& a, const Material& b) {
         return a.emission == b.emission && a.baseColor == b.baseColor;
     };
-    const auto samePlace = [](const Placement& a, const Placement& b) { return a.transform == b.transform; };
     return ownLights(edits.lights) != ownLights(held_.lights) || ownSky(edits.sky) != ownSky(held_.sky) ||
            !std::equal(edits.materials.begin(), edits.materials.end(), held_.materials.begin(),
                        held_.materials.end(), sameMaterial) ||
-           !std::equal(edits.placements.begin(), edits.placements.end(), held_.placements.begin(),
-                       held_.placements.end(), samePlace);
+           edits.placements != held_.placements;
 }
 
 // Returns the file's node of a light, or -1. A light that became one of another kind stays in the node it

@@ -300,10 +300,6 @@ void Checker::image(const json& value, const std::string& where) const {
     index(value, "bufferView", where, "bufferViews");
     text(value, "uri", where);
     text(value, "mimeType", where);
-    // The parser would hand these to the decoder as the wanted size; glTF does not have them.
-    if (member(value, "width") || member(value, "height")) fail(where + " has a width or height");
-    if ((member(value, "bufferView") != nullptr) == (member(value, "uri") != nullptr))
-        fail(where + " has neither or both of bufferView and uri");
 }
 
 /// Checks that each node has at most one parent, and that no parents of a scene's roots stand in a circle:

@@ -14,10 +14,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kKnown = {"KHR_lights_punctual",
+constexpr std::array kKnown = {kAreaLights,
+                               "EXT_texture_webp",
+                               kPunctualLights,
                                "KHR_materials_emissive_strength",
-                               "KHR_texture_transform",
+                               kSpecularGlossiness,
+                               "KHR_materials_transmission",
+                               "KHR_materials_unlit",
+                               "KHR_materials_variants",
                                "KHR_mesh_quantization",
+                               kVisibility,
+                               "KHR_texture_basisu",
+                               "KHR_texture_transform",
                                kDraco,
                                kMeshopt,
                                kInstancing};
@@ -77,11 +85,6 @@ void checkRequired(const JsonChecks& checks) {
             "it without {}",
             checks.file().path, inQuotes(name), isAmong(kCompressions, name) ? "mesh compression" : "it"));
     }
-}
-
-const json* extensionOf(const json& holder, const char* name) {
-    if (!uses(holder, name)) return nullptr;
-    return &holder["extensions"][name];
 }
 
 bool isPlaceholder(const json& buffer) {

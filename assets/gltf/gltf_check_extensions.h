@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assets/gltf/gltf_check_json.h"
+#include "assets/gltf/gltf_value.h"
 
 namespace relume::gltf {
 
@@ -25,8 +26,6 @@ void checkInstancing(const JsonChecks& checks, const nlohmann::json& node, const
 
 /// Tells whether a buffer has no bytes of its own, as its views hold compressed ones that lie elsewhere.
 bool isPlaceholder(const nlohmann::json& buffer);
-/// Returns an extension of a checked object, or nullptr.
-const nlohmann::json* extensionOf(const nlohmann::json& holder, const char* name);
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kMeshopt = "EXT_meshopt_compression";

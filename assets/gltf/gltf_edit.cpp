@@ -8,6 +8,7 @@
 #include "assets/gltf/gltf_edit_light.h"
 #include "assets/gltf/gltf_edit_node.h"
 #include "assets/gltf/gltf_edit_parts.h"
+#include "assets/gltf/gltf_edit_visibility.h"
 #include "assets/gltf/gltf_light_json.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -114,6 +115,8 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
     nodes.lights = lights.apply(before.lights, after.lights, moves);
     if (before.posed) requireStill(before, after, target);
     nodes.instances = moveInstances(tree, before, after, target, moves);
+    VisibilityEdit visibility(edit, tree);
+    visibility.apply(before, after, target, moves);
     const auto children = moveCarried(edit, tree, moves);
     for (size_t i = 0; i < nodes.lights.size(); ++i) {
         const bool area = isAreaLight(after.lights[i].type);
@@ -123,6 +126,7 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
     for (int& node : nodes.instances)
         if (const auto child = children.find({node, Carried::Instance}); child != children.end())
             node = child->second;
+    visibility.finish(children);
     lights.dropUnused();
     dropEmptyNodes(edit, lights.emptied());
     moveUris(edit, target);

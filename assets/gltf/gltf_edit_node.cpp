@@ -4,6 +4,7 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_edit_transform.h"
 #include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -23,23 +24,11 @@ std::vector<JsonPath> membersOf(Carried carried) {
     case Carried::Instance:
         return {{"mesh"}, {"skin"}, {"weights"}, {"extensions", "EXT_mesh_gpu_instancing"}};
     case Carried::Light:
-        return {{"extensions", "KHR_lights_punctual"}};
+        return {{"extensions", kPunctualLights}};
     case Carried::AreaLight:
-        return {{"extras", "relume", "areaLight"}};
+        return {{"extras", "relume", "areaLight"}, {"extensions", kAreaLights}};
     }
     return {};
-}
-
-bool carries(EditedJson& node, Carried carried) {
-    switch (carried) {
-    case Carried::Instance:
-        return find(node, {"mesh"});
-    case Carried::Light:
-        return find(node, {"extensions", "KHR_lights_punctual"});
-    case Carried::AreaLight:
-        return find(node, {"extras", "relume", "areaLight"});
-    }
-    return false;
 }
 
 /// Tells whether two things go to the same place. Only place and direction of a light count: its transform
@@ -59,8 +48,9 @@ bool movesWhole(EditedJson& node, const std::map<Carried, Move>& moves) {
     if (const EditedJson* children = find(node, {"children"}); children && !children->empty()) return false;
     for (const Carried carried : {Carried::Instance, Carried::Light, Carried::AreaLight})
         if (carries(node, carried) && !moves.contains(carried)) return false;
-    return std::all_of(moves.begin(), moves.end(),
-                       [&](const auto& move) { return together(move.second, moves.begin()->second); });
+    return std::all_of(moves.begin(), moves.end(), [&](const auto& move) {
+        return !move.second.apart && together(move.second, moves.begin()->second);
+    });
 }
 
 /// Calls `visit` with the target of each animation channel that has one.
@@ -152,8 +142,8 @@ std::map<Carried, Move> withFollower(EditedJson& node, const glm::mat4& world,
 
 /// Tells whether a node may be named by a number that nothing here knows of.
 bool hasUnknownExtensions(const FileEdit& edit) {
-    constexpr std::array kNamesNoNode = {"KHR_materials_", "KHR_texture_",        "KHR_mesh_",
-                                         "KHR_draco_",     "KHR_lights_punctual", "EXT_texture_"};
+    constexpr std::array kNamesNoNode = {"KHR_materials_",      "KHR_texture_", "KHR_mesh_", "KHR_draco_",
+                                         "KHR_lights_punctual", "EXT_texture_", kAreaLights, kVisibility};
     const auto used = edit.file.json.find("extensionsUsed");
     if (used == edit.file.json.end()) return false;
     return std::any_of(used->begin(), used->end(), [&](const json& entry) {
@@ -185,6 +175,18 @@ void unlist(EditedJson& holder, const char* key, int node) {
 
 } // namespace
 
+bool carries(EditedJson& node, Carried carried) {
+    switch (carried) {
+    case Carried::Instance:
+        return find(node, {"mesh"});
+    case Carried::Light:
+        return find(node, {"extensions", kPunctualLights});
+    case Carried::AreaLight:
+        return find(node, {"extras", "relume", "areaLight"}) || find(node, {"extensions", kAreaLights});
+    }
+    return false;
+}
+
 NodeTree::NodeTree(const File& file, int scene) : file_(file) {
     const json none = json::array();
     const auto section = [&](const char* key) -> const json& {
@@ -212,6 +214,12 @@ bool NodeTree::inScene(int index) const {
     while (index >= 0 && !roots_[static_cast<size_t>(index)])
         index = parents_[static_cast<size_t>(index)];
     return index >= 0;
+}
+
+bool NodeTree::isVisible(int index) const {
+    for (; index >= 0; index = parent(index))
+        if (!gltf::isVisible(node(index))) return false;
+    return true;
 }
 
 glm::dmat4 NodeTree::world(int index) const {

@@ -18,6 +18,8 @@ struct Move {
     std::string name;     // of what moves, for a node of its own
     glm::mat4 from{1.0f}; // to world, as the scene had it
     glm::mat4 to{1.0f};
+    bool apart =
+        false; // it goes to a child in any case, since what else its node carries is to differ from it
 };
 
 /// Holds moves by node and by what it carries.
@@ -34,6 +36,10 @@ public:
     /// Tells whether a node is in the scene, or, where there are no scenes, whether it is a node at
     /// all.
     bool inScene(int index) const;
+    /// Returns a node's parent, or -1.
+    int parent(int index) const { return parents_[static_cast<size_t>(index)]; }
+    /// Tells whether a node and all above it are visible.
+    bool isVisible(int index) const;
     /// Returns the node at the top of the tree that a node is in.
     int root(int index) const;
     glm::dmat4 world(int index) const;
@@ -61,6 +67,9 @@ std::map<std::pair<int, Carried>, int> moveCarried(FileEdit& edit, const NodeTre
 /// Takes away the last nodes of the file as far as they are among `candidates`, carry nothing and are named
 /// by nothing but their parent and scenes: adding and deleting a light leaves no trace.
 void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates);
+
+/// Tells whether a node carries a mesh, or a light of that kind.
+bool carries(EditedJson& node, Carried carried);
 
 /// Tells whether a node carries nothing at all, not even children.
 bool carriesNothing(const EditedJson& node);

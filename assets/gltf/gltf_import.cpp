@@ -9,6 +9,7 @@
 #include "assets/gltf/gltf_compression.h"
 #include "assets/gltf/gltf_file.h"
 #include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/model/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -62,12 +63,14 @@ json takeArray(json& document, const char* section) {
     return taken;
 }
 
-json takeLights(json& document) {
-    const json::json_pointer extension("/extensions/KHR_lights_punctual");
-    if (!document.contains(extension)) return json::array();
-    json lights = takeArray(document[extension], "lights");
-    document["extensions"].erase("KHR_lights_punctual");
-    return lights;
+/// Takes the list of lights of an extension; it is empty where there is none, or none that is a list.
+json takeLights(json& document, const char* name) {
+    const auto extensions = document.find("extensions");
+    if (extensions == document.end() || !extensionOf(document, name)) return json::array();
+    json& extension = (*extensions)[name];
+    json lights = extension.is_object() ? takeArray(extension, "lights") : json::array();
+    extensions->erase(name);
+    return lights.is_array() ? lights : json::array();
 }
 
 /// Tells whether a path names a regular file, by its name alone; the parser's own function would wait for
@@ -128,9 +131,14 @@ void warnPadded(Build& build, const std::string& what) {
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
+    build.materials = takeArray(file.json, "materials");
+    build.textures = takeArray(file.json, "textures");
+    build.samplers = takeArray(file.json, "samplers");
+    build.images = takeArray(file.json, "images");
     build.skins = takeArray(file.json, "skins");
     build.animations = takeArray(file.json, "animations");
-    build.lights = takeLights(file.json);
+    build.lights = takeLights(file.json, kPunctualLights);
+    build.areaLights = takeLights(file.json, kAreaLights);
     file.json.erase("scene");
     hideDracoIndices(file.json);
     const std::vector<CompressedView> compressed = takeCompressedViews(file.json);
@@ -142,7 +150,6 @@ void parse(File file, Build& build) {
     file.bytes = {};
 
     tinygltf::TinyGLTF parser;
-    parser.SetImageLoader(keepImageBytes, nullptr);
     parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, &files});
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
     const unsigned int size = static_cast<unsigned int>(bytes.size());
@@ -240,6 +247,7 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     tellWatch("loading");
     gltf::chooseScene(file, build);
     gltf::warnUnsupported(file, build);
+    gltf::chooseVariant(build, file.json);
     gltf::parse(std::move(file), build);
     build.scene.path = path;
     gltf::buildMaterials(build);
@@ -248,6 +256,7 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     gltf::NodePlaces places(build.nodes, poses);
     gltf::buildMeshes(build, places);
     gltf::buildNodes(build, places);
+    gltf::markPanes(build);
     build.limit.require(gltf::Made::Triangles, gltf::triangleCount(build.scene));
     gltf::buildSky(build);
     if (build.scene.instances.empty())

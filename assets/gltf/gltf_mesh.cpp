@@ -285,7 +285,7 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
         warn("has no POSITION and is skipped");
         return false;
     }
-    primitive.material = source_.material;
+    primitive.material = materialOf(build_, source_);
     primitive.positions = read<glm::vec3>("POSITION");
     primitive.normals = read<glm::vec3>("NORMAL");
     primitive.texCoord0 = read<glm::vec2>("TEXCOORD_0");

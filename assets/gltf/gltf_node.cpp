@@ -2,8 +2,10 @@
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "assets/gltf/gltf_file.h"
 #include "assets/gltf/gltf_instancing.h"
 #include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -67,8 +69,20 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
+bool hasLight(const json& node) {
+    return extensionOf(node, kPunctualLights) || extensionOf(node, kAreaLights) ||
+           ownExtra(node, "areaLight");
+}
+
+/// Tells whether all nodes above one are visible, also those that are not in the scene.
+bool visibleAbove(const json& nodes, const NodePlaces& places, int node) {
+    for (int i = places.parent(static_cast<size_t>(node)); i >= 0; i = places.parent(static_cast<size_t>(i)))
+        if (!isVisible(nodes[static_cast<size_t>(i)])) return false;
+    return true;
+}
+
 /// Adds the objects of a node: one, or one for each copy that it makes of its mesh.
-void addInstances(Build& build, size_t index, const glm::dmat4& world) {
+void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visible) {
     const json& node = build.nodes[index];
     const auto bent = build.bentMeshes.find(index);
     Instance instance;
@@ -78,6 +92,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world) {
     instance.name = nameOf(node);
     if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(instance.mesh)].name;
     instance.node = static_cast<int>(index);
+    instance.hidden = !visible;
     instance.bent = build.skinnedNodes.contains(index);
     instance.transform = instance.bent ? glm::mat4(1.0f) : glm::mat4(world);
     const std::vector<glm::dmat4> copies = copiesOf(build, node, labelOf(node, index));
@@ -103,19 +118,22 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world) {
     }
 }
 
-void addNode(Build& build, size_t index, const glm::dmat4& place) {
+void addNode(Build& build, size_t index, const glm::dmat4& place, bool visible) {
     const json& node = build.nodes[index];
     const glm::mat4 world(place);
     if (!finite(world)) {
         build.warnings.add(labelOf(node, index), "has a transform that is not finite and is ignored");
         return;
     }
-    addInstances(build, index, place);
+    addInstances(build, index, place, visible);
     const int camera = indexOr(node, "camera", -1);
     if (camera >= 0)
         build.scene.cameras.push_back(
             makeCamera(build.model.cameras[static_cast<size_t>(camera)], nameOf(node), world));
-    addLights(build, index, world);
+    if (visible)
+        addLights(build, index, world);
+    else if (hasLight(node))
+        build.warnings.add(labelOf(node, index), "is hidden, its light is left out");
 }
 
 } // namespace
@@ -229,12 +247,14 @@ void buildNodes(Build& build, NodePlaces& places) {
     struct Visit {
         int node;
         glm::dmat4 parent;
+        bool visible; // its parent
     };
     std::vector<Visit> stack;
     const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.sceneNumber);
     std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        stack.push_back({*root, places.parentWorld(static_cast<size_t>(*root))});
+        stack.push_back({*root, places.parentWorld(static_cast<size_t>(*root)),
+                         visibleAbove(build.nodes, places, *root)});
     while (!stack.empty()) {
         const Visit visit = stack.back();
         stack.pop_back();
@@ -243,10 +263,11 @@ void buildNodes(Build& build, NodePlaces& places) {
         visited[index] = true;
         const json& node = build.nodes[index];
         const glm::dmat4 world = visit.parent * places.local(index);
-        addNode(build, index, world);
+        const bool visible = visit.visible && isVisible(node);
+        addNode(build, index, world, visible);
         if (const json* children = member(node, "children"))
             for (auto child = children->rbegin(); child != children->rend(); ++child)
-                stack.push_back({child->get<int>(), world});
+                stack.push_back({child->get<int>(), world, visible});
     }
 }
 

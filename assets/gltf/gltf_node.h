@@ -41,7 +41,8 @@ public:
     /// Returns the transform of a node to world, by all its ancestors.
     glm::dmat4 world(size_t node);
     glm::dmat4 parentWorld(size_t node);
-    const NodePose* pose(size_t node) const; // nullptr: as in the file
+    int parent(size_t node) const { return parents_[node]; } // -1: none
+    const NodePose* pose(size_t node) const;                 // nullptr: as in the file
 
 private:
     const nlohmann::json& nodes_;

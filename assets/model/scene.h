@@ -45,6 +45,8 @@ struct Material {
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
+    float transmission = 0.0f; // of KHR_materials_transmission, the mean of its texture included
+    bool pane = false; // light passes it (panes.h); decided when the scene is read, whatever is edited
 };
 
 /// Holds triangles of one material. Arrays other than positions may be empty where the file has none. Normals

@@ -280,7 +280,7 @@ TEST(GltfImport, Materials) {
                               {"roughnessFactor", .75},
                               {"metallicRoughnessTexture", {{"index", 0}}}}}},
                            json::object(),
-                           {{"alphaMode", "BLEND"}, {"name", "Glass"}}};
+                           {{"alphaMode", "BLEND"}, {"name", "Milk glass"}}};
     b.json["meshes"][0]["primitives"][0]["material"] = 0;
     const Scene scene = loadGltf(b.write("materials.glb"));
     ASSERT_EQ(scene.materials.size(), 3u);
@@ -305,7 +305,7 @@ TEST(GltfImport, Materials) {
     EXPECT_EQ(plain.emission, glm::vec3(0));
     EXPECT_EQ(plain.baseColorTexture.texture, -1);
     EXPECT_EQ(plain.alphaMode, AlphaMode::Opaque);
-    EXPECT_TRUE(warns(scene, "material 'Glass': alpha mode BLEND is baked as opaque"));
+    EXPECT_TRUE(warns(scene, "material 'Milk glass': alpha mode BLEND is baked as opaque"));
 }
 
 TEST(GltfImport, TextureTransformAndItsTexCoord) {

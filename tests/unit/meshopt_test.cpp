@@ -16,7 +16,7 @@ namespace relume {
 namespace {
 
 std::string meshoptFile(const std::string& name) {
-    return std::string(RELUME_SOURCE_DIR) + "/tests/data/" + name;
+    return RELUME_SOURCE_DIR "/tests/data/" + name;
 }
 
 std::string refusal(std::span<const uint8_t> stream, const MeshoptLayout& layout) {

@@ -75,7 +75,11 @@ TEST_F(SessionSaveTest, WhatIsEditedIsUnsavedUntilItIsSaved) {
     EXPECT_TRUE(session_.dirty()) << "not as the file has it now";
     change("Hide", [](SceneEdits& edits) { edits.placements[0].hidden = true; });
     ASSERT_TRUE(save());
-    EXPECT_FALSE(session_.dirty()) << "a file cannot hide";
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_TRUE(loadGltf(file()).instances[0].hidden);
+    session_.undo();
+    EXPECT_TRUE(session_.dirty()) << "the file hides it";
+    ASSERT_TRUE(save());
     EXPECT_EQ(bytesOf(file()), before) << "a value that is edited back is what it was";
 }
 

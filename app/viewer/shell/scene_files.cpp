@@ -1,6 +1,5 @@
 #include "app/viewer/shell/scene_files.h"
 
-#include "app/edit/scene_edit.h"
 #include "app/offline/command_files.h"
 #include "assets/base/warnings.h"
 
@@ -181,8 +180,7 @@ void SceneFiles::followSaves() {
     path_ = saved;
     desc_.preferences.addRecent(session.path());
     desc_.feedback.tell("saved", session.path());
-    const std::string unsaved = unsavedPart(session.document().edits);
-    desc_.feedback.note("saved " + session.path() + (unsaved.empty() ? "" : ": " + unsaved));
+    desc_.feedback.note("saved " + session.path());
 }
 
 void SceneFiles::followTitle() {
