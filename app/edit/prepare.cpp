@@ -7,6 +7,9 @@
 #include "assets/base/watch.h"
 #include "assets/survey/preview_light.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace relume {
@@ -15,6 +18,18 @@ namespace {
 void warn(const std::vector<std::string>& warnings, size_t first = 0) {
     for (size_t i = first; i < warnings.size(); ++i)
         spdlog::warn("{}", warnings[i]);
+}
+
+// Returns the lightmap's edge, and says so where it was chosen.
+uint32_t sizeOf(const Scene& scene, const PrepareDesc& desc) {
+    if (desc.leastDensity <= 0) return desc.size;
+    constexpr double kCovered = 0.85; // share of an atlas that charts cover
+    const double area = surfaceArea(scene);
+    const uint32_t size =
+        std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMostFitted));
+    spdlog::info("{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m",
+                 desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)));
+    return size;
 }
 
 void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
@@ -29,7 +44,7 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
                         desc.path, missing, scene.meshes.size()));
     }
     if (!furnishing.unwrap) return;
-    const UnwrapResult made = unwrap(scene, {.density = furnishing.density, .size = desc.size});
+    const UnwrapResult made = unwrap(scene, {.density = furnishing.density, .size = prepared.size});
     if (made.meshes == 0) return; // they are nothing but triangles without area
     prepared.madeUvs = fmt::format("lightmap UVs were made for {} of {} meshes: {} charts at {:.3g} texels/m",
                                    made.meshes, scene.meshes.size(), made.charts, made.density);
@@ -62,8 +77,9 @@ PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(con
     if (whenRead && desc.furnishing.unwrap && countUnmapped(result.scene) > 0) whenRead(result.scene);
 
     const auto atlasStart = Clock::now();
+    result.size = sizeOf(result.scene, desc);
     furnishUvs(result, desc);
-    result.atlas = buildAtlas(result.scene, desc.size, desc.furnishing.unwrap);
+    result.atlas = buildAtlas(result.scene, result.size, desc.furnishing.unwrap);
     warn(result.atlas.warnings);
     const size_t before = result.scene.warnings.size();
     result.mesh = flatten(result.scene, result.atlas);

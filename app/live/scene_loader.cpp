@@ -69,7 +69,7 @@ std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t
     const Scene& file = scene->prepared.scene;
     scene->geometry = makeGeometry(file, scene->prepared.mesh);
     scene->view = view ? *view : viewOf(file, scene->prepared.mesh, scene->geometry.bounds);
-    scene->size = desc.size;
+    scene->size = scene->prepared.size;
     scene->number = number;
     return scene;
 }

@@ -52,12 +52,14 @@ void Session::load(const Next& next) {
     desc.path = path;
     desc.choice = choice;
     desc.size = document_.bake.size;
+    if (keep) desc.leastDensity = 0; // its size stays
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
     const FileTime time = fileTime(path);
     loading_ = {.keep = keep,
                 .time = time,
                 .sameFile = keep && path == prepare_.path && watch_.isKnown(time),
+                .fits = desc.leastDensity > 0,
                 .choice = choice};
     // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
     loader_.start(desc, !keep);
@@ -191,6 +193,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
         document_.mix = {};
     }
     document_.edits = std::move(edits);
+    if (loading_.fits) document_.bake.size = scene->size;
     ++changes_;
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
@@ -230,6 +233,10 @@ void Session::cancelEdit() {
 
 void Session::apply(const Document& next) {
     const bool resized = next.bake.size != document_.bake.size;
+    if (resized) { // the user has chosen
+        prepare_.leastDensity = 0;
+        loading_.fits = false;
+    }
     document_ = next;
     ++changes_;
     // Charts are packed for a size: another size needs another atlas.

@@ -90,6 +90,7 @@ private:
         bool keep = false;
         FileTime time;         // of its file
         bool sameFile = false; // the file is as it was read or saved before
+        bool fits = false;     // its size is chosen for it
         GltfChoice choice;
     };
     /// Names the scene that is to be loaded next.

@@ -246,6 +246,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     request.prepare = {.path = o.files.scene,
                        .choice = o.files.choice,
                        .size = o.patches.size,
+                       .leastDensity = o.patches.leastDensity,
                        .furnishing = o.patches.furnishing};
     request.bake.size = o.patches.size;
     request.bake.conservative = o.patches.conservative;

@@ -26,7 +26,8 @@ struct BakeFiles {
 
 /// The patches that the lightmap has.
 struct PatchOptions {
-    uint32_t size = 512; // lightmap edge [texels]
+    uint32_t size = 512;     // lightmap edge [texels]
+    double leastDensity = 0; // as PrepareDesc has it
     bool conservative = false;
     Furnishing furnishing;
 };

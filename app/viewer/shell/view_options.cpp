@@ -24,6 +24,8 @@ uint32_t parseEdge(const std::string& all, std::string_view part) {
                      std::to_string(kLeastWindowEdge) + " to " + std::to_string(kMostWindowEdge));
 }
 
+constexpr double kViewDensity = 4; // [texels/m]: a shadow's edge is within 25 cm of where it belongs
+
 bool isScene(std::string name) {
     std::error_code code;
     if (std::filesystem::is_regular_file(name, code)) return true;
@@ -51,6 +53,9 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb (default: none yet)");
     addChoiceOptions(command, o.bake.files.choice);
     addSizeOption(command, "--size", o.bake);
+    command.get_option("--size")->description(
+        fmt::format("Lightmap edge in texels (default: what gives {} texels per metre, from 512 to {})",
+                    kViewDensity, kMostFitted));
     addSolverOptions(command, o.bake);
     command.add_option("--preset", o.bake.solve.preset, "rtrad: the reference implementation to the letter")
         ->check(oneOf({"rtrad"}));
@@ -79,6 +84,8 @@ ViewerDesc resolveViewOptions(const ViewOptions& o) {
                     .watch = o.watch,
                     .camera = o.camera,
                     .logActions = o.logActions};
+    const double density = o.bake.patches.furnishing.density;
+    if (!o.sizeTyped) desc.request.prepare.leastDensity = density > 0 ? density : kViewDensity;
     desc.request.bake.solver.layers.on = !o.noLayers;
     if (!o.window.empty()) {
         const size_t cross = o.window.find('x');
