@@ -5,6 +5,8 @@
 #include "renderer/good_view.h"
 
 #include <chrono>
+#include <functional>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -14,22 +16,24 @@ constexpr float kAspect = 16.0f / 9.0f;
 
 struct LoadUnwanted {};
 
-/// Ends a load that nobody waits for any more.
+/// Tells how far a load is, and ends one that nobody waits for any more.
 class LoadWatch final : public Watch {
 public:
-    explicit LoadWatch(const std::atomic<bool>& unwanted) : unwanted_(unwanted), scope_(*this) {}
-    void hear(const char*, double) override {
+    using Tell = std::function<void(const char* phase, double done)>;
+    LoadWatch(const std::atomic<bool>& unwanted, Tell tell)
+        : unwanted_(unwanted), tell_(std::move(tell)), scope_(*this) {}
+    void hear(const char* phase, double done) override {
         if (unwanted_) throw LoadUnwanted();
+        tell_(phase, done);
     }
 
 private:
     const std::atomic<bool>& unwanted_;
+    Tell tell_;
     WatchScope scope_;
 };
 
-std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number,
-                                  const std::atomic<bool>& unwanted) {
-    const LoadWatch watch(unwanted);
+std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number) {
     auto scene = std::make_unique<LoadedScene>();
     scene->prepared = prepareScene(desc);
     const Scene& file = scene->prepared.scene;
@@ -52,8 +56,19 @@ void SceneLoader::start(const PrepareDesc& desc) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
-    loading_ = std::async(std::launch::async,
-                          [this, desc, number = ++loads_] { return load(desc, number, unwanted_); });
+    progress_ = {}; // nobody else has it now
+    loading_ = std::async(std::launch::async, [this, desc, number = ++loads_] {
+        const LoadWatch watch(unwanted_, [this](const char* phase, double done) {
+            const std::lock_guard lock(mutex_);
+            progress_ = {phase, done};
+        });
+        return load(desc, number);
+    });
+}
+
+LoadProgress SceneLoader::progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
 }
 
 bool SceneLoader::ready() const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "app/edit/prepare.h"
@@ -21,6 +22,12 @@ struct LoadedScene {
     uint64_t number = 0;    // counts loads from 1
 };
 
+/// Tells how far a load is.
+struct LoadProgress {
+    std::string phase;  // what is being done: "unwrapping"
+    double done = -1.0; // share of this phase, negative where it is not known
+};
+
 /// Loads one scene at a time beside the main thread.
 class SceneLoader {
 public:
@@ -32,6 +39,7 @@ public:
     bool loading() const { return loading_.valid(); }
     /// Returns the path of the scene that is loading, "" for none.
     const std::string& path() const { return path_; }
+    LoadProgress progress() const;
     /// Begins to load; nothing may be loading.
     void start(const PrepareDesc& desc);
     /// Lets the load under way end early: nobody wants its scene any more.
@@ -45,6 +53,8 @@ public:
 private:
     std::future<std::unique_ptr<LoadedScene>> loading_;
     std::atomic<bool> unwanted_ = false;
+    mutable std::mutex mutex_; // guards progress_
+    LoadProgress progress_;
     std::string path_;
     uint64_t loads_ = 0;
 };

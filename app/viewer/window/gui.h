@@ -2,6 +2,8 @@
 
 #include "app/viewer/window/window.h"
 
+struct ImFont;
+
 namespace relume {
 
 /// Dear ImGui in a window: its context, fonts and style. It belongs to the window's context; there is one at
@@ -20,17 +22,25 @@ public:
     /// Ends the frame and draws it into the window.
     void end();
 
+    /// Says whether the arrow keys and Tab go through the controls, and Enter and Space press them, from the
+    /// next frame on.
+    void navigate(bool on);
+
     bool wantsMouse() const;    // the cursor is over a panel, or drags something of one
     bool wantsKeyboard() const; // something is typed
     /// Tells whether something blinks or is dragged.
     bool animates() const;
+    /// Returns the font of headings, which is larger. It is valid within a frame.
+    static ImFont* titleFont();
 
 private:
     void setScale(float scale);
     void feedSeen();
+    void feedKey(const WindowEvent& event, int state);
 
     Window& window_;
     float scale_ = 0;
+    bool navigates_ = false;
     std::vector<int> pressed_;          // keys, since the frame before
     std::vector<WindowEvent> releases_; // of such keys: the next frame must still see them held
     std::vector<WindowEvent> seen_;     // of those that the last frame saw held
