@@ -281,6 +281,30 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped) {
     return atlas;
 }
 
+namespace {
+
+bool hasSurface(const Mesh& mesh) {
+    for (const Primitive& primitive : mesh.primitives)
+        for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            const auto corner = [&](size_t k) { return primitive.positions[primitive.indices[i + k]]; };
+            const glm::vec3 a = corner(0);
+            if (glm::cross(corner(1) - a, corner(2) - a) != glm::vec3(0.0f)) return true;
+        }
+    return false;
+}
+
+} // namespace
+
+size_t countUnmapped(const Scene& scene) {
+    std::vector<bool> used(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances)
+        used[static_cast<size_t>(instance.mesh)] = true;
+    size_t count = 0;
+    for (size_t i = 0; i < used.size(); ++i)
+        count += used[i] && hasSurface(scene.meshes[i]) && lightmapSet(scene.meshes[i]) < 0 ? 1 : 0;
+    return count;
+}
+
 int lightmapSet(const Mesh& mesh) {
     for (int set : {1, 0}) {
         const SetQuality quality = assess(mesh, set);

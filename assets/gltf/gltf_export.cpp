@@ -341,6 +341,7 @@ void GlbWriter::addNodes() {
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
+        if (!light.preview)
         nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
@@ -349,7 +350,7 @@ void GlbWriter::addNodes() {
         roots.push_back(i);
     Json root = Json::object();
     if (!nodes.empty()) root["nodes"] = std::move(roots);
-    if (scene_.sky.shines() || !skyFile_.empty())
+    if (!scene_.sky.preview && (scene_.sky.shines() || !skyFile_.empty()))
         root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
     json_["scenes"].push_back(std::move(root));
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);

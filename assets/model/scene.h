@@ -104,6 +104,7 @@ struct Light {
     float angle = 0.0f;  // directional: across the disc in the sky that it comes from [rad], 0: one direction
     glm::vec2 size{1.0f}; // rectangle: along X and Y [m]
     int node = -1;        // of the file, whose light it is; -1: the file has it not
+    bool preview = false; // of a dark level: it is shown and baked, and in no file that is written
 
     bool operator==(const Light&) const = default;
 };
@@ -113,6 +114,7 @@ struct SkySettings {
     glm::vec3 radiance{0.0f}; // [cd/m^2]; of a picture: factor on it
     float rotation = 0.0f;    // of the picture about +Y, counter-clockwise from above [rad]
     std::string file;         // path of the picture, "" for none
+    bool preview = false;     // as Light::preview
 
     bool operator==(const SkySettings&) const = default;
 };
