@@ -98,11 +98,14 @@ TEST_F(ViewerStart, WhatCannotBeOpenedIsToldInTheMiddleAndTheSceneStays) {
 TEST_F(ViewerStart, ADamagedFirstFileLeavesTheStartPage) {
     auto viewer = open({damagedFile()});
     ASSERT_TRUE(viewer->shows("middle: failure over start page")) << viewer->output();
-    // The keys reach the first button of the message.
-    viewer->keys({"Down"});
+    // Tab goes through the buttons of the message, and Enter presses them.
+    viewer->keys({"Tab"});
     viewer->settle();
     pressAndExpect(*viewer, "Return", "action: Open scene");
-    viewer->keys({"Escape"});
+    pressAndExpect(*viewer, "Escape", "action: Close");
+    viewer->keys({"shift+Tab", "shift+Tab"});
+    viewer->settle();
+    pressAndExpect(*viewer, "Return", "copied: ");
     pressAndExpect(*viewer, "Escape", "middle: start page");
     quit(*viewer);
 }

@@ -1,6 +1,7 @@
 // These tests say what stands in the middle of the window: the scene, the start page, or a card.
 #include "app/viewer/state/middle.h"
 
+#include "app/viewer/panels/tab_order.h"
 #include "app/viewer/state/picture_notice.h"
 
 #include <gtest/gtest.h>
@@ -114,6 +115,17 @@ TEST(Middle, ALoadIsToldInWords) {
     EXPECT_EQ(loadingWords("loading"), "Reading the file");
     EXPECT_EQ(loadingWords("unwrapping"), "Making lightmap UVs");
     EXPECT_EQ(loadingWords("what is not known"), "what is not known");
+}
+
+TEST(TabOrder, GoesRound) {
+    EXPECT_EQ(ui::tabStop(-1, 1, 3), 0) << "the first, where none has the focus";
+    EXPECT_EQ(ui::tabStop(-1, -1, 3), 2);
+    EXPECT_EQ(ui::tabStop(0, 1, 3), 1);
+    EXPECT_EQ(ui::tabStop(2, 1, 3), 0);
+    EXPECT_EQ(ui::tabStop(0, -1, 3), 2);
+    EXPECT_EQ(ui::tabStop(1, -7, 3), 0);
+    EXPECT_EQ(ui::tabStop(1, 8, 3), 0);
+    EXPECT_EQ(ui::tabStop(-1, 1, 0), -1) << "there is none";
 }
 
 PictureFacts seen() {

@@ -13,6 +13,7 @@ namespace relume {
 /// All that the middle of the window shows.
 struct MiddleView {
     Middle middle;
+    int tabs = 0;          // how often Tab was pressed, see Gui::takeTabs()
     bool scene = false;    // there is one behind it
     std::string opening;   // the file that is being opened
     LoadProgress progress; // of it

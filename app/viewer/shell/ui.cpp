@@ -299,7 +299,14 @@ bool Ui::takesKeys(const Middle& middle) const {
 // Draws what stands in the middle, over the picture or, as the start page, over all that is below the menus.
 void Ui::drawMiddle(const PanelContext& context, const MiddleView& middle, const PictureArea& picture,
                     const PictureArea& all) {
-    if (middle.middle.startPage) start_.draw(context, all, middle.scene);
+    tabs_.begin(middle.tabs);
+    std::optional<ui::TabOrder::Scope> order;
+    const bool failure = middle.middle.card == Middle::Card::Failure; // it is in front of the page
+    if (middle.middle.startPage) {
+        if (!failure) order.emplace(tabs_);
+        start_.draw(context, all, middle.scene);
+    }
+    if (failure) order.emplace(tabs_);
     drawMiddleCard(context, middle, middle.middle.startPage ? all : picture);
 }
 

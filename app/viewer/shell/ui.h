@@ -6,6 +6,7 @@
 #include "app/viewer/panels/lights_panel.h"
 #include "app/viewer/panels/panel.h"
 #include "app/viewer/panels/scene_panel.h"
+#include "app/viewer/panels/tab_order.h"
 #include "app/viewer/shell/file_dialog.h"
 #include "app/viewer/shell/middle_cards.h"
 #include "app/viewer/shell/question.h"
@@ -47,6 +48,7 @@ private:
     ScenePanel scene_;
     LightsPanel lights_;
     StartPage start_;
+    ui::TabOrder tabs_; // of what is in the middle of the window
     FileDialog files_;
     Question question_;
     ui::ItemLog items_;

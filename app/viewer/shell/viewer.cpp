@@ -245,6 +245,7 @@ Opening::Facts Viewer::openingFacts() const {
 
 MiddleView Viewer::middleView() {
     return {.middle = files_.opening().middle(openingFacts()),
+            .tabs = gui_.takeTabs(),
             .scene = session_.scene() != nullptr,
             .opening = files_.opening().path(),
             .progress = session_.loader().progress(),

@@ -145,6 +145,10 @@ void Gui::feedKey(const WindowEvent& event, int state) {
     const bool enter = event.place == GLFW_KEY_ENTER || event.place == GLFW_KEY_KP_ENTER;
     const bool presses = enter && navigates_ && !wantsKeyboard();
     const bool released = state == GLFW_RELEASE; // whatever it was when it went down
+    if (event.place == GLFW_KEY_TAB && navigates_ && !wantsKeyboard() && !released) {
+        tabs_ += (event.mods & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+        return;
+    }
     if (enter && (presses || released))
         ImGui_ImplGlfw_KeyCallback(window, GLFW_KEY_SPACE, 0, state, event.mods);
     if (!presses || released)
@@ -153,6 +157,7 @@ void Gui::feedKey(const WindowEvent& event, int state) {
 
 void Gui::navigate(bool on) {
     navigates_ = on;
+    if (!on) tabs_ = 0;
     ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
     flags = on ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "app/viewer/window/window.h"
 
 struct ImFont;
@@ -22,9 +24,11 @@ public:
     /// Ends the frame and draws it into the window.
     void end();
 
-    /// Says whether the arrow keys and Tab go through the controls, and Enter and Space press them, from the
-    /// next frame on.
+    /// Says whether the arrow keys go through the controls, and Enter and Space press them, from the next
+    /// frame on. Meanwhile Tab is counted.
     void navigate(bool on);
+    /// Returns how often Tab was pressed since the last call; with Shift it counts below 0.
+    int takeTabs() { return std::exchange(tabs_, 0); }
 
     bool wantsMouse() const;    // the cursor is over a panel, or drags something of one
     bool wantsKeyboard() const; // something is typed
@@ -41,6 +45,7 @@ private:
     Window& window_;
     float scale_ = 0;
     bool navigates_ = false;
+    int tabs_ = 0;                      // for takeTabs()
     std::vector<int> pressed_;          // keys, since the frame before
     std::vector<WindowEvent> releases_; // of such keys: the next frame must still see them held
     std::vector<WindowEvent> seen_;     // of those that the last frame saw held
