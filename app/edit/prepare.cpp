@@ -23,9 +23,10 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
     if (furnishing.strict) {
         const size_t missing = countUnmapped(scene);
         if (missing == 0) return;
-        throw Error(fmt::format("{}: {} of {} meshes have no usable lightmap UVs: run 'relume unwrap', or leave "
-                                "out --strict to have them made",
-                                desc.path, missing, scene.meshes.size()));
+        throw Error(
+            fmt::format("{}: {} of {} meshes have no usable lightmap UVs: run 'relume unwrap', or leave "
+                        "out --strict to have them made",
+                        desc.path, missing, scene.meshes.size()));
     }
     if (!furnishing.unwrap) return;
     const UnwrapResult made = unwrap(scene, {.density = furnishing.density, .size = desc.size});
@@ -41,8 +42,9 @@ void furnishLight(PreparedScene& prepared, const Furnishing& furnishing) {
     Scene& scene = prepared.scene;
     if (!isDark(scene)) return;
     if (furnishing.strict)
-        throw Error(scene.path + ": nothing in it shines: add a light (relume edit --add), or leave out --strict "
-                                 "to have it lit by a preview light");
+        throw Error(scene.path +
+                    ": nothing in it shines: add a light (relume edit --add), or leave out --strict "
+                    "to have it lit by a preview light");
     if (!furnishing.daylight) return;
     tellWatch("looking for light");
     prepared.madeLight = addPreviewLight(scene, prepared.mesh);
@@ -57,7 +59,7 @@ PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(con
     result.loadSeconds = secondsSince(start);
     warn(result.scene.warnings);
     requireArea(result.scene);
-    if (whenRead) whenRead(result.scene);
+    if (whenRead && desc.furnishing.unwrap && countUnmapped(result.scene) > 0) whenRead(result.scene);
 
     const auto atlasStart = Clock::now();
     furnishUvs(result, desc);

@@ -35,8 +35,8 @@ struct PrepareDesc {
     bool edited = false; // edits follow, which may add light: furnishLight() is called after them
 };
 
-/// Prepares a scene and logs the warnings of each step. `whenRead` is called with the scene as its file has it,
-/// before anything else is done. Throws Error.
+/// Prepares a scene and logs the warnings of each step. Where lightmap UVs are to be made, which takes a
+/// while, `whenRead` is called before with the scene as its file has it. Throws Error.
 PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead = {});
 
 /// Adds preview light to a prepared scene that is dark and warns about it, or throws Error, as the furnishing

@@ -41,7 +41,11 @@ public:
     const std::string& path() const { return path_; }
     LoadProgress progress() const;
     /// Begins to load; nothing may be loading.
-    void start(const PrepareDesc& desc);
+    /// `early`: takeEarly() is asked.
+    void start(const PrepareDesc& desc, bool early);
+    /// Returns the scene under way as far as it can be drawn, where the rest takes a while: its geometry
+    /// without lightmap UVs, its materials and its view. Each is returned once; nullptr: none, or none yet.
+    std::unique_ptr<LoadedScene> takeEarly();
     /// Lets the load under way end early: nobody wants its scene any more.
     void drop() { unwanted_ = true; }
     /// Tells whether finish() would not wait.
@@ -51,9 +55,13 @@ public:
     std::unique_ptr<LoadedScene> finish();
 
 private:
+    std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number, bool early);
+    void handOut(std::unique_ptr<LoadedScene> early);
+
     std::future<std::unique_ptr<LoadedScene>> loading_;
     std::atomic<bool> unwanted_ = false;
-    mutable std::mutex mutex_; // guards progress_
+    mutable std::mutex mutex_; // guards the next two
+    std::unique_ptr<LoadedScene> early_;
     LoadProgress progress_;
     std::string path_;
     uint64_t loads_ = 0;

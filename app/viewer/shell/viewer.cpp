@@ -166,6 +166,11 @@ void Viewer::follow(double time) {
 
 void Viewer::followScene() {
     if (session_.update()) takeScene();
+    const auto view = [this](const LoadedScene& scene) { return firstCamera(scene); };
+    if (picture_.followEarly(view)) {
+        if (session_.early() != nullptr) feedback_.tell("geometry", session_.early()->prepared.scene.path);
+        feedback_.sceneChanged();
+    }
     if (!session_.lastError().empty()) {
         feedback_.showError(session_.lastError()); // the log has told it, too
         session_.clearError();
@@ -187,8 +192,8 @@ void Viewer::takeScene() {
     progress_.sceneCame(feedback_.now());
     comparison_.sceneCame();
     if (!session_.sceneWasKept()) {
-        const ViewCamera camera = firstCamera();
-        picture_.camera().set(camera, scene.geometry.bounds);
+        const ViewCamera camera = firstCamera(scene);
+        if (!picture_.wasEarly(scene)) picture_.camera().set(camera, scene.geometry.bounds);
         picture_.camera().setHome(camera);
     }
     files_.sceneCame();
@@ -198,8 +203,7 @@ void Viewer::takeScene() {
 }
 
 // Returns the camera that a scene is seen by at first: the one that was asked for, else its own.
-ViewCamera Viewer::firstCamera() {
-    const LoadedScene& scene = *session_.scene();
+ViewCamera Viewer::firstCamera(const LoadedScene& scene) {
     const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
     const auto named = std::find_if(cameras.begin(), cameras.end(),
                                     [&](const Camera& camera) { return camera.name == desc_.camera; });
@@ -223,7 +227,7 @@ void Viewer::followBake(double time) {
 
 // Returns why the picture shows nothing, or no light.
 std::optional<PictureNotice> Viewer::notice() const {
-    if (session_.scene() == nullptr) return std::nullopt;
+    if (session_.scene() == nullptr || session_.early() != nullptr) return std::nullopt;
     const std::vector<Placement>& placements = session_.document().edits.placements;
     const auto hidden =
         std::count_if(placements.begin(), placements.end(), [](const Placement& p) { return p.hidden; });
@@ -237,8 +241,9 @@ std::optional<PictureNotice> Viewer::notice() const {
 
 Opening::Facts Viewer::openingFacts() const {
     const std::optional<PictureNotice> said = notice();
-    return {.scene = session_.scene() != nullptr,
-            .loading = session_.loading(),
+    const bool early = session_.early() != nullptr; // its geometry is seen while the rest is made
+    return {.scene = session_.scene() != nullptr || early,
+            .loading = session_.loading() && !early,
             .time = feedback_.now(),
             .notice = said ? said->title + ": " + said->text : ""};
 }
@@ -246,7 +251,7 @@ Opening::Facts Viewer::openingFacts() const {
 MiddleView Viewer::middleView() {
     return {.middle = files_.opening().middle(openingFacts()),
             .tabs = gui_.takeTabs(),
-            .scene = session_.scene() != nullptr,
+            .scene = openingFacts().scene,
             .opening = files_.opening().path(),
             .progress = session_.loader().progress(),
             .failure = files_.opening().failure(),
@@ -325,7 +330,10 @@ void Viewer::drawOverlay() {
         ui_.items().add("Line", glm::ivec2(glm::round(comparison_.grip())));
         comparison_.draw();
     }
-    if (!picture_.state().bare) drawBadge(progress_.badge(), picture_.area());
+    if (picture_.state().bare || session_.early() != nullptr) return;
+    const std::string furnished =
+        furnishedText(!session_.scene()->prepared.madeUvs.empty(), hasPreview(session_.document().edits));
+    drawBadge(progress_.badge(), furnished, picture_.area());
 }
 
 void Viewer::frame(const Redraw& redraw) {

@@ -20,8 +20,9 @@ std::string middleName(const Middle& middle) {
 }
 
 std::string loadingWords(const std::string& phase) {
-    constexpr std::array<std::pair<const char*, const char*>, 5> kWords = {{
+    constexpr std::array<std::pair<const char*, const char*>, 6> kWords = {{
         {"loading", "Reading the file"},
+        {"drawing the geometry", "Making the geometry"},
         {"unwrapping", "Making lightmap UVs"},
         {"packing charts", "Packing the charts of the lightmap"},
         {"atlas", "Laying out the lightmap"},
