@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,14 +15,19 @@
 
 namespace relume::gltf {
 
+class NodePlaces;
+
 /// Holds what the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
     std::string path;
     GltfChoice choice;
-    tinygltf::Model model;        // without nodes, scenes and lights: the parser is slow for very many
-    nlohmann::json nodes, scenes; // arrays as in the file
-    nlohmann::json lights;        // the array of KHR_lights_punctual as in the file
-    int defaultScene = 0;
+    tinygltf::Model model;            // without nodes, scenes and lights: the parser is slow for very many
+    nlohmann::json nodes, scenes;     // arrays as in the file
+    nlohmann::json lights;            // the array of KHR_lights_punctual as in the file
+    nlohmann::json skins, animations; // arrays as in the file, whose entries are not checked
+    std::map<size_t, int> bentMeshes; // by node: the scene's mesh where it is not that of the file's number
+    int sceneNumber = 0;              // of the scene that is read
+    std::set<size_t> skinnedNodes;    // whose meshes stand where their joints put them
     SizeLimit limit;
     Scene scene;
     Warnings warnings;
@@ -38,17 +45,18 @@ std::vector<uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::
 /// Error for a missing or undecodable image.
 void buildMaterials(Build& build);
 
-/// Fills Scene::meshes, one per mesh of the file (empty where nothing of it is usable). Throws Error.
-void buildMeshes(Build& build);
+/// Fills Scene::meshes, one per mesh of the file (empty where nothing of it is usable), and one for each node
+/// whose skin or morph targets give it a shape of its own. Throws Error.
+void buildMeshes(Build& build, NodePlaces& places);
 
-/// Fills Scene::instances, cameras and lights from the default scene's nodes, or all root nodes where there
-/// is no scene. Walks without recursion. Throws Error.
-void buildNodes(Build& build);
+/// Fills Scene::instances, cameras and lights from the nodes of the scene that is read, or all root nodes
+/// where there is no scene. Walks without recursion. Throws Error.
+void buildNodes(Build& build, NodePlaces& places);
 
 /// Adds the lights of a node to Scene::lights: that of KHR_lights_punctual, and an area light of its extras.
 void addLights(Build& build, size_t node, const glm::mat4& world);
 
-/// Fills Scene::sky from the default scene's extras, its picture included. Throws Error.
+/// Fills Scene::sky from that scene's extras, its picture included. Throws Error.
 void buildSky(Build& build);
 
 /// Returns an image of the file as 8-bit RGBA and drops the parsed file's bytes of it. Throws Error where it

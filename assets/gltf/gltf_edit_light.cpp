@@ -200,7 +200,7 @@ void LightEdit::remove(const Light& light) {
 size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
     EditedJson* scenes = find(edit_.json, {"scenes"});
     if (!scenes || scenes->empty()) return kLastPlace;
-    const EditedJson* roots = find(defaultScene(edit_), {"nodes"});
+    const EditedJson* roots = find(editedScene(edit_), {"nodes"});
     if (!roots) return kLastPlace;
     const auto placeOf = [&](int node) -> size_t {
         const int root = static_cast<size_t>(node) < tree_.size() ? tree_.root(node) : node;

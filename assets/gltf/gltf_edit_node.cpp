@@ -185,20 +185,16 @@ void unlist(EditedJson& holder, const char* key, int node) {
 
 } // namespace
 
-NodeTree::NodeTree(const File& file) : file_(file) {
+NodeTree::NodeTree(const File& file, int scene) : file_(file) {
     const json none = json::array();
     const auto section = [&](const char* key) -> const json& {
         const auto found = file.json.find(key);
         return found == file.json.end() ? none : *found;
     };
     const json& nodes = section("nodes");
-    parents_.assign(nodes.size(), -1);
+    parents_ = parentsOf(nodes);
     roots_.assign(nodes.size(), false);
-    for (size_t i = 0; i < nodes.size(); ++i)
-        if (const auto children = nodes[i].find("children"); children != nodes[i].end())
-            for (const json& child : *children)
-                parents_[child.get<size_t>()] = static_cast<int>(i);
-    for (const int root : rootNodes(nodes, section("scenes"), file.json.value("scene", 0)))
+    for (const int root : rootNodes(nodes, section("scenes"), scene))
         roots_[static_cast<size_t>(root)] = true;
 }
 
@@ -213,7 +209,9 @@ int NodeTree::root(int index) const {
 }
 
 bool NodeTree::inScene(int index) const {
-    return roots_[static_cast<size_t>(root(index))];
+    while (index >= 0 && !roots_[static_cast<size_t>(index)])
+        index = parents_[static_cast<size_t>(index)];
+    return index >= 0;
 }
 
 glm::dmat4 NodeTree::world(int index) const {
@@ -242,7 +240,7 @@ int addNode(FileEdit& edit, const std::string& name, int parent, size_t place) {
     // Without scenes all nodes that have no parent are shown.
     const bool hasScenes = edit.json.contains("scenes") && !edit.json["scenes"].empty();
     if (parent < 0 && !hasScenes) return index;
-    EditedJson& holder = parent < 0 ? defaultScene(edit) : nodes[static_cast<size_t>(parent)];
+    EditedJson& holder = parent < 0 ? editedScene(edit) : nodes[static_cast<size_t>(parent)];
     EditedJson& list = holder[parent < 0 ? "nodes" : "children"];
     if (list.is_null()) list = EditedJson::array();
     list.insert(list.begin() + static_cast<std::ptrdiff_t>(std::min(place, list.size())), index);
@@ -295,7 +293,7 @@ void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates) {
     }
 }
 
-EditedJson& defaultScene(FileEdit& edit) {
+EditedJson& editedScene(FileEdit& edit) {
     if (!edit.json.contains("scenes") || edit.json["scenes"].empty()) {
         EditedJson scene = EditedJson::object();
         const json none = json::array();
@@ -304,7 +302,7 @@ EditedJson& defaultScene(FileEdit& edit) {
         edit.json["scene"] = 0;
         edit.json["scenes"] = EditedJson::array({std::move(scene)});
     }
-    return edit.json["scenes"][static_cast<size_t>(edit.json.value("scene", 0))];
+    return edit.json["scenes"][static_cast<size_t>(edit.scene)];
 }
 
 } // namespace relume::gltf

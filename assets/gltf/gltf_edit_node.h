@@ -27,11 +27,11 @@ using Moves = std::map<int, std::map<Carried, Move>>;
 /// children.
 class NodeTree {
 public:
-    explicit NodeTree(const File& file); // `file` must outlive it
+    NodeTree(const File& file, int scene); // `file` must outlive it
 
     size_t size() const { return parents_.size(); }
     const nlohmann::json& node(int index) const;
-    /// Tells whether a node is in the default scene, or, where there are no scenes, whether it is a node at
+    /// Tells whether a node is in the scene, or, where there are no scenes, whether it is a node at
     /// all.
     bool inScene(int index) const;
     /// Returns the node at the top of the tree that a node is in.
@@ -43,12 +43,12 @@ public:
 private:
     const File& file_;
     std::vector<int> parents_; // -1: none
-    std::vector<bool> roots_;  // of the default scene
+    std::vector<bool> roots_;  // of the scene
 };
 
 constexpr size_t kLastPlace = static_cast<size_t>(-1);
 
-/// Adds a node of this name and returns its index; it is a child of `parent` or, at -1, a root of the default
+/// Adds a node of this name and returns its index; it is a child of `parent` or, at -1, a root of the edited
 /// scene. `place` is its place among these, as far as the file has a list of them.
 int addNode(FileEdit& edit, const std::string& name, int parent, size_t place = kLastPlace);
 
@@ -65,7 +65,7 @@ void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates);
 /// Tells whether a node carries nothing at all, not even children.
 bool carriesNothing(const EditedJson& node);
 
-/// Returns the default scene, which is made where the file has no scene.
-EditedJson& defaultScene(FileEdit& edit);
+/// Returns the scene that is edited, which is made where the file has no scene.
+EditedJson& editedScene(FileEdit& edit);
 
 } // namespace relume::gltf

@@ -174,7 +174,7 @@ void editSky(FileEdit& edit, const Sky& before, const Sky& after, const std::str
     if (!std::isfinite(after.rotation))
         throw Error(
             fmt::format("{}: the sky has a rotation of {}: give a finite number", target, after.rotation));
-    EditedJson& scene = defaultScene(edit);
+    EditedJson& scene = editedScene(edit);
     const JsonPath path = {"extras", "relume", "sky"};
     const auto part = [&path](const char* key) { return JsonPath{path[0], path[1], path[2], key}; };
     if (!after.shines() && after.file.empty()) {

@@ -268,7 +268,7 @@ void addLights(Build& build, size_t node, const glm::mat4& world) {
 
 void buildSky(Build& build) {
     if (build.scenes.empty()) return;
-    const json* source = ownExtra(build.scenes[static_cast<size_t>(build.defaultScene)], "sky");
+    const json* source = ownExtra(build.scenes[static_cast<size_t>(build.sceneNumber)], "sky");
     if (!source) return;
     const Numbers numbers(*source, "sky", build.warnings);
     Sky& sky = build.scene.sky;

@@ -74,6 +74,8 @@ struct Instance {
     glm::mat4 transform{1.0f}; // object to world
     bool hidden = false;       // left out: blocks no light, receives and sends none
     int node = -1;             // of the file
+    int copy = -1;     // which of the node's instances (EXT_mesh_gpu_instancing); -1: the node has one
+    bool bent = false; // by a skin, whose joints say where it stands: its node's transform does not
 };
 
 struct Camera {
@@ -143,6 +145,8 @@ struct Scene {
     // What the file offers to choose from: its scenes (a number stands for a scene without a name) and the
     // variants of its materials.
     std::vector<std::string> sceneNames, variantNames;
+    int sceneNumber = -1; // of sceneNames, the one that was read; -1: the file has none
+    bool posed = false;   // by an animation: nodes stand elsewhere than the file's transforms say
     std::vector<std::string> warnings; // what of the file is unsupported or was corrected, one line each
 };
 

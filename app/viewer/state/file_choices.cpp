@@ -13,18 +13,14 @@ std::string keyOfScene(const std::vector<std::string>& names, size_t index) {
 
 } // namespace
 
-std::vector<FileChoice> sceneChoices(const std::vector<std::string>& names, const GltfChoice& now) {
+std::vector<FileChoice> sceneChoices(const std::vector<std::string>& names, int shown,
+                                     const GltfChoice& now) {
     std::vector<FileChoice> choices;
     if (names.size() < 2) return choices;
     GltfChoice choice = now;
-    choice.scene.clear();
-    choices.push_back({"As the file says", choice, now.scene.empty()});
     for (size_t i = 0; i < names.size(); ++i) {
         choice.scene = keyOfScene(names, i);
-        // It may have been chosen by its number, unless that is another one's name.
-        const bool numbered =
-            now.scene == std::to_string(i) && std::find(names.begin(), names.end(), now.scene) == names.end();
-        choices.push_back({names[i], choice, now.scene == choice.scene || numbered});
+        choices.push_back({names[i], choice, static_cast<int>(i) == shown});
     }
     return choices;
 }

@@ -11,12 +11,12 @@ namespace relume {
 struct FileChoice {
     std::string label;
     GltfChoice choice;   // by which the file is read where it is chosen
-    bool chosen = false; // the scene was read by it
+    bool chosen = false; // it is what is shown
 };
 
-/// Returns the scenes of a file, behind a line for the one that it names itself. Empty where there is nothing
-/// to choose. `now` is how the scene was read.
-std::vector<FileChoice> sceneChoices(const std::vector<std::string>& names, const GltfChoice& now);
+/// Returns the scenes of a file, of which the one of number `shown` was read. Empty where there is nothing to
+/// choose. `now` is how it was read.
+std::vector<FileChoice> sceneChoices(const std::vector<std::string>& names, int shown, const GltfChoice& now);
 /// Returns the variants of a file's materials, behind a line for its own materials. Empty where it has none.
 std::vector<FileChoice> variantChoices(const std::vector<std::string>& names, const GltfChoice& now);
 
