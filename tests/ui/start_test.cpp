@@ -1,5 +1,7 @@
 // The viewer before there is a scene, and where one cannot be opened.
+#include "tests/text.h"
 #include "tests/ui/file_drop.h"
+#include "tests/ui/glb_json.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>
@@ -107,6 +109,27 @@ TEST_F(ViewerStart, ADamagedFirstFileLeavesTheStartPage) {
     viewer->settle();
     pressAndExpect(*viewer, "Return", "copied: ");
     pressAndExpect(*viewer, "Escape", "middle: start page");
+    quit(*viewer);
+}
+
+TEST_F(ViewerStart, AMenuChoosesAmongTheScenesOfAFile) {
+    const std::string path = home_.path("two.glb");
+    std::ofstream(path, std::ios::binary)
+        << withJson(bytesOf(kScenes + "cornell_small.glb"), [](nlohmann::json& document) {
+               nlohmann::json day = document["scenes"][0], night = day;
+               day["name"] = "day";
+               night["name"] = "night";
+               document["scenes"] = {day, night};
+           });
+    auto viewer = open({path});
+    ASSERT_TRUE(viewer->shows("middle: scene", 60)) << viewer->output();
+    for (const char* name : {"Menu/File", "File/Scene"}) {
+        const Place place = placeOf(*viewer, name);
+        viewer->click(place.first, place.second);
+        viewer->settle();
+    }
+    clickAndExpect(*viewer, "File/Scene/night", "scene: " + path);
+    EXPECT_TRUE(viewer->says("choose: night")) << viewer->output();
     quit(*viewer);
 }
 

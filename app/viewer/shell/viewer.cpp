@@ -157,7 +157,8 @@ void Viewer::follow(double time) {
     }
     followMiddle();
     const std::optional<OpenFailure>& failure = files_.opening().failure();
-    feedback_.followLog(log_, failure ? failure->message : "");
+    const std::optional<PictureNotice> said = notice();
+    feedback_.followLog(log_, failure ? failure->message : said ? said->text : "");
     feedback_.expireMessages(time);
     window_.setVsync(preferences_.vsync);
     if (feedback_.sceneIsChanged()) feedback_.pacer().sceneChanged();
