@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace {
 
@@ -26,7 +27,12 @@ int run(int argc, char** argv) {
     relume::addCommands(app);
 
     try {
-        std::vector<std::string> arguments = relume::parserArguments({argv + 1, argv + argc}, app);
+        const std::vector<std::string> typed(argv + 1, argv + argc);
+        if (typed.empty()) {
+            if (relume::opensStartPage()) return 0;
+            fmt::print("{}", app.help()); // what is wrong follows, as for any other verb that is missing
+        }
+        std::vector<std::string> arguments = relume::parserArguments(typed, app);
         std::reverse(arguments.begin(), arguments.end()); // this overload takes them so
         app.parse(std::move(arguments));
     } catch (const CLI::ParseError& error) {

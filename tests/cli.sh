@@ -9,6 +9,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/here"
 cd "$work/here" # it must run from any folder
+unset DISPLAY WAYLAND_DISPLAY # no window is to be opened
 errors=0
 
 fail() {
@@ -74,7 +75,12 @@ done
 expectStatus 0 --version
 grep -Eq '^relume [0-9]+\.[0-9]+\.[0-9]+$' "$work/out" || fail "relume --version: not 'relume X.Y.Z'"
 
-expectUsageError
+# Alone it shows the help, as there is no display for the viewer: none is named, or none can be reached.
+for display in "" ":nosuchdisplay"; do
+    DISPLAY=$display expectStatus 2
+    grep -q '^Usage: ' "$work/out" || fail "relume without a display: no help on stdout"
+    grep -q 'A subcommand is required' "$work/err" || fail "relume without a display: stderr does not say what is missing"
+done
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
 for verb in bake shot timelapse edit info unwrap mix compare; do

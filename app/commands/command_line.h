@@ -17,6 +17,10 @@ void addCommands(CLI::App& app);
 /// UsageError for an unknown verb and for a value that is given to a flag.
 std::vector<std::string> parserArguments(const std::vector<std::string>& typed, const CLI::App& app);
 
+/// Opens the viewer with its start page, which is what `relume` alone does where there is a display. Returns
+/// false where none is named, and, with a warning, where no window can be made.
+bool opensStartPage();
+
 /// Tells what helps when memory runs out, by what the verb that was parsed makes.
 std::string outOfMemoryMessage(const CLI::App& app);
 

@@ -5,6 +5,7 @@
 #include "renderer/good_view.h"
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -16,16 +17,20 @@ constexpr float kAspect = 16.0f / 9.0f;
 
 struct LoadUnwanted {};
 
-/// Ends a load that nobody waits for any more.
+/// Tells how far a load is, and ends one that nobody waits for any more.
 class LoadWatch final : public Watch {
 public:
-    explicit LoadWatch(const std::atomic<bool>& unwanted) : unwanted_(unwanted), scope_(*this) {}
-    void hear(const char*, double) override {
+    using Tell = std::function<void(const char* phase, double done)>;
+    LoadWatch(const std::atomic<bool>& unwanted, Tell tell)
+        : unwanted_(unwanted), tell_(std::move(tell)), scope_(*this) {}
+    void hear(const char* phase, double done) override {
         if (unwanted_) throw LoadUnwanted();
+        tell_(phase, done);
     }
 
 private:
     const std::atomic<bool>& unwanted_;
+    Tell tell_;
     WatchScope scope_;
 };
 
@@ -57,7 +62,10 @@ std::unique_ptr<LoadedScene> earlyLook(const Scene& file, uint64_t number) {
 } // namespace
 
 std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t number, bool early) {
-    const LoadWatch watch(unwanted_);
+    const LoadWatch watch(unwanted_, [this](const char* phase, double done) {
+        const std::lock_guard lock(mutex_);
+        progress_ = {phase, done};
+    });
     auto scene = std::make_unique<LoadedScene>();
     std::optional<ViewCamera> view;
     const auto whenRead = [&](const Scene& file) {
@@ -93,8 +101,14 @@ void SceneLoader::start(const PrepareDesc& desc, bool early) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
+    progress_ = {}; // nobody else has it now
     loading_ = std::async(std::launch::async,
                           [this, desc, early, number = ++loads_] { return load(desc, number, early); });
+}
+
+LoadProgress SceneLoader::progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
 }
 
 bool SceneLoader::ready() const {

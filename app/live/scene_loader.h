@@ -22,6 +22,12 @@ struct LoadedScene {
     uint64_t number = 0;    // counts loads from 1
 };
 
+/// Tells how far a load is.
+struct LoadProgress {
+    std::string phase;  // what is being done: "unwrapping"
+    double done = -1.0; // share of this phase, negative where it is not known
+};
+
 /// Loads one scene at a time beside the main thread.
 class SceneLoader {
 public:
@@ -33,6 +39,7 @@ public:
     bool loading() const { return loading_.valid(); }
     /// Returns the path of the scene that is loading, "" for none.
     const std::string& path() const { return path_; }
+    LoadProgress progress() const;
     /// Begins to load; nothing may be loading.
     /// `early`: takeEarly() is asked.
     void start(const PrepareDesc& desc, bool early);
@@ -51,10 +58,11 @@ private:
     std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number, bool early);
     void handOut(std::unique_ptr<LoadedScene> early);
 
-    std::mutex mutex_;
-    std::unique_ptr<LoadedScene> early_; // under the mutex
     std::future<std::unique_ptr<LoadedScene>> loading_;
     std::atomic<bool> unwanted_ = false;
+    mutable std::mutex mutex_; // guards the next two
+    std::unique_ptr<LoadedScene> early_;
+    LoadProgress progress_;
     std::string path_;
     uint64_t loads_ = 0;
 };

@@ -88,9 +88,9 @@ bool Session::finishLoading() {
             changed = true;
         } // else another scene is opened below
     } catch (const std::bad_alloc&) {
-        fail(path + ": does not fit in memory");
+        failLoad(path, path + ": does not fit in memory: make it smaller, or close other programs");
     } catch (const std::exception& error) {
-        fail(error.what());
+        failLoad(path, error.what());
     }
     if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
         load(*next);
@@ -101,6 +101,14 @@ bool Session::finishLoading() {
         startBake(true);
     }
     return changed;
+}
+
+// Says that a scene could not be read. Where it is the present one, which was only to be read anew, that is a
+// line like others.
+void Session::failLoad(const std::string& path, const std::string& message) {
+    if (loading_.keep) return fail(message);
+    spdlog::error("{}", message);
+    openFailure_ = OpenFailure{path, message};
 }
 
 void Session::fail(const std::string& message) {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/live/document.h"
@@ -15,6 +16,11 @@
 
 namespace relume {
 
+/// Says which file could not be opened, and why.
+struct OpenFailure {
+    std::string path, message; // message: one line, which begins with the path where the file is to blame
+};
+
 /// The scene on screen, its document with undo and redo, and the bake that follows them. It knows neither a
 /// window nor OpenGL, and is for a single thread.
 class Session {
@@ -23,17 +29,20 @@ public:
     Session(LiveBake& bake, const BakeRequest& request);
 
     /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
-    /// when that cannot be read: then lastError() says why. With `keep` (the file changed) the camera and
-    /// settings stay, and so do edits of materials, by name, and of objects and lights where the file's are
-    /// what they were. Where the file is still as it was loaded or saved, all edits stay. Another file is
-    /// read by its own defaults.
+    /// when that cannot be read: then takeOpenFailure() says why, or with `keep` lastError(). With `keep`
+    /// (the file changed) the camera and settings stay, and so do edits of materials, by name, and of objects
+    /// and lights where the file's are what they were. Where the file is still as it was loaded or saved, all
+    /// edits stay. Another file is read by its own defaults.
     void open(const std::string& path, bool keep = false);
     /// Loads the present scene's file by another choice of what it offers, as open() does without `keep`.
     void choose(const GltfChoice& choice);
     /// Returns the choice by which the present scene was read.
     const GltfChoice& choice() const { return prepare_.choice; }
     bool loading() const { return loader_.loading(); }
-    const std::string& loadingPath() const { return loader_.path(); }
+    /// Returns what is loading, and how far that is.
+    const SceneLoader& loader() const { return loader_; }
+    /// Returns once what became of a scene that could not be read.
+    std::optional<OpenFailure> takeOpenFailure() { return std::exchange(openFailure_, std::nullopt); }
     /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
     /// changed.
     bool update();
@@ -108,6 +117,7 @@ private:
     void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
     void takeSaved();
     void finishSaving();
+    void failLoad(const std::string& path, const std::string& message);
     void fail(const std::string& message);
     void dropFormer();
     void pollFile();
@@ -122,6 +132,7 @@ private:
     std::optional<Next> next_; // the newest scene that was asked for while one was loading
     bool kept_ = false;
     std::string lastError_;
+    std::optional<OpenFailure> openFailure_;
     SceneFile file_;
     std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
     EditHistory history_;

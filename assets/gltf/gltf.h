@@ -12,6 +12,7 @@ struct GltfChoice {
     std::string scene = {};          // name or number of a scene; "": the file's default
     std::string variant = {};        // of KHR_materials_variants; "": the file's own materials
     std::optional<double> time = {}; // of the first animation [s]; none: the rest pose
+    bool operator==(const GltfChoice&) const = default;
 };
 
 /// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming the file, the

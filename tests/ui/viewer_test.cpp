@@ -21,6 +21,8 @@ TEST_F(Viewer, ShowsTheWindowBeforeTheScene) {
     auto viewer = open({"view", kScenes + "atrium.glb"});
     EXPECT_EQ(viewer->output().find("scene: "), std::string::npos) << "the window comes first";
     EXPECT_TRUE(viewer->says("scene: ", 60)) << viewer->output();
+    EXPECT_TRUE(viewer->says("middle: opening over scene", 1)) << "the file is named meanwhile";
+    EXPECT_TRUE(viewer->says("middle: scene")) << viewer->output();
     quit(*viewer);
 }
 
@@ -336,6 +338,7 @@ TEST(ViewerWithout, VulkanShowsTheSceneAndSaysSo) {
     ASSERT_TRUE(viewer.window()) << viewer.output();
     EXPECT_TRUE(viewer.says("bake: failed")) << viewer.output();
     EXPECT_TRUE(viewer.says("Vulkan", 1)) << viewer.output();
+    EXPECT_TRUE(viewer.says("middle: notice over scene")) << viewer.output();
     viewer.keys({"ctrl+q"});
     EXPECT_EQ(viewer.ended(10), 0) << viewer.output();
 }

@@ -1,39 +1,19 @@
 // The viewer watches its file, and the file becomes what nobody expects.
 #include "tests/text.h"
+#include "tests/ui/glb_json.h"
 #include "tests/ui/viewer_fixture.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 
 namespace relume {
 namespace {
 
 using nlohmann::json;
-
-/// The bytes of a .glb whose JSON was changed.
-std::string withJson(const std::string& glb, const std::function<void(json&)>& change) {
-    constexpr size_t kHeader = 12, kChunkHeader = 8;
-    const auto word = [](uint32_t value) {
-        return std::string(reinterpret_cast<const char*>(&value), sizeof(value));
-    };
-    uint32_t length = 0;
-    std::memcpy(&length, glb.data() + kHeader, sizeof(length));
-    json document = json::parse(glb.substr(kHeader + kChunkHeader, length));
-    change(document);
-    std::string text = document.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::string rest = glb.substr(kHeader + kChunkHeader + length);
-    const size_t size = kHeader + kChunkHeader + text.size() + rest.size();
-    return "glTF" + word(2) + word(static_cast<uint32_t>(size)) + word(static_cast<uint32_t>(text.size())) +
-           "JSON" + text + rest;
-}
 
 json& node(json& document, const std::string& name) {
     for (json& node : document["nodes"])

@@ -63,6 +63,17 @@ TEST(Departure, ASaveThatWentWrongKeepsTheScene) {
     EXPECT_EQ(departure.followSave(false, false), std::nullopt) << "a later save is none of its own";
 }
 
+TEST(Departure, AChoiceOfTheFileIsAGoalLikeOthers) {
+    Departure departure;
+    const Goal night{.scene = "file.glb", .choice = GltfChoice{.scene = "night", .variant = {}, .time = {}}};
+    EXPECT_EQ(departure.want(night, false), night);
+    EXPECT_EQ(departure.want(night, true), std::nullopt) << "edits are asked about";
+    const std::optional<Goal> reached = departure.answer(Answer::Discard);
+    ASSERT_TRUE(reached && reached->choice);
+    EXPECT_EQ(reached->choice->scene, "night");
+    EXPECT_EQ(departure.closing(true), Closing::Asks);
+}
+
 TEST(Departure, TheNewestWishCounts) {
     Departure departure;
     EXPECT_EQ(departure.want(kOther, true), std::nullopt);

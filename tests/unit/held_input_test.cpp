@@ -118,6 +118,20 @@ TEST(MeantShortcut, LettersGoToTheTextWhileOneTypes) {
     EXPECT_NE(meant(keyEvent(GLFW_KEY_Q, GLFW_MOD_CONTROL), true), nullptr) << "one can always quit";
 }
 
+TEST(MeantShortcut, KeysThatGoThroughControlsDoNothingElse) {
+    const KeyFocus page{.page = true};
+    EXPECT_EQ(meantShortcut(keyEvent(GLFW_KEY_SPACE), page), nullptr) << "it presses, and does not pause";
+    EXPECT_NE(meantShortcut(keyEvent(GLFW_KEY_SPACE), {}), nullptr);
+    EXPECT_NE(meantShortcut(keyEvent(GLFW_KEY_LEFT, GLFW_MOD_ALT), page), nullptr);
+    EXPECT_NE(meantShortcut(keyEvent(GLFW_KEY_O, GLFW_MOD_CONTROL), page), nullptr);
+    EXPECT_NE(meantShortcut(keyEvent(GLFW_KEY_ESCAPE), page), nullptr);
+    for (const int key : {GLFW_KEY_UP, GLFW_KEY_DOWN, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_TAB,
+                          GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER})
+        EXPECT_TRUE(goesThroughControls(keyEvent(key))) << key;
+    EXPECT_TRUE(goesThroughControls(keyEvent(GLFW_KEY_TAB, GLFW_MOD_SHIFT)));
+    EXPECT_FALSE(goesThroughControls(keyEvent(GLFW_KEY_TAB, GLFW_MOD_CONTROL)));
+}
+
 TEST(MeantShortcut, EscLeavesAFieldOrClosesADialog) {
     EXPECT_EQ(meant(keyEvent(GLFW_KEY_ESCAPE), true), nullptr);
     ASSERT_NE(meant(keyEvent(GLFW_KEY_ESCAPE), true, true), nullptr);

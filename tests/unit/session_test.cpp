@@ -94,14 +94,17 @@ TEST_F(SessionTest, ABadFileKeepsTheScene) {
     std::ofstream(folder_.path("bad.glb")) << "this is no scene";
     for (const std::string& path : {folder_.path("bad.glb"), folder_.path("none.glb")}) {
         session_.open(path);
-        EXPECT_EQ(session_.loadingPath(), path);
+        EXPECT_EQ(session_.loader().path(), path);
         ASSERT_TRUE(untilLoaded());
-        EXPECT_NE(session_.lastError().find(fs::path(path).filename().string()), std::string::npos)
-            << session_.lastError();
+        const std::optional<OpenFailure> failure = session_.takeOpenFailure();
+        ASSERT_TRUE(failure);
+        EXPECT_EQ(failure->path, path);
+        EXPECT_TRUE(failure->message.starts_with(path + ": ")) << failure->message;
+        EXPECT_FALSE(session_.takeOpenFailure()) << "it is told once";
         EXPECT_EQ(session_.scene(), scene);
         EXPECT_EQ(brightest(), edited);
         EXPECT_EQ(session_.undoName(), "Emission");
-        session_.clearError();
+        EXPECT_EQ(session_.lastError(), "");
     }
     EXPECT_EQ(loads_, 1);
     // The good file is still watched.

@@ -1,5 +1,7 @@
 #include "app/viewer/panels/widgets.h"
 
+#include "app/viewer/panels/tab_order.h"
+
 #include <algorithm>
 
 namespace relume::ui {
@@ -14,6 +16,7 @@ void tip(const char* text) {
 }
 
 void mark(const char* label, bool framed) {
+    if (TabOrder* order = TabOrder::current()) order->add();
     ItemLog* log = ItemLog::current();
     if (log == nullptr || !ImGui::IsItemVisible()) return;
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,6 +40,8 @@ std::string SceneFiles::folder() const {
 
 void SceneFiles::perform(Action action) {
     switch (action) {
+    case Action::StartPage:
+        return opening_.wantStart();
     case Action::Watch:
         return desc_.session.watchFile(!desc_.session.watchesFile());
     case Action::Quit:
@@ -86,14 +87,19 @@ void SceneFiles::askToExport() {
 
 void SceneFiles::open(const std::string& path) {
     desc_.feedback.pacer().input();
-    choice_.reset();
-    leave({path});
+    leave({.scene = path});
 }
 
 void SceneFiles::choose(const GltfChoice& choice) {
+    if (choice == desc_.session.choice()) return;
+    desc_.feedback.tell("choose", choice.scene + ", " + choice.variant);
+    leave({.scene = desc_.session.path(), .choice = choice});
+}
+
+void SceneFiles::forget(const std::string& path) {
+    std::erase(desc_.preferences.recent, path);
+    desc_.feedback.tell("forgot", path);
     desc_.feedback.pacer().input();
-    choice_ = choice;
-    leave({desc_.session.path()});
 }
 
 void SceneFiles::exportLightmap(const std::string& path) {
@@ -129,7 +135,7 @@ void SceneFiles::leave(const Departure::Goal& goal) {
     if (!unsaved) return;
     using Answer = Departure::Answer;
     const std::string text = fmt::format("{} has edits that are not saved.", fileName(desc_.session.path()));
-    const std::string what = goal.scene ? "open" : "quit";
+    const std::string what = goal.choice ? "read anew" : goal.scene ? "open" : "quit";
     const auto saveFirst = [this] {
         save("");
         go(departure_.answer(Answer::Save));
@@ -144,12 +150,12 @@ void SceneFiles::leave(const Departure::Goal& goal) {
 
 void SceneFiles::go(const std::optional<Departure::Goal>& goal) {
     if (!goal) return;
-    if (goal->scene && choice_)
-        desc_.session.choose(*std::exchange(choice_, std::nullopt));
-    else if (goal->scene)
-        desc_.session.open(*goal->scene);
+    if (!goal->scene) return desc_.window.close();
+    opening_.begin(*goal->scene, desc_.feedback.now());
+    if (goal->choice)
+        desc_.session.choose(*goal->choice);
     else
-        desc_.window.close();
+        desc_.session.open(*goal->scene);
 }
 
 bool SceneFiles::ends() {
@@ -162,8 +168,9 @@ bool SceneFiles::ends() {
 
 void SceneFiles::sceneCame() {
     path_ = path();
-    if (!desc_.session.sceneWasKept())
-        desc_.preferences.addRecent(desc_.session.scene()->prepared.scene.path);
+    if (desc_.session.sceneWasKept()) return;
+    opening_.sceneCame();
+    desc_.preferences.addRecent(desc_.session.scene()->prepared.scene.path);
 }
 
 void SceneFiles::followSaves() {
@@ -193,7 +200,15 @@ void SceneFiles::followTitle() {
     desc_.feedback.tell("title", title);
 }
 
+void SceneFiles::followOpening() {
+    const std::optional<OpenFailure> failure = desc_.session.takeOpenFailure();
+    if (!failure) return;
+    desc_.feedback.tell("not opened", failure->path);
+    opening_.fail(*failure);
+}
+
 void SceneFiles::follow() {
+    followOpening();
     followSaves();
     go(departure_.followSave(desc_.session.saving(), desc_.session.dirty()));
     followTitle();

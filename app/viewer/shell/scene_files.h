@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "app/live/session.h"
@@ -8,6 +7,7 @@
 #include "app/viewer/shell/file_dialog.h"
 #include "app/viewer/shell/question.h"
 #include "app/viewer/state/departure.h"
+#include "app/viewer/state/middle.h"
 #include "app/viewer/state/preferences.h"
 #include "app/viewer/state/shortcuts.h"
 #include "app/viewer/window/window.h"
@@ -37,8 +37,13 @@ public:
     /// Does an action from Open to Quit.
     void perform(Action action);
     void open(const std::string& path);
-    /// Reads the scene's file by another choice of what it offers.
+    /// Reads the scene's file anew, by another choice of what it offers.
     void choose(const GltfChoice& choice);
+    /// Forgets one of the recent files.
+    void forget(const std::string& path);
+    /// Returns what was opened and what came of it, for the middle of the window.
+    Opening& opening() { return opening_; }
+    const Opening& opening() const { return opening_; }
 
     /// Says that another scene came.
     void sceneCame();
@@ -54,14 +59,15 @@ private:
     void exportLightmap(const std::string& path);
     void leave(const Departure::Goal& goal);
     void go(const std::optional<Departure::Goal>& goal);
+    void followOpening();
     void followSaves();
     void followTitle();
 
     Desc desc_;
     Departure departure_;
-    std::optional<GltfChoice> choice_; // of the scene that is opened next; none: as the session has it
-    uint64_t saves_ = 0;               // how many saves were told
-    std::string title_, path_;         // of the window, and of the scene when it was loaded or saved
+    Opening opening_;
+    uint64_t saves_ = 0;       // how many saves were told
+    std::string title_, path_; // of the window, and of the scene when it was loaded or saved
 };
 
 } // namespace relume

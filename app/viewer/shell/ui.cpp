@@ -5,8 +5,8 @@
 #include "app/viewer/panels/view_panel.h"
 #include "app/viewer/panels/widgets.h"
 #include "app/viewer/picture/shown_lights.h"
+#include "app/viewer/state/file_choices.h"
 #include "app/viewer/state/views.h"
-#include "assets/base/warnings.h"
 
 #include <algorithm>
 
@@ -69,39 +69,32 @@ void drawRecent(const PanelContext& context, FileDialog& files) {
     ImGui::EndMenu();
 }
 
-// Draws a menu of names of which one is chosen; returns the number of one that was clicked, -1 for none.
-int clickedName(const char* title, const std::vector<std::string>& names, int chosen) {
-    if (!ImGui::BeginMenu(title)) return -1;
-    int clicked = -1;
-    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
-        ImGui::PushID(i); // two may have one name
-        if (ImGui::MenuItem(inQuotes(names[static_cast<size_t>(i)]).c_str(), nullptr, i == chosen))
-            clicked = i;
+// Draws a menu of what the scene's file offers, where it offers a choice.
+void drawChoices(const PanelContext& context, const char* name, const std::vector<FileChoice>& choices) {
+    if (choices.empty()) return;
+    const bool open = ImGui::BeginMenu(name);
+    ui::mark(name, false);
+    if (!open) return;
+    const ui::ItemLog::Scope scope(context.items, name);
+    for (size_t i = 0; i < choices.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i)); // two may have one name
+        if (ImGui::MenuItem(choices[i].label.c_str(), nullptr, choices[i].chosen) && !choices[i].chosen)
+            context.choose(choices[i].choice);
+        ui::mark(choices[i].label.c_str(), false);
         ImGui::PopID();
     }
     ImGui::EndMenu();
-    return clicked;
 }
 
-// Draws what the scene's file offers to choose from: its scenes and the variants of its materials.
-void drawChoices(const PanelContext& context, FileDialog& files) {
-    if (context.session.scene() == nullptr) return;
-    const Scene& scene = context.session.scene()->prepared.scene;
-    GltfChoice choice = context.session.choice();
-    int clicked = -1;
-    if (scene.sceneNames.size() > 1) {
-        clicked = clickedName("Scene of the file", scene.sceneNames, scene.sceneNumber);
-        if (clicked >= 0) choice.scene = std::to_string(clicked);
-    }
-    if (!scene.variantNames.empty() && clicked < 0) {
-        const auto now = std::find(scene.variantNames.begin(), scene.variantNames.end(), choice.variant);
-        clicked =
-            clickedName("Variant", scene.variantNames, static_cast<int>(now - scene.variantNames.begin()));
-        if (clicked >= 0) choice.variant = scene.variantNames[static_cast<size_t>(clicked)];
-    }
-    if (clicked < 0) return;
-    files.close();
-    context.choose(choice);
+void drawFileMenus(const PanelContext& context, FileDialog& files) {
+    drawRecent(context, files);
+    const LoadedScene* loaded = context.session.scene();
+    if (loaded == nullptr) return;
+    const Scene& scene = loaded->prepared.scene;
+    const ui::ItemLog::Scope scope(context.items, "File");
+    drawChoices(context, "Scene",
+                sceneChoices(scene.sceneNames, scene.sceneNumber, context.session.choice()));
+    drawChoices(context, "Variant", variantChoices(scene.variantNames, context.session.choice()));
 }
 
 void drawMenu(const PanelContext& context, const std::string& group) {
@@ -170,12 +163,14 @@ std::string statusLine(const BakeStatus& status) {
 float Ui::drawMenus(const PanelContext& context) {
     if (!ImGui::BeginMainMenuBar()) return 0;
     for (const char* group : {"File", "Edit", "Bake", "Light", "Move", "View", "Camera", "Capture", "Help"}) {
-        if (!ImGui::BeginMenu(group)) continue;
-        drawMenu(context, group);
-        if (std::string(group) == "File") {
-            drawRecent(context, files_);
-            drawChoices(context, files_);
+        const bool open = ImGui::BeginMenu(group);
+        {
+            const ui::ItemLog::Scope menus(context.items, "Menu");
+            ui::mark(group, false);
         }
+        if (!open) continue;
+        drawMenu(context, group);
+        if (std::string(group) == "File") drawFileMenus(context, files_);
         ImGui::EndMenu();
     }
     if (context.recording) ImGui::TextColored({1.0f, 0.35f, 0.3f, 1.0f}, "   recording");
@@ -195,7 +190,7 @@ float Ui::drawStatus(const PanelContext& context) {
     const BakeStatus& status = context.status;
     const bool loading = context.session.loading();
     if (loading || status.phase == Phase::Preparing) {
-        const std::string what = loading ? "loading " + context.session.loadingPath() : status.doing;
+        const std::string what = loading ? "loading " + context.session.loader().path() : status.doing;
         const float share = loading ? 0.0f : static_cast<float>(status.fraction);
         ImGui::ProgressBar(share, {ImGui::GetFontSize() * 20.0f, 0}, what.c_str());
         ImGui::SameLine();
@@ -297,15 +292,36 @@ void Ui::drawHelp() {
     ImGui::End();
 }
 
-PictureArea Ui::draw(const PanelContext& context, float scale) {
+bool Ui::takesKeys(const Middle& middle) const {
+    const bool controls = middle.startPage || middle.card == Middle::Card::Failure;
+    return controls && !help_ && !files_.isOpen() && !question_.isOpen();
+}
+
+// Draws what stands in the middle, over the picture or, as the start page, over all that is below the menus.
+void Ui::drawMiddle(const PanelContext& context, const MiddleView& middle, const PictureArea& picture,
+                    const PictureArea& all) {
+    tabs_.begin(middle.tabs);
+    std::optional<ui::TabOrder::Scope> order;
+    const bool failure = middle.middle.card == Middle::Card::Failure; // it is in front of the page
+    if (middle.middle.startPage) {
+        if (!failure) order.emplace(tabs_);
+        start_.draw(context, all, middle.scene);
+    }
+    if (failure) order.emplace(tabs_);
+    drawMiddleCard(context, middle, middle.middle.startPage ? all : picture);
+}
+
+PictureArea Ui::draw(const PanelContext& context, const MiddleView& middle, float scale) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    PictureArea area{{0, 0}, {window.x, window.y}};
+    PictureArea area{{0, 0}, {window.x, window.y}}, all = area;
     if (!context.view.bare) {
         const float top = drawMenus(context), bottom = drawStatus(context);
-        drawSide(context, top, bottom, scale);
+        all = {{0, top}, {window.x, std::max(window.y - top - bottom, 1.0f)}};
+        if (!middle.middle.startPage) drawSide(context, top, bottom, scale);
         const float left = context.preferences.panelWidth * scale;
-        area = {{left, top}, {std::max(window.x - left, 1.0f), std::max(window.y - top - bottom, 1.0f)}};
+        area = {{left, top}, {std::max(window.x - left, 1.0f), all.size.y}};
     }
+    drawMiddle(context, middle, area, all);
     drawHelp();
     {
         const ui::ItemLog::Scope scope(context.items, "Dialog");

@@ -115,7 +115,8 @@ float Viewer::pixelsPerPoint() const {
 double Viewer::idleSeconds(double time) const {
     double idle = baking_.busy() ? kIdleBaking : kIdle;
     if (session_.watchesFile()) idle = std::min(idle, kIdleWatching);
-    if (session_.loading() || skyKeys_.reading()) idle = std::min(idle, kIdleLoading);
+    if (session_.loading() || skyKeys_.reading() || ui_.start().looking())
+        idle = std::min(idle, kIdleLoading);
     if (picture_.waitsForMaps() || picture_.pane().tilesPending() || previews_.underWay())
         idle = std::min(idle, kIdleFence);
     // Once the camera rests, the bake gets its budget back.
@@ -154,7 +155,10 @@ void Viewer::follow(double time) {
         feedback_.tell("preview", "drawn");
         feedback_.pacer().statusChanged();
     }
-    feedback_.followLog(log_);
+    followMiddle();
+    const std::optional<OpenFailure>& failure = files_.opening().failure();
+    const std::optional<PictureNotice> said = notice();
+    feedback_.followLog(log_, failure ? failure->message : said ? said->text : "");
     feedback_.expireMessages(time);
     window_.setVsync(preferences_.vsync);
     if (feedback_.sceneIsChanged()) feedback_.pacer().sceneChanged();
@@ -222,13 +226,64 @@ void Viewer::followBake(double time) {
     baking_.setBudget(desc_.budgetMs, !picture_.rests(time));
 }
 
+// Returns why the picture shows nothing, or no light.
+std::optional<PictureNotice> Viewer::notice() const {
+    if (session_.scene() == nullptr || session_.early() != nullptr) return std::nullopt;
+    const std::vector<Placement>& placements = session_.document().edits.placements;
+    const auto hidden =
+        std::count_if(placements.begin(), placements.end(), [](const Placement& p) { return p.hidden; });
+    return pictureNotice({.phase = baking_.status().phase,
+                          .doing = baking_.status().doing,
+                          .objects = placements.size(),
+                          .hidden = static_cast<size_t>(hidden),
+                          .flat = picture_.state().uv,
+                          .map = picture_.map() != nullptr});
+}
+
+Opening::Facts Viewer::openingFacts() const {
+    const std::optional<PictureNotice> said = notice();
+    const bool early = session_.early() != nullptr; // its geometry is seen while the rest is made
+    return {.scene = session_.scene() != nullptr || early,
+            .loading = session_.loading() && !early,
+            .time = feedback_.now(),
+            .notice = said ? said->title + ": " + said->text : ""};
+}
+
+MiddleView Viewer::middleView() {
+    return {.middle = files_.opening().middle(openingFacts()),
+            .tabs = gui_.takeTabs(),
+            .scene = openingFacts().scene,
+            .opening = files_.opening().path(),
+            .progress = session_.loader().progress(),
+            .failure = files_.opening().failure(),
+            .notice = notice(),
+            .copy = [this](const std::string& text) {
+                window_.copyText(text);
+                feedback_.tell("copied", text);
+                feedback_.note("the message is copied");
+            }};
+}
+
+// Follows what stands in the middle of the window.
+void Viewer::followMiddle() {
+    const Middle middle = files_.opening().middle(openingFacts());
+    ui_.start().show(middle.startPage, preferences_);
+    const bool looked = ui_.start().looking();
+    if (const std::optional<size_t> gone = ui_.start().follow())
+        feedback_.tell("recent",
+                       fmt::format("{} files, {} gone", preferences_.recent.size(), gone.value_or(0)));
+    const bool found = looked && !ui_.start().looking();
+    if (screenLog_.tellMiddle(middleName(middle)) || found) feedback_.pacer().input();
+    gui_.navigate(ui_.takesKeys(middle));
+}
+
 // Tells whether what was asked for is on the screen: nothing is left to be drawn, and the map is the one that
 // the view shows.
 bool Viewer::settled() const {
     const PublishedMap* shown = picture_.newestMap();
     const bool asked = shown == nullptr || inspection_.asksFor(*shown);
     return asked && feedback_.pacer().settled() && !picture_.pane().adapting() && !picture_.waitsForMaps() &&
-           !session_.loading();
+           !session_.loading() && !ui_.start().looking();
 }
 
 PanelContext Viewer::context() {
@@ -251,6 +306,7 @@ PanelContext Viewer::context() {
             .edit = [this](const std::string& name, const Document& next) { editing_.edit(name, next); },
             .endEdit = [this] { editing_.end(); },
             .open = [this](const std::string& path) { files_.open(path); },
+            .forget = [this](const std::string& path) { files_.forget(path); },
             .choose = [this](const GltfChoice& choice) { files_.choose(choice); },
             .selectLight = [this](const LightKey& key) { lights_.select(key); },
             .items = ui_.items()};
@@ -288,7 +344,7 @@ void Viewer::frame(const Redraw& redraw) {
         gui_.animates() ? picture_.scale() : window_.contentScale() / pixels * preferences_.uiScale;
     gui_.begin(scale);
     previews_.previews().wanted = false; // the panel says
-    picture_.place(ui_.draw(context(), scale), scale, pixels);
+    picture_.place(ui_.draw(context(), middleView(), scale), scale, pixels);
     drawOverlay();
     const double drawnUi = feedback_.now();
     const bool anew = redraw.scene || feedback_.sceneIsChanged();

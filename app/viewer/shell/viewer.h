@@ -44,7 +44,7 @@ struct ViewerDesc {
 /// belongs to the main thread.
 class Viewer {
 public:
-    explicit Viewer(const ViewerDesc& desc); // shows the window; throws Error when there can be none
+    explicit Viewer(const ViewerDesc& desc); // shows the window; throws NoWindow when there can be none
     ~Viewer();
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
@@ -63,6 +63,10 @@ private:
     ViewCamera firstCamera(const LoadedScene& scene);
     void followBake(double time);
     bool settled() const;
+    void followMiddle();
+    Opening::Facts openingFacts() const;
+    std::optional<PictureNotice> notice() const;
+    MiddleView middleView();
     PanelContext context();
     void frame(const Redraw& redraw);
     void drawOverlay();

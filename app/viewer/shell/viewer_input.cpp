@@ -64,7 +64,9 @@ void Viewer::onKey(const WindowEvent& event) {
         if (!event.repeated) feedback_.tell("action", "fly");
         return;
     }
-    const KeyFocus focus{.typing = typing, .fileDialog = ui_.files().isOpen()};
+    const KeyFocus focus{.typing = typing,
+                         .fileDialog = ui_.files().isOpen(),
+                         .page = ui_.takesKeys(files_.opening().middle(openingFacts()))};
     if (const Shortcut* shortcut = meantShortcut(event, focus)) perform(shortcut->action, shortcut->argument);
 }
 
@@ -148,7 +150,7 @@ void Viewer::perform(Action action, int argument) {
     case Action::Redo:
         return editing_.redo();
     case Action::Close:
-        if (!ui_.closeDialog()) baking_.abortPass();
+        if (!ui_.closeDialog() && !files_.opening().putAway(openingFacts())) baking_.abortPass();
         return;
     case Action::SkyPicture:
         return skyKeys_.choose(ui_.files(), files_.folder());

@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "app/live/session.h"
+
 namespace relume {
 
 /// Decides when the scene on screen may go: at once where nothing would be lost, else after the user was
@@ -12,6 +14,7 @@ public:
     /// Names what comes in the scene's place.
     struct Goal {
         std::optional<std::string> scene = {}; // its path; none: the viewer ends
+        std::optional<GltfChoice> choice = {}; // of what the present scene's file offers
         bool operator==(const Goal&) const = default;
     };
     enum class Answer { Save, Discard, Cancel };

@@ -14,13 +14,13 @@ void Feedback::note(const std::string& text, bool bad) {
     pacer_.input();
 }
 
-void Feedback::followLog(const LogBuffer& log) {
+void Feedback::followLog(const LogBuffer& log, const std::string& elsewhere) {
     const uint64_t count = log.count();
     if (count == logSeen_) return;
     const std::vector<LogLine> lines = log.linesSince(logSeen_);
     logSeen_ = count;
     for (const LogLine& line : lines)
-        if (line.level >= spdlog::level::err) showError(line.text);
+        if (line.level >= spdlog::level::err && line.text != elsewhere) showError(line.text);
     pacer_.input();
 }
 

@@ -25,8 +25,9 @@ public:
     void note(const std::string& text, bool bad = false);
     /// Shows a bad line that the log has told already.
     void showError(const std::string& text) { messages_.add(text, true, now()); }
-    /// Shows the errors that were logged since the last call: they went wrong beside the main thread.
-    void followLog(const LogBuffer& log);
+    /// Shows the errors that were logged since the last call: they went wrong beside the main thread. One of
+    /// this text is shown elsewhere.
+    void followLog(const LogBuffer& log, const std::string& elsewhere = "");
     /// Lets go of the lines that were shown for long enough.
     void expireMessages(double time);
     const Messages& messages() const { return messages_; }

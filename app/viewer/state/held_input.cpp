@@ -105,8 +105,25 @@ const char* cameraDragName(int button, int mods) {
     return button == GLFW_MOUSE_BUTTON_MIDDLE || (mods & GLFW_MOD_SHIFT) != 0 ? "pan" : "orbit";
 }
 
+bool goesThroughControls(const WindowEvent& key) {
+    if ((key.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return false;
+    switch (key.code) {
+    case GLFW_KEY_LEFT:
+    case GLFW_KEY_RIGHT:
+    case GLFW_KEY_UP:
+    case GLFW_KEY_DOWN:
+    case GLFW_KEY_TAB:
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+    case GLFW_KEY_SPACE:
+        return true;
+    default:
+        return false;
+    }
+}
+
 const Shortcut* meantShortcut(const WindowEvent& key, const KeyFocus& focus) {
-    if (!key.pressed) return nullptr;
+    if (!key.pressed || (focus.page && goesThroughControls(key))) return nullptr;
     const Shortcut* shortcut = findShortcut(key.code, key.mods);
     if (shortcut == nullptr || (key.repeated && !repeats(shortcut->action))) return nullptr;
     // Letters, and Ctrl with one, go to the text while one types; Esc leaves a field, or closes a dialog.

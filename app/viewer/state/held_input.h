@@ -57,7 +57,11 @@ const char* cameraDragName(int button, int mods);
 struct KeyFocus {
     bool typing = false;     // a text is being typed
     bool fileDialog = false; // one is open
+    bool page = false;       // controls in the middle of the window are gone through by keys
 };
+/// Tells whether a key goes through controls, or presses one: arrows, Tab, Enter and Space, without Ctrl and
+/// Alt.
+bool goesThroughControls(const WindowEvent& key);
 /// Returns the shortcut that a key event means, or nullptr where it means none: a key that is held repeats
 /// only some, and while one types only a few are left.
 const Shortcut* meantShortcut(const WindowEvent& key, const KeyFocus& focus);

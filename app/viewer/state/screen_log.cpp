@@ -33,6 +33,13 @@ void ScreenLog::tellMap(const PublishedMap& map) {
     map_ = told;
 }
 
+bool ScreenLog::tellMiddle(const std::string& name) {
+    if (name == middle_) return false;
+    middle_ = name;
+    feedback_.tell("middle", name);
+    return true;
+}
+
 void ScreenLog::countInputs(size_t count) {
     inputs_ += count;
     settled_ = settled_ && count == 0;

@@ -51,6 +51,7 @@ void addEditShortcuts(std::vector<Shortcut>& all) {
 std::vector<Shortcut> makeShortcuts() {
     std::vector<Shortcut> all = {
         {Action::Open, 0, GLFW_KEY_O, kCtrl, "File", "Open scene"},
+        {Action::StartPage, 0, GLFW_KEY_N, kCtrl, "File", "Start page"},
         {Action::Save, 0, GLFW_KEY_S, kCtrl, "File", "Save scene"},
         {Action::SaveAs, 0, GLFW_KEY_S, kCtrl | kShift, "File", "Save scene as"},
         {Action::Export, 0, GLFW_KEY_E, kCtrl, "File", "Export lightmap"},

@@ -9,6 +9,7 @@ namespace relume {
 /// Everything that a user can do by a key or a menu. Actions that belong together stand together.
 enum class Action : uint8_t {
     Open,
+    StartPage,
     Save,
     SaveAs,
     Export,

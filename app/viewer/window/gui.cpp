@@ -18,6 +18,7 @@ namespace relume {
 namespace {
 
 constexpr float kFontPixels = 15, kBuiltInPixels = 13; // at scale 1; ImGui's own is a bitmap of 13
+constexpr float kTitle = 1.6f;                         // size of headings, as a share of the text's
 
 // Most systems have one of these outline fonts; ImGui's own letters are a bitmap, which is coarse when
 // enlarged.
@@ -33,11 +34,17 @@ void loadFont(float scale) {
     std::error_code code;
     for (const char* path : kFonts) {
         if (!std::filesystem::exists(path, code)) continue;
-        if (io.Fonts->AddFontFromFileTTF(path, std::round(kFontPixels * scale)) != nullptr) return;
+        const auto add = [&](float share) {
+            return io.Fonts->AddFontFromFileTTF(path, std::round(share * kFontPixels * scale)) != nullptr;
+        };
+        if (add(1.0f) && add(kTitle)) return;
+        io.Fonts->Clear();
     }
-    ImFontConfig config;
-    config.SizePixels = std::round(kBuiltInPixels * scale);
-    io.Fonts->AddFontDefault(&config);
+    for (const float share : {1.0f, kTitle}) {
+        ImFontConfig config;
+        config.SizePixels = std::round(share * kBuiltInPixels * scale);
+        io.Fonts->AddFontDefault(&config);
+    }
 }
 
 void setColours(ImGuiStyle& style) {
@@ -109,7 +116,7 @@ void Gui::feed(const WindowEvent& event) {
             break;
         }
         if (event.pressed) pressed_.push_back(event.place);
-        ImGui_ImplGlfw_KeyCallback(window, event.place, event.scancode, state, event.mods);
+        feedKey(event, state);
         break;
     case WindowEvent::Kind::Letter:
         ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code));
@@ -131,11 +138,35 @@ void Gui::feed(const WindowEvent& event) {
     }
 }
 
+// Feeds a key. Where keys go through controls, Enter presses them as Space does: ImGui would only begin to
+// edit the few that have a text.
+void Gui::feedKey(const WindowEvent& event, int state) {
+    GLFWwindow* window = window_.handle();
+    const bool enter = event.place == GLFW_KEY_ENTER || event.place == GLFW_KEY_KP_ENTER;
+    const bool presses = enter && navigates_ && !wantsKeyboard();
+    const bool released = state == GLFW_RELEASE; // whatever it was when it went down
+    if (event.place == GLFW_KEY_TAB && navigates_ && !wantsKeyboard() && !released) {
+        tabs_ += (event.mods & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+        return;
+    }
+    if (enter && (presses || released))
+        ImGui_ImplGlfw_KeyCallback(window, GLFW_KEY_SPACE, 0, state, event.mods);
+    if (!presses || released)
+        ImGui_ImplGlfw_KeyCallback(window, event.place, event.scancode, state, event.mods);
+}
+
+void Gui::navigate(bool on) {
+    navigates_ = on;
+    if (!on) tabs_ = 0;
+    ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
+    flags = on ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
 // Feeds the releases that had to wait. It is never called within a frame: the modifiers that widgets see must
 // not change meanwhile.
 void Gui::feedSeen() {
     for (const WindowEvent& event : std::exchange(seen_, {}))
-        ImGui_ImplGlfw_KeyCallback(window_.handle(), event.place, event.scancode, GLFW_RELEASE, event.mods);
+        feedKey(event, GLFW_RELEASE);
 }
 
 void Gui::begin(float scale) {
@@ -160,6 +191,10 @@ bool Gui::wantsMouse() const {
 
 bool Gui::wantsKeyboard() const {
     return ImGui::GetIO().WantTextInput;
+}
+
+ImFont* Gui::titleFont() {
+    return ImGui::GetIO().Fonts->Fonts.back();
 }
 
 bool Gui::animates() const {

@@ -1,6 +1,5 @@
 #include "app/viewer/window/window.h"
 
-#include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "renderer/gl/debug.h"
 
@@ -36,16 +35,16 @@ double readRefreshRate() {
 [[noreturn]] void failWithoutDisplay() {
     const std::string reason = glfwReason();
     const bool named = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
-    throw Error(std::string("no window: ") + (named ? reason : "there is no display (DISPLAY is not set)") +
-                ": " + kMend);
+    throw NoWindow(std::string("no window: ") +
+                   (named ? reason : "there is no display (DISPLAY is not set)") + ": " + kMend);
 }
 
 [[noreturn]] void failWithoutContext() {
     const std::string reason = glfwReason();
-    throw Error("no window with OpenGL 4.5: " + reason +
-                ": bring the graphics driver up to date or use Mesa's software one "
-                "(LIBGL_ALWAYS_SOFTWARE=1); " +
-                kMend);
+    throw NoWindow("no window with OpenGL 4.5: " + reason +
+                   ": bring the graphics driver up to date or use Mesa's software one "
+                   "(LIBGL_ALWAYS_SOFTWARE=1); " +
+                   kMend);
 }
 
 // Returns the key as the user's keyboard has letters and signs: Ctrl+Z is where Z is written.
@@ -81,10 +80,10 @@ Window::Window(const Desc& desc) {
         if (window_ == nullptr) failWithoutContext();
         glfwMakeContextCurrent(window_);
         gl::requireOpenGl45();
-    } catch (...) {
+    } catch (const Error& error) {
         alive = false;
         glfwTerminate();
-        throw;
+        throw NoWindow(error.what());
     }
     gl::listenToDebugMessages();
     float scaleY = 1;
@@ -176,6 +175,10 @@ glm::uvec2 Window::extent() const {
     int width = 0, height = 0;
     glfwGetWindowSize(window_, &width, &height);
     return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+void Window::copyText(const std::string& text) const {
+    glfwSetClipboardString(window_, text.c_str());
 }
 
 void Window::setTitle(const std::string& title) {

@@ -7,6 +7,8 @@
 
 #include <glm/glm.hpp>
 
+#include "assets/base/error.h"
+
 struct GLFWwindow;
 
 namespace relume {
@@ -27,6 +29,12 @@ struct WindowEvent {
     std::vector<std::string> paths = {}; // Drop
 };
 
+/// Tells that there can be no window: no display, or none with OpenGL 4.5.
+class NoWindow : public Error {
+public:
+    using Error::Error;
+};
+
 /// A window with an OpenGL 4.5 core context, which is current on the thread that made it. There is one at a
 /// time; all calls but wake() are for that thread.
 class Window {
@@ -36,7 +44,7 @@ public:
         std::string title;
         bool debug = false; // the driver checks more and tells more, and is slower
     };
-    explicit Window(const Desc& desc); // shows it; throws Error naming what is missing and the remedy
+    explicit Window(const Desc& desc); // shows it; throws NoWindow naming what is missing and the remedy
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
@@ -51,6 +59,7 @@ public:
     float contentScale() const { return contentScale_; } // of text and controls
     double refreshRate() const { return refreshRate_; }  // [1/s] of the monitor, 60 where unknown
     void setTitle(const std::string& title);
+    void copyText(const std::string& text) const; // into the clipboard
     void setVsync(bool on);
 
     /// Waits at most so long [s], 0: not at all, for something to happen, and returns what has happened so
