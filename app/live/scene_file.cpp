@@ -34,7 +34,7 @@ bool SceneFile::differs(const SceneEdits& edits) const {
         return a.emission == b.emission && a.baseColor == b.baseColor;
     };
     const auto samePlace = [](const Placement& a, const Placement& b) { return a.transform == b.transform; };
-    return edits.lights != held_.lights || edits.sky != held_.sky ||
+    return edits.lights != held_.lights || edits.sky != held_.sky || edits.densities != held_.densities ||
            !std::equal(edits.materials.begin(), edits.materials.end(), held_.materials.begin(),
                        held_.materials.end(), sameMaterial) ||
            !std::equal(edits.placements.begin(), edits.placements.end(), held_.placements.begin(),

@@ -336,6 +336,7 @@ void GlbWriter::addNodes() {
         Json node = nodeOf(instance.name, instance.transform);
         if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
             node["mesh"] = meshIndices_[instance.mesh];
+        if (instance.density != 1.0f) node["extras"]["relume"]["density"] = instance.density;
         nodes.push_back(std::move(node));
     }
     for (const Camera& camera : scene_.cameras)

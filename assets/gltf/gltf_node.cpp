@@ -2,6 +2,8 @@
 
 #include "assets/gltf/gltf_node.h"
 #include "assets/base/error.h"
+#include "assets/gltf/gltf_file.h"
+#include "assets/model/scene_limits.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -65,6 +67,19 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
+/// Returns the factor on the texels per metre of a node's mesh; what is wrong with it is warned about.
+float densityOf(Build& build, size_t index) {
+    const json& node = build.nodes[index];
+    const json* value = ownExtra(node, "density");
+    if (!value) return 1.0f;
+    const double density = value->is_number() ? value->get<double>() : 0.0;
+    if (density >= kLeastDensity && density <= kMostDensity) return static_cast<float>(density);
+    build.warnings.add(
+        labelOf(node, index),
+        fmt::format("its density is no number from {:g} to {:g}, 1 is used", kLeastDensity, kMostDensity));
+    return 1.0f;
+}
+
 void addNode(Build& build, size_t index, const glm::mat4& world) {
     const json& node = build.nodes[index];
     if (!finite(world)) {
@@ -78,6 +93,7 @@ void addNode(Build& build, size_t index, const glm::mat4& world) {
         if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
         instance.mesh = mesh;
         instance.transform = world;
+        instance.density = densityOf(build, index);
         instance.node = static_cast<int>(index);
         build.scene.instances.push_back(std::move(instance));
     }
