@@ -1,17 +1,19 @@
 #include "assets/atlas/unwrap.h"
 
 #include "assets/atlas/lightmap_atlas.h"
-#include "assets/atlas/planar_charts.h"
+#include "assets/atlas/charts.h"
 #include "assets/atlas/rect_pack.h"
 #include "assets/base/error.h"
 #include "assets/base/numbering.h"
 #include "assets/base/warnings.h"
 #include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -218,24 +220,37 @@ std::string nameOf(const Scene& scene, const Job& job) {
     return scene.path + ": mesh " + inQuotes(scene.meshes[job.mesh].name);
 }
 
-std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) {
+/// Returns about the size of a texel [m], as a power of two: charts stay what they are while a scene changes
+/// a little.
+double texelOf(const UnwrapDesc& desc, double area) {
+    const double texel = desc.density > 0.0 ? 1.0 / desc.density : std::sqrt(area / kRectFill) / desc.size;
+    return texel > 0.0 && std::isfinite(texel) ? std::exp2(std::round(std::log2(texel))) : 0.0;
+}
+
+std::vector<Job> cutMeshes(const Scene& scene, const UnwrapDesc& desc, const std::vector<bool>& chosen) {
     const std::vector<glm::dmat3> transforms = largestTransforms(scene);
-    std::vector<Job> jobs;
     std::vector<double> areas(scene.meshes.size());
+    double all = 0.0;
     for (const Instance& instance : scene.instances) {
         const size_t mesh = static_cast<size_t>(instance.mesh);
-        if (chosen[mesh])
-            areas[mesh] += areaOf(cornersOf(scene.meshes[mesh], glm::dmat3(instance.transform)));
+        const double area = areaOf(cornersOf(scene.meshes[mesh], glm::dmat3(instance.transform)));
+        areas[mesh] += area;
+        all += area;
     }
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        if (!chosen[i]) continue;
-        tellWatch("unwrapping", double(i) / double(scene.meshes.size()));
-        Job job{i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0};
-        job.charts = cutPlanarCharts(job.corners);
-        const double largest = areaOf(job.corners);
-        job.instances = largest > 0.0 && std::isfinite(areas[i] / largest) ? areas[i] / largest : 1.0;
-        if (!job.charts.empty()) jobs.push_back(std::move(job)); // else nothing but triangles without area
-    }
+    std::vector<Job> jobs;
+    for (size_t i = 0; i < scene.meshes.size(); ++i)
+        if (chosen[i]) jobs.push_back({i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0});
+    const double texel = texelOf(desc, all);
+    WorkerPool pool(0);
+    std::atomic<uint32_t> done = 0;
+    pool.run(static_cast<uint32_t>(jobs.size()), [&](uint32_t i) {
+        tellWatch("unwrapping", double(done++) / double(jobs.size()));
+        Job& job = jobs[i];
+        job.charts = cutCharts(job.corners, texel, pool);
+        const double largest = areaOf(job.corners), ratio = areas[job.mesh] / largest;
+        job.instances = largest > 0.0 && std::isfinite(ratio) ? ratio : 1.0;
+    });
+    std::erase_if(jobs, [](const Job& job) { return job.charts.empty(); }); // triangles without area
     return jobs;
 }
 
@@ -355,7 +370,7 @@ UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc) {
             !scene.meshes[i].primitives.empty() && !(desc.onlyMissing && lightmapSet(scene.meshes[i]) >= 0);
         if (chosen[i]) mover.run(scene.meshes[i]);
     }
-    std::vector<Job> jobs = cutMeshes(scene, chosen);
+    std::vector<Job> jobs = cutMeshes(scene, desc, chosen);
     const bool alone = scene.instances.size() == 1;
     const double texels = (alone ? 1.0 : kRectFill) * desc.size * desc.size * shareOf(scene, jobs);
     UnwrapResult result;
