@@ -16,7 +16,8 @@ namespace relume {
 
 namespace {
 
-constexpr double kThin = 0.5; // [texels]; a side below it needs no gutter: see layOutCharts
+constexpr double kThin = 0.5;  // [texels]; a side below it needs no gutter: see layOutCharts
+constexpr double kReach = 0.5; // [texels], how far bilinear filters reach beyond a texel's edge
 constexpr double kThinnest =
     0.125;                      // [texels]; below it float UVs of a large atlas could not tell corners apart
 constexpr double kNeedle = 8.0; // [texels]; a chart no wider may be shortened to the atlas' length
@@ -83,14 +84,19 @@ std::optional<Fitted> fitMask(const LayoutChart& chart, const Trial& trial, bool
     const std::optional<ChartPlace> place = fit(chart, trial, turned);
     if (!place) return std::nullopt;
     Fitted fitted{*place, {}, 0, false};
-    TexelMask mask(place->box.x, place->box.y);
-    const std::vector<glm::dvec2>& uv = chart.chart->uv;
-    for (size_t i = 0; i + 2 < uv.size(); i += 3)
-        mask.addTouched(place->texelOf(uv[i]), place->texelOf(uv[i + 1]), place->texelOf(uv[i + 2]));
-    fitted.touched = mask.count();
-    fitted.full = static_cast<double>(fitted.touched) > kFullBox * place->box.x * place->box.y;
     const glm::dvec2 sides = chart.chart->extent * place->stretch;
-    fitted.mask = mask.grown(sides.x >= kThin, sides.y >= kThin);
+    const glm::dvec2 growth(sides.x < kThin ? 0.0 : kReach, sides.y < kThin ? 0.0 : kReach);
+    TexelMask touched(place->box.x, place->box.y);
+    fitted.mask = TexelMask(place->box.x + 2, place->box.y + 2);
+    const std::vector<glm::dvec2>& uv = chart.chart->uv;
+    for (size_t i = 0; i + 2 < uv.size(); i += 3) {
+        const glm::dvec2 a = place->texelOf(uv[i]), b = place->texelOf(uv[i + 1]),
+                         c = place->texelOf(uv[i + 2]);
+        touched.addTouched(a, b, c);
+        fitted.mask.addGrown(a + 1.0, b + 1.0, c + 1.0, growth);
+    }
+    fitted.touched = touched.count();
+    fitted.full = static_cast<double>(fitted.touched) > kFullBox * place->box.x * place->box.y;
     return fitted;
 }
 

@@ -1,5 +1,6 @@
 #include "assets/atlas/lightmap_atlas.h"
 
+#include "assets/atlas/chart_quality.h"
 #include "assets/atlas/rect_pack.h"
 #include "assets/atlas/uv_grid.h"
 #include "assets/base/error.h"
@@ -295,24 +296,11 @@ int lightmapSet(const Mesh& mesh) {
     return -1;
 }
 
-namespace {
-
-/// Returns the squared L2 stretch of a triangle times its area: half of the squared lengths of the
-/// derivatives of the surface by u and v, summed.
-double stretchOf(const std::array<glm::dvec3, 3>& p, const std::array<glm::dvec2, 3>& uv, double world) {
-    const glm::dvec3 a = p[1] - p[0], b = p[2] - p[0];
-    const glm::dvec2 s = uv[1] - uv[0], t = uv[2] - uv[0];
-    const double det = cross(s, t);
-    const glm::dvec3 du = (a * t.y - b * s.y) / det, dv = (b * s.x - a * t.x) / det;
-    return 0.5 * (glm::dot(du, du) + glm::dot(dv, dv)) * world;
-}
-
-} // namespace
-
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size) {
     AtlasStatistics statistics;
+    Stretch stretch;
     UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
-    double uvSum = 0.0, worldSum = 0.0, squares = 0.0, densityMin = std::numeric_limits<double>::max();
+    double uvSum = 0.0, worldSum = 0.0, densityMin = std::numeric_limits<double>::max();
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = atlas.instances[i];
         if (rect.texCoord < 0) continue;
@@ -337,7 +325,11 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
                 if (!(uvArea > 0.0) || !(world > 0.0)) continue;
                 const double density = size * std::sqrt(uvArea / world);
                 densityMin = std::min(densityMin, density);
-                squares += stretchOf(p, uv, world);
+                // Mirrored instances have mirrored UVs, which are no stretch.
+                if (cross(uv[1] - uv[0], uv[2] - uv[0]) < 0.0)
+                    for (glm::dvec2& corner : uv)
+                        corner.x = -corner.x;
+                stretch.add(p.data(), uv.data());
                 statistics.texelDensityMax = std::max(statistics.texelDensityMax, density);
             }
         }
@@ -346,7 +338,7 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
     if (grid.covered() > 0)
         statistics.overlap = static_cast<double>(grid.overlapped()) / static_cast<double>(grid.covered());
     if (worldSum > 0.0) statistics.texelDensityMean = size * std::sqrt(uvSum / worldSum);
-    if (worldSum > 0.0) statistics.stretch = std::sqrt(squares * uvSum) / worldSum;
+    if (stretch.surface > 0.0) statistics.stretch = stretch.normalised();
     statistics.texelDensityMin = std::min(densityMin, statistics.texelDensityMax);
     return statistics;
 }

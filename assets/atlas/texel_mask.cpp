@@ -51,8 +51,8 @@ void TexelMask::addRun(int64_t row, int64_t begin, int64_t end) {
         words[w] |= bitsBetween(std::max(first, 64 * w) - 64 * w, std::min(last, 64 * w + 64) - 64 * w);
 }
 
-void TexelMask::addTouched(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
-    const double bottom = std::min({a.y, b.y, c.y}), top = std::max({a.y, b.y, c.y});
+void TexelMask::addGrown(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 growth) {
+    const double bottom = std::min({a.y, b.y, c.y}) - growth.y, top = std::max({a.y, b.y, c.y}) + growth.y;
     const double rowBegin = std::max(std::floor(bottom + kTouch), 0.0);
     const double rowEnd = std::min(std::ceil(top - kTouch), double(height_));
     // A triangle flatter than the tolerance still has the texels that its middle lies in.
@@ -61,24 +61,18 @@ void TexelMask::addTouched(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
     const auto last = static_cast<int64_t>(rowBegin < rowEnd ? rowEnd : middle + 1.0);
     for (int64_t y = first; y < last; ++y) {
         double low = INFINITY, high = -INFINITY;
-        const double y0 = static_cast<double>(y), y1 = y0 + 1.0;
+        const double y0 = static_cast<double>(y) - growth.y, y1 = static_cast<double>(y) + 1.0 + growth.y;
         spanOfEdge(a, b, y0, y1, low, high);
         spanOfEdge(b, c, y0, y1, low, high);
         spanOfEdge(c, a, y0, y1, low, high);
         if (!(low <= high)) continue;
+        low -= growth.x;
+        high += growth.x;
         const double begin = std::floor(low + kTouch), end = std::ceil(high - kTouch);
         const double centre = std::floor(0.5 * (low + high));
         addRun(y, static_cast<int64_t>(begin < end ? begin : centre),
                static_cast<int64_t>(begin < end ? end : centre + 1.0));
     }
-}
-
-TexelMask TexelMask::grown(bool columns, bool rows) const {
-    TexelMask result(width_ + 2, height_ + 2);
-    for (const TexelRun& run : runs())
-        for (uint32_t y = run.row + !rows; y <= run.row + 1 + rows; ++y)
-            result.addRun(y, run.begin + !columns, int64_t{run.end} + 1 + columns);
-    return result;
 }
 
 TexelMask TexelMask::turned() const {

@@ -24,12 +24,12 @@ public:
     uint64_t count() const;
     /// Adds the columns [begin, end) of a row; what lies beyond the box is ignored.
     void addRun(int64_t row, int64_t begin, int64_t end);
-    /// Adds each texel whose inside the triangle [texels] reaches into by more than 1/256 of a texel.
-    void addTouched(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
+    /// Adds each texel into which the triangle [texels] reaches by more than 1/256 of a texel.
+    void addTouched(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) { addGrown(a, b, c, glm::dvec2(0.0)); }
+    /// Does so for texels that are larger by `growth` to each of their sides. With half a texel these are all
+    /// that bilinear filters read for points of the triangle.
+    void addGrown(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, glm::dvec2 growth);
 
-    /// Returns the mask in a box that is larger by one texel on each side, its texels grown by one to the
-    /// left and right, to the top and bottom, or both, diagonals included.
-    TexelMask grown(bool columns, bool rows) const;
     /// Returns the mask after a quarter turn: the texel (x, y) goes to (height - 1 - y, x).
     TexelMask turned() const;
     /// Returns the runs of all rows, row by row from 0 on.

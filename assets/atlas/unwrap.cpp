@@ -23,7 +23,8 @@ constexpr uint32_t kMostTexels = 16384; // to a side of an atlas whose size the 
 constexpr uint32_t kLeastSize = 64;     // of a lightmap [texels]
 // Places are given up where so little of the atlas is still used: the file has become another one.
 constexpr double kStillUsed = 0.5;
-constexpr double kTold = 0.995; // of the density asked for: less is worth a warning
+constexpr double kUsualFill = 0.85; // share of an atlas that charts cover, for a first guess
+constexpr double kTold = 0.995;     // of the density asked for: less is worth a warning
 
 std::string nameOf(const Scene& scene, const Mesh& mesh) {
     return scene.path + ": mesh " + inQuotes(mesh.name);
@@ -38,6 +39,7 @@ public:
 
 private:
     bool choose();
+    void sizeTexels();
     void cut();
     std::vector<LayoutChart> charts() const;
     double densityOf(const UnwrapObject& object) const;
@@ -95,9 +97,31 @@ bool Unwrapper::choose() {
     return any;
 }
 
+/// Tells each shape about how large a texel will be on it, as a power of two: charts stay what they are while
+/// a scene changes a little.
+void Unwrapper::sizeTexels() {
+    std::vector<double> largest(parts_.shapes.size()), areas(parts_.shapes.size());
+    pool_.run(static_cast<uint32_t>(areas.size()), [&](uint32_t i) {
+        areas[i] = relume::areaOf(scene_.meshes[parts_.meshOf[i]], parts_.shapes[i]);
+    });
+    double area = 0.0;
+    for (const UnwrapObject& object : parts_.objects) {
+        const double scale = object.scale * densityOf(object);
+        largest[object.shape] = std::max(largest[object.shape], scale);
+        area += areas[object.shape] * scale * scale;
+    }
+    double texel = desc_.size > 0 ? std::sqrt(area / kUsualFill) / desc_.size : 0.0;
+    if (desc_.density > 0.0) texel = std::max(texel, 1.0 / desc_.density);
+    for (size_t i = 0; i < largest.size(); ++i) {
+        const double own = std::exp2(std::round(std::log2(texel / largest[i])));
+        parts_.shapes[i].texel = own > 0.0 && std::isfinite(own) ? own : 0.0;
+    }
+}
+
 /// Cuts each shape into charts, or takes them from the memory.
 void Unwrapper::cut() {
     parts_ = collectParts(scene_, chosen_, keptSet_);
+    sizeTexels();
     const size_t known = memory_ ? memory_->shapes.size() : 0;
     rememberedShape_.assign(parts_.shapes.size(), known);
     std::multimap<uint64_t, size_t> byHash;
@@ -116,7 +140,8 @@ void Unwrapper::cut() {
     pool_.run(static_cast<uint32_t>(parts_.shapes.size()), [&](uint32_t i) {
         tellWatch("unwrapping", double(i) / double(parts_.shapes.size()));
         const size_t mesh = parts_.meshOf[i];
-        if (rememberedShape_[i] == known) cutShape(scene_.meshes[mesh], keptSet_[mesh], parts_.shapes[i]);
+        if (rememberedShape_[i] == known)
+            cutShape(scene_.meshes[mesh], keptSet_[mesh], parts_.shapes[i], pool_);
     });
     // What has no chart is nothing but triangles without area.
     std::erase_if(parts_.objects,

@@ -1,5 +1,6 @@
 #include "assets/atlas/unwrap_shapes.h"
 
+#include "assets/atlas/charts.h"
 #include "assets/base/numbering.h"
 
 #include <algorithm>
@@ -75,6 +76,11 @@ bool sameFactor(const glm::dmat3& a, const glm::dmat3& b) {
     return true;
 }
 
+bool sameTexel(double a, double b) {
+    constexpr double kSameTexel = 2.5; // factor; texels are powers of two, so that neighbours are the same
+    return a <= kSameTexel * b && b <= kSameTexel * a;
+}
+
 std::vector<glm::dvec3> cornersOf(const Mesh& mesh, const glm::dmat3& factor) {
     std::vector<glm::dvec3> corners;
     for (const Primitive& primitive : mesh.primitives)
@@ -111,7 +117,8 @@ PlanarChart keptChart(const Mesh& mesh, int set, const std::vector<glm::dvec3>& 
 } // namespace
 
 bool sameShape(const UnwrapShape& a, const UnwrapShape& b) {
-    return a.hash == b.hash && a.kept == b.kept && a.texel == b.texel && sameFactor(a.factor, b.factor);
+    return a.hash == b.hash && a.kept == b.kept && sameTexel(a.texel, b.texel) &&
+           sameFactor(a.factor, b.factor);
 }
 
 UnwrapParts collectParts(const Scene& scene, const std::vector<bool>& chosen, const std::vector<int>& set) {
@@ -137,12 +144,20 @@ UnwrapParts collectParts(const Scene& scene, const std::vector<bool>& chosen, co
     return parts;
 }
 
-void cutShape(const Mesh& mesh, int set, UnwrapShape& shape) {
+double areaOf(const Mesh& mesh, const UnwrapShape& shape) {
+    const std::vector<glm::dvec3> corners = cornersOf(mesh, shape.factor);
+    double area = 0.0;
+    for (size_t i = 0; i + 2 < corners.size(); i += 3)
+        area += 0.5 * glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]));
+    return area;
+}
+
+void cutShape(const Mesh& mesh, int set, UnwrapShape& shape, WorkerPool& pool) {
     const std::vector<glm::dvec3> corners = cornersOf(mesh, shape.factor);
     if (set >= 0)
         shape.charts = {keptChart(mesh, set, corners)};
     else
-        shape.charts = cutPlanarCharts(corners);
+        shape.charts = cutCharts(corners, shape.texel, pool);
 }
 
 void cutShapeUp(const Mesh& mesh, UnwrapShape& shape) {

@@ -23,12 +23,15 @@ struct UnwrapParts {
 /// instead of -1). Shapes come without charts.
 UnwrapParts collectParts(const Scene& scene, const std::vector<bool>& chosen, const std::vector<int>& set);
 
+/// Returns the area of the mesh in the proportions of the shape.
+double areaOf(const Mesh& mesh, const UnwrapShape& shape);
+
 /// Cuts the mesh into charts of the shape, or makes the one of its kept UVs.
-void cutShape(const Mesh& mesh, int set, UnwrapShape& shape);
+void cutShape(const Mesh& mesh, int set, UnwrapShape& shape, WorkerPool& pool);
 /// Cuts it into single triangles, which cannot overlap.
 void cutShapeUp(const Mesh& mesh, UnwrapShape& shape);
 
-/// Tells whether two shapes have the same charts.
+/// Tells whether two shapes have charts alike: those of texels that are some twice as large are good enough.
 bool sameShape(const UnwrapShape& a, const UnwrapShape& b);
 
 } // namespace relume
