@@ -18,6 +18,7 @@ packages=(
     libglm-dev libtinygltf-dev libopenexr-dev libstb-dev zlib1g-dev
     libdraco-dev libmeshoptimizer-dev         # compressed meshes of glTF files
     libwebp-dev                               # WebP pictures of glTF files
+    libeigen3-dev                             # sparse equations, by which lightmap charts are flattened
     libepoxy-dev libegl-dev libgl-dev         # OpenGL: the pictures; EGL makes them without a display
     libglfw3-dev libimgui-dev                 # the viewer's window and panels
     libcli11-dev libspdlog-dev nlohmann-json3-dev

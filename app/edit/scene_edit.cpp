@@ -65,6 +65,8 @@ ThingKinds kindsWith(Property property) {
     case Property::Rotation:
     case Property::File:
         return {.sky = true};
+    case Property::Density:
+        return {.objects = true};
     default:
         return {.lamps = true};
     }
@@ -209,6 +211,8 @@ std::string Editor::operator()(const SetEdit& edit) const {
     if (thing.kind == ThingKind::Lamp) {
         setLamp(edits.lights[thing.index], edit.setting);
         requireGood(edits.lights[thing.index]);
+    } else if (thing.kind == ThingKind::Object) {
+        edits.densities[thing.index] = std::get<float>(edit.setting.value);
     } else if (thing.kind == ThingKind::Sky) {
         setSky(edits.sky, edit.setting);
     } else {

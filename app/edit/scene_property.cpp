@@ -58,6 +58,8 @@ constexpr std::array kRows = {
                 "give r,g,b in cd/m^2 from 0 to 1e12"},
     PropertyRow{"rotation", Property::Rotation, ValueKind::Number, -kMostNumber, kMostNumber, "give degrees"},
     PropertyRow{"file", Property::File, ValueKind::Text, 0, 0, "name an .exr or .hdr file"},
+    PropertyRow{"density", Property::Density, ValueKind::Number, kLeastDensity, kMostDensity,
+                "give a factor on the texels per metre, from 0.01 to 100"},
 };
 
 const PropertyRow& rowOf(Property property) {

@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// The properties of analytic lights, mesh lights, materials and the sky that edits can set.
+/// The properties of analytic lights, mesh lights, materials, objects and the sky that edits can set.
 enum class Property {
     Name,
     Intensity,   // [cd, lux, cd/m^2]
@@ -26,6 +26,7 @@ enum class Property {
     Emission,  // [cd/m^2]
     Rotation,  // of the sky's picture about +Y [degrees]
     File,      // path of the sky's picture
+    Density,   // of an object, factor on the texels per metre of an unwrap
 };
 
 using PropertyValue = std::variant<float, glm::vec2, glm::vec3, std::string>;

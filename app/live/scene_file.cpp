@@ -56,6 +56,7 @@ bool SceneFile::differs(const SceneEdits& edits) const {
         return a.emission == b.emission && a.baseColor == b.baseColor;
     };
     return ownLights(edits.lights) != ownLights(held_.lights) || ownSky(edits.sky) != ownSky(held_.sky) ||
+           edits.densities != held_.densities ||
            !std::equal(edits.materials.begin(), edits.materials.end(), held_.materials.begin(),
                        held_.materials.end(), sameMaterial) ||
            edits.placements != held_.placements;

@@ -126,6 +126,7 @@ void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instance
     const bool sameLights = edits.lights == own.lights && edits.sky == own.sky;
     keepMaterials(edits.materials, sameNames);
     if (sameInstances) edits.placements = document_.edits.placements;
+    if (sameInstances && edits.densities == own.densities) edits.densities = document_.edits.densities;
     if (sameLights) {
         edits.lights = document_.edits.lights;
         edits.sky = document_.edits.sky;

@@ -1,5 +1,6 @@
 #include "assets/atlas/lightmap_atlas.h"
 
+#include "assets/atlas/chart_quality.h"
 #include "assets/atlas/rect_pack.h"
 #include "assets/atlas/uv_grid.h"
 #include "assets/base/error.h"
@@ -95,10 +96,16 @@ SetQuality assess(const Mesh& mesh, int set) {
         quality.fault = fmt::format("has a TEXCOORD_{} without area", set);
         return quality;
     }
-    UvGrid grid(UvGrid::sizeFor(triangles), quality.low, quality.high);
-    addWhileFree(grid, mesh, set);
-    quality.visits = grid.visits();
-    if (grid.overlaps(kMaxOverlap)) {
+    // Where charts lie far apart, a coarse grid sees few of their texels: a finer one has the last word.
+    bool overlaps = true;
+    for (uint32_t cells = UvGrid::sizeFor(triangles); overlaps; cells = kAtlasCells) {
+        UvGrid grid(cells, quality.low, quality.high);
+        addWhileFree(grid, mesh, set);
+        quality.visits += grid.visits();
+        overlaps = grid.overlaps(kMaxOverlap);
+        if (cells == kAtlasCells) break;
+    }
+    if (overlaps) {
         quality.fault = fmt::format("has a TEXCOORD_{} overlapping itself by more than 1 %", set);
         return quality;
     }
@@ -316,6 +323,7 @@ int lightmapSet(const Mesh& mesh) {
 
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size) {
     AtlasStatistics statistics;
+    Stretch stretch;
     UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
     double uvSum = 0.0, worldSum = 0.0, densityMin = std::numeric_limits<double>::max();
     for (size_t i = 0; i < scene.instances.size(); ++i) {
@@ -342,6 +350,11 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
                 if (!(uvArea > 0.0) || !(world > 0.0)) continue;
                 const double density = size * std::sqrt(uvArea / world);
                 densityMin = std::min(densityMin, density);
+                // Mirrored instances have mirrored UVs, which are no stretch.
+                if (cross(uv[1] - uv[0], uv[2] - uv[0]) < 0.0)
+                    for (glm::dvec2& corner : uv)
+                        corner.x = -corner.x;
+                stretch.add(p.data(), uv.data());
                 statistics.texelDensityMax = std::max(statistics.texelDensityMax, density);
             }
         }
@@ -350,6 +363,7 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
     if (grid.covered() > 0)
         statistics.overlap = static_cast<double>(grid.overlapped()) / static_cast<double>(grid.covered());
     if (worldSum > 0.0) statistics.texelDensityMean = size * std::sqrt(uvSum / worldSum);
+    if (stretch.surface > 0.0) statistics.stretch = stretch.normalised();
     statistics.texelDensityMin = std::min(densityMin, statistics.texelDensityMax);
     return statistics;
 }

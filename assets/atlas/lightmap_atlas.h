@@ -48,6 +48,9 @@ struct AtlasStatistics {
     double overlap = 0;  // share of the covered area covered more than once [1]
     double texelDensityMin = 0, texelDensityMean = 0,
            texelDensityMax = 0; // [texels/m] at `size`, per triangle
+    /// The L2 stretch of all triangles whose UVs have an area, weighted by area and normalised by the areas
+    /// of both sides [Sander et al. 2001, eq. 3 and 4]; 1 is isometric, at one density.
+    double stretch = 0;
 };
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size);
 

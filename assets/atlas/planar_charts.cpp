@@ -180,35 +180,6 @@ std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) { // monotone
     return hull;
 }
 
-/// Turns the points so that their box has the least area, moves it to the origin and returns its extent.
-glm::dvec2 turnToLeastBox(std::vector<glm::dvec2>& points) {
-    const std::vector<glm::dvec2> hull = convexHull(points);
-    const size_t step = 1 + hull.size() / kMaxTurns;
-    double least = std::numeric_limits<double>::max();
-    glm::dvec2 direction(1.0, 0.0), corner(0.0), extent(0.0);
-    for (size_t i = 0; i < hull.size(); i += step) {
-        const glm::dvec2 edge = hull[(i + 1) % hull.size()] - hull[i];
-        const double length = glm::length(edge);
-        if (!(length > 0.0)) continue;
-        const glm::dvec2 d = edge / length;
-        glm::dvec2 low(std::numeric_limits<double>::max()), high = -low;
-        for (const glm::dvec2& p : hull) {
-            const glm::dvec2 q(glm::dot(p, d), glm::dot(p, glm::dvec2(-d.y, d.x)));
-            low = glm::min(low, q);
-            high = glm::max(high, q);
-        }
-        const double area = (high.x - low.x) * (high.y - low.y);
-        if (!(area < least)) continue;
-        least = area;
-        direction = d;
-        corner = low;
-        extent = high - low;
-    }
-    for (glm::dvec2& p : points)
-        p = glm::dvec2(glm::dot(p, direction), glm::dot(p, glm::dvec2(-direction.y, direction.x))) - corner;
-    return extent;
-}
-
 PlanarChart Cutter::finish(std::vector<uint32_t> chart) const {
     PlanarChart out;
     for (uint32_t triangle : chart)
@@ -246,6 +217,34 @@ std::vector<PlanarChart> Cutter::run() {
 }
 
 } // namespace
+
+glm::dvec2 turnToLeastBox(std::vector<glm::dvec2>& points) {
+    const std::vector<glm::dvec2> hull = convexHull(points);
+    const size_t step = 1 + hull.size() / kMaxTurns;
+    double least = std::numeric_limits<double>::max();
+    glm::dvec2 direction(1.0, 0.0), corner(0.0), extent(0.0);
+    for (size_t i = 0; i < hull.size(); i += step) {
+        const glm::dvec2 edge = hull[(i + 1) % hull.size()] - hull[i];
+        const double length = glm::length(edge);
+        if (!(length > 0.0)) continue;
+        const glm::dvec2 d = edge / length;
+        glm::dvec2 low(std::numeric_limits<double>::max()), high = -low;
+        for (const glm::dvec2& p : hull) {
+            const glm::dvec2 q(glm::dot(p, d), glm::dot(p, glm::dvec2(-d.y, d.x)));
+            low = glm::min(low, q);
+            high = glm::max(high, q);
+        }
+        const double area = (high.x - low.x) * (high.y - low.y);
+        if (!(area < least)) continue;
+        least = area;
+        direction = d;
+        corner = low;
+        extent = high - low;
+    }
+    for (glm::dvec2& p : points)
+        p = glm::dvec2(glm::dot(p, direction), glm::dot(p, glm::dvec2(-direction.y, direction.x))) - corner;
+    return extent;
+}
 
 std::vector<PlanarChart> cutPlanarCharts(const std::vector<glm::dvec3>& corners) {
     return Cutter(corners).run();

@@ -22,4 +22,7 @@ std::vector<PlanarChart> cutPlanarCharts(const std::vector<glm::dvec3>& corners)
 /// Makes one chart for each triangle that has an area.
 std::vector<PlanarChart> cutSingleTriangles(const std::vector<glm::dvec3>& corners);
 
+/// Turns the points so that their box has the least area, moves it to the origin and returns its extent.
+glm::dvec2 turnToLeastBox(std::vector<glm::dvec2>& points);
+
 } // namespace relume

@@ -1,10 +1,9 @@
 #include "assets/atlas/unwrap.h"
 
 #include "assets/atlas/lightmap_atlas.h"
-#include "assets/atlas/planar_charts.h"
-#include "assets/atlas/rect_pack.h"
+#include "assets/atlas/unwrap_shapes.h"
+#include "assets/atlas/uv_writer.h"
 #include "assets/base/error.h"
-#include "assets/base/numbering.h"
 #include "assets/base/warnings.h"
 #include "assets/base/watch.h"
 
@@ -13,319 +12,327 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace relume {
 
 namespace {
 
-constexpr uint32_t kChartGutter = 2; // [texels], between charts
-constexpr double kFill = 0.5; // share of an atlas that charts of usual shapes cover: where the search starts
-constexpr double kRectFill = 0.85;     // share of an atlas that the meshes' rectangles fill when packed
-constexpr int kSearchSteps = 8;        // of the density; one packing each
-constexpr size_t kManyCharts = 20000;  // above it a packing takes long and the search is cut short
-constexpr double kMaxTexels = 65536.0; // [texels] to a side of one mesh
+constexpr uint32_t kMostTexels = 16384; // to a side of an atlas whose size the density decides
+constexpr uint32_t kLeastSize = 64;     // of a lightmap [texels]
+// Places are given up where so little of the atlas is still used: the file has become another one.
+constexpr double kStillUsed = 0.5;
+constexpr double kUsualFill = 0.85; // share of an atlas that charts cover, for a first guess
+constexpr double kTold = 0.995;     // of the density asked for: less is worth a warning
 
-/// Holds the UVs of a mesh's triangle corners, and which chart each triangle belongs to.
-struct Layout {
-    std::vector<glm::vec2> uv;   // 3 per triangle
-    std::vector<uint32_t> chart; // per triangle, kNoNumber: no area
-};
-
-/// Holds a mesh to unwrap.
-struct Job {
-    size_t mesh;
-    std::vector<glm::dvec3> corners; // 3 per triangle [m], as the largest instance stands in the world
-    std::vector<PlanarChart> charts;
-    double instances = 0.0; // world area of all instances over that of the largest one
-};
-
-/// Holds charts in their places.
-struct Packing {
-    std::vector<PackedRect> rects;
-    uint32_t side = 1; // of the square that holds them all [texels]
-};
-
-double areaScale(const glm::dmat3& linear) {
-    return std::pow(std::abs(glm::determinant(linear)), 2.0 / 3.0);
+std::string nameOf(const Scene& scene, const Mesh& mesh) {
+    return scene.path + ": mesh " + inQuotes(mesh.name);
 }
 
-/// Returns the linear part of the largest instance of each mesh; its charts are measured as that one stands
-/// in the world.
-std::vector<glm::dmat3> largestTransforms(const Scene& scene) {
-    std::vector<glm::dmat3> transforms(scene.meshes.size(), glm::dmat3(0.0));
-    for (const Instance& instance : scene.instances) {
-        glm::dmat3& best = transforms[static_cast<size_t>(instance.mesh)];
-        const glm::dmat3 linear(instance.transform);
-        if (areaScale(linear) > areaScale(best)) best = linear;
+/// Makes the UVs of one scene.
+class Unwrapper {
+public:
+    Unwrapper(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory)
+        : scene_(scene), desc_(desc), memory_(memory), pool_(desc.threads) {}
+    UnwrapResult run();
+
+private:
+    bool choose();
+    void sizeTexels();
+    void cut();
+    std::vector<LayoutChart> charts() const;
+    double densityOf(const UnwrapObject& object) const;
+    uint32_t chooseSize(const std::vector<LayoutChart>& charts) const;
+    void layOut();
+    std::optional<ChartLayout> layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size);
+    std::vector<std::optional<ChartPlace>> remembered(size_t charts);
+    bool write();
+    void remember();
+
+    Scene& scene_;
+    const UnwrapDesc& desc_;
+    UnwrapMemory* memory_;
+    WorkerPool pool_;
+    std::vector<bool> chosen_;
+    std::vector<int> keptSet_; // per mesh, -1: it is cut, or left alone
+    UnwrapParts parts_;
+    std::vector<size_t> rememberedShape_; // per shape; memory's count: none
+    std::vector<size_t> firstChart_;      // per object
+    uint32_t size_ = 0;
+    ChartLayout layout_;
+    UnwrapResult result_;
+};
+
+/// Chooses the meshes to cut, and those whose UVs are kept; returns whether any is cut.
+bool Unwrapper::choose() {
+    const size_t count = scene_.meshes.size();
+    std::vector<int> set(count, -1);
+    pool_.run(static_cast<uint32_t>(count), [&](uint32_t i) {
+        tellWatch("unwrapping", 0.0);
+        if (desc_.onlyMissing) set[i] = lightmapSet(scene_.meshes[i]);
+    });
+    chosen_.assign(count, false);
+    keptSet_.assign(count, -1);
+    const TexCoordMover mover(scene_);
+    Warnings warnings;
+    bool any = false;
+    for (const Instance& instance : scene_.instances) {
+        const auto i = static_cast<size_t>(instance.mesh);
+        const Mesh& mesh = scene_.meshes[i];
+        if (mesh.primitives.empty()) continue;
+        if (!mover.canFree(mesh)) {
+            if (set[i] < 0)
+                warnings.add("mesh " + inQuotes(mesh.name),
+                             "needs both its UV sets for textures, so none is free for the lightmap: let its "
+                             "textures share one set");
+            continue;
+        }
+        chosen_[i] = set[i] < 0;
+        keptSet_[i] = set[i];
+        any |= chosen_[i];
     }
-    for (glm::dmat3& transform : transforms)
-        if (!(areaScale(transform) > 0.0) || !std::isfinite(areaScale(transform)))
-            transform = glm::dmat3(1.0);
-    return transforms;
+    for (const std::string& line : warnings.lines(scene_.path))
+        spdlog::warn("{}", line);
+    return any;
 }
 
-std::vector<glm::dvec3> cornersOf(const Mesh& mesh, const glm::dmat3& transform) {
-    std::vector<glm::dvec3> corners;
-    for (const Primitive& primitive : mesh.primitives)
-        for (uint32_t index : primitive.indices)
-            corners.push_back(transform * glm::dvec3(primitive.positions[index]));
-    return corners;
-}
-
-double areaOf(const std::vector<glm::dvec3>& corners) {
+/// Tells each shape about how large a texel will be on it, as a power of two: charts stay what they are while
+/// a scene changes a little.
+void Unwrapper::sizeTexels() {
+    std::vector<double> largest(parts_.shapes.size()), areas(parts_.shapes.size());
+    pool_.run(static_cast<uint32_t>(areas.size()), [&](uint32_t i) {
+        areas[i] = relume::areaOf(scene_.meshes[parts_.meshOf[i]], parts_.shapes[i]);
+    });
     double area = 0.0;
-    for (size_t i = 0; i + 2 < corners.size(); i += 3)
-        area += 0.5 * glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]));
-    return area;
-}
-
-glm::dvec2 texelsOf(const PlanarChart& chart, double density) {
-    return glm::max(glm::round(chart.extent * density), glm::dvec2(1.0));
-}
-
-/// Returns the area of all charts with their gutters [texels], or nothing where a mesh would need more texels
-/// than one can have.
-std::optional<double> chartArea(const std::vector<PlanarChart>& charts, double density) {
-    double area = 0.0;
-    for (const PlanarChart& chart : charts) {
-        const glm::dvec2 texels = texelsOf(chart, density);
-        area += (texels.x + kChartGutter) * (texels.y + kChartGutter);
-        if (!(std::max(texels.x, texels.y) <= kMaxTexels) || !(std::sqrt(area) <= kMaxTexels))
-            return std::nullopt;
+    for (const UnwrapObject& object : parts_.objects) {
+        const double scale = object.scale * densityOf(object);
+        largest[object.shape] = std::max(largest[object.shape], scale);
+        area += areas[object.shape] * scale * scale;
     }
-    return area;
-}
-
-/// Gives each chart whole texels and packs them, where there is an area for them.
-Packing packCharts(const std::vector<PlanarChart>& charts, double density) {
-    tellWatch("packing charts");
-    const std::optional<double> area = chartArea(charts, density);
-    ASSERT(area);
-    Packing packing;
-    packing.rects.resize(charts.size());
-    uint32_t width = 1;
-    for (size_t i = 0; i < charts.size(); ++i) {
-        const glm::dvec2 texels = texelsOf(charts[i], density);
-        packing.rects[i].width = static_cast<uint32_t>(texels.x);
-        packing.rects[i].height = static_cast<uint32_t>(texels.y);
-        width = std::max(width, packing.rects[i].width);
+    double texel = desc_.size > 0 ? std::sqrt(area / kUsualFill) / desc_.size : 0.0;
+    if (desc_.density > 0.0) texel = std::max(texel, 1.0 / desc_.density);
+    for (size_t i = 0; i < largest.size(); ++i) {
+        const double own = std::exp2(std::round(std::log2(texel / largest[i])));
+        parts_.shapes[i].texel = own > 0.0 && std::isfinite(own) ? own : 0.0;
     }
-    width = std::max(width, static_cast<uint32_t>(std::ceil(std::sqrt(*area))));
-    constexpr uint32_t kAnyHeight = 1u << 30;
-    ASSERT(packRects(packing.rects, width, kAnyHeight, kChartGutter));
-    for (const PackedRect& rect : packing.rects)
-        packing.side = std::max({packing.side, rect.x + rect.width, rect.y + rect.height});
-    return packing;
 }
 
-/// Returns the UVs of the packed charts; `side` texels are one unit.
-Layout layOut(const Job& job, const Packing& packing, uint32_t side) {
-    Layout layout;
-    layout.uv.resize(job.corners.size());
-    layout.chart.assign(job.corners.size() / 3, kNoNumber);
-    for (size_t i = 0; i < job.charts.size(); ++i) {
-        // The chart is stretched to fill its texels, so that straight borders run along texel edges.
-        const PlanarChart& chart = job.charts[i];
-        const PackedRect& rect = packing.rects[i];
-        const glm::dvec2 corner(rect.x, rect.y), texels(rect.width, rect.height);
-        const glm::dvec2 stretch = texels / glm::max(chart.extent, glm::dvec2(1e-300));
-        for (size_t t = 0; t < chart.triangles.size(); ++t) {
-            layout.chart[chart.triangles[t]] = static_cast<uint32_t>(i);
-            for (size_t k = 0; k < 3; ++k) {
-                const glm::dvec2 uv =
-                    (corner + glm::min(chart.uv[3 * t + k] * stretch, texels)) / double(side);
-                layout.uv[3 * chart.triangles[t] + k] = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
-            }
+/// Cuts each shape into charts, or takes them from the memory.
+void Unwrapper::cut() {
+    parts_ = collectParts(scene_, chosen_, keptSet_);
+    sizeTexels();
+    const size_t known = memory_ ? memory_->shapes.size() : 0;
+    rememberedShape_.assign(parts_.shapes.size(), known);
+    std::multimap<uint64_t, size_t> byHash;
+    for (size_t i = 0; i < known; ++i)
+        byHash.emplace(memory_->shapes[i].hash, i);
+    std::vector<bool> taken(known);
+    for (size_t i = 0; i < parts_.shapes.size(); ++i) {
+        const auto [begin, end] = byHash.equal_range(parts_.shapes[i].hash);
+        for (auto it = begin; it != end && rememberedShape_[i] == known; ++it) {
+            if (taken[it->second] || !sameShape(parts_.shapes[i], memory_->shapes[it->second])) continue;
+            taken[it->second] = true;
+            rememberedShape_[i] = it->second;
+            parts_.shapes[i] = memory_->shapes[it->second];
         }
     }
+    pool_.run(static_cast<uint32_t>(parts_.shapes.size()), [&](uint32_t i) {
+        tellWatch("unwrapping", double(i) / double(parts_.shapes.size()));
+        const size_t mesh = parts_.meshOf[i];
+        if (rememberedShape_[i] == known)
+            cutShape(scene_.meshes[mesh], keptSet_[mesh], parts_.shapes[i], pool_);
+    });
+    // What has no chart is nothing but triangles without area.
+    std::erase_if(parts_.objects,
+                  [&](const UnwrapObject& o) { return parts_.shapes[o.shape].charts.empty(); });
+}
+
+double Unwrapper::densityOf(const UnwrapObject& object) const {
+    return scene_.instances[object.instance].density;
+}
+
+std::vector<LayoutChart> Unwrapper::charts() const {
+    std::vector<LayoutChart> charts;
+    for (const UnwrapObject& object : parts_.objects)
+        for (const PlanarChart& chart : parts_.shapes[object.shape].charts)
+            charts.push_back({&chart, object.scale * densityOf(object)});
+    return charts;
+}
+
+uint32_t Unwrapper::chooseSize(const std::vector<LayoutChart>& charts) const {
+    if (desc_.size > 0) return desc_.size;
+    if (const std::optional<uint32_t> size = sizeForCharts(charts, desc_.density, kMostTexels)) return *size;
+    const auto longest =
+        std::max_element(charts.begin(), charts.end(), [](const LayoutChart& a, const LayoutChart& b) {
+            const auto side = [](const LayoutChart& c) {
+                return c.scale * std::max(c.chart->extent.x, c.chart->extent.y);
+            };
+            return side(a) < side(b);
+        });
+    size_t first = 0;
+    for (const UnwrapObject& object : parts_.objects) {
+        first += parts_.shapes[object.shape].charts.size();
+        if (first > static_cast<size_t>(longest - charts.begin()))
+            throw Error(fmt::format(
+                "{}, the longest, and all others need more than {} texels a side at {:.4g} "
+                "texels/m: use a lower --density",
+                nameOf(scene_, scene_.meshes[parts_.meshOf[object.shape]]), kMostTexels, desc_.density));
+    }
+    throw Error(scene_.path + ": has no charts");
+}
+
+/// Returns the places that charts of objects had, by the objects' names first and their order else.
+std::vector<std::optional<ChartPlace>> Unwrapper::remembered(size_t charts) {
+    std::vector<std::optional<ChartPlace>> places(charts);
+    std::map<std::pair<size_t, std::string>, std::vector<size_t>> named; // the last first
+    std::map<size_t, std::vector<size_t>> all;
+    for (size_t i = memory_->objects.size(); i-- > 0;) {
+        const UnwrapMemory::Object& object = memory_->objects[i];
+        named[{object.shape, object.name}].push_back(i);
+        all[object.shape].push_back(i);
+    }
+    std::vector<bool> used(memory_->objects.size());
+    for (const bool byName : {true, false})
+        for (size_t i = 0; i < parts_.objects.size(); ++i) {
+            const UnwrapObject& object = parts_.objects[i];
+            if (places[firstChart_[i]]) continue;
+            const size_t shape = rememberedShape_[object.shape];
+            std::vector<size_t>& from =
+                byName ? named[{shape, scene_.instances[object.instance].name}] : all[shape];
+            while (!from.empty() && used[from.back()])
+                from.pop_back();
+            if (from.empty()) continue;
+            used[from.back()] = true;
+            const std::vector<ChartPlace>& own = memory_->objects[from.back()].places;
+            std::copy(own.begin(), own.end(), places.begin() + static_cast<std::ptrdiff_t>(firstChart_[i]));
+        }
+    return places;
+}
+
+std::optional<ChartLayout> Unwrapper::layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size) {
+    if (!memory_ || memory_->size != size || memory_->asked != desc_.density) return std::nullopt;
+    std::vector<std::optional<ChartPlace>> places = remembered(charts.size());
+    // An object that is smaller or larger now looks for a new place; all its charts do.
+    for (size_t i = 0; i < parts_.objects.size(); ++i) {
+        const size_t begin = firstChart_[i];
+        const size_t end = begin + parts_.shapes[parts_.objects[i].shape].charts.size();
+        bool same = places[begin].has_value();
+        for (size_t c = begin; same && c < end; ++c)
+            same = isAsBefore(charts[c], memory_->layout, size, *places[c]);
+        for (size_t c = begin; !same && c < end; ++c)
+            places[c].reset();
+        result_.stayed += same;
+    }
+    std::optional<ChartLayout> layout = extendLayout(charts, {size, desc_.density}, memory_->layout, places);
+    if (layout &&
+        static_cast<double>(layout->touched) < kStillUsed * static_cast<double>(memory_->layout.touched))
+        layout.reset();
+    if (!layout) result_.stayed = 0;
     return layout;
 }
 
-template<typename T>
-void pick(std::vector<T>& values, const Numbering<uint64_t>& vertices) {
-    if (values.empty()) return;
-    std::vector<T> out(vertices.size());
-    for (uint32_t i = 0; i < out.size(); ++i)
-        out[i] = values[vertices.key(i) >> 32];
-    values = std::move(out);
-}
-
-/// Writes the UVs of the triangles from `first` on; a vertex in several charts becomes several.
-void applyLayout(const Layout& layout, size_t first, Primitive& primitive) {
-    Numbering<uint64_t> vertices(primitive.indices.size());
-    std::vector<glm::vec2> uvs;
-    for (size_t i = 0; i < primitive.indices.size(); ++i) {
-        const size_t triangle = first + i / 3;
-        const uint64_t key = (uint64_t(primitive.indices[i]) << 32) | layout.chart[triangle];
-        primitive.indices[i] = vertices(key, mixBits(key));
-        if (primitive.indices[i] == uvs.size()) uvs.push_back(layout.uv[3 * triangle + i % 3]);
+void Unwrapper::layOut() {
+    firstChart_.clear();
+    size_t count = 0;
+    for (const UnwrapObject& object : parts_.objects) {
+        firstChart_.push_back(count);
+        count += parts_.shapes[object.shape].charts.size();
     }
-    pick(primitive.positions, vertices);
-    pick(primitive.normals, vertices);
-    pick(primitive.texCoord0, vertices);
-    pick(primitive.colors, vertices);
-    primitive.texCoord1 = std::move(uvs);
-}
-
-void applyLayout(const Layout& layout, Mesh& mesh) {
-    size_t first = 0;
-    for (Primitive& primitive : mesh.primitives) {
-        const size_t count = primitive.indices.size() / 3;
-        applyLayout(layout, first, primitive);
-        first += count;
+    const std::vector<LayoutChart> all = charts();
+    size_ = memory_ && desc_.size == 0 && memory_->size > 0 && memory_->asked == desc_.density
+                ? memory_->size
+                : chooseSize(all);
+    std::optional<ChartLayout> again = layOutAgain(all, size_);
+    if (!again && desc_.size == 0) size_ = chooseSize(all);
+    try {
+        layout_ = again ? std::move(*again) : layOutCharts(all, {size_, desc_.density}, pool_);
+    } catch (const Error& error) {
+        throw Error(scene_.path + ": " + error.what());
     }
 }
 
-/// Frees TEXCOORD_1 of a mesh whose textures use it, by moving it to TEXCOORD_0 in copies of the materials.
-class TexCoordMover {
-public:
-    explicit TexCoordMover(Scene& scene) : scene_(scene), copies_(scene.materials.size(), -1) {}
-    void run(Mesh& mesh) {
-        for (Primitive& primitive : mesh.primitives)
-            if (primitive.material >= 0) run(mesh, primitive);
+/// Writes the UVs; returns whether all meshes that were cut are valid atlases.
+bool Unwrapper::write() {
+    std::vector<Mesh> meshes(parts_.objects.size());
+    std::vector<uint8_t> valid(meshes.size(), 1);
+    const double cells = double(size_) / layout_.texel;
+    pool_.run(static_cast<uint32_t>(meshes.size()), [&](uint32_t i) {
+        tellWatch("unwrapping", double(i) / double(meshes.size()));
+        const UnwrapObject& object = parts_.objects[i];
+        const Mesh& mesh = scene_.meshes[parts_.meshOf[object.shape]];
+        size_t triangles = 0;
+        for (const Primitive& primitive : mesh.primitives)
+            triangles += primitive.indices.size() / 3;
+        meshes[i] = withUvs(mesh, cornerUvs(parts_.shapes[object.shape].charts,
+                                            &layout_.places[firstChart_[i]], cells, triangles));
+        valid[i] = lightmapSet(meshes[i]) == 1;
+    });
+    bool again = false; // overlap finer than the grid that looks for it adds up in no known mesh
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        UnwrapShape& shape = parts_.shapes[parts_.objects[i].shape];
+        if (valid[i] || shape.kept || shape.cutUp) continue;
+        again = shape.cutUp = true;
+        cutShapeUp(scene_.meshes[parts_.meshOf[parts_.objects[i].shape]], shape);
     }
-
-private:
-    static constexpr TextureRef Material::*kUses[] = {&Material::baseColorTexture, &Material::emissionTexture,
-                                                      &Material::metallicRoughnessTexture};
-    void run(const Mesh& mesh, Primitive& primitive) {
-        const Material material = scene_.materials[static_cast<size_t>(primitive.material)];
-        bool usesSet[2] = {false, false};
-        for (TextureRef Material::*use : kUses)
-            if ((material.*use).texture >= 0) usesSet[(material.*use).texCoord] = true;
-        if (!usesSet[1]) return;
-        if (usesSet[0])
-            throw Error(fmt::format(
-                "{}: mesh {} needs both its UV sets for textures, so none is free for the lightmap: "
-                "let its textures share one set",
-                scene_.path, inQuotes(mesh.name)));
-        if (copies_[static_cast<size_t>(primitive.material)] < 0) {
-            copies_[static_cast<size_t>(primitive.material)] = static_cast<int>(scene_.materials.size());
-            scene_.materials.push_back(material);
-            for (TextureRef Material::*use : kUses)
-                (scene_.materials.back().*use).texCoord = 0;
+    if (again) return false;
+    std::vector<bool> written(scene_.meshes.size());
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        Instance& instance = scene_.instances[parts_.objects[i].instance];
+        const auto mesh = static_cast<size_t>(instance.mesh);
+        if (written[mesh]) {
+            instance.mesh = static_cast<int>(scene_.meshes.size());
+            scene_.meshes.push_back(std::move(meshes[i]));
+        } else {
+            written[mesh] = true;
+            scene_.meshes[mesh] = std::move(meshes[i]);
+            result_.meshes += chosen_[mesh];
         }
-        primitive.material = copies_[static_cast<size_t>(primitive.material)];
-        primitive.texCoord0 = primitive.texCoord1;
     }
-
-    Scene& scene_;
-    std::vector<int> copies_; // of the scene's own materials, -1: none yet
-};
-
-std::string nameOf(const Scene& scene, const Job& job) {
-    return scene.path + ": mesh " + inQuotes(scene.meshes[job.mesh].name);
+    return true;
 }
 
-std::vector<Job> cutMeshes(const Scene& scene, const std::vector<bool>& chosen) {
-    const std::vector<glm::dmat3> transforms = largestTransforms(scene);
-    std::vector<Job> jobs;
-    std::vector<double> areas(scene.meshes.size());
-    for (const Instance& instance : scene.instances) {
-        const size_t mesh = static_cast<size_t>(instance.mesh);
-        if (chosen[mesh])
-            areas[mesh] += areaOf(cornersOf(scene.meshes[mesh], glm::dmat3(instance.transform)));
+void Unwrapper::remember() {
+    memory_->size = size_;
+    memory_->asked = desc_.density;
+    memory_->objects.clear();
+    for (size_t i = 0; i < parts_.objects.size(); ++i) {
+        const UnwrapObject& object = parts_.objects[i];
+        const auto begin = layout_.places.begin() + static_cast<std::ptrdiff_t>(firstChart_[i]);
+        const size_t count = parts_.shapes[object.shape].charts.size();
+        memory_->objects.push_back({scene_.instances[object.instance].name,
+                                    object.shape,
+                                    {begin, begin + static_cast<std::ptrdiff_t>(count)}});
     }
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        if (!chosen[i]) continue;
-        tellWatch("unwrapping", double(i) / double(scene.meshes.size()));
-        Job job{i, cornersOf(scene.meshes[i], transforms[i]), {}, 0.0};
-        job.charts = cutPlanarCharts(job.corners);
-        const double largest = areaOf(job.corners);
-        job.instances = largest > 0.0 && std::isfinite(areas[i] / largest) ? areas[i] / largest : 1.0;
-        if (!job.charts.empty()) jobs.push_back(std::move(job)); // else nothing but triangles without area
-    }
-    return jobs;
+    memory_->shapes = std::move(parts_.shapes);
+    memory_->layout = std::move(layout_);
+    memory_->layout.places.clear();
 }
 
-/// Returns the jobs' share of the scene's area; meshes that keep their UVs need the rest.
-double shareOf(const Scene& scene, const std::vector<Job>& jobs) {
-    double own = 0.0, all = 0.0;
-    for (const Job& job : jobs)
-        own += job.instances * areaOf(job.corners);
-    for (const Instance& instance : scene.instances)
-        all += areaOf(
-            cornersOf(scene.meshes[static_cast<size_t>(instance.mesh)], glm::dmat3(instance.transform)));
-    return own > 0.0 && own < all ? own / all : 1.0;
-}
-
-/// Returns how many texels all instances need together at a density, gutters included.
-double texelsAt(const std::vector<Job>& jobs, double density) {
-    double texels = 0.0;
-    for (const Job& job : jobs) {
-        const double side = packCharts(job.charts, density).side;
-        texels += job.instances * side * side;
-    }
-    return texels;
-}
-
-/// Returns the density, or the next lower one by halves at which no mesh needs more texels than it can have;
-/// a mesh may be far longer than its area tells. No density helps where there are too many charts.
-double allowedDensity(const std::vector<Job>& jobs, double density) {
-    const auto allowed = [&] {
-        return std::all_of(jobs.begin(), jobs.end(),
-                           [&](const Job& job) { return chartArea(job.charts, density).has_value(); });
-    };
-    while (density > 0.0 && !allowed())
-        density *= 0.5;
-    return density;
-}
-
-void warnAboutLongest(const Scene& scene, const std::vector<Job>& jobs, double density) {
-    const auto longest = std::find_if(jobs.begin(), jobs.end(),
-                                      [&](const Job& job) { return !chartArea(job.charts, density); });
-    spdlog::warn(
-        "{} is so long that all others get very few texels, or none would be left for them: cut it up, take "
-        "it out of the scene or pass --density",
-        nameOf(scene, *longest));
-}
-
-/// Returns the density at which `texels` texels hold the instances of all jobs, with their gutters at full
-/// width.
-double densityThatFits(const Scene& scene, const std::vector<Job>& jobs, double texels) {
-    double area = 0.0;
-    size_t charts = 0;
-    for (const Job& job : jobs) {
-        area += job.instances * areaOf(job.corners);
-        charts += job.charts.size();
-    }
-    const double start = area > 0.0 && std::isfinite(area) ? std::sqrt(kFill * texels / area) : 1.0;
-    double density = allowedDensity(jobs, start), best = 0.0;
-    if (density < start) warnAboutLongest(scene, jobs, start);
-    const int steps = charts > kManyCharts ? 2 : kSearchSteps;
-    for (int step = 0; step < steps && density > 0.0; ++step) {
-        const double need = texelsAt(jobs, density);
-        if (need <= texels) best = std::max(best, density);
-        density *= std::sqrt(texels / need);
-        // Packings jump, so the density creeps up on the limit from below once one has been met.
-        if (best > 0.0 && density <= best) density = best * 1.01;
-        density = allowedDensity(jobs, density);
-    }
-    return best > 0.0 ? best : density;
-}
-
-void unwrapMesh(Scene& scene, Job& job, const UnwrapDesc& desc, bool alone, UnwrapResult& result) {
-    Mesh& mesh = scene.meshes[job.mesh];
-    const Mesh original = mesh;
-    for (bool single : {false, true}) {
-        // Overlap finer than the grid that looks for it adds up in no known mesh; single triangles cannot
-        // overlap.
-        if (single) job.charts = cutSingleTriangles(job.corners);
-        if (!chartArea(job.charts, result.density))
-            throw Error(fmt::format("{} needs more than {} texels a side at {:.4g} texels/m: {}",
-                                    nameOf(scene, job), kMaxTexels, result.density,
-                                    desc.density > 0.0 ? "use a lower --density"
-                                                       : "pass a lower --density than that"));
-        const Packing packing = packCharts(job.charts, result.density);
-        // A mesh alone in its scene is the atlas: its texels shall be those of the lightmap.
-        const bool aligned = alone && desc.density <= 0.0 && packing.side <= desc.size;
-        mesh = original;
-        applyLayout(layOut(job, packing, aligned ? desc.size : packing.side), mesh);
-        if (lightmapSet(mesh) == 1) break;
-    }
-    ++result.meshes;
-    result.charts += static_cast<uint32_t>(job.charts.size());
+UnwrapResult Unwrapper::run() {
+    if (!choose()) return result_;
+    TexCoordMover mover(scene_);
+    for (size_t i = 0; i < chosen_.size(); ++i)
+        if (chosen_[i] || keptSet_[i] >= 0) mover.run(scene_.meshes[i]);
+    cut();
+    if (std::none_of(parts_.objects.begin(), parts_.objects.end(),
+                     [&](const UnwrapObject& o) { return !parts_.shapes[o.shape].kept; }))
+        return result_;
+    do
+        layOut();
+    while (!write());
+    result_.objects = static_cast<uint32_t>(parts_.objects.size());
+    result_.charts = static_cast<uint32_t>(layout_.places.size());
+    result_.size = size_;
+    result_.density = layout_.density;
+    const double cells = double(size_) * size_ / (double(layout_.texel) * layout_.texel);
+    result_.covered = static_cast<double>(layout_.touched) / cells;
+    result_.reserved = static_cast<double>(layout_.reserved) / cells;
+    if (desc_.density > 0.0 && layout_.density < kTold * desc_.density)
+        spdlog::warn("{}: {:.4g} texels/m do not fit {} x {} texels, {:.4g} do: use a larger --size",
+                     scene_.path, desc_.density, size_, size_, layout_.density);
+    if (memory_) remember();
+    return result_;
 }
 
 bool hasArea(const Primitive& primitive, const glm::dmat3& linear) {
@@ -347,23 +354,20 @@ void requireArea(const Scene& scene) {
     throw Error(scene.path + ": has no triangle with an area: export it with its geometry");
 }
 
-UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc) {
-    std::vector<bool> chosen(scene.meshes.size());
-    TexCoordMover mover(scene);
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        chosen[i] =
-            !scene.meshes[i].primitives.empty() && !(desc.onlyMissing && lightmapSet(scene.meshes[i]) >= 0);
-        if (chosen[i]) mover.run(scene.meshes[i]);
-    }
-    std::vector<Job> jobs = cutMeshes(scene, chosen);
-    const bool alone = scene.instances.size() == 1;
-    const double texels = (alone ? 1.0 : kRectFill) * desc.size * desc.size * shareOf(scene, jobs);
-    UnwrapResult result;
-    if (jobs.empty()) return result;
-    result.density = desc.density > 0.0 ? desc.density : densityThatFits(scene, jobs, texels);
-    for (Job& job : jobs)
-        unwrapMesh(scene, job, desc, alone, result);
-    return result;
+UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory) {
+    if (desc.size == 0 && !(desc.density > 0.0)) throw Error("an unwrap needs a size or a density");
+    return Unwrapper(scene, desc, memory).run();
+}
+
+uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum) {
+    const double least = std::min(kLeastSize, maximum);
+    if (area <= 0.0 || density <= 0.0) return static_cast<uint32_t>(least);
+    const double edge = density * std::sqrt(area / coverage);
+    if (!(coverage > 0.0) || !std::isfinite(edge)) return maximum;
+    double size = least;
+    while (size < edge && size < maximum)
+        size *= 2.0;
+    return static_cast<uint32_t>(std::min(size, double(maximum)));
 }
 
 } // namespace relume

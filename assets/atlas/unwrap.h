@@ -2,29 +2,46 @@
 
 #include <cstdint>
 
+#include "assets/atlas/unwrap_memory.h"
 #include "assets/model/scene.h"
 
 namespace relume {
 
 struct UnwrapDesc {
-    double density = 0.0;    // [texels/m]; 0: what fills an atlas of `size` with all instances
-    uint32_t size = 512;     // [texels], of the atlas the density 0 aims at
+    double density =
+        0.0;             // [texels/m]; 0, or more than fits: what fills an atlas of `size` with all instances
+    uint32_t size = 512; // of the atlas [texels]; 0: the least that takes the density
     bool onlyMissing = true; // leave meshes alone that have a valid set of lightmap UVs
+    uint32_t threads = 0;    // 0: see WorkerPool
 };
 
 struct UnwrapResult {
-    uint32_t meshes = 0;  // that got new UVs
-    uint32_t charts = 0;  // of these
-    double density = 0.0; // [texels/m] used; 0: for none
+    uint32_t meshes = 0;   // that got new charts
+    uint32_t objects = 0;  // instances in the atlas, those of kept UVs included
+    uint32_t charts = 0;   // of all objects
+    uint32_t stayed = 0;   // objects that lie where the unwrap before put them
+    uint32_t size = 0;     // of the atlas [texels]
+    double density = 0.0;  // [texels/m] used, for objects whose own factor is 1; 0: for none
+    double covered = 0.0;  // share of the atlas' texels that charts touch
+    double reserved = 0.0; // share of these and of the gutters around them
 };
 
-/// Writes lightmap UVs into TEXCOORD_1 of the scene's meshes: planar charts with 2 texels between them at the
-/// density, one square per mesh, shared by its instances. The result is a valid atlas for every mesh that has
-/// a triangle with an area. Splits vertices where charts meet. Throws Error for a density that would need
-/// absurdly many texels.
-UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc);
+/// Writes lightmap UVs into TEXCOORD_1, so that all instances form one atlas at one density, times the factor
+/// of each instance: charts in their true shapes, see layOutCharts. An instance of a mesh that others share
+/// gets a mesh of its own. Where a mesh has a valid set of UVs, this is kept as one chart, which moves and is
+/// scaled to the density; where all meshes have one, the scene stays as it is. Splits vertices where charts
+/// meet. A mesh whose textures need both of its UV sets is left alone and warned about. With a memory, what
+/// did not change since the unwrap that left it stays where it is if all still fits; then the memory is that
+/// of this unwrap. Throws Error where there are more charts than texels, and for a density that would need
+/// absurdly many.
+UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory = nullptr);
 
 /// Throws Error for a scene of points and lines, which no lightmap UVs would help.
 void requireArea(const Scene& scene);
+
+/// Returns the edge of a lightmap, a power of two from 64 on and at most `maximum`, at which surfaces of
+/// `area` [m^2] get `density` [texels/m] when charts cover the share `coverage` of it. Returns the least
+/// where there is no area or density, and `maximum` where these are not finite or coverage is not above 0.
+uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum);
 
 } // namespace relume

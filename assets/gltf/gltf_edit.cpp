@@ -10,6 +10,7 @@
 #include "assets/gltf/gltf_edit_parts.h"
 #include "assets/gltf/gltf_edit_visibility.h"
 #include "assets/gltf/gltf_light_json.h"
+#include "assets/model/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -104,6 +105,27 @@ void requireStill(const Scene& before, const Scene& after, const std::string& ta
     }
 }
 
+/// Writes the density factors that differ into the nodes that carry the instances.
+void editDensities(FileEdit& edit, const Scene& before, const Scene& after, const std::vector<int>& nodes) {
+    const JsonPath path = {"extras", "relume", "density"};
+    std::map<int, float> known;
+    for (const Instance& instance : before.instances)
+        known[instance.node] = instance.density;
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        const float density = after.instances[i].density;
+        if (known[after.instances[i].node] == density) continue;
+        if (!(density >= kLeastDensity && density <= kMostDensity))
+            throw Error(fmt::format("{}: object {} has a density of {}: give one from {:g} to {:g}",
+                                    edit.file.path, inQuotes(after.instances[i].name), density, kLeastDensity,
+                                    kMostDensity));
+        EditedJson& node = edit.json["nodes"][static_cast<size_t>(nodes[i])];
+        if (density == 1.0f)
+            erase(node, path);
+        else
+            setNumber(make(edit, node, path, fmt::format("nodes[{}]", nodes[i])), density);
+    }
+}
+
 /// Makes all changes in the JSON.
 EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const std::string& target) {
     const NodeTree tree(edit.file, edit.scene);
@@ -127,6 +149,7 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
         if (const auto child = children.find({node, Carried::Instance}); child != children.end())
             node = child->second;
     visibility.finish(children);
+    editDensities(edit, before, after, nodes.instances);
     lights.dropUnused();
     dropEmptyNodes(edit, lights.emptied());
     moveUris(edit, target);

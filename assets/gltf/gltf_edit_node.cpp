@@ -22,7 +22,11 @@ using nlohmann::json;
 std::vector<JsonPath> membersOf(Carried carried) {
     switch (carried) {
     case Carried::Instance:
-        return {{"mesh"}, {"skin"}, {"weights"}, {"extensions", "EXT_mesh_gpu_instancing"}};
+        return {{"mesh"},
+                {"skin"},
+                {"weights"},
+                {"extensions", "EXT_mesh_gpu_instancing"},
+                {"extras", "relume", "density"}};
     case Carried::Light:
         return {{"extensions", kPunctualLights}};
     case Carried::AreaLight:

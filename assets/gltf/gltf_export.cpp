@@ -318,6 +318,7 @@ void GlbWriter::addNodes() {
             node["extensions"][gltf::kVisibility]["visible"] = false;
             use(gltf::kVisibility);
         }
+        if (instance.density != 1.0f) node["extras"]["relume"]["density"] = instance.density;
         nodes.push_back(std::move(node));
     }
     for (const Camera& camera : scene_.cameras)

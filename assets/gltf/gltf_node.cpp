@@ -6,6 +6,7 @@
 #include "assets/gltf/gltf_instancing.h"
 #include "assets/gltf/gltf_node.h"
 #include "assets/gltf/gltf_value.h"
+#include "assets/model/scene_limits.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -81,6 +82,19 @@ bool visibleAbove(const json& nodes, const NodePlaces& places, int node) {
     return true;
 }
 
+/// Returns the factor on the texels per metre of a node's mesh; what is wrong with it is warned about.
+float densityOf(Build& build, size_t index) {
+    const json& node = build.nodes[index];
+    const json* value = ownExtra(node, "density");
+    if (!value) return 1.0f;
+    const double density = value->is_number() ? value->get<double>() : 0.0;
+    if (density >= kLeastDensity && density <= kMostDensity) return static_cast<float>(density);
+    build.warnings.add(
+        labelOf(node, index),
+        fmt::format("its density is no number from {:g} to {:g}, 1 is used", kLeastDensity, kMostDensity));
+    return 1.0f;
+}
+
 /// Adds the objects of a node: one, or one for each copy that it makes of its mesh.
 void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visible) {
     const json& node = build.nodes[index];
@@ -93,6 +107,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visi
     if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(instance.mesh)].name;
     instance.node = static_cast<int>(index);
     instance.hidden = !visible;
+    instance.density = densityOf(build, index);
     instance.bent = build.skinnedNodes.contains(index);
     instance.transform = instance.bent ? glm::mat4(1.0f) : glm::mat4(world);
     const std::vector<glm::dmat4> copies = copiesOf(build, node, labelOf(node, index));

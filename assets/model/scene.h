@@ -75,6 +75,7 @@ struct Instance {
     int mesh = -1;
     glm::mat4 transform{1.0f}; // object to world
     bool hidden = false;       // left out: blocks no light, receives and sends none
+    float density = 1.0f;      // factor on the texels per metre that an unwrap gives it, > 0
     int node = -1;             // of the file
     int copy = -1;     // which of the node's instances (EXT_mesh_gpu_instancing); -1: the node has one
     bool bent = false; // by a skin, whose joints say where it stands: its node's transform does not

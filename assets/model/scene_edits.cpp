@@ -5,16 +5,22 @@
 namespace relume {
 
 SceneEdits editsOf(const Scene& scene) {
-    SceneEdits edits{
-        .materials = scene.materials, .lights = scene.lights, .sky = scene.sky, .placements = {}};
+    SceneEdits edits{.materials = scene.materials,
+                     .lights = scene.lights,
+                     .sky = scene.sky,
+                     .placements = {},
+                     .densities = {}};
     edits.placements.reserve(scene.instances.size());
     for (const Instance& instance : scene.instances)
         edits.placements.push_back({instance.transform, instance.hidden});
+    for (const Instance& instance : scene.instances)
+        edits.densities.push_back(instance.density);
     return edits;
 }
 
 void applyEdits(Scene& scene, const SceneEdits& edits) {
     ASSERT(edits.placements.size() == scene.instances.size());
+    ASSERT(edits.densities.size() == scene.instances.size());
     scene.materials = edits.materials;
     scene.lights = edits.lights;
     if (edits.sky.file != scene.sky.file) {
@@ -25,6 +31,7 @@ void applyEdits(Scene& scene, const SceneEdits& edits) {
     for (size_t i = 0; i < edits.placements.size(); ++i) {
         scene.instances[i].transform = edits.placements[i].transform;
         scene.instances[i].hidden = edits.placements[i].hidden;
+        scene.instances[i].density = edits.densities[i];
     }
 }
 

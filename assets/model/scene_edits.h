@@ -20,6 +20,7 @@ struct SceneEdits {
     std::vector<Light> lights;
     SkySettings sky;
     std::vector<Placement> placements; // of the scene's instances
+    std::vector<float> densities;      // of the scene's instances; they count when the scene is read again
 };
 
 /// Returns these parts as the scene has them.

@@ -22,6 +22,10 @@ constexpr float kFarthest = 1e8f;
 /// errors are sums of squares of it over all patches, of which a float holds those of 1e17.
 constexpr float kBrightest = 1e12f;
 
+/// These bound the factor of an instance on the texels per metre: beyond them it would have all of an atlas
+/// or none of it.
+constexpr float kLeastDensity = 0.01f, kMostDensity = 100.0f;
+
 /// Tells whether no coordinate is beyond kFarthest (or not a number).
 bool isWithinReach(const glm::vec3& point);
 /// Tells whether no triangle of the mesh, placed with this transform, reaches beyond kFarthest.

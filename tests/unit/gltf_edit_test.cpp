@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -74,6 +75,44 @@ TEST_F(GltfEdit, OnlyWhatIsEditedDiffers) {
     const Scene back = loadGltf(path);
     EXPECT_EQ(back.lights[0].intensity, 0.3f);
     EXPECT_EQ(back.lights[1].intensity, 40.0f);
+}
+
+TEST_F(GltfEdit, TheDensityOfAnObjectIsInItsNodesExtras) {
+    LitScene builder = everything();
+    builder.json["nodes"][0]["extras"] = {{"relume", {{"other", 1}}}, {"id", 2}};
+    builder.json["nodes"].push_back({{"translation", {1, 0, 0}}}); // so that the square has a child to spare
+    builder.json["nodes"][0]["children"] = json::array({builder.json["nodes"].size() - 1});
+    const std::string path = write(builder);
+    const json original = jsonOf(path);
+    EXPECT_EQ(loadGltf(path).instances[0].density, 1.0f);
+    save(path, [](Scene& scene) { scene.instances[0].density = 2.5f; });
+    EXPECT_EQ(jsonOf(path)["nodes"][0]["extras"],
+              json({{"relume", {{"other", 1}, {"density", 2.5}}}, {"id", 2}}));
+    EXPECT_EQ(loadGltf(path).instances[0].density, 2.5f);
+    // It goes along where the mesh moves into a node of its own, and without an edit it stays.
+    save(path, [](Scene& scene) { scene.instances[0].transform[3] = {4, 5, 6, 1}; });
+    Scene moved = loadGltf(path);
+    EXPECT_EQ(moved.instances[0].density, 2.5f);
+    EXPECT_EQ(moved.instances[0].transform[3], glm::vec4(4, 5, 6, 1));
+    EXPECT_NE(moved.instances[0].node, 0);
+    save(path, [](Scene& scene) { scene.instances[0].density = 1.0f; });
+    EXPECT_EQ(jsonTextOf(path).find("density"), std::string::npos);
+    EXPECT_EQ(jsonOf(path)["nodes"][0]["extras"], original["nodes"][0]["extras"]);
+    EXPECT_NE(
+        messageOf([&] { save(path, [](Scene& s) { s.instances[0].density = 0; }); }).find("from 0.01 to 100"),
+        std::string::npos);
+    // saveGlb writes it as well, and what is no factor counts as 1 with a warning.
+    moved.instances[0].density = 0.25f;
+    saveGlb(moved, folder_.path("again.glb"));
+    EXPECT_EQ(loadGltf(folder_.path("again.glb")).instances[0].density, 0.25f);
+    for (const json& bad : {json("2"), json(0), json(-1), json(1e9), json(nullptr), json::array({2})}) {
+        builder.json["nodes"][0]["extras"]["relume"]["density"] = bad;
+        const Scene scene = loadGltf(write(builder, "bad.glb"));
+        EXPECT_EQ(scene.instances[0].density, 1.0f) << bad;
+        EXPECT_TRUE(std::any_of(scene.warnings.begin(), scene.warnings.end(), [](const std::string& warning) {
+            return warning.find("density is no number from 0.01 to 100") != std::string::npos;
+        })) << bad;
+    }
 }
 
 TEST_F(GltfEdit, UnknownChunksStay) {

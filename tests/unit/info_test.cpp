@@ -182,6 +182,13 @@ TEST(UnwrapCommand, WritesASceneThatCanBeBaked) {
     EXPECT_NE(run("unwrap " + in + " -o " + out + " --density 8")
                   .find("1 meshes unwrapped into 1 charts at 8 texels/m"),
               std::string::npos);
+    const json made = json::parse(run("unwrap " + in + " -o " + out + " --json --size 100"));
+    EXPECT_EQ(made["size"], 100);
+    EXPECT_EQ(made["charts"], 1);
+    EXPECT_EQ(made["density"], 100.0); // a square of 1 m
+    EXPECT_EQ(made["covered"], 1.0);
+    EXPECT_NEAR(made["stretch"].get<double>(), 1.0, 1e-5);
+    EXPECT_GE(made["seconds"].get<double>(), 0.0);
     const Scene scene = loadGltf(out);
     EXPECT_EQ(lightmapSet(scene.meshes.at(0)), 1);
     EXPECT_EQ(buildAtlas(scene, 64).instances.at(0).texCoord, 1);

@@ -86,6 +86,7 @@ protected:
         EXPECT_EQ(edits_.lights, before.lights);
         EXPECT_EQ(edits_.sky, before.sky);
         EXPECT_EQ(edits_.placements, before.placements);
+        EXPECT_EQ(edits_.densities, before.densities);
         for (size_t i = 0; i < before.materials.size(); ++i) {
             EXPECT_EQ(edits_.materials[i].emission, before.materials[i].emission);
             EXPECT_EQ(edits_.materials[i].baseColor, before.materials[i].baseColor);
@@ -118,6 +119,19 @@ TEST_F(SceneEditTest, SetsEveryPropertyOfLights) {
     EXPECT_EQ(edits_.lights[4].name, "Down=light.intensity");
     set("Down=light.intensity.intensity=3");
     EXPECT_EQ(edits_.lights[4].intensity, 3.0f);
+}
+
+TEST_F(SceneEditTest, SetsTheDensityOfObjects) {
+    const std::string name = scene_.instances[0].name;
+    EXPECT_EQ(set(name + ".density=2"), "object '" + name + "': density 2");
+    EXPECT_EQ(edits_.densities[0], 2.0f);
+    Scene edited = scene_;
+    applyEdits(edited, edits_);
+    EXPECT_EQ(edited.instances[0].density, 2.0f);
+    EXPECT_EQ(editsOf(edited).densities, edits_.densities);
+    EXPECT_EQ(refused("--set", name + ".density=0"),
+              "usage: density 0 is out of range: give a factor on the texels per metre, from 0.01 to 100");
+    EXPECT_NE(refused("--set", "Lamp.density=2"), "no error");
 }
 
 TEST_F(SceneEditTest, ColorsAreSrgbInHexAndLinearAsNumbers) {

@@ -2,6 +2,7 @@
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/planar_charts.h"
+#include "assets/atlas/uv_charts.h"
 #include "assets/atlas/world_mesh.h"
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
@@ -10,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
 namespace relume {
 namespace {
@@ -53,8 +56,11 @@ UnwrapDesc withDensity(double density) {
 
 TEST(Unwrap, CubeBecomesSixSquares) {
     Scene scene = test::sceneOf(test::cube());
-    const UnwrapResult result = unwrap(scene, withDensity(16));
+    const UnwrapResult result = unwrap(scene, {.density = 16, .size = 0});
+    EXPECT_GE(result.size, 52u); // three squares of 16 texels and two gutters of 2
+    EXPECT_LE(result.size, 56u);
     EXPECT_EQ(result.meshes, 1u);
+    EXPECT_EQ(result.objects, 1u);
     EXPECT_EQ(result.charts, 6u);
     EXPECT_EQ(result.density, 16.0);
     EXPECT_EQ(scene.meshes[0].primitives[0].positions.size(), 24u);
@@ -99,20 +105,20 @@ std::string unwrapError(Scene scene, const UnwrapDesc& desc) {
     return "none";
 }
 
-TEST(Unwrap, ANeedleLowersTheDensityThatNobodyGave) {
+TEST(Unwrap, ANeedleIsShortened) {
     Primitive needle = test::square();
     needle.texCoord1.clear();
     for (glm::vec3& p : needle.positions)
         p *= glm::vec3(1e6f, 1e-3f, 1.0f);
     Scene scene = test::sceneOf(test::cube());
     test::addInstance(scene, test::addMesh(scene, needle, "Needle"));
-    EXPECT_EQ(
-        unwrapError(scene, withDensity(10)),
-        "test.glb: mesh 'Needle' needs more than 65536 texels a side at 10 texels/m: use a lower --density");
+    EXPECT_EQ(unwrapError(scene, {.density = 10, .size = 0}),
+              "test.glb: mesh 'Needle', the longest, and all others need more than 16384 texels a side at 10 "
+              "texels/m: use a lower --density");
     const UnwrapResult result = unwrap(scene, {});
     EXPECT_EQ(result.meshes, 2u);
-    EXPECT_LE(result.density, 512.0 / 1e6);
-    EXPECT_GT(result.density, 0.1 * 512.0 / 1e6);
+    EXPECT_GT(result.density, 150.0); // the cube's: three squares and their gutters are at most 512 texels
+    EXPECT_LT(result.density, 175.0);
     for (const Mesh& mesh : scene.meshes)
         EXPECT_EQ(lightmapSet(mesh), 1);
 }
@@ -182,6 +188,18 @@ TEST(Unwrap, SpiralThatOverlapsItsOwnProjectionIsCut) {
     expectValid(test::sceneOf(test::primitiveOf(positions, indices)), {}, "spiral");
 }
 
+double uvArea(const Mesh& mesh) {
+    double area = 0.0;
+    for (const Primitive& p : mesh.primitives)
+        for (size_t i = 0; i < p.indices.size(); i += 3) {
+            const glm::dvec2 a(p.texCoord1[p.indices[i]]);
+            const glm::dvec2 b = glm::dvec2(p.texCoord1[p.indices[i + 1]]) - a;
+            const glm::dvec2 c = glm::dvec2(p.texCoord1[p.indices[i + 2]]) - a;
+            area += 0.5 * std::abs(b.x * c.y - b.y * c.x);
+        }
+    return area;
+}
+
 TEST(Unwrap, DensityIsThatOfTheWorld) {
     // It is twice as large in the world as in the mesh: 2 m at 50 texels/m.
     Primitive square = test::square();
@@ -198,8 +216,17 @@ TEST(Unwrap, DensityIsThatOfTheWorld) {
     const int mesh = test::addMesh(scene, square);
     test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(2)));
     test::addInstance(scene, mesh, glm::translate(glm::mat4(1), glm::vec3(9, 0, 0)));
-    // There are one rectangle of 2 m and one of 1 m, 5 m^2 in all, in 85 % of the atlas.
-    EXPECT_NEAR(unwrap(scene, {}).density, 512 * std::sqrt(0.85 / 5.0), 5.0);
+    // A square of 2 m and one of 1 m stand side by side with 2 texels between them; texels that are 4 % wider
+    // than high give the one direction that is full 2 % more.
+    const UnwrapResult result = unwrap(scene, {});
+    EXPECT_GE(result.density, 510.0 / 3.0 - 1.0);
+    EXPECT_LE(result.density, 510.0 / 3.0 * 1.03);
+    EXPECT_EQ(result.objects, 2u);
+    EXPECT_EQ(result.meshes, 1u);
+    ASSERT_EQ(scene.meshes.size(), 2u); // UVs of its own for each instance
+    EXPECT_NE(scene.instances[0].mesh, scene.instances[1].mesh);
+    EXPECT_FALSE(buildAtlas(scene, 512).repacked);
+    EXPECT_NEAR(uvArea(scene.meshes[0]) / uvArea(scene.meshes[1]), 4.0, 0.1);
 }
 
 TEST(Unwrap, FittedDensityKeepsTheGutterOnTheTexelGrid) {
@@ -230,8 +257,18 @@ TEST(Unwrap, ValidUvsStayUnlessAskedFor) {
     test::addInstance(scene, test::addMesh(scene, test::cube(), "Bare"));
     const std::vector<glm::vec2> uvs = scene.meshes[0].primitives[0].texCoord1;
     Scene all = scene;
-    EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
-    EXPECT_EQ(scene.meshes[0].primitives[0].texCoord1, uvs);
+    const UnwrapResult result = unwrap(scene, {});
+    EXPECT_EQ(result.meshes, 1u);
+    EXPECT_EQ(result.objects, 2u);
+    // What was valid moves as one chart, at the density of all.
+    ASSERT_FALSE(buildAtlas(scene, 512).repacked);
+    EXPECT_EQ(findCharts(scene.meshes[0], 1).count, 1u);
+    EXPECT_NEAR(uvArea(scene.meshes[0]), uvArea(scene.meshes[1]) / 6.0, 0.02 * uvArea(scene.meshes[0]));
+    Scene valid = test::sceneOf(test::square());
+    test::addInstance(valid, 0);
+    EXPECT_EQ(unwrap(valid, {}).meshes, 0u);
+    EXPECT_EQ(valid.meshes.size(), 1u);
+    EXPECT_EQ(valid.meshes[0].primitives[0].texCoord1, uvs);
     UnwrapDesc desc;
     desc.onlyMissing = false;
     EXPECT_EQ(unwrap(all, desc).meshes, 2u);
@@ -254,9 +291,70 @@ TEST(Unwrap, TexturesOnTexCoord1MoveAside) {
     EXPECT_EQ(lightmapSet(scene.meshes[0]), 1);
 }
 
+TEST(Unwrap, AMeshThatNeedsBothItsSetsIsLeftAlone) {
+    Scene scene = test::sceneOf(test::square({0, 0}, {4, 4}));
+    scene.meshes[0].primitives[0].texCoord0 = scene.meshes[0].primitives[0].texCoord1;
+    scene.textures.push_back({});
+    scene.materials.resize(1);
+    scene.materials[0].baseColorTexture = {0, 1, glm::mat3(1)};
+    scene.materials[0].emissionTexture = {0, 0, glm::mat3(1)};
+    scene.meshes[0].primitives[0].material = 0;
+    test::addInstance(scene, test::addMesh(scene, test::cube()));
+    EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
+    EXPECT_EQ(scene.meshes[0].primitives[0].texCoord1[2], glm::vec2(4, 4));
+    EXPECT_EQ(lightmapSet(scene.meshes[1]), 1);
+}
+
+TEST(Unwrap, AnObjectsDensityCountsForItAlone) {
+    Scene scene;
+    const int mesh = test::addMesh(scene, test::cube());
+    for (int i = 0; i < 3; ++i)
+        test::addInstance(scene, mesh, glm::translate(glm::mat4(1), glm::vec3(2 * i, 0, 0)));
+    scene.instances[1].density = 2.0f;
+    scene.instances[2].density = 0.5f;
+    const UnwrapResult result = unwrap(scene, {.density = 0, .size = 512});
+    const auto areaOf = [&](size_t i) {
+        return uvArea(scene.meshes[static_cast<size_t>(scene.instances[i].mesh)]);
+    };
+    EXPECT_NEAR(areaOf(1) / areaOf(0), 4.0, 0.15);
+    EXPECT_NEAR(areaOf(2) / areaOf(0), 0.25, 0.01);
+    EXPECT_NEAR(areaOf(0) * 512 * 512, 6.0 * result.density * result.density, 0.02 * areaOf(0) * 512 * 512);
+}
+
+TEST(Unwrap, TurnedAndStretchedInstances) {
+    Scene scene;
+    const int mesh = test::addMesh(scene, test::cube());
+    test::addInstance(scene, mesh, glm::rotate(glm::mat4(1), 1.1f, glm::vec3(1, 2, 3)));
+    test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(1, 4, 1)));
+    test::addInstance(scene, mesh, glm::scale(glm::mat4(1), glm::vec3(-1, 1, 1)));
+    const UnwrapResult result = unwrap(scene, {.density = 20, .size = 0});
+    EXPECT_EQ(result.charts, 18u);
+    const AtlasStatistics statistics = measureAtlas(scene, buildAtlas(scene, result.size), result.size);
+    EXPECT_NEAR(statistics.texelDensityMin, 20.0, 0.01);
+    EXPECT_NEAR(statistics.texelDensityMax, 20.0, 0.01);
+}
+
+TEST(Unwrap, SizeForADensity) {
+    // 100 m^2 at 4 texels/m are 1600 texels, at a coverage of 0.5 those of 56.6 x 56.6.
+    EXPECT_EQ(sizeForDensity(100, 4, 0.5, 4096), 64u);
+    EXPECT_EQ(sizeForDensity(100, 4, 0.25, 4096), 128u); // 80 x 80
+    EXPECT_EQ(sizeForDensity(65536, 4, 1.0, 4096), 1024u);
+    EXPECT_EQ(sizeForDensity(65537, 4, 1.0, 4096), 2048u);
+    EXPECT_EQ(sizeForDensity(1e9, 4, 0.9, 4096), 4096u);
+    EXPECT_EQ(sizeForDensity(1e9, 4, 0.9, 3000), 3000u);
+    EXPECT_EQ(sizeForDensity(0, 4, 0.9, 4096), 64u);
+    EXPECT_EQ(sizeForDensity(100, 0, 0.9, 4096), 64u);
+    EXPECT_EQ(sizeForDensity(100, 4, 0, 4096), 4096u);
+    EXPECT_EQ(sizeForDensity(std::numeric_limits<double>::infinity(), 4, 0.9, 4096), 4096u);
+    EXPECT_EQ(sizeForDensity(std::nan(""), 4, 0.9, 4096), 4096u);
+    EXPECT_EQ(sizeForDensity(100, 4, 0.5, 32), 32u);
+}
+
 TEST(Unwrap, AbsurdDensityIsAnError) {
     Scene scene = test::sceneOf(test::cube());
-    EXPECT_THROW(unwrap(scene, withDensity(1e9)), Error);
+    EXPECT_THROW(unwrap(scene, {.density = 1e9, .size = 0}), Error);
+    EXPECT_THROW(unwrap(scene, {.density = 0, .size = 0}), Error);
+    EXPECT_LT(unwrap(scene, withDensity(1e9)).density, 512.0); // what fits
 }
 
 TEST(Unwrap, ReferenceScenesWithoutTheirUvs) {

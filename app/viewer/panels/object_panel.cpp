@@ -2,6 +2,7 @@
 
 #include "app/viewer/edits/object_edits.h"
 #include "app/viewer/panels/widgets.h"
+#include "assets/model/scene_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,9 @@
 namespace relume {
 namespace {
 
-constexpr float kScaleStep = 0.005f; // of a scale, a pixel of a drag
-constexpr float kLeastScale = 1e-4f; // what is flat has neither volume nor a way back
+constexpr float kScaleStep = 0.005f;  // of a scale, a pixel of a drag
+constexpr float kDensityStep = 0.01f; // of a density, a pixel of a drag
+constexpr float kLeastScale = 1e-4f;  // what is flat has neither volume nor a way back
 
 void follow(const PanelContext& context, const char* label, const std::string& name, const Document* next) {
     ui::mark(label, true);
@@ -62,6 +64,13 @@ void ObjectPanel::draw(const PanelContext& context, uint32_t instance) {
         scale[axis] = std::copysign(std::max(std::abs(scale[axis]), kLeastScale), before[axis]);
     if (changed) placement.transform = scaledTo(placement.transform, scale);
     follow(context, "Scale", "Scale of " + name, changed ? &next : nullptr);
+    float& density = next.edits.densities[instance];
+    changed = ImGui::DragFloat("Density", &density, kDensityStep * density, kLeastDensity, kMostDensity,
+                               "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    follow(context, "Density", "Density of " + name, changed ? &next : nullptr);
+    ui::tip("Factor on the texels per metre that an unwrap gives the object. It is saved with the scene and "
+            "counts when "
+            "the file is read again");
     bool hidden = placement.hidden;
     if (ui::checkbox("Hidden", &hidden)) context.perform(Action::HideObject, 0);
     ui::tip("It blocks no light, receives and sends none (H)");

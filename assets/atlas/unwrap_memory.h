@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "assets/atlas/chart_layout.h"
+
+namespace relume {
+
+/// The charts of a mesh in the proportions in which instances of it stand in the world, without their size
+/// and rotation.
+struct UnwrapShape {
+    uint64_t hash = 0;               // of positions and indices, and of the UVs where these are kept
+    glm::dmat3 factor{1.0};          // from the mesh to the shape
+    double texel = 0.0;              // the size of a texel that the charts were cut for [m of the shape]
+    bool kept = false;               // one chart: the mesh's own UVs
+    bool cutUp = false;              // each triangle is a chart
+    std::vector<PlanarChart> charts; // [m of the shape]
+};
+
+/// What an unwrap leaves for the next one of the same file, so that what did not change stays where it is:
+/// charts of meshes with the same positions and indices, and the places of objects as large as before. A
+/// value: drop it, and the next unwrap begins anew.
+struct UnwrapMemory {
+    struct Object {
+        std::string name;
+        size_t shape = 0;
+        std::vector<ChartPlace> places; // one per chart of the shape
+    };
+    uint32_t size = 0;  // [texels]; 0: nothing is remembered
+    double asked = 0.0; // UnwrapDesc::density
+    ChartLayout layout; // without the places
+    std::vector<UnwrapShape> shapes;
+    std::vector<Object> objects;
+};
+
+} // namespace relume

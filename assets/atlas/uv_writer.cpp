@@ -1,0 +1,103 @@
+#include "assets/atlas/uv_writer.h"
+
+#include "assets/base/numbering.h"
+
+#include <algorithm>
+
+namespace relume {
+
+namespace {
+
+constexpr TextureRef Material::*kTextureUses[] = {&Material::baseColorTexture, &Material::emissionTexture,
+                                                  &Material::metallicRoughnessTexture};
+
+template<typename T>
+void pickVertices(std::vector<T>& values, const Numbering<uint64_t>& vertices) {
+    if (values.empty()) return;
+    std::vector<T> out(vertices.size());
+    for (uint32_t i = 0; i < out.size(); ++i)
+        out[i] = values[vertices.key(i) >> 32];
+    values = std::move(out);
+}
+
+/// Writes the UVs of the triangles from `first` on.
+void applyUvs(const CornerUvs& uvs, size_t first, Primitive& primitive) {
+    Numbering<uint64_t> vertices(primitive.indices.size());
+    std::vector<glm::vec2> placed;
+    for (size_t i = 0; i < primitive.indices.size(); ++i) {
+        const size_t triangle = first + i / 3;
+        const uint64_t key = (uint64_t(primitive.indices[i]) << 32) | uvs.chart[triangle];
+        primitive.indices[i] = vertices(key, mixBits(key));
+        if (primitive.indices[i] == placed.size()) placed.push_back(uvs.uv[3 * triangle + i % 3]);
+    }
+    pickVertices(primitive.positions, vertices);
+    pickVertices(primitive.normals, vertices);
+    pickVertices(primitive.texCoord0, vertices);
+    pickVertices(primitive.colors, vertices);
+    primitive.texCoord1 = std::move(placed);
+}
+
+} // namespace
+
+CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* places, double cells,
+                    size_t triangles) {
+    CornerUvs uvs;
+    uvs.uv.resize(3 * triangles);
+    uvs.chart.assign(triangles, kNoNumber);
+    for (size_t i = 0; i < charts.size(); ++i) {
+        const PlanarChart& chart = charts[i];
+        for (size_t t = 0; t < chart.triangles.size(); ++t) {
+            uvs.chart[chart.triangles[t]] = static_cast<uint32_t>(i);
+            for (size_t k = 0; k < 3; ++k) {
+                const glm::dvec2 uv = places[i].texelOf(chart.uv[3 * t + k]) / cells;
+                uvs.uv[3 * chart.triangles[t] + k] = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
+            }
+        }
+    }
+    return uvs;
+}
+
+Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs) {
+    Mesh result = mesh;
+    size_t first = 0;
+    for (Primitive& primitive : result.primitives) {
+        const size_t count = primitive.indices.size() / 3;
+        applyUvs(uvs, first, primitive);
+        first += count;
+    }
+    return result;
+}
+
+TexCoordMover::Uses TexCoordMover::usesOf(const Primitive& primitive) const {
+    Uses uses;
+    if (primitive.material < 0) return uses;
+    const Material& material = scene_.materials[static_cast<size_t>(primitive.material)];
+    for (TextureRef Material::*use : kTextureUses)
+        if ((material.*use).texture >= 0) uses.set[(material.*use).texCoord] = true;
+    return uses;
+}
+
+bool TexCoordMover::canFree(const Mesh& mesh) const {
+    return std::none_of(mesh.primitives.begin(), mesh.primitives.end(), [this](const Primitive& primitive) {
+        const Uses uses = usesOf(primitive);
+        return uses.set[0] && uses.set[1];
+    });
+}
+
+void TexCoordMover::run(Mesh& mesh) {
+    for (Primitive& primitive : mesh.primitives) {
+        if (!usesOf(primitive).set[1]) continue;
+        const auto material = static_cast<size_t>(primitive.material);
+        if (copies_[material] < 0) {
+            copies_[material] = static_cast<int>(scene_.materials.size());
+            const Material original = scene_.materials[material];
+            scene_.materials.push_back(original);
+            for (TextureRef Material::*use : kTextureUses)
+                (scene_.materials.back().*use).texCoord = 0;
+        }
+        primitive.material = copies_[material];
+        primitive.texCoord0 = primitive.texCoord1;
+    }
+}
+
+} // namespace relume
