@@ -20,7 +20,7 @@ constexpr double kSameShape = 2e-4;   // mismatch of a common border over its le
 constexpr double kLikeShape = 0.12;   // likewise, to be worth a relaxation
 constexpr double kSmallPart = 0.25;   // of the other's area: a plane so small may be bent with it
 constexpr uint32_t kMostRounds = 64;
-constexpr size_t kMostRelaxed = 20000; // triangles; two charts this large gain little by becoming one
+constexpr size_t kMostRelaxed = 16384; // triangles; two charts this large gain little by becoming one
 
 /// Holds an edge between two charts: a half-edge of the one of lower number.
 struct Seam {
