@@ -19,6 +19,7 @@ constexpr double kLeastShared = 0.08; // of the shorter border: two that touch l
 constexpr double kSameShape = 2e-4;   // mismatch of a common border over its length, for a rigid motion
 constexpr double kLikeShape = 0.12;   // likewise, to be worth a relaxation
 constexpr double kSmallPart = 0.25;   // of the other's area: a plane so small may be bent with it
+constexpr size_t kMostHinges = 4;     // edges of a seam, the longest, along which planes are unfolded
 constexpr uint32_t kMostRounds = 64;
 constexpr size_t kMostRelaxed = 16384; // triangles; two charts this large gain little by becoming one
 
@@ -100,13 +101,14 @@ private:
         std::vector<uint32_t> run;
         Motion motion;
         double length, mismatch;
+        bool isRigid() const { return mismatch <= kSameShape * length; }
     };
     void findSeams();
     std::vector<Candidate> candidates();
     bool isSmooth(uint32_t halfEdge) const;
     std::optional<Candidate> candidateOf(size_t first, size_t last) const;
     std::vector<Candidate> choose(const std::vector<Candidate>& all) const;
-    Fit fit(const Candidate& candidate, bool swapped) const;
+    Fit fit(const Candidate& candidate, bool swapped, std::vector<uint32_t> run) const;
     std::optional<Joined> attempt(const Candidate& candidate);
     std::vector<uint32_t> longestRun(const Candidate& candidate, bool swapped) const;
     Match matchOf(uint32_t halfEdge, bool atEnd) const;
@@ -331,32 +333,21 @@ std::optional<Joined> Joiner::glue(const FlatChart& large, const FlatChart& smal
     return joined;
 }
 
-/// Fits the seam as it is likely to be glued: along the longest part of it or, where that bends unlike in two
-/// charts that stay as they are, along its longest edge as along a hinge.
-Joiner::Fit Joiner::fit(const Candidate& candidate, bool swapped) const {
-    Fit fit{longestRun(candidate, swapped), {}, 0.0, 0.0};
-    const bool planes = set_.charts[candidate.a].plane && set_.charts[candidate.b].plane;
-    for (const bool hinged : {false, true}) {
-        if (hinged) {
-            const auto longest =
-                std::max_element(fit.run.begin(), fit.run.end(),
-                                 [&](uint32_t l, uint32_t r) { return lengthOf(l) < lengthOf(r); });
-            fit.run = {*longest};
-        }
-        std::vector<Match> matches;
-        fit.length = fit.mismatch = 0.0;
-        for (uint32_t h : fit.run) {
-            matches.push_back(matchOf(h, false));
-            matches.push_back(matchOf(h, true));
-            fit.length += lengthOf(h);
-        }
-        fit.motion = fitMotion(matches);
-        for (uint32_t h : fit.run)
-            fit.mismatch = std::max(fit.mismatch, mismatch(h, fit.motion));
-        if (!planes || fit.mismatch <= kSameShape * fit.length) break;
+/// Fits two charts along a part of their seam. Where that has one shape in both, all other seams that then
+/// fit are added.
+Joiner::Fit Joiner::fit(const Candidate& candidate, bool swapped, std::vector<uint32_t> run) const {
+    Fit fit{std::move(run), {}, 0.0, 0.0};
+    std::vector<Match> matches;
+    for (uint32_t h : fit.run) {
+        matches.push_back(matchOf(h, false));
+        matches.push_back(matchOf(h, true));
+        fit.length += lengthOf(h);
     }
-    if (fit.mismatch > kSameShape * fit.length) return fit;
-    for (size_t i = candidate.first; i < candidate.last; ++i) { // what fits as well
+    fit.motion = fitMotion(matches);
+    for (uint32_t h : fit.run)
+        fit.mismatch = std::max(fit.mismatch, mismatch(h, fit.motion));
+    if (!fit.isRigid()) return fit;
+    for (size_t i = candidate.first; i < candidate.last; ++i) {
         const uint32_t h = swapped ? mesh_.opposite[seams_[i].halfEdge] : seams_[i].halfEdge;
         if (std::find(fit.run.begin(), fit.run.end(), h) != fit.run.end()) continue;
         if (mismatch(h, fit.motion) > kSameShape * lengthOf(h)) continue;
@@ -370,12 +361,23 @@ std::optional<Joined> Joiner::attempt(const Candidate& candidate) {
     const bool swapped = set_.charts[candidate.a].stretch.surface < set_.charts[candidate.b].stretch.surface;
     const FlatChart& large = set_.charts[swapped ? candidate.b : candidate.a];
     const FlatChart& small = set_.charts[swapped ? candidate.a : candidate.b];
-    Fit found = fit(candidate, swapped);
-    const bool rigid = found.mismatch <= kSameShape * found.length;
-    if (!rigid && (found.mismatch > kLikeShape * found.length || !mayRelax(large, small)))
-        return std::nullopt;
-    if (!(found.length > kLeastShared * std::min(large.border, small.border))) return std::nullopt;
-    return glue(large, small, std::move(found.run), found.motion, !rigid);
+    const double least = kLeastShared * std::min(large.border, small.border);
+    std::vector<uint32_t> run = longestRun(candidate, swapped);
+    Fit whole = fit(candidate, swapped, run);
+    if (!(whole.length > least)) return std::nullopt;
+    if (whole.isRigid()) return glue(large, small, std::move(whole.run), whole.motion, false);
+    if (whole.mismatch <= kLikeShape * whole.length && mayRelax(large, small))
+        return glue(large, small, std::move(whole.run), whole.motion, true);
+    if (!large.plane || !small.plane) return std::nullopt;
+    // Planes whose seam bends unlike in both are unfolded along one of its edges, as along a hinge.
+    std::stable_sort(run.begin(), run.end(),
+                     [&](uint32_t l, uint32_t r) { return lengthOf(l) > lengthOf(r); });
+    for (size_t i = 0; i < std::min(run.size(), kMostHinges); ++i) {
+        Fit hinge = fit(candidate, swapped, {run[i]});
+        if (!hinge.isRigid() || !(hinge.length > least)) continue;
+        if (auto joined = glue(large, small, std::move(hinge.run), hinge.motion, false)) return joined;
+    }
+    return std::nullopt;
 }
 
 void Joiner::apply(const Candidate& candidate, Joined& joined) {
