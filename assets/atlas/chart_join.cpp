@@ -19,8 +19,9 @@ constexpr double kLeastShared = 0.08; // of the shorter border: two that touch l
 constexpr double kSameShape = 2e-4;   // mismatch of a common border over its length, for a rigid motion
 constexpr double kLikeShape = 0.12;   // likewise, to be worth a relaxation
 constexpr double kSmallPart = 0.25;   // of the other's area: a plane so small may be bent with it
+constexpr size_t kMostHinges = 4;     // edges of a seam, the longest, along which planes are unfolded
 constexpr uint32_t kMostRounds = 64;
-constexpr size_t kMostRelaxed = 20000; // triangles; two charts this large gain little by becoming one
+constexpr size_t kMostRelaxed = 16384; // triangles; two charts this large gain little by becoming one
 
 /// Holds an edge between two charts: a half-edge of the one of lower number.
 struct Seam {
@@ -32,6 +33,7 @@ struct Candidate {
     uint32_t a, b;
     size_t first, last; // of the seams
     double score;       // share of the shorter border that goes away
+    bool folded;        // over a crease, as one of them is narrow
 };
 
 struct Refused {
@@ -99,12 +101,14 @@ private:
         std::vector<uint32_t> run;
         Motion motion;
         double length, mismatch;
+        bool isRigid() const { return mismatch <= kSameShape * length; }
     };
     void findSeams();
     std::vector<Candidate> candidates();
+    bool isSmooth(uint32_t halfEdge) const;
     std::optional<Candidate> candidateOf(size_t first, size_t last) const;
     std::vector<Candidate> choose(const std::vector<Candidate>& all) const;
-    Fit fit(const Candidate& candidate, bool swapped) const;
+    Fit fit(const Candidate& candidate, bool swapped, std::vector<uint32_t> run) const;
     std::optional<Joined> attempt(const Candidate& candidate);
     std::vector<uint32_t> longestRun(const Candidate& candidate, bool swapped) const;
     Match matchOf(uint32_t halfEdge, bool atEnd) const;
@@ -126,11 +130,12 @@ private:
     std::vector<uint32_t> open_; // half-edges between charts, the lower one of each edge
     std::vector<Seam> seams_;
     std::vector<Refused> refused_; // sorted
+    std::vector<uint8_t> folded_;  // per triangle: it came to its chart over a crease
 };
 
 Joiner::Joiner(const WeldedMesh& mesh, double texel, WorkerPool& pool, ChartSet& set)
     : mesh_(mesh), texel_(texel), pool_(pool), set_(set), chartOf_(mesh.triangleCount(), kNoNumber),
-      version_(set.charts.size()), slot_(mesh.triangleCount()) {
+      version_(set.charts.size()), slot_(mesh.triangleCount()), folded_(mesh.triangleCount()) {
     for (uint32_t i = 0; i < set.charts.size(); ++i)
         for (uint32_t t : set.charts[i].triangles)
             chartOf_[t] = i;
@@ -165,6 +170,15 @@ bool Joiner::isRefused(uint32_t a, uint32_t b) const {
            found->versionB == version_[b];
 }
 
+/// Tells whether charts may go on across an edge. What was folded onto a chart because it is narrow leads
+/// nowhere: else a thin wall would have its two sides, one in the sun and one in the dark, in texels side by
+/// side.
+bool Joiner::isSmooth(uint32_t h) const {
+    const uint32_t left = h / 3, right = mesh_.opposite[h] / 3;
+    return glm::dot(mesh_.normal[left], mesh_.normal[right]) > kHardCosine && !folded_[left] &&
+           !folded_[right];
+}
+
 std::optional<Candidate> Joiner::candidateOf(size_t first, size_t last) const {
     const uint32_t a = seams_[first].a, b = seams_[first].b;
     if (isRefused(a, b)) return std::nullopt;
@@ -173,14 +187,14 @@ std::optional<Candidate> Joiner::candidateOf(size_t first, size_t last) const {
         const uint32_t h = seams_[i].halfEdge;
         const double one = lengthOf(h);
         length += one;
-        if (glm::dot(mesh_.normal[h / 3], mesh_.normal[mesh_.opposite[h] / 3]) > kHardCosine) smooth += one;
+        if (isSmooth(h)) smooth += one;
     }
     const FlatChart &left = set_.charts[a], &right = set_.charts[b];
     const bool narrow = std::min(left.width(), right.width()) < kNarrow * texel_;
     if (!narrow && smooth < 0.5 * length) return std::nullopt;
     const double score = length / std::min(left.border, right.border);
     if (!(score > kLeastShared)) return std::nullopt;
-    return Candidate{a, b, first, last, score};
+    return Candidate{a, b, first, last, score, smooth < 0.5 * length};
 }
 
 std::vector<Candidate> Joiner::candidates() {
@@ -319,32 +333,21 @@ std::optional<Joined> Joiner::glue(const FlatChart& large, const FlatChart& smal
     return joined;
 }
 
-/// Fits the seam as it is likely to be glued: along the longest part of it or, where that bends unlike in two
-/// charts that stay as they are, along its longest edge as along a hinge.
-Joiner::Fit Joiner::fit(const Candidate& candidate, bool swapped) const {
-    Fit fit{longestRun(candidate, swapped), {}, 0.0, 0.0};
-    const bool planes = set_.charts[candidate.a].plane && set_.charts[candidate.b].plane;
-    for (const bool hinged : {false, true}) {
-        if (hinged) {
-            const auto longest =
-                std::max_element(fit.run.begin(), fit.run.end(),
-                                 [&](uint32_t l, uint32_t r) { return lengthOf(l) < lengthOf(r); });
-            fit.run = {*longest};
-        }
-        std::vector<Match> matches;
-        fit.length = fit.mismatch = 0.0;
-        for (uint32_t h : fit.run) {
-            matches.push_back(matchOf(h, false));
-            matches.push_back(matchOf(h, true));
-            fit.length += lengthOf(h);
-        }
-        fit.motion = fitMotion(matches);
-        for (uint32_t h : fit.run)
-            fit.mismatch = std::max(fit.mismatch, mismatch(h, fit.motion));
-        if (!planes || fit.mismatch <= kSameShape * fit.length) break;
+/// Fits two charts along a part of their seam. Where that has one shape in both, all other seams that then
+/// fit are added.
+Joiner::Fit Joiner::fit(const Candidate& candidate, bool swapped, std::vector<uint32_t> run) const {
+    Fit fit{std::move(run), {}, 0.0, 0.0};
+    std::vector<Match> matches;
+    for (uint32_t h : fit.run) {
+        matches.push_back(matchOf(h, false));
+        matches.push_back(matchOf(h, true));
+        fit.length += lengthOf(h);
     }
-    if (fit.mismatch > kSameShape * fit.length) return fit;
-    for (size_t i = candidate.first; i < candidate.last; ++i) { // what fits as well
+    fit.motion = fitMotion(matches);
+    for (uint32_t h : fit.run)
+        fit.mismatch = std::max(fit.mismatch, mismatch(h, fit.motion));
+    if (!fit.isRigid()) return fit;
+    for (size_t i = candidate.first; i < candidate.last; ++i) {
         const uint32_t h = swapped ? mesh_.opposite[seams_[i].halfEdge] : seams_[i].halfEdge;
         if (std::find(fit.run.begin(), fit.run.end(), h) != fit.run.end()) continue;
         if (mismatch(h, fit.motion) > kSameShape * lengthOf(h)) continue;
@@ -358,12 +361,23 @@ std::optional<Joined> Joiner::attempt(const Candidate& candidate) {
     const bool swapped = set_.charts[candidate.a].stretch.surface < set_.charts[candidate.b].stretch.surface;
     const FlatChart& large = set_.charts[swapped ? candidate.b : candidate.a];
     const FlatChart& small = set_.charts[swapped ? candidate.a : candidate.b];
-    Fit found = fit(candidate, swapped);
-    const bool rigid = found.mismatch <= kSameShape * found.length;
-    if (!rigid && (found.mismatch > kLikeShape * found.length || !mayRelax(large, small)))
-        return std::nullopt;
-    if (!(found.length > kLeastShared * std::min(large.border, small.border))) return std::nullopt;
-    return glue(large, small, std::move(found.run), found.motion, !rigid);
+    const double least = kLeastShared * std::min(large.border, small.border);
+    std::vector<uint32_t> run = longestRun(candidate, swapped);
+    Fit whole = fit(candidate, swapped, run);
+    if (!(whole.length > least)) return std::nullopt;
+    if (whole.isRigid()) return glue(large, small, std::move(whole.run), whole.motion, false);
+    if (whole.mismatch <= kLikeShape * whole.length && mayRelax(large, small))
+        return glue(large, small, std::move(whole.run), whole.motion, true);
+    if (!large.plane || !small.plane) return std::nullopt;
+    // Planes whose seam bends unlike in both are unfolded along one of its edges, as along a hinge.
+    std::stable_sort(run.begin(), run.end(),
+                     [&](uint32_t l, uint32_t r) { return lengthOf(l) > lengthOf(r); });
+    for (size_t i = 0; i < std::min(run.size(), kMostHinges); ++i) {
+        Fit hinge = fit(candidate, swapped, {run[i]});
+        if (!hinge.isRigid() || !(hinge.length > least)) continue;
+        if (auto joined = glue(large, small, std::move(hinge.run), hinge.motion, false)) return joined;
+    }
+    return std::nullopt;
 }
 
 void Joiner::apply(const Candidate& candidate, Joined& joined) {
@@ -371,6 +385,11 @@ void Joiner::apply(const Candidate& candidate, Joined& joined) {
         set_.uv[3 * size_t(joined.chart.triangles[i / 3]) + i % 3] = joined.uv[i];
     for (uint32_t h : joined.glued)
         set_.glued[h] = set_.glued[mesh_.opposite[h]] = 1;
+    if (candidate.folded) {
+        const FlatChart &a = set_.charts[candidate.a], &b = set_.charts[candidate.b];
+        for (uint32_t t : (a.stretch.surface < b.stretch.surface ? a : b).triangles)
+            folded_[t] = 1;
+    }
     for (uint32_t t : joined.chart.triangles)
         chartOf_[t] = candidate.a;
     set_.charts[candidate.a] = std::move(joined.chart);

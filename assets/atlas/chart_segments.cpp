@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <queue>
+#include <utility>
 
 namespace relume {
 
@@ -18,34 +19,25 @@ constexpr double kCreaseCosine = 0.5;  // 60 degrees: what bends more is an edge
 constexpr double kWall = 4.0;          // times the area of each smooth neighbour
 constexpr double kMostVariance =
     0.40; // of a segment's normals; a cap of 60 degrees has 0.44, a half cylinder 0.59
-constexpr double kFlatVariance = 0.02; // of normals; below it none leaves the cone
-constexpr double kConeCosine = 0.26;   // 75 degrees: beyond it a projection is too narrow to start from
+constexpr size_t kMostTriangles = 16384; // of a bent segment: equations of more take long to solve
+constexpr double kFlatVariance = 0.02;   // of normals; below it none leaves the cone
+constexpr double kConeCosine = 0.26;     // 75 degrees: beyond it a projection is too narrow to start from
 
 /// Holds a neighbour of a segment.
 struct Neighbour {
     uint32_t segment;
     double length; // of the common border [m]
     double smooth; // of its part that is no crease [m]
+    bool refused;  // the two face too unlike to be joined, and more so when they have grown
 };
 
 struct Segment {
     double area = 0.0;
     glm::dvec3 sum{0.0}; // of area times normal
+    size_t triangles = 0;
     uint32_t node = 0;
-    uint32_t version = 0;
     uint32_t first = 0, last = 0; // of the list of its facets
     std::vector<Neighbour> neighbours;
-
-    double energy() const { return glm::dot(sum, sum) / area; }
-};
-
-struct Merge {
-    double cost;
-    uint32_t a, b, versionA, versionB;
-    bool operator>(const Merge& other) const {
-        if (cost != other.cost) return cost > other.cost;
-        return a != other.a ? a > other.a : b > other.b;
-    }
 };
 
 std::vector<uint32_t> byArea(const WeldedMesh& mesh) {
@@ -108,7 +100,10 @@ private:
     void findWalls();
     uint32_t find(uint32_t segment);
     void resolve(uint32_t segment);
-    void push(uint32_t a, const Neighbour& neighbour);
+    double costOf(uint32_t a, const Neighbour& neighbour) const;
+    uint32_t cheapest(uint32_t segment);
+    void refuse(uint32_t a, uint32_t b);
+    void round();
     bool inCone(uint32_t segment, const glm::dvec3& axis) const;
     bool allowed(uint32_t a, uint32_t b) const;
     void join(uint32_t a, uint32_t b);
@@ -119,7 +114,9 @@ private:
     std::vector<glm::dvec3> normals_; // of facets
     std::vector<uint32_t> parent_, nextFacet_;
     std::vector<uint8_t> wall_;
-    std::priority_queue<Merge, std::vector<Merge>, std::greater<>> queue_;
+    std::vector<uint32_t> choice_;  // per segment: the neighbour that it costs least to join, kNoNumber: none
+    std::vector<uint32_t> changed_; // segments whose choice may be another now
+    std::vector<uint8_t> isChanged_;
 };
 
 void SegmentGrower::gather(const std::vector<uint32_t>& facetOf) {
@@ -131,6 +128,7 @@ void SegmentGrower::gather(const std::vector<uint32_t>& facetOf) {
     nextFacet_.assign(count, kNoNumber);
     for (uint32_t f = 0; f < count; ++f) {
         Segment& segment = segments_[f];
+        segment.triangles = forest_.facets[f].size();
         segment.node = segment.first = segment.last = f;
         for (uint32_t t : forest_.facets[f]) {
             segment.area += mesh_.area[t];
@@ -144,7 +142,7 @@ void SegmentGrower::gather(const std::vector<uint32_t>& facetOf) {
                 const double length =
                     glm::distance(mesh_.corners[h], mesh_.corners[WeldedMesh::nextCorner(h)]);
                 const bool smooth = glm::dot(mesh_.normal[t], mesh_.normal[other / 3]) > kCreaseCosine;
-                segment.neighbours.push_back({facetOf[other / 3], length, smooth ? length : 0.0});
+                segment.neighbours.push_back({facetOf[other / 3], length, smooth ? length : 0.0, false});
             }
         }
     }
@@ -181,6 +179,7 @@ void SegmentGrower::resolve(uint32_t segment) {
         if (kept > 0 && list[kept - 1].segment == list[i].segment) {
             list[kept - 1].length += list[i].length;
             list[kept - 1].smooth += list[i].smooth;
+            list[kept - 1].refused |= list[i].refused;
         } else {
             list[kept++] = list[i];
         }
@@ -188,17 +187,41 @@ void SegmentGrower::resolve(uint32_t segment) {
     list.resize(kept);
 }
 
-void SegmentGrower::push(uint32_t a, const Neighbour& neighbour) {
+/// Returns the variance of normals of the two together per border that goes away [m]; infinity where they may
+/// not be joined.
+double SegmentGrower::costOf(uint32_t a, const Neighbour& neighbour) const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
     const uint32_t b = neighbour.segment;
-    if (wall_[a] || wall_[b] || neighbour.smooth < 0.5 * neighbour.length) return;
+    if (wall_[a] || wall_[b] || neighbour.refused || neighbour.smooth < 0.5 * neighbour.length) return kNever;
     const Segment &left = segments_[a], &right = segments_[b];
-    const glm::dvec3 sum = left.sum + right.sum;
-    const double area = left.area + right.area, squared = glm::dot(sum, sum) / area;
-    if (area - squared > kMostVariance * area) return;
-    const double cost = (left.energy() + right.energy() - squared) / neighbour.length;
-    const bool swapped = b < a;
-    queue_.push({cost, swapped ? b : a, swapped ? a : b, swapped ? right.version : left.version,
-                 swapped ? left.version : right.version});
+    if (left.triangles + right.triangles > kMostTriangles) return kNever;
+    const bool swapped = b < a; // sums are the same from either side
+    const glm::dvec3 sum = swapped ? right.sum + left.sum : left.sum + right.sum;
+    const double area = left.area + right.area, variance = area - glm::dot(sum, sum) / area;
+    return variance > kMostVariance * area ? kNever : variance / neighbour.length;
+}
+
+uint32_t SegmentGrower::cheapest(uint32_t segment) {
+    resolve(segment);
+    double least = std::numeric_limits<double>::infinity();
+    uint32_t best = kNoNumber;
+    std::pair<uint32_t, uint32_t>
+        name; // of the pair, which decides between equal costs from both sides alike
+    for (const Neighbour& neighbour : segments_[segment].neighbours) {
+        const double cost = costOf(segment, neighbour);
+        const std::pair<uint32_t, uint32_t> own = std::minmax({segment, neighbour.segment});
+        if (!(cost < least) && !(best != kNoNumber && cost == least && own < name)) continue;
+        least = cost;
+        best = neighbour.segment;
+        name = own;
+    }
+    return best;
+}
+
+void SegmentGrower::refuse(uint32_t a, uint32_t b) {
+    for (const auto& [one, other] : {std::pair(a, b), std::pair(b, a)})
+        for (Neighbour& neighbour : segments_[one].neighbours)
+            if (find(neighbour.segment) == other) neighbour.refused = true;
 }
 
 bool SegmentGrower::inCone(uint32_t segment, const glm::dvec3& axis) const {
@@ -221,17 +244,48 @@ void SegmentGrower::join(uint32_t a, uint32_t b) {
     forest_.parts.push_back({left.node, right.node});
     left.node = node;
     left.area += right.area;
+    left.triangles += right.triangles;
     left.sum += right.sum;
     nextFacet_[left.last] = right.first;
     left.last = right.last;
-    ++left.version;
-    ++right.version;
     parent_[b] = a;
     left.neighbours.insert(left.neighbours.end(), right.neighbours.begin(), right.neighbours.end());
     std::vector<Neighbour>().swap(right.neighbours);
     resolve(a);
-    for (const Neighbour& neighbour : left.neighbours)
-        push(a, neighbour);
+}
+
+/// Joins the pairs of which each is the other's cheapest neighbour; the cheapest pair of all is among them.
+void SegmentGrower::round() {
+    for (uint32_t segment : changed_) {
+        choice_[segment] = cheapest(segment);
+        isChanged_[segment] = 0;
+    }
+    std::vector<uint32_t> touched;
+    const auto touch = [&](uint32_t segment) {
+        if (!isChanged_[segment]) touched.push_back(segment);
+        isChanged_[segment] = 1;
+    };
+    for (uint32_t segment : changed_) {
+        const uint32_t other = choice_[segment];
+        if (other == kNoNumber || parent_[segment] != segment || choice_[other] != segment) continue;
+        const uint32_t a = std::min(segment, other), b = std::max(segment, other);
+        choice_[a] = choice_[b] = kNoNumber;
+        if (allowed(a, b)) {
+            join(a, b);
+            for (const Neighbour& neighbour : segments_[a].neighbours)
+                touch(neighbour.segment);
+        } else {
+            refuse(a, b);
+            touch(b);
+        }
+        touch(a);
+    }
+    std::erase_if(touched, [&](uint32_t segment) {
+        if (parent_[segment] == segment) return false;
+        isChanged_[segment] = 0;
+        return true;
+    });
+    changed_ = std::move(touched);
 }
 
 void SegmentGrower::run() {
@@ -239,17 +293,12 @@ void SegmentGrower::run() {
     facets.run(forest_.facets);
     gather(facets.facetOf());
     findWalls();
-    for (uint32_t f = 0; f < segments_.size(); ++f)
-        for (const Neighbour& neighbour : segments_[f].neighbours)
-            if (f < neighbour.segment) push(f, neighbour);
-    while (!queue_.empty()) {
-        const Merge merge = queue_.top();
-        queue_.pop();
-        if (parent_[merge.a] != merge.a || parent_[merge.b] != merge.b) continue;
-        if (segments_[merge.a].version != merge.versionA || segments_[merge.b].version != merge.versionB)
-            continue;
-        if (allowed(merge.a, merge.b)) join(merge.a, merge.b);
-    }
+    choice_.assign(segments_.size(), kNoNumber);
+    isChanged_.assign(segments_.size(), 0);
+    changed_.resize(segments_.size());
+    std::iota(changed_.begin(), changed_.end(), 0u);
+    while (!changed_.empty())
+        round();
     for (uint32_t f = 0; f < segments_.size(); ++f)
         if (parent_[f] == f) forest_.roots.push_back(segments_[f].node);
 }

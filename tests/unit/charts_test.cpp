@@ -112,6 +112,23 @@ TEST(Charts, CreasesAreBordersUnlessChartsAreNarrow) {
     EXPECT_NEAR(expectSound(corners, joined), 1.0, 1e-9);
 }
 
+TEST(Charts, TheSidesOfAThinWallAreApart) {
+    std::vector<glm::dvec3> corners = cornersOf(test::cube());
+    for (glm::dvec3& p : corners)
+        p *= glm::dvec3(4.0, 3.0, 0.1);
+    const std::vector<PlanarChart> charts = cut(corners, 0.25); // its edges are less than a texel wide
+    EXPECT_LE(charts.size(), 5u);
+    EXPECT_NEAR(expectSound(corners, charts), 1.0, 1e-9);
+    for (const PlanarChart& chart : charts) {
+        int sides = 0; // triangles of the two large sides in this chart
+        for (uint32_t t : chart.triangles)
+            sides += std::abs(glm::normalize(glm::cross(corners[3 * t + 1] - corners[3 * t],
+                                                        corners[3 * t + 2] - corners[3 * t]))
+                                  .z) > 0.5;
+        EXPECT_LE(sides, 2);
+    }
+}
+
 TEST(Charts, WallsStayAsTheyAre) {
     // A wall of 5 x 3 m with a window in it stands at an angle, with a rounded edge on one side.
     std::vector<glm::dvec3> corners;
