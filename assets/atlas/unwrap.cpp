@@ -74,14 +74,13 @@ bool Unwrapper::choose() {
     });
     chosen_.assign(count, false);
     keptSet_.assign(count, -1);
-    const TexCoordMover mover(scene_);
     Warnings warnings;
     bool any = false;
     for (const Instance& instance : scene_.instances) {
         const auto i = static_cast<size_t>(instance.mesh);
         const Mesh& mesh = scene_.meshes[i];
         if (mesh.primitives.empty()) continue;
-        if (!mover.canFree(mesh)) {
+        if (!canFreeSecondSet(scene_, mesh)) {
             if (set[i] < 0)
                 warnings.add("mesh " + inQuotes(mesh.name),
                              "needs both its UV sets for textures, so none is free for the lightmap: let its "
@@ -311,9 +310,8 @@ void Unwrapper::remember() {
 
 UnwrapResult Unwrapper::run() {
     if (!choose()) return result_;
-    TexCoordMover mover(scene_);
     for (size_t i = 0; i < chosen_.size(); ++i)
-        if (chosen_[i] || keptSet_[i] >= 0) mover.run(scene_.meshes[i]);
+        if (chosen_[i] || keptSet_[i] >= 0) freeSecondSet(scene_, scene_.meshes[i]);
     cut();
     if (std::none_of(parts_.objects.begin(), parts_.objects.end(),
                      [&](const UnwrapObject& o) { return !parts_.shapes[o.shape].kept; }))
@@ -346,6 +344,22 @@ bool hasArea(const Primitive& primitive, const glm::dmat3& linear) {
 }
 
 } // namespace
+
+double surfaceArea(const Scene& scene) {
+    double area = 0.0;
+    for (const Instance& instance : scene.instances) {
+        if (instance.hidden) continue;
+        const glm::dmat3 linear(glm::mat3(instance.transform));
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
+            for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+                const glm::dvec3 a = primitive.positions[primitive.indices[i]],
+                                 b = primitive.positions[primitive.indices[i + 1]],
+                                 c = primitive.positions[primitive.indices[i + 2]];
+                area += 0.5 * glm::length(glm::cross(linear * (b - a), linear * (c - a)));
+            }
+    }
+    return area;
+}
 
 void requireArea(const Scene& scene) {
     for (const Instance& instance : scene.instances)

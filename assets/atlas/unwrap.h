@@ -39,6 +39,9 @@ UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory =
 /// Throws Error for a scene of points and lines, which no lightmap UVs would help.
 void requireArea(const Scene& scene);
 
+/// Returns the area of all visible instances [m^2].
+double surfaceArea(const Scene& scene);
+
 /// Returns the edge of a lightmap, a power of two from 64 on and at most `maximum`, at which surfaces of
 /// `area` [m^2] get `density` [texels/m] when charts cover the share `coverage` of it. Returns the least
 /// where there is no area or density, and `maximum` where these are not finite or coverage is not above 0.

@@ -68,35 +68,37 @@ Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs) {
     return result;
 }
 
-TexCoordMover::Uses TexCoordMover::usesOf(const Primitive& primitive) const {
-    Uses uses;
-    if (primitive.material < 0) return uses;
-    const Material& material = scene_.materials[static_cast<size_t>(primitive.material)];
+namespace {
+
+/// The sets of UVs that a primitive's textures use.
+struct UsedSets {
+    bool set[2] = {false, false};
+};
+
+UsedSets usedSets(const Scene& scene, const Primitive& primitive) {
+    UsedSets used;
+    if (primitive.material < 0) return used;
+    const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
     for (TextureRef Material::*use : kTextureUses)
-        if ((material.*use).texture >= 0) uses.set[(material.*use).texCoord] = true;
-    return uses;
+        if ((material.*use).texture >= 0)
+            used.set[primitive.uvsMoved ? 0 : (material.*use).texCoord] = true;
+    return used;
 }
 
-bool TexCoordMover::canFree(const Mesh& mesh) const {
-    return std::none_of(mesh.primitives.begin(), mesh.primitives.end(), [this](const Primitive& primitive) {
-        const Uses uses = usesOf(primitive);
-        return uses.set[0] && uses.set[1];
+} // namespace
+
+bool canFreeSecondSet(const Scene& scene, const Mesh& mesh) {
+    return std::none_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& primitive) {
+        const UsedSets used = usedSets(scene, primitive);
+        return used.set[0] && used.set[1];
     });
 }
 
-void TexCoordMover::run(Mesh& mesh) {
+void freeSecondSet(const Scene& scene, Mesh& mesh) {
     for (Primitive& primitive : mesh.primitives) {
-        if (!usesOf(primitive).set[1]) continue;
-        const auto material = static_cast<size_t>(primitive.material);
-        if (copies_[material] < 0) {
-            copies_[material] = static_cast<int>(scene_.materials.size());
-            const Material original = scene_.materials[material];
-            scene_.materials.push_back(original);
-            for (TextureRef Material::*use : kTextureUses)
-                (scene_.materials.back().*use).texCoord = 0;
-        }
-        primitive.material = copies_[material];
+        if (!usedSets(scene, primitive).set[1]) continue;
         primitive.texCoord0 = primitive.texCoord1;
+        primitive.uvsMoved = true;
     }
 }
 

@@ -20,22 +20,9 @@ CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* pl
 /// Returns the mesh with the UVs as TEXCOORD_1; a vertex in several charts becomes several.
 Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs);
 
-/// Frees TEXCOORD_1 of meshes whose textures use it, by moving it to TEXCOORD_0 in copies of the materials.
-class TexCoordMover {
-public:
-    explicit TexCoordMover(Scene& scene) : scene_(scene), copies_(scene.materials.size(), -1) {}
-    /// Tells whether a mesh's textures leave it one of its two sets of UVs.
-    bool canFree(const Mesh& mesh) const;
-    void run(Mesh& mesh);
-
-private:
-    struct Uses {
-        bool set[2] = {false, false};
-    };
-    Uses usesOf(const Primitive& primitive) const;
-
-    Scene& scene_;
-    std::vector<int> copies_; // of the scene's own materials, -1: none yet
-};
+/// Tells whether a mesh's textures leave it one of its two sets of UVs.
+bool canFreeSecondSet(const Scene& scene, const Mesh& mesh);
+/// Frees TEXCOORD_1 of a mesh whose textures use it, by moving it to TEXCOORD_0 (Primitive::uvsMoved).
+void freeSecondSet(const Scene& scene, Mesh& mesh);
 
 } // namespace relume

@@ -91,7 +91,7 @@ void Flattener::reserve(size_t triangles) {
 
 void Flattener::addUvs(const TextureRef* use, const Primitive& primitive, const uint32_t* corners,
                        std::vector<glm::vec2>& out) const {
-    const std::vector<glm::vec2>* uvs = use ? &uvSet(primitive, use->texCoord) : nullptr;
+    const std::vector<glm::vec2>* uvs = use ? &uvsOf(primitive, *use) : nullptr;
     for (int k = 0; k < 3; ++k)
         out.push_back(uvs && !uvs->empty() ? glm::vec2(use->transform * glm::vec3((*uvs)[corners[k]], 1.0f))
                                            : glm::vec2(0.0f));

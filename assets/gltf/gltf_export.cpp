@@ -62,6 +62,8 @@ public:
 
 private:
     Json primitive(const Primitive& primitive);
+    /// Returns the number of a material's copy whose textures read TEXCOORD_0.
+    int movedMaterial(int material);
     Json material(const Material& material);
     Json textureInfo(const TextureRef& ref, const std::string& materialName);
     void addMeshes();
@@ -78,6 +80,7 @@ private:
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
     std::vector<std::vector<uint8_t>> pngs_;
+    std::vector<int> moved_;       // materials that have such a copy behind all materials
     std::vector<int> meshIndices_; // of the file by Scene::meshes, -1 for one without triangles
     std::map<std::string, bool> extensions_;
 };
@@ -158,7 +161,7 @@ Json GlbWriter::primitive(const Primitive& p) {
     } else {
         out["indices"] = addAccessor(kIntIndices, p.indices.data(), p.indices.size(), kUnsignedInt, "SCALAR");
     }
-    if (p.material >= 0) out["material"] = p.material;
+    if (p.material >= 0) out["material"] = p.uvsMoved ? movedMaterial(p.material) : p.material;
     return out;
 }
 
@@ -176,6 +179,13 @@ void GlbWriter::addMeshes() {
         meshIndices_[i] = static_cast<int>(json_["meshes"].size());
         json_["meshes"].push_back(std::move(out));
     }
+}
+
+int GlbWriter::movedMaterial(int material) {
+    const auto found = std::find(moved_.begin(), moved_.end(), material);
+    const auto place = found - moved_.begin();
+    if (found == moved_.end()) moved_.push_back(material);
+    return static_cast<int>(scene_.materials.size()) + static_cast<int>(place);
 }
 
 Json GlbWriter::textureInfo(const TextureRef& ref, const std::string& materialName) {
@@ -382,6 +392,12 @@ std::vector<uint8_t> GlbWriter::write() {
     addTextures();
     for (const Material& m : scene_.materials)
         json_["materials"].push_back(material(m));
+    for (const int original : moved_) {
+        Material copy = scene_.materials[static_cast<size_t>(original)];
+        copy.baseColorTexture.texCoord = copy.emissionTexture.texCoord = 0;
+        copy.metallicRoughnessTexture.texCoord = 0;
+        json_["materials"].push_back(material(copy));
+    }
     addNodes();
     addBuffers();
     for (const auto& [extension, used] : extensions_)

@@ -58,11 +58,16 @@ struct Primitive {
     std::vector<glm::vec4> colors; // COLOR_0, linear
     std::vector<uint32_t> indices; // 3 per triangle, always filled
     int material = -1;             // index into Scene::materials, -1 for glTF's default material
+    bool uvsMoved = false;         // texCoord0 holds its textures' TEXCOORD_1, as the lightmap has that set
 };
 
 /// Returns TEXCOORD_0 or TEXCOORD_1.
 inline const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
     return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
+}
+/// Returns the UVs that a texture reads.
+inline const std::vector<glm::vec2>& uvsOf(const Primitive& primitive, const TextureRef& use) {
+    return uvSet(primitive, primitive.uvsMoved ? 0 : use.texCoord);
 }
 
 struct Mesh {
