@@ -33,7 +33,7 @@ struct Candidate {
     uint32_t a, b;
     size_t first, last; // of the seams
     double score;       // share of the shorter border that goes away
-    bool folded;        // over a crease, as one of them is narrow
+    bool narrow;        // one of them is
 };
 
 struct Refused {
@@ -130,12 +130,12 @@ private:
     std::vector<uint32_t> open_; // half-edges between charts, the lower one of each edge
     std::vector<Seam> seams_;
     std::vector<Refused> refused_; // sorted
-    std::vector<uint8_t> folded_;  // per triangle: it came to its chart over a crease
+    std::vector<uint8_t> edging_;  // per triangle: it came to its chart as a narrow one
 };
 
 Joiner::Joiner(const WeldedMesh& mesh, double texel, WorkerPool& pool, ChartSet& set)
     : mesh_(mesh), texel_(texel), pool_(pool), set_(set), chartOf_(mesh.triangleCount(), kNoNumber),
-      version_(set.charts.size()), slot_(mesh.triangleCount()), folded_(mesh.triangleCount()) {
+      version_(set.charts.size()), slot_(mesh.triangleCount()), edging_(mesh.triangleCount()) {
     for (uint32_t i = 0; i < set.charts.size(); ++i)
         for (uint32_t t : set.charts[i].triangles)
             chartOf_[t] = i;
@@ -170,13 +170,13 @@ bool Joiner::isRefused(uint32_t a, uint32_t b) const {
            found->versionB == version_[b];
 }
 
-/// Tells whether charts may go on across an edge. What was folded onto a chart because it is narrow leads
+/// Tells whether wide charts may be joined across an edge. What came to a chart as a narrow one leads
 /// nowhere: else a thin wall would have its two sides, one in the sun and one in the dark, in texels side by
 /// side.
 bool Joiner::isSmooth(uint32_t h) const {
     const uint32_t left = h / 3, right = mesh_.opposite[h] / 3;
-    return glm::dot(mesh_.normal[left], mesh_.normal[right]) > kHardCosine && !folded_[left] &&
-           !folded_[right];
+    return glm::dot(mesh_.normal[left], mesh_.normal[right]) > kHardCosine && !edging_[left] &&
+           !edging_[right];
 }
 
 std::optional<Candidate> Joiner::candidateOf(size_t first, size_t last) const {
@@ -194,7 +194,7 @@ std::optional<Candidate> Joiner::candidateOf(size_t first, size_t last) const {
     if (!narrow && smooth < 0.5 * length) return std::nullopt;
     const double score = length / std::min(left.border, right.border);
     if (!(score > kLeastShared)) return std::nullopt;
-    return Candidate{a, b, first, last, score, smooth < 0.5 * length};
+    return Candidate{a, b, first, last, score, narrow};
 }
 
 std::vector<Candidate> Joiner::candidates() {
@@ -385,10 +385,10 @@ void Joiner::apply(const Candidate& candidate, Joined& joined) {
         set_.uv[3 * size_t(joined.chart.triangles[i / 3]) + i % 3] = joined.uv[i];
     for (uint32_t h : joined.glued)
         set_.glued[h] = set_.glued[mesh_.opposite[h]] = 1;
-    if (candidate.folded) {
+    if (candidate.narrow) {
         const FlatChart &a = set_.charts[candidate.a], &b = set_.charts[candidate.b];
         for (uint32_t t : (a.stretch.surface < b.stretch.surface ? a : b).triangles)
-            folded_[t] = 1;
+            edging_[t] = 1;
     }
     for (uint32_t t : joined.chart.triangles)
         chartOf_[t] = candidate.a;
