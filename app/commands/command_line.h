@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ void addCommands(CLI::App& app);
 /// belongs, and with an empty value as a word of its own, which CLI11 would skip for the next one. Throws
 /// UsageError for an unknown verb and for a value that is given to a flag.
 std::vector<std::string> parserArguments(const std::vector<std::string>& typed, const CLI::App& app);
+
+/// Does what this program started itself for as a child process, where that is so, and returns the exit
+/// status then. It is for no user, and comes before anything else.
+std::optional<int> runChildTask(int count, const char* const* arguments);
 
 /// Tells what helps when memory runs out, by what the verb that was parsed makes.
 std::string outOfMemoryMessage(const CLI::App& app);

@@ -3,13 +3,14 @@
 #include "assets/atlas/unwrap.h"
 #include "assets/base/clock.h"
 #include "assets/base/log.h"
+#include "assets/foreign/load_scene.h"
 
 namespace relume {
 
 PreparedScene prepareScene(const PrepareDesc& desc) {
     PreparedScene result;
     const auto start = Clock::now();
-    result.scene = loadGltf(desc.path, desc.choice);
+    result.scene = loadScene(desc.path, desc.choice);
     result.loadSeconds = secondsSince(start);
     for (const std::string& warning : result.scene.warnings)
         spdlog::warn("{}", warning);
