@@ -26,9 +26,9 @@ constexpr double kGiB = 1024.0 * 1024.0 * 1024.0; // [bytes]
 
 void runImport(const ImportOptions& options) {
     ImportDesc desc = options.desc;
+    CommandFiles().readsScene("IN", desc.path).writes("--output", options.output).check();
     if (lowerEnding(options.output) != ".glb")
         throw UsageError(options.output + ": import writes GLB: give a name that ends in .glb");
-    CommandFiles().readsScene("IN", desc.path).writes("--output", options.output).check();
     checkFileWritable(options.output, 0);
     if (const std::string ending = lowerEnding(desc.path); ending == ".glb" || ending == ".gltf")
         throw Error(desc.path + ": is a glTF file, which needs no import: open it as it is");

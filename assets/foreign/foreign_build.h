@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "assets/base/warnings.h"
-#include "assets/foreign/foreign_scene.h"
+#include "assets/foreign/foreign_types.h"
 #include "assets/foreign/near_files.h"
 
 namespace relume::foreign {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "assets/base/spool.h"
-#include "assets/foreign/foreign_scene.h"
+#include "assets/foreign/foreign_types.h"
 #include "assets/foreign/import_limits.h"
 
 namespace relume {

@@ -6,7 +6,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 
-#include "assets/foreign/foreign_scene.h"
+#include "assets/foreign/foreign_types.h"
 #include "assets/foreign/near_files.h"
 
 namespace relume::foreign {

@@ -41,7 +41,10 @@ Reference parse(std::string text) {
         text.erase(0, 2);
         reference.relative = false;
     }
-    if (text.starts_with('/')) reference.relative = false;
+    if (text.starts_with("//")) // Blender's sign for the folder of the file
+        text.erase(0, 2);
+    else if (text.starts_with('/'))
+        reference.relative = false;
     for (size_t begin = 0; begin <= text.size();) {
         const size_t end = std::min(text.find('/', begin), text.size());
         const std::string part = text.substr(begin, end - begin);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <fstream>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/temporary_folder.h"
@@ -89,6 +91,28 @@ inline std::string triangle3ds() {
     const std::string mesh = chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces));
     const std::string object = chunk(0x4000, std::string("Wedge") + '\0' + mesh);
     return chunk(0x4d4d, chunk(0x3d3d, object));
+}
+
+/// Good files, each with its ending, to be mutated.
+inline std::vector<std::pair<std::string, std::string>> filesToMutate() {
+    return {{".obj", std::string("mtllib m.mtl\nusemtl m\ns 1\n") + kFloorObj + "f -4 -3 -2\n"},
+            {".dae", kRoomDae},
+            {".3ds", triangle3ds()}};
+}
+
+/// Changes some bytes of a text, by numbers that are the same every time.
+inline std::string mutated(std::string text, uint32_t seed) {
+    std::mt19937 random(seed);
+    const uint32_t changes = 1 + random() % 3;
+    for (uint32_t i = 0; i < changes && !text.empty(); ++i) {
+        const size_t at = random() % text.size();
+        const uint32_t kind = random() % 4;
+        if (kind == 0) text[at] = static_cast<char>(random());
+        if (kind == 1) text[at] = static_cast<char>('0' + random() % 10);
+        if (kind == 2) text.erase(at, 1 + random() % 16);
+        if (kind == 3) text.insert(at, text.substr(random() % text.size(), 1 + random() % 32));
+    }
+    return text;
 }
 
 } // namespace relume::test
