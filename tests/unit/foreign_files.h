@@ -70,6 +70,87 @@ inline const char* kRoomDae = R"(<?xml version="1.0" encoding="utf-8"?>
 </COLLADA>
 )";
 
+/// A .fbx file (as text) in metres, Z up, with a floor of 2 x 3 m at a height of 5 m and a sun.
+inline const char* kFloorFbx = R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+ FBXHeaderVersion: 1003
+ FBXVersion: 7300
+ Creator: "Made by hand"
+}
+GlobalSettings:  {
+ Version: 1000
+ Properties70:  {
+  P: "UpAxis", "int", "Integer", "",2
+  P: "UpAxisSign", "int", "Integer", "",1
+  P: "FrontAxis", "int", "Integer", "",1
+  P: "FrontAxisSign", "int", "Integer", "",-1
+  P: "CoordAxis", "int", "Integer", "",0
+  P: "CoordAxisSign", "int", "Integer", "",1
+  P: "UnitScaleFactor", "double", "Number", "",100
+ }
+}
+Objects:  {
+ Geometry: 1000, "Geometry::Floor", "Mesh" {
+  Vertices: *12 {
+   a: 0,0,0,2,0,0,2,3,0,0,3,0
+  }
+  PolygonVertexIndex: *4 {
+   a: 0,1,2,-4
+  }
+  GeometryVersion: 124
+  LayerElementMaterial: 0 {
+   Version: 101
+   Name: ""
+   MappingInformationType: "AllSame"
+   ReferenceInformationType: "IndexToDirect"
+   Materials: *1 {
+    a: 0
+   }
+  }
+  Layer: 0 {
+   Version: 100
+   LayerElement:  {
+    Type: "LayerElementMaterial"
+    TypedIndex: 0
+   }
+  }
+ }
+ Model: 2000, "Model::Floor", "Mesh" {
+  Version: 232
+  Properties70:  {
+   P: "Lcl Translation", "Lcl Translation", "", "A",0,0,5
+  }
+ }
+ NodeAttribute: 3000, "NodeAttribute::Lamp", "Light" {
+  Properties70:  {
+   P: "LightType", "enum", "", "",1
+   P: "Color", "Color", "", "A",1,0.5,0.25
+   P: "Intensity", "Number", "", "A",200
+   P: "DecayType", "enum", "", "",0
+  }
+  TypeFlags: "Light"
+ }
+ Model: 4000, "Model::Lamp", "Light" {
+  Version: 232
+ }
+ Material: 5000, "Material::Paint", "" {
+  Version: 102
+  ShadingModel: "lambert"
+  Properties70:  {
+   P: "DiffuseColor", "Color", "", "A",0.25,0.5,0.75
+   P: "Opacity", "double", "Number", "",0.5
+  }
+ }
+}
+Connections:  {
+ C: "OO",2000,0
+ C: "OO",4000,0
+ C: "OO",1000,2000
+ C: "OO",3000,4000
+ C: "OO",5000,2000
+}
+)";
+
 /// A .3ds file of one triangle.
 inline std::string triangle3ds() {
     std::string faces, vertices;

@@ -5,6 +5,7 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "assets/base/worker_pool.h"
+#include "assets/foreign/foreign_scene.h"
 #include "assets/foreign/load_scene.h"
 #include "assets/gltf/gltf.h"
 #include "tests/unit/foreign_files.h"

@@ -133,9 +133,10 @@ TEST(ForeignScene, PicturesAreFoundWhateverTheirNamesLookLike) {
         EXPECT_TRUE(made.scene.warnings.empty()) << made.scene.warnings[0];
     }
     const Scene scene = convertForeign(texturedSquare(folder, "map_Kd brick wall.png\n")).scene;
-    for (size_t i = 0; i < 4; ++i) // in the file v points up, in a scene down
-        if (onlyPrimitive(scene).positions[i] == glm::vec3(0, 1, 0))
-            EXPECT_EQ(onlyPrimitive(scene).texCoord0[i], glm::vec2(0, 0.25f));
+    for (size_t i = 0; i < 4; ++i) {
+        if (onlyPrimitive(scene).positions[i] != glm::vec3(0, 1, 0)) continue;
+        EXPECT_EQ(onlyPrimitive(scene).texCoord0[i], glm::vec2(0, 0.25f)); // v points up in the file
+    }
 }
 
 TEST(ForeignScene, NoFileFartherAwayIsOpened) {
@@ -246,6 +247,29 @@ TEST(ForeignScene, LightsOfBlenderAreInWatts) {
     EXPECT_NEAR(lampBy("Blender 2.93.1 commit date:2021"), 2 / (4 * M_PI), 1e-6);
     EXPECT_NEAR(lampBy("Blender 2.79.0"), M_PI * 0.5, 1e-4);
     EXPECT_NEAR(lampBy("Maya 2020"), M_PI * 0.5, 1e-4);
+}
+
+TEST(ForeignScene, FbxHasUnitsAxesAndLights) {
+    const TemporaryFolder folder;
+    std::string text = test::kFloorFbx;
+    const Scene scene = convertForeign(writeFile(folder, "floor.fbx", text)).scene;
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "Floor");
+    expectNear(glm::vec3(scene.instances[0].transform * glm::vec4(2, 3, 0, 1)), {2, 5, -3});
+    EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(0.25f, 0.5f, 0.75f, 0.5f));
+    EXPECT_EQ(scene.materials[0].alphaMode, AlphaMode::Blend);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].type, LightType::Directional);
+    EXPECT_NEAR(scene.lights[0].intensity, 2 * M_PI, 1e-5); // 200 % of what makes white shine with 1
+    expectNear(scene.lights[0].color, {1, 0.5f, 0.25f});
+    expectNear(-glm::vec3(scene.lights[0].transform[2]), {0, 0, 1}); // -Y of the file
+
+    text.replace(text.find("Made by hand"), 12, "Blender (stable FBX IO) - 3.6.2 - 5.4.0");
+    text.replace(text.find("\"UnitScaleFactor\", \"double\", \"Number\", \"\",100"), 46,
+                 "\"UnitScaleFactor\", \"double\", \"Number\", \"\",1");
+    const Scene small = convertForeign(writeFile(folder, "small.fbx", text)).scene; // in centimetres
+    expectNear(glm::vec3(small.instances.at(0).transform * glm::vec4(2, 3, 0, 1)), {0.02f, 0.05f, -0.03f});
+    EXPECT_NEAR(small.lights.at(0).intensity, 2, 1e-5); // watts per square metre
 }
 
 TEST(ForeignScene, SmallKindsOfFiles) {
