@@ -121,7 +121,8 @@ private:
 
 // Prepares the scene, with lamps alone unless the scene's own light is wanted; lights of the file come later.
 PreparedScene prepare(const EditsBenchDesc& desc) {
-    PreparedScene prepared = prepareScene({.path = desc.scene, .choice = desc.choice, .size = desc.size});
+    PreparedScene prepared = prepareScene(
+        {.path = desc.scene, .choice = desc.choice, .size = desc.size, .furnishing = {.daylight = false}});
     if (!desc.onlyLamps) return prepared;
     for (Material& material : prepared.scene.materials)
         material.emission = glm::vec3(0.0f);

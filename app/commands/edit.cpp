@@ -106,8 +106,6 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    if (const std::string unsaved = unsavedPart(edits); !options.output.empty() && !unsaved.empty())
-        spdlog::warn("{}: {}", options.output, unsaved);
     Scene after = partsOfEdits(before);
     applyEdits(after, edits);
     if (!options.output.empty()) {

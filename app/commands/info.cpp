@@ -103,6 +103,8 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                        {"triangles", info.triangles},
                        {"maskedTriangles", info.maskedTriangles},
                        {"droppedTriangles", info.droppedTriangles},
+                       {"scenes", scene.sceneNames},
+                       {"variants", scene.variantNames},
                        {"meshes", scene.meshes.size()},
                        {"instances", scene.instances.size()},
                        {"materials", scene.materials.size()},
@@ -121,6 +123,13 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                        {"warnings", info.warnings}};
     // The names in the file need not be UTF-8.
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+std::string quotedList(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ", ") + inQuotes(name);
+    return text;
 }
 
 void line(const char* name, const std::string& value) {
@@ -174,6 +183,8 @@ void printLights(const Scene& scene) {
 void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
     line("scene", scene.path);
     line("triangles", fmt::format("{} ({} alpha-masked)", info.triangles, info.maskedTriangles));
+    if (scene.sceneNames.size() > 1) line("scenes", quotedList(scene.sceneNames));
+    if (!scene.variantNames.empty()) line("variants", quotedList(scene.variantNames));
     line("meshes", fmt::format("{} in {} instances", scene.meshes.size(), scene.instances.size()));
     line("materials", fmt::format("{}, {} textures", scene.materials.size(), scene.textures.size()));
     printLights(scene);

@@ -59,7 +59,8 @@ void Session::load(const Next& next) {
                 .time = time,
                 .sameFile = keep && path == prepare_.path && watch_.isKnown(time),
                 .choice = choice};
-    loader_.start(desc);
+    // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
+    loader_.start(desc, !keep);
 }
 
 bool Session::update() {
@@ -72,7 +73,9 @@ bool Session::update() {
 }
 
 bool Session::finishLoading() {
+    if (std::unique_ptr<LoadedScene> early = loader_.takeEarly()) early_ = std::move(early);
     if (!loader_.ready()) return false;
+    early_.reset();
     bool changed = false;
     const std::string path = loader_.path();
     // A file that cannot be read is not tried again until it is another one.

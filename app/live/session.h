@@ -38,6 +38,8 @@ public:
     /// changed.
     bool update();
     const LoadedScene* scene() const { return scene_.get(); } // nullptr: none yet
+    /// Returns the scene that is loading as far as it can be drawn already, nullptr: not yet, or not at all.
+    const LoadedScene* early() const { return early_.get(); }
     /// Returns the number of the scene's first bake: maps of earlier ones show another scene.
     uint64_t firstBake() const { return firstBake_; }
     bool sceneWasKept() const { return kept_; } // the newest scene came with `keep`
@@ -112,7 +114,7 @@ private:
     LiveBake& bake_;
     PrepareDesc prepare_; // of the present scene
     Document document_;
-    std::unique_ptr<LoadedScene> scene_;
+    std::unique_ptr<LoadedScene> scene_, early_;
     std::vector<std::unique_ptr<LoadedScene>> former_; // the bake thread may still read them
     SceneLoader loader_;
     Loading loading_;

@@ -27,8 +27,8 @@ struct BakeFiles {
 /// The patches that the lightmap has.
 struct PatchOptions {
     uint32_t size = 512; // lightmap edge [texels]
-    bool conservative = false, unwrap = false;
-    double density = 0; // of unwrap [texels per m], 0: what fits
+    bool conservative = false;
+    Furnishing furnishing;
 };
 
 /// Says how light is gathered, and when that is enough.

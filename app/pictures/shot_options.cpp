@@ -92,7 +92,8 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     addSizeOption(command, "--lightmap-size", o.bake);
     const std::vector<CLI::Option*> before = command.get_options();
     addSolverOptions(command, o.bake);
-    const std::vector<std::string> used = {"--unwrap", "--density", "--shaders"}; // also without a bake
+    const std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
+                                           "--shaders"}; // also without a bake
     command.get_option("--lightmap-size")->excludes(lightmap);
     for (CLI::Option* option : command.get_options()) {
         const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();

@@ -12,9 +12,9 @@ namespace relume {
 
 /// Says what of a file is read where it offers a choice.
 struct GltfChoice {
-    std::string scene;          // name or number of a scene; "": the file's default
-    std::string variant;        // of KHR_materials_variants; "": the file's own materials
-    std::optional<double> time; // of the first animation [s]; none: the rest pose
+    std::string scene = {};          // name or number of a scene; "": the file's default
+    std::string variant = {};        // of KHR_materials_variants; "": the file's own materials
+    std::optional<double> time = {}; // of the first animation [s]; none: the rest pose
 };
 
 /// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming the file, the

@@ -4,6 +4,8 @@
 #include "assets/base/file_write.h"
 #include "assets/base/uri.h"
 #include "assets/gltf/gltf_light_json.h"
+#include "assets/gltf/gltf_png.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
 
@@ -16,11 +18,6 @@
 
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
-
-// These functions are private to this file: tinygltf and others may bring the same ones.
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb_image_write.h>
 
 namespace relume {
 namespace {
@@ -235,6 +232,10 @@ Json GlbWriter::material(const Material& m) {
             use("KHR_materials_emissive_strength");
         }
     }
+    if (m.transmission > 0.0f) {
+        out["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
+        use("KHR_materials_transmission");
+    }
     if (m.emissionTexture.texture >= 0) out["emissiveTexture"] = textureInfo(m.emissionTexture, m.name);
     if (m.alphaMode == AlphaMode::Mask) {
         out["alphaMode"] = "MASK";
@@ -246,33 +247,11 @@ Json GlbWriter::material(const Material& m) {
     return out;
 }
 
-std::vector<uint8_t> encodePng(const Image& image) {
-    if (image.width == 0 || image.height == 0 || image.rgba.size() != size_t{4} * image.width * image.height)
-        throw Error("image '" + image.name + "' has no pixels: remove it or load its file");
-    bool opaque = true;
-    for (size_t i = 3; i < image.rgba.size(); i += 4)
-        opaque = opaque && image.rgba[i] == 255;
-    const int channels = opaque ? 3 : 4;
-    std::vector<uint8_t> pixels;
-    pixels.reserve(image.rgba.size());
-    for (size_t i = 0; i < image.rgba.size(); i += 4)
-        pixels.insert(pixels.end(), image.rgba.begin() + i, image.rgba.begin() + i + channels);
-    std::vector<uint8_t> png;
-    const auto append = [](void* context, void* data, int size) {
-        auto* out = static_cast<std::vector<uint8_t>*>(context);
-        out->insert(out->end(), static_cast<uint8_t*>(data), static_cast<uint8_t*>(data) + size);
-    };
-    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-    if (!stbi_write_png_to_func(append, &png, width, height, channels, pixels.data(), width * channels))
-        throw Error("image '" + image.name + "' cannot be written as PNG: out of memory");
-    return png;
-}
-
 void GlbWriter::addTextures() {
     for (size_t i = 0; i < scene_.images.size(); ++i) {
         const Image& image = scene_.images[i];
         const bool ready = i < pictures_.size() && !pictures_[i].empty();
-        pngs_.push_back(ready ? pictures_[i] : encodePng(image));
+        pngs_.push_back(ready ? pictures_[i] : gltf::encodePng(image));
         Json out; // its bufferView comes with the buffers
         if (!image.name.empty()) out["name"] = image.name;
         out["mimeType"] = pngs_.back().front() == kPngBegin ? "image/png" : "image/jpeg";
@@ -325,14 +304,13 @@ Json GlbWriter::addCamera(const Camera& camera) {
 
 Json GlbWriter::addLight(const Light& light) {
     Json node = nodeOf(light.name, light.transform);
-    if (gltf::isAreaLight(light.type)) {
-        node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
-        return node;
-    }
-    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
-    lights.push_back(gltf::punctualLightJson(light));
-    use("KHR_lights_punctual");
-    node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+    const bool area = gltf::isAreaLight(light.type);
+    if (area) node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
+    const char* extension = area ? gltf::kAreaLights : gltf::kPunctualLights;
+    Json& lights = json_["extensions"][extension]["lights"];
+    lights.push_back(area ? gltf::areaExtensionJson(light) : gltf::punctualLightJson(light));
+    use(extension);
+    node["extensions"][extension]["light"] = lights.size() - 1;
     return node;
 }
 
@@ -342,11 +320,16 @@ void GlbWriter::addNodes() {
         Json node = nodeOf(instance.name, instance.transform);
         if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
             node["mesh"] = meshIndices_[instance.mesh];
+        if (instance.hidden) {
+            node["extensions"][gltf::kVisibility]["visible"] = false;
+            use(gltf::kVisibility);
+        }
         nodes.push_back(std::move(node));
     }
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
+        if (!light.preview)
         nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
@@ -355,7 +338,7 @@ void GlbWriter::addNodes() {
         roots.push_back(i);
     Json root = Json::object();
     if (!nodes.empty()) root["nodes"] = std::move(roots);
-    if (scene_.sky.shines() || !skyFile_.empty())
+    if (!scene_.sky.preview && (scene_.sky.shines() || !skyFile_.empty()))
         root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
     json_["scenes"].push_back(std::move(root));
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);
