@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,5 +59,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     relume::holdStandardStreams();
+    if (const std::optional<int> status = relume::runChildTask(argc, argv)) return *status;
     return relume::finishOutput(run(argc, argv));
 }

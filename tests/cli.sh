@@ -63,7 +63,7 @@ expectWorldError() {
     grep -qF "$name" "$work/err" || fail "$command: stderr does not name $name"
 }
 
-verbs=(bake shot timelapse edit info unwrap scene devices mix compare bench samples)
+verbs=(bake shot timelapse edit info unwrap import scene devices mix compare bench samples)
 
 expectHelp
 cp "$work/out" "$work/help"
@@ -83,7 +83,7 @@ for display in "" ":nosuchdisplay"; do
 done
 expectUsageError nosuchverb
 expectUsageError --nosuchoption
-for verb in bake shot timelapse edit info unwrap mix compare; do
+for verb in bake shot timelapse edit info unwrap import mix compare; do
     expectUsageError "$verb" # the scene or the files are missing
     expectUsageError "$verb" --nosuchoption
 done
@@ -101,7 +101,7 @@ expectRefusal "error: --ppd: 'nan' is not allowed: give a number from 1 to 1000"
 expectRefusal "error: --error: 'nan' is not allowed: give a number from 0.0001 to 1" bench edits room.glb --error nan
 expectRefusal "error: --msaa: 'abc' is not allowed: choose 0, 2, 4 or 8" bench frames room.glb --msaa abc
 expectRefusal "error: --display: 'x' is not allowed: choose auto, shared or copied" bench frames room.glb --display x
-expectRefusal "error: 'bakee' is no verb and no scene (.glb or .gltf): did you mean 'bake'?" bakee room.glb
+expectRefusal "error: 'bakee' is no verb and no scene (.glb, .gltf, .obj, .fbx, ...): did you mean 'bake'?" bakee room.glb
 expectUsageError bake room.glb -o room.exr --picture room.jpg
 expectUsageError bake room.glb -o room.exr --tracer nosuchtracer
 expectUsageError bake room.glb -o room.exr --tracer voxel --voxels 31
@@ -151,6 +151,8 @@ expectStatus 0 samples 16
 expectUsageError bake room.glb -o room.exr --scene-out scene.gltf # written as binary glTF
 expectUsageError scene cornell_small -o scene.gltf
 expectUsageError unwrap room.glb -o scene.gltf
+expectUsageError import room.obj -o scene.gltf
+expectRefusal "error: --up: 'w' is not allowed: choose x, y or z" import room.obj -o out.glb --up w
 expectUsageError shot room.glb # no -o
 expectUsageError shot room.glb -o shot.jpg
 expectUsageError shot room.glb -o shot.png --size 640
@@ -188,6 +190,8 @@ expectWorldError nosuchfolder shot missing.glb -o nosuchfolder/shot.png
 expectWorldError nosuchfolder timelapse missing.glb -o nosuchfolder/frames
 expectWorldError missing.glb info missing.glb
 expectWorldError missing.glb unwrap missing.glb -o out.glb
+expectWorldError missing.obj import missing.obj -o out.glb
+expectWorldError missing.obj info missing.obj
 expectWorldError missing.glb bench trace missing.glb
 expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.glb bench edits missing.glb
@@ -278,6 +282,25 @@ expectOneFile --output SCENE timelapse framed.gltf -o frames --overwrite
 # A scene may be edited in place, and keeps its rights; devices, FIFOs and links stay what they are.
 chmod 600 s.glb
 expectStatus 0 edit s.glb --add point,name=P,position=0,1,0 -o s.glb
+
+# A scene that is no glTF file is opened as it is, by a child process, and saved as .glb.
+printf 'v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nf 4 3 2 1\n' >floor.obj
+expectStatus 0 import floor.obj -o floor.glb --scale 0.5
+grep -qx 'floor.glb: 1 meshes in 1 instances, 0 lights, 0 cameras' "$work/out" || fail "$command: wrong counts"
+expectStatus 0 info floor.glb
+grep -q '^area  *1.5 m^2$' "$work/out" || fail "$command: the area is not a quarter of 6 m^2"
+expectStatus 0 info floor.obj
+grep -q '^area  *6 m^2$' "$work/out" || fail "$command: the area is not 6 m^2"
+expectStatus 0 unwrap floor.obj -o floor_uv.glb
+expectStatus 0 edit floor.obj --add point,name=P,position=0,1,0 -o lit.glb
+expectStatus 0 info lit.glb
+grep -q "^point .*'P'" "$work/out" || fail "$command: the light is missing"
+expectWorldError "relume import floor.obj -o OUT.glb" edit floor.obj --add point,name=P,position=0,1,0 -o floor.obj
+expectRefusal "error: floor.obj: is no glTF file, so edits are saved into a new one: give -o OUT.glb, or make it with 'relume import floor.obj -o OUT.glb' first" edit floor.obj --add point,name=P,position=0,1,0
+expectOneFile --output IN import floor.obj -o floor.obj
+printf 'no scene' >odd.fbx
+expectWorldError odd.fbx import odd.fbx -o odd.glb
+[ ! -e odd.glb ] || fail "$command: something was written"
 [ "$(stat -c %a s.glb)" = 600 ] || fail "$command: rights are $(stat -c %a s.glb), not 600"
 [ s.glb -ef hard.exr ] || fail "$command: a hard link was cut"
 [ -L soft.exr ] || fail "$command: a link is gone"

@@ -7,8 +7,7 @@
 #include "app/text/stopwatch.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/foreign/load_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -206,10 +205,10 @@ private:
 
     // Writes the scene, for other programs to bake.
     void writeScene() const {
-        const Scene before = loadGltf(desc_.scene, desc_.choice);
+        const Scene before = loadScene(desc_.scene, desc_.choice);
         Scene after = edited_.scene();
         after.lights = moved(lightsOf(*std::max_element(desc_.lamps.begin(), desc_.lamps.end())));
-        saveEditedGltf(desc_.scene, before, after, desc_.sceneOutput);
+        saveEditedScene(desc_.scene, before, after, desc_.sceneOutput);
         spdlog::info("wrote {}", desc_.sceneOutput);
     }
 

@@ -8,7 +8,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
-#include "assets/gltf/gltf.h"
+#include "assets/foreign/load_scene.h"
 #include "bake/links/link_solver.h"
 #include "bake/trace/make_tracer.h"
 
@@ -91,7 +91,7 @@ void runBench(const BenchMethodsOptions& o) {
     checkFileWritable(o.html, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     const bool table = o.json != "-";
-    loadGltf(desc.scene, desc.choice); // a bad file leaves one line, its error
+    loadScene(desc.scene, desc.choice); // a bad file leaves one line, its error
     const vk::Device device({.select = o.device});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     // The log is quieter, because what a bake tells of itself is the same for each of them.

@@ -13,6 +13,7 @@ void addTimelapseCommand(CLI::App& app);
 void addEditCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addUnwrapCommand(CLI::App& app);
+void addImportCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);

@@ -5,6 +5,7 @@
 #include "app/viewer/shell/view_options.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "assets/foreign/import_child.h"
 
 #include <fmt/format.h>
 
@@ -33,8 +34,8 @@ bool isOption(const std::string& argument) {
 void requireVerb(const std::vector<std::string>& arguments, const CLI::App& app) {
     const auto first = std::find_if_not(arguments.begin(), arguments.end(), isOption);
     if (first == arguments.end() || verbNamed(app, *first)) return;
-    throw UsageError(fmt::format("{} is no verb and no scene (.glb or .gltf): {}", inQuotes(*first),
-                                 nearNamesHint(*first, verbsOf(app))));
+    throw UsageError(fmt::format("{} is no verb and no scene (.glb, .gltf, .obj, .fbx, ...): {}",
+                                 inQuotes(*first), nearNamesHint(*first, verbsOf(app))));
 }
 
 /// Returns the verb that was parsed last: `bench frames` is one below another.
@@ -68,6 +69,7 @@ void addCommands(CLI::App& app) {
     addEditCommand(app);
     addInfoCommand(app);
     addUnwrapCommand(app);
+    addImportCommand(app);
     addSceneCommand(app);
     addDevicesCommand(app);
     addMixCommand(app);
@@ -98,6 +100,10 @@ std::vector<std::string> parserArguments(const std::vector<std::string>& typed, 
         if (ready.back() != argument) ready.emplace_back();
     }
     return ready;
+}
+
+std::optional<int> runChildTask(int count, const char* const* arguments) {
+    return runImportChild(count, arguments);
 }
 
 std::string outOfMemoryMessage(const CLI::App& app) {

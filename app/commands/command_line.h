@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ std::vector<std::string> parserArguments(const std::vector<std::string>& typed, 
 /// Opens the viewer with its start page, which is what `relume` alone does where there is a display. Returns
 /// false where none is named, and, with a warning, where no window can be made.
 bool opensStartPage();
+/// Does what this program started itself for as a child process, where that is so, and returns the exit
+/// status then. It is for no user, and comes before anything else.
+std::optional<int> runChildTask(int count, const char* const* arguments);
 
 /// Tells what helps when memory runs out, by what the verb that was parsed makes.
 std::string outOfMemoryMessage(const CLI::App& app);

@@ -7,8 +7,8 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
-#include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/foreign/foreign_files.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
 #include "bake/links/link_solver.h"
@@ -18,6 +18,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+
+#include <fmt/format.h>
 
 namespace relume {
 namespace {
@@ -79,7 +81,13 @@ void checkFiles(const EditOptions& options, const std::vector<TypedEdit>& typed)
 }
 
 void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
-    if (options.output.empty() && options.bake.files.output.empty())
+    const bool nothing = options.output.empty() && options.bake.files.output.empty();
+    if (nothing && isForeign(options.scene))
+        throw UsageError(
+            fmt::format("{}: is no glTF file, so edits are saved into a new one: give -o OUT.glb, or "
+                        "make it with 'relume import {} -o OUT.glb' first",
+                        options.scene, options.scene));
+    if (nothing)
         throw UsageError(
             "edit: nothing to do: give -o for the edited scene, --bake for its lightmap, or both");
     const bool bakes = !options.bake.files.output.empty();
@@ -87,12 +95,13 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     if (typed.empty())
         throw UsageError("edit: no edit is given: add --set, --move, --add, --delete or another one");
     checkFiles(options, typed);
+    if (!options.output.empty()) requireSavable(options.scene, options.output);
     std::error_code code; // the reader tells of a missing scene
     const auto bytes = std::filesystem::file_size(options.scene, code);
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
     if (bakes) checkWritable(bake.files.output);
     if (!bake.machine.shaders.empty()) setShaderFolder(bake.machine.shaders);
-    const Scene before = loadGltf(options.scene, options.bake.files.choice);
+    const Scene before = loadScene(options.scene, options.bake.files.choice);
     for (const std::string& warning : before.warnings)
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
@@ -100,7 +109,7 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     Scene after = partsOfEdits(before);
     applyEdits(after, edits);
     if (!options.output.empty()) {
-        saveEditedGltf(options.scene, before, after, options.output);
+        saveEditedScene(options.scene, before, after, options.output);
         spdlog::info("wrote {}", options.output);
     }
     for (const std::string& line : done)
@@ -115,7 +124,7 @@ void addEditCommand(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("edit", "Edit lights, materials, the sky and where objects are; all else in the "
                                    "file stays as it is");
-    command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
+    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
         ->type_name("SCENE");
     addChoiceOptions(*command, options->bake.files.choice);

@@ -4,7 +4,7 @@
 #include "assets/model/light_names.h"
 #include "app/text/option_checks.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf.h"
+#include "assets/foreign/load_scene.h"
 
 #include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -213,7 +213,7 @@ void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
 }
 
 void runInfo(const InfoOptions& options) {
-    const Scene scene = loadGltf(options.scene, options.choice);
+    const Scene scene = loadScene(options.scene, options.choice);
     const SceneInfo info = inspectScene(scene, options.size);
     if (options.json)
         printJson(scene, info, options.size);
@@ -226,7 +226,7 @@ void runInfo(const InfoOptions& options) {
 void addInfoCommand(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand("info", "Tell what is in a scene and how its lightmap UVs are");
-    command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
+    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
         ->type_name("SCENE");
     addChoiceOptions(*command, options->choice);

@@ -8,6 +8,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/gltf/gltf.h"
 
 #include <nlohmann/json.hpp>
@@ -33,7 +34,7 @@ void runUnwrap(const UnwrapOptions& options) {
         throw UsageError(options.output + ": unwrap writes GLB: give a name that ends in .glb");
     CommandFiles().readsScene("SCENE", options.scene).writes("--output", options.output).check();
     checkFileWritable(options.output, 0);
-    Scene scene = loadGltf(options.scene, options.choice);
+    Scene scene = loadScene(options.scene, options.choice);
     for (const std::string& warning : scene.warnings)
         spdlog::warn("{}", warning);
     requireArea(scene);
@@ -77,7 +78,7 @@ void addUnwrapCommand(CLI::App& app) {
     const auto options = std::make_shared<UnwrapOptions>();
     CLI::App* command =
         app.add_subcommand("unwrap", "Make lightmap UVs (TEXCOORD_1) for meshes that have none");
-    command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
+    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
         ->type_name("SCENE");
     addChoiceOptions(*command, options->choice);

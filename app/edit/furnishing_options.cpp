@@ -7,11 +7,13 @@
 namespace relume {
 
 void addFurnishingOptions(CLI::App& command, Furnishing& furnishing) {
-    command.add_flag("--unwrap,--no-unwrap{false}", furnishing.unwrap,
-                     "Make lightmap UVs for meshes that have no usable ones (default), or let these receive no "
-                     "light");
-    command.add_option("--density", furnishing.density,
-                       "Texels per metre of UVs that are made (default: what fits the lightmap)")
+    command.add_flag(
+        "--unwrap,--no-unwrap{false}", furnishing.unwrap,
+        "Make lightmap UVs for meshes that have no usable ones (default), or let these receive no "
+        "light");
+    command
+        .add_option("--density", furnishing.density,
+                    "Texels per metre of UVs that are made (default: what fits the lightmap)")
         ->check(numberAbove(0, 1e6));
     command.add_flag("--daylight,--no-daylight{false}", furnishing.daylight,
                      "Light a level in which nothing shines by a preview sun and sky (default), or by a lamp "

@@ -4,6 +4,7 @@
 #include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/base/watch.h"
 #include "assets/survey/preview_light.h"
 
@@ -25,10 +26,10 @@ uint32_t sizeOf(const Scene& scene, const PrepareDesc& desc) {
     if (desc.leastDensity <= 0) return desc.size;
     constexpr double kCovered = 0.85; // share of an atlas that charts cover
     const double area = surfaceArea(scene);
-    const uint32_t size =
-        std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMostFitted));
-    spdlog::info("{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m",
-                 desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)));
+    const uint32_t size = std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMostFitted));
+    spdlog::info(
+        "{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m",
+        desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)));
     return size;
 }
 
@@ -70,7 +71,7 @@ void furnishLight(PreparedScene& prepared, const Furnishing& furnishing) {
 PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead) {
     PreparedScene result;
     const auto start = Clock::now();
-    result.scene = loadGltf(desc.path, desc.choice);
+    result.scene = loadScene(desc.path, desc.choice);
     result.loadSeconds = secondsSince(start);
     warn(result.scene.warnings);
     requireArea(result.scene);

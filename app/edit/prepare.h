@@ -25,7 +25,7 @@ struct PreparedScene {
     Scene scene;
     LightmapAtlas atlas;
     WorldMesh mesh;
-    uint32_t size = 0;       // lightmap edge that the atlas is made for [texels]
+    uint32_t size = 0;     // lightmap edge that the atlas is made for [texels]
     std::string madeUvs;   // says which lightmap UVs were made, "" for none
     std::string madeLight; // says what preview light was added, "" for none
     double loadSeconds = 0, atlasSeconds = 0;
@@ -35,8 +35,8 @@ struct PrepareDesc {
     std::string path;
     GltfChoice choice = {};
     uint32_t size = 512;     // lightmap edge [texels]
-    double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it, as
-                             // far as kMostFitted goes; 0: the edge is `size`
+    double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it,
+                             // as far as kMostFitted goes; 0: the edge is `size`
     Furnishing furnishing = {};
     bool edited = false; // edits follow, which may add light: furnishLight() is called after them
 };

@@ -83,7 +83,7 @@ void SceneFile::save(const std::string& path, const SceneEdits& edits) {
     dropPreview(before);
     saving_ = std::async(std::launch::async, [before = std::move(before), after = std::move(after), path] {
         Result result;
-        result.nodes = saveEditedGltf(before.path, before, after, path);
+        result.nodes = saveEditedScene(before.path, before, after, path);
         std::error_code code;
         const auto time = std::filesystem::last_write_time(path, code);
         result.saved.path = path;

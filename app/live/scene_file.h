@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "assets/gltf/gltf_edit.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/model/scene_edits.h"
 
 namespace relume {

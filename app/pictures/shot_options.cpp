@@ -83,7 +83,7 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 }
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {
-    command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("scene", o.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")->required();
     addChoiceOptions(command, o.bake.files.choice);
     command.add_option("-o,--output", o.bake.files.output, "Picture to write, .png")->required();
     addPictureOptions(command, o);

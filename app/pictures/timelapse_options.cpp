@@ -49,7 +49,8 @@ void checkOutput(const std::string& path) {
 } // namespace
 
 void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
-    command.add_option("scene", o.shot.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    command.add_option("scene", o.shot.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+        ->required();
     addChoiceOptions(command, o.shot.bake.files.choice);
     command
         .add_option(

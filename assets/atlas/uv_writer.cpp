@@ -80,8 +80,7 @@ UsedSets usedSets(const Scene& scene, const Primitive& primitive) {
     if (primitive.material < 0) return used;
     const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
     for (TextureRef Material::*use : kTextureUses)
-        if ((material.*use).texture >= 0)
-            used.set[primitive.uvsMoved ? 0 : (material.*use).texCoord] = true;
+        if ((material.*use).texture >= 0) used.set[primitive.uvsMoved ? 0 : (material.*use).texCoord] = true;
     return used;
 }
 

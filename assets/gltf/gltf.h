@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "assets/model/scene.h"
 
@@ -25,6 +28,11 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice = {});
 /// without a file is written beside the .glb as NAME_sky.exr. The file is written by a temporary name and
 /// then renamed. Loading the result gives the same scene. Throws Error.
 void saveGlb(const Scene& scene, const std::string& path);
+
+/// Returns the bytes that saveGlb() writes for a scene whose sky has no picture. `pictures`, where it is not
+/// empty, has for each image of the scene its file (PNG or JPEG), which is taken as it is, or nothing: such
+/// an image is encoded as PNG. Throws Error.
+std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures = {});
 
 /// Throws the Error of saveGlb() where the scene is such that it is sure to fail. Changes nothing.
 void checkGlb(const Scene& scene, const std::string& path);

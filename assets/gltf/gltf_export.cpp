@@ -33,6 +33,7 @@ constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kNearest = 9728, kLinear = 9729, kLinearMipmapLinear = 9987;
 constexpr uint32_t kGlbMagic = 0x46546C67, kChunkJson = 0x4E4F534A, kChunkBin = 0x004E4942;
+constexpr uint8_t kPngBegin = 0x89;
 // 0xffff is the primitive restart value and must not appear as an index.
 constexpr size_t kMaxShortIndexedVertices = 65535;
 
@@ -48,8 +49,10 @@ enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIn
 
 class GlbWriter {
 public:
-    /// Takes as `skyFile` the path of the sky's picture from the folder of the file to be written.
-    GlbWriter(const Scene& scene, std::string skyFile) : scene_(scene), skyFile_(std::move(skyFile)) {
+    /// Takes as `skyFile` the path of the sky's picture from the folder of the file to be written, and
+    /// `pictures` as glbBytes() does.
+    GlbWriter(const Scene& scene, std::string skyFile, std::span<const std::vector<uint8_t>> pictures = {})
+        : scene_(scene), skyFile_(std::move(skyFile)), pictures_(pictures) {
         const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
             streams_[i].stride = strides[i];
@@ -77,11 +80,12 @@ private:
 
     const Scene& scene_;
     std::string skyFile_;
+    std::span<const std::vector<uint8_t>> pictures_;
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
-    std::vector<std::vector<uint8_t>> pngs_;
-    std::vector<int> moved_;       // materials that have such a copy behind all materials
-    std::vector<int> meshIndices_; // of the file by Scene::meshes, -1 for one without triangles
+    std::vector<std::vector<uint8_t>> pngs_; // or JPEG, as it came
+    std::vector<int> moved_;                 // materials that have such a copy behind all materials
+    std::vector<int> meshIndices_;           // of the file by Scene::meshes, -1 for one without triangles
     std::map<std::string, bool> extensions_;
 };
 
@@ -254,11 +258,13 @@ Json GlbWriter::material(const Material& m) {
 }
 
 void GlbWriter::addTextures() {
-    for (const Image& image : scene_.images) {
-        pngs_.push_back(gltf::encodePng(image));
+    for (size_t i = 0; i < scene_.images.size(); ++i) {
+        const Image& image = scene_.images[i];
+        const bool ready = i < pictures_.size() && !pictures_[i].empty();
+        pngs_.push_back(ready ? pictures_[i] : gltf::encodePng(image));
         Json out; // its bufferView comes with the buffers
         if (!image.name.empty()) out["name"] = image.name;
-        out["mimeType"] = "image/png";
+        out["mimeType"] = pngs_.back().front() == kPngBegin ? "image/png" : "image/jpeg";
         json_["images"].push_back(std::move(out));
     }
     Json samplers = Json::array();
@@ -334,8 +340,7 @@ void GlbWriter::addNodes() {
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
-        if (!light.preview)
-        nodes.push_back(addLight(light));
+        if (!light.preview) nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
     Json roots = Json::array();
@@ -477,6 +482,10 @@ void checkGlb(const Scene& scene, const std::string& path) {
     const std::string skyFile = skyPathFrom(scene.sky, path);
     if (skyIsHomeless(scene.sky))
         checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
+}
+
+std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures) {
+    return GlbWriter(scene, "", pictures).write();
 }
 
 void saveGlb(const Scene& scene, const std::string& path) {

@@ -13,9 +13,9 @@ struct LevelHit {
     bool front = false;                                      // of the triangle, else its back
 };
 
-/// The triangles of a level, for some thousand rays that look around in it. Triangles with an alpha mask count
-/// as whole. It is made in a fraction of the time that a bake's scene takes, and rays may be traced from any
-/// thread.
+/// The triangles of a level, for some thousand rays that look around in it. Triangles with an alpha mask
+/// count as whole. It is made in a fraction of the time that a bake's scene takes, and rays may be traced
+/// from any thread.
 class LevelRays {
 public:
     /// Copies what it needs of the mesh. Throws Error where there is no memory for it.

@@ -21,7 +21,8 @@ bool isDark(const Scene& scene);
 /// lamp at the point of greatest clearance, which is as bright as a living room asks for. Throws Error.
 PreviewLight previewLight(const WorldMesh& mesh);
 
-/// Adds the preview light to a scene that is dark. Returns what was added, in words ("a preview sun and sky"),
+/// Adds the preview light to a scene that is dark. Returns what was added, in words ("a preview sun and
+/// sky"),
 /// "" where the scene has light of its own. Throws Error.
 std::string addPreviewLight(Scene& scene, const WorldMesh& mesh);
 

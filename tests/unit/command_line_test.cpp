@@ -68,7 +68,7 @@ TEST_F(CommandLine, AFlagTakesNoValue) {
 
 TEST_F(CommandLine, AnUnknownVerbIsNamed) {
     EXPECT_EQ(refusalOf({"bakee", "r.glb"}),
-              "'bakee' is no verb and no scene (.glb or .gltf): did you mean 'bake'?");
+              "'bakee' is no verb and no scene (.glb, .gltf, .obj, .fbx, ...): did you mean 'bake'?");
     EXPECT_NE(refusalOf({"-q", "nosuchverb"}).find("there is 'view', 'bake'"), std::string::npos);
     EXPECT_EQ(refusalOf({"--version"}), "accepted");
     EXPECT_EQ(refusalOf({"missing.glb"}), "accepted");

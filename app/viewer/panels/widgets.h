@@ -17,7 +17,8 @@ constexpr float kPlaceStep = 0.001f, kAngleStep = 0.5f;
 
 /// Shows a text when the last control is pointed at.
 void tip(const char* text);
-/// Tells ItemLog, and the order in which Tab goes, about the last control. `framed` says that its label stands beside it.
+/// Tells ItemLog, and the order in which Tab goes, about the last control. `framed` says that its label
+/// stands beside it.
 void mark(const char* label, bool framed);
 
 // These are ImGui's controls, which are also told to ItemLog; arguments and results are ImGui's.

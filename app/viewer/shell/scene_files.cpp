@@ -2,6 +2,7 @@
 
 #include "app/offline/command_files.h"
 #include "assets/base/warnings.h"
+#include "assets/foreign/foreign_files.h"
 
 #include <filesystem>
 #include <system_error>
@@ -20,6 +21,12 @@ std::string absolutePath(const std::string& path) {
     std::error_code code;
     const fs::path whole = fs::absolute(path, code);
     return code ? path : whole.lexically_normal().string();
+}
+
+std::vector<std::string> sceneEndings() {
+    std::vector<std::string> endings = {".glb", ".gltf"};
+    endings.insert(endings.end(), foreignEndings().begin(), foreignEndings().end());
+    return endings;
 }
 
 std::string fileName(const std::string& path) {
@@ -49,21 +56,22 @@ void SceneFiles::perform(Action action) {
     case Action::Open:
         return desc_.dialog.open({.title = "Open scene",
                                   .path = folder(),
-                                  .endings = {".glb", ".gltf"},
+                                  .endings = sceneEndings(),
                                   .recent = desc_.preferences.recent,
                                   .done = [this](const std::string& chosen) { open(chosen); }});
     default:
         break;
     }
     if (path().empty()) return desc_.feedback.note("there is no scene to write anything of", true);
-    if (action == Action::Save) return save("");
+    if (action == Action::Save && !isForeign(path())) return save("");
+    if (action == Action::Save) return askToSaveAs(); // a file that was converted is not written
     if (action == Action::SaveAs) return askToSaveAs();
     askToExport();
 }
 
 void SceneFiles::askToSaveAs() {
     const fs::path scene(path());
-    const std::string ending = scene.extension().string();
+    const std::string ending = isForeign(path()) ? ".glb" : scene.extension().string();
     std::string name = (scene.parent_path() / scene.stem()).string();
     if (!name.ends_with("_edited")) name += "_edited";
     desc_.dialog.open({.title = "Save scene",
@@ -137,6 +145,10 @@ void SceneFiles::leave(const Departure::Goal& goal) {
     const std::string text = fmt::format("{} has edits that are not saved.", fileName(desc_.session.path()));
     const std::string what = goal.choice ? "read anew" : goal.scene ? "open" : "quit";
     const auto saveFirst = [this] {
+        if (isForeign(path())) { // its new name is asked for first
+            go(departure_.answer(Answer::Cancel));
+            return askToSaveAs();
+        }
         save("");
         go(departure_.answer(Answer::Save));
     };

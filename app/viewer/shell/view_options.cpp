@@ -50,7 +50,8 @@ DisplayMode displayModeOf(const std::string& display) {
 }
 
 void addViewOptions(CLI::App& command, ViewOptions& o) {
-    command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb (default: none yet)");
+    command.add_option("scene", o.bake.files.scene,
+                       "Scene: .glb, .gltf, .obj, .fbx, .dae, ... (default: none yet)");
     addChoiceOptions(command, o.bake.files.choice);
     addSizeOption(command, "--size", o.bake);
     command.get_option("--size")->description(

@@ -1,0 +1,132 @@
+#include "assets/foreign/foreign_read.h"
+
+#include "assets/base/error.h"
+#include "assets/base/warnings.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/ProgressHandler.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <fmt/format.h>
+
+namespace relume::foreign {
+namespace {
+
+/// Opens the file itself, and of all others those that NearFiles finds; for reading alone.
+class NearSystem final : public Assimp::DefaultIOSystem {
+public:
+    NearSystem(std::string model, NearFiles& near) : model_(std::move(model)), near_(near) {}
+
+    bool Exists(const char* file) const override { return !pathOf(file).empty(); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        const std::string path = pathOf(file);
+        if (path.empty() || std::string(mode).find_first_of("wa+") != std::string::npos) return nullptr;
+        return DefaultIOSystem::Open(path.c_str(), mode);
+    }
+
+private:
+    std::string pathOf(const std::string& file) const { return file == model_ ? file : near_.find(file); }
+
+    std::string model_;
+    NearFiles& near_;
+};
+
+class Progress final : public Assimp::ProgressHandler {
+public:
+    explicit Progress(ForeignProgress progress) : progress_(std::move(progress)) {}
+    bool Update(float done) override {
+        if (progress_) progress_(done);
+        return true;
+    }
+
+private:
+    ForeignProgress progress_;
+};
+
+/// What a reader of libassimp may get wrong at a damaged file, before other parts of it rely on that.
+std::string damageOf(const aiScene& scene) {
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        const aiMesh* mesh = scene.mMeshes[i];
+        if (!mesh || (mesh->mNumFaces > 0 && !mesh->mFaces)) return "a mesh is missing";
+        for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
+            const aiFace& face = mesh->mFaces[f];
+            if (face.mNumIndices > 0 && !face.mIndices) return "a face has no corners";
+            for (unsigned k = 0; k < face.mNumIndices; ++k)
+                if (face.mIndices[k] >= mesh->mNumVertices) return "a face names a vertex that is not there";
+        }
+    }
+    std::vector<const aiNode*> open = {scene.mRootNode};
+    while (!open.empty()) {
+        const aiNode* node = open.back();
+        open.pop_back();
+        if (!node) return "a node is missing";
+        for (unsigned i = 0; i < node->mNumMeshes; ++i)
+            if (node->mMeshes[i] >= scene.mNumMeshes) return "a node names a mesh that is not there";
+        open.insert(open.end(), node->mChildren, node->mChildren + node->mNumChildren);
+    }
+    return "";
+}
+
+bool hasPoints(const aiScene& scene) {
+    return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* mesh) {
+        return mesh->mPrimitiveTypes & (aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    });
+}
+
+std::string oneLine(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+} // namespace
+
+Reader::Reader(NearFiles& near, const ForeignProgress& progress) : near_(near) {
+    importer_.SetProgressHandler(new Progress(progress)); // which the importer deletes
+    configure();
+}
+
+void Reader::configure() {
+    importer_.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
+                                                             aiComponent_TANGENTS_AND_BITANGENTS);
+    // Files that hold but bones would get a mesh that shows them.
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+#ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_AXIS_DIRECTION
+    // Newer releases of libassimp would turn .fbx files themselves, as older ones do not: see toMetres().
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_FBX_IGNORE_UP_AXIS_DIRECTION, true);
+#endif
+}
+
+// Tells why libassimp gave up. Its own words may be several lines.
+void Reader::fail(const std::string& path) const {
+    if (const std::exception_ptr cause = importer_.GetException()) {
+        try {
+            std::rethrow_exception(cause);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception&) { // its text is the one below
+        }
+    }
+    throw Error(fmt::format("{}: cannot be read ({}): check the file, or export it as glTF", path,
+                            inQuotes(oneLine(importer_.GetErrorString()))));
+}
+
+const aiScene& Reader::read(const std::string& path) {
+    importer_.SetIOHandler(new NearSystem(path, near_)); // which the importer deletes
+    const aiScene* scene = importer_.ReadFile(path, 0);
+    if (!scene) fail(path);
+    if (const std::string damage = damageOf(*scene); !damage.empty())
+        throw Error(fmt::format("{}: is damaged ({}): export it again", path, damage));
+    skippedPoints_ = hasPoints(*scene);
+    // No normals are made here: libassimp smooths over points that are merely close to each other.
+    scene = importer_.ApplyPostProcessing(aiProcess_RemoveComponent | aiProcess_Triangulate |
+                                          aiProcess_GenUVCoords | aiProcess_TransformUVCoords);
+    if (!scene) fail(path);
+    return *scene;
+}
+
+} // namespace relume::foreign

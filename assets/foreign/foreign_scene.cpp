@@ -1,0 +1,100 @@
+#include "assets/foreign/foreign_scene.h"
+
+#include "assets/base/error.h"
+#include "assets/base/file_read.h"
+#include "assets/base/uri.h"
+#include "assets/foreign/foreign_build.h"
+#include "assets/foreign/foreign_files.h"
+#include "assets/foreign/foreign_read.h"
+
+#include <assimp/commonMetaData.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace relume {
+
+namespace foreign {
+
+namespace {
+
+// Blender's lights are in watts since this version.
+constexpr double kFirstInWatts = 2.8;
+
+/// Returns the version of Blender that a .blend file begins with, "BLENDER-v279", or 0.
+double blendVersion(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string head(12, '\0');
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    return stream && head.starts_with("BLENDER") ? std::atoi(head.c_str() + 9) / 100.0 : 0.0;
+}
+
+/// Tells whether the lights of the file are in watts, because Blender wrote it.
+bool isInWatts(const Build& build) {
+    if (build.ending == ".blend") return blendVersion(build.path) >= kFirstInWatts;
+    aiString generator;
+    const aiMetadata* data = build.source->mMetaData;
+    if (!data || !data->Get(AI_METADATA_SOURCE_GENERATOR, generator)) return false;
+    const std::string text(generator.data, generator.length);
+    const size_t name = text.find("Blender");
+    const size_t digit =
+        name == std::string::npos ? std::string::npos : text.find_first_of("0123456789", name);
+    return digit != std::string::npos && std::strtod(text.c_str() + digit, nullptr) >= kFirstInWatts;
+}
+
+void warnUnsupported(Build& build) {
+    if (build.source->mNumAnimations > 0)
+        build.warnings.add("animations", "are not supported, the scene stands as stored");
+    for (unsigned i = 0; i < build.source->mNumMeshes; ++i)
+        if (build.source->mMeshes[i]->mNumBones > 0) {
+            build.warnings.add("skins", "are not supported, the meshes stand as stored");
+            break;
+        }
+}
+
+} // namespace
+
+std::string nameOf(const aiString& name) {
+    const std::string text(name.data, std::min<size_t>(name.length, MAXLEN - 1));
+    if (isUtf8(text)) return text;
+    std::string utf8;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x80) {
+            utf8 += c;
+        } else {
+            utf8 += static_cast<char>(0xc0 | byte >> 6);
+            utf8 += static_cast<char>(0x80 | (byte & 0x3f));
+        }
+    }
+    return utf8;
+}
+
+} // namespace foreign
+
+ForeignScene convertForeign(const std::string& path, const ForeignChoice& choice,
+                            const ForeignProgress& progress) {
+    RegularFile(path, "name a file with a scene"); // it is there and can be read
+    foreign::Build build(path);
+    build.ending = lowerEnding(path);
+    build.choice = choice;
+    foreign::Reader reader(build.near, progress);
+    build.source = &reader.read(path);
+    build.inWatts = foreign::isInWatts(build);
+    build.made.scene.path = path;
+    foreign::warnUnsupported(build);
+    if (reader.skippedPoints()) build.warnings.add("points and lines", "have no area, left out");
+    foreign::buildMaterials(build);
+    foreign::buildNodes(build);
+    if (build.made.scene.instances.empty())
+        throw Error(
+            fmt::format("{}: has no mesh with triangles in its scene: export it with its geometry", path));
+    build.made.scene.warnings = build.warnings.lines(path);
+    return std::move(build.made);
+}
+
+} // namespace relume
