@@ -17,7 +17,7 @@ struct CornerUvs {
 CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* places, double cells,
                     size_t triangles);
 
-/// Returns the mesh with the UVs as TEXCOORD_1; a vertex in several charts becomes several.
+/// Returns the mesh with the UVs as TEXCOORD_1; a vertex that has several UVs becomes several.
 Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs);
 
 /// Frees TEXCOORD_1 of meshes whose textures use it, by moving it to TEXCOORD_0 in copies of the materials.
