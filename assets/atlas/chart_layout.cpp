@@ -21,6 +21,7 @@ constexpr double kReach = 0.5; // [texels], how far bilinear filters reach beyon
 constexpr double kThinnest =
     0.125;                      // [texels]; below it float UVs of a large atlas could not tell corners apart
 constexpr double kNeedle = 8.0; // [texels]; a chart no wider may be shortened to the atlas' length
+constexpr double kShortened = 1.15;   // times the atlas' length: any chart up to it may be shortened to that
 constexpr uint32_t kMostCells = 2048; // to a side: packing time grows with the fourth power of it
 constexpr uint32_t kSmall = 3;        // [texels]; charts of no longer box are turned by a quarter at most
 constexpr double kFullBox = 0.97;     // share of a box; above it a half turn changes nothing that matters
@@ -35,6 +36,10 @@ constexpr int kGuesses = 3;
 // Work is counted in charts of all trials together; its bounds keep the search within some 0.5 s on 2 cores.
 constexpr size_t kSearchWork = 60000;
 constexpr int kFewTrials = 3, kManyTrials = 8;
+
+// So many charts of a trial are looked for a place for again, from the bottom on: each look costs some 0.1
+// ms.
+constexpr uint32_t kSecondLooks = 1000;
 
 // Walls of one length may fit three to a row at 0.99 of a density and two at the whole: texels that are 4 %
 // wider than high change the stretch by 0.0004, and may cover 3 % more.
@@ -70,7 +75,7 @@ std::optional<ChartPlace> fit(const LayoutChart& chart, const Trial& trial, bool
     ChartPlace place;
     for (int c = 0; c < 2; ++c) {
         const double extent = std::max(chart.chart->extent[c], 1e-300);
-        if (!(std::round(texels[c]) <= trial.size) && !needle) return std::nullopt;
+        if (!(texels[c] <= kShortened * trial.size) && !needle) return std::nullopt;
         const double whole = std::clamp(std::round(texels[c]), 1.0, double(trial.size));
         const double side = texels[c] < 1.0 ? std::max(texels[c], kThinnest) : whole;
         place.box[c] = static_cast<uint32_t>(whole);
@@ -121,6 +126,7 @@ private:
         glm::uvec2 place;
         uint32_t turns = 0, top = 0;
     };
+    bool packFrom(size_t chart, bool bottom);
     void add(size_t chart, const Fitted& fitted, const MaskShape& shape, glm::uvec2 place, uint32_t turns);
     uint32_t& lowest(const MaskShape& shape, uint32_t turns, bool full);
 
@@ -129,6 +135,7 @@ private:
     MaskAtlas atlas_; // with a rim of one texel, into which gutters may reach
     ChartLayout layout_;
     uint32_t rows_ = 0;
+    uint32_t secondLooks_ = 0;
     std::map<std::array<uint32_t, 3>, uint32_t> lowest_; // by size, turns
 };
 
@@ -170,6 +177,14 @@ bool Packer::take(size_t chart, const ChartPlace& place) {
 }
 
 bool Packer::pack(size_t chart) {
+    if (packFrom(chart, false)) return true;
+    // Charts of its size found nothing lower, but this one may be a little smaller.
+    if (secondLooks_ == kSecondLooks) return false;
+    ++secondLooks_;
+    return packFrom(chart, true);
+}
+
+bool Packer::packFrom(size_t chart, bool bottom) {
     std::array<std::optional<Fitted>, 2> fitted;
     std::optional<Found> found;
     std::optional<MaskShape> best;
@@ -187,6 +202,7 @@ bool Packer::pack(size_t chart) {
         if (found && found->top <= shape.height) continue;
         const uint32_t last = found ? found->top - shape.height - 1 : atlas_.height() - shape.height;
         uint32_t& from = lowest(shape, turns, own->full);
+        if (bottom) from = 0;
         if (last < from) continue;
         const std::optional<glm::uvec2> place = atlas_.lowestPlace(shape, from, last);
         from = place ? place->y : last + 1;

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "assets/atlas/unwrap.h"
+#include "assets/atlas/unwrap_memory.h"
+#include "assets/model/scene.h"
 
 namespace relume {
 

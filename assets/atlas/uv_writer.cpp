@@ -3,6 +3,7 @@
 #include "assets/base/numbering.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace relume {
 
@@ -11,24 +12,37 @@ namespace {
 constexpr TextureRef Material::*kTextureUses[] = {&Material::baseColorTexture, &Material::emissionTexture,
                                                   &Material::metallicRoughnessTexture};
 
+/// A vertex with its place in the atlas: where a tube is cut open, it has two in one chart.
+struct PlacedVertex {
+    uint32_t index, chart;
+    glm::vec2 uv;
+    bool operator==(const PlacedVertex&) const = default;
+};
+
+uint64_t hashOf(const PlacedVertex& vertex) {
+    const uint64_t place =
+        (uint64_t{std::bit_cast<uint32_t>(vertex.uv.x)} << 32) | std::bit_cast<uint32_t>(vertex.uv.y);
+    return mixBits(mixBits((uint64_t{vertex.index} << 32) | vertex.chart) ^ place);
+}
+
 template<typename T>
-void pickVertices(std::vector<T>& values, const Numbering<uint64_t>& vertices) {
+void pickVertices(std::vector<T>& values, const Numbering<PlacedVertex>& vertices) {
     if (values.empty()) return;
     std::vector<T> out(vertices.size());
     for (uint32_t i = 0; i < out.size(); ++i)
-        out[i] = values[vertices.key(i) >> 32];
+        out[i] = values[vertices.key(i).index];
     values = std::move(out);
 }
 
 /// Writes the UVs of the triangles from `first` on.
 void applyUvs(const CornerUvs& uvs, size_t first, Primitive& primitive) {
-    Numbering<uint64_t> vertices(primitive.indices.size());
+    Numbering<PlacedVertex> vertices(primitive.indices.size());
     std::vector<glm::vec2> placed;
     for (size_t i = 0; i < primitive.indices.size(); ++i) {
         const size_t triangle = first + i / 3;
-        const uint64_t key = (uint64_t(primitive.indices[i]) << 32) | uvs.chart[triangle];
-        primitive.indices[i] = vertices(key, mixBits(key));
-        if (primitive.indices[i] == placed.size()) placed.push_back(uvs.uv[3 * triangle + i % 3]);
+        const PlacedVertex vertex{primitive.indices[i], uvs.chart[triangle], uvs.uv[3 * triangle + i % 3]};
+        primitive.indices[i] = vertices(vertex, hashOf(vertex));
+        if (primitive.indices[i] == placed.size()) placed.push_back(vertex.uv);
     }
     pickVertices(primitive.positions, vertices);
     pickVertices(primitive.normals, vertices);

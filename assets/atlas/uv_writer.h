@@ -17,7 +17,7 @@ struct CornerUvs {
 CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* places, double cells,
                     size_t triangles);
 
-/// Returns the mesh with the UVs as TEXCOORD_1; a vertex in several charts becomes several.
+/// Returns the mesh with the UVs as TEXCOORD_1; a vertex that has several UVs becomes several.
 Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs);
 
 /// Tells whether a mesh's textures leave it one of its two sets of UVs.
