@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/uri.h"
+#include "assets/gltf/gltf_batches.h"
 #include "assets/gltf/gltf_light_json.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
@@ -47,16 +48,28 @@ struct Stream {
     int target = 0;
 };
 
-enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIndices, kStreamCount };
+enum StreamId {
+    kPositions,
+    kNormals,
+    kTexCoords,
+    kColors,
+    kPlaces,
+    kTurns,
+    kShortIndices,
+    kIntIndices,
+    kStreamCount
+};
 
 class GlbWriter {
 public:
     /// Takes as `skyFile` the path of the sky's picture from the folder of the file to be written.
     GlbWriter(const Scene& scene, std::string skyFile) : scene_(scene), skyFile_(std::move(skyFile)) {
-        const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
+        const int strides[kStreamCount] = {12, 12, 8, 16, 12, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
             streams_[i].stride = strides[i];
             streams_[i].target = strides[i] ? kArrayBuffer : kElementArrayBuffer;
+            // What instances have is neither.
+            if (i == kPlaces || i == kTurns) streams_[i].target = 0;
         }
     }
 
@@ -70,6 +83,7 @@ private:
     void addMeshes();
     void addTextures();
     void addNodes();
+    Json addBatch(const gltf::Batch& batch);
     Json addCamera(const Camera& camera);
     Json addLight(const Light& light);
     void addBuffers();
@@ -291,6 +305,21 @@ void GlbWriter::addTextures() {
     if (!samplers.empty()) json_["samplers"] = std::move(samplers);
 }
 
+Json GlbWriter::addBatch(const gltf::Batch& batch) {
+    Json node = nodeOf(scene_.meshes[batch.mesh].name, glm::mat4(1.0f));
+    node["mesh"] = meshIndices_[batch.mesh];
+    Json attributes;
+    const size_t count = batch.translations.size();
+    attributes["TRANSLATION"] = addAccessor(kPlaces, batch.translations.data(), count, kFloat, "VEC3");
+    if (batch.isTurned)
+        attributes["ROTATION"] = addAccessor(kTurns, batch.rotations.data(), count, kFloat, "VEC4");
+    if (batch.isScaled)
+        attributes["SCALE"] = addAccessor(kPlaces, batch.scales.data(), count, kFloat, "VEC3");
+    node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = std::move(attributes);
+    use("EXT_mesh_gpu_instancing");
+    return node;
+}
+
 Json GlbWriter::addCamera(const Camera& camera) {
     Json lens, out;
     if (!camera.name.empty()) out["name"] = camera.name;
@@ -332,12 +361,17 @@ Json GlbWriter::addLight(const Light& light) {
 
 void GlbWriter::addNodes() {
     Json nodes = Json::array();
-    for (const Instance& instance : scene_.instances) {
+    const gltf::Batches batches = gltf::batchesOf(scene_);
+    for (size_t i = 0; i < scene_.instances.size(); ++i) {
+        if (batches.isBatched[i]) continue;
+        const Instance& instance = scene_.instances[i];
         Json node = nodeOf(instance.name, instance.transform);
         if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
             node["mesh"] = meshIndices_[instance.mesh];
         nodes.push_back(std::move(node));
     }
+    for (const gltf::Batch& batch : batches.batches)
+        if (meshIndices_[batch.mesh] >= 0) nodes.push_back(addBatch(batch));
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
@@ -373,8 +407,8 @@ void GlbWriter::addBuffers() {
         if (streams_[i].bytes.empty()) continue;
         viewOf[i] = static_cast<int>(views.size());
         Json& view = addView(streams_[i].bytes.size());
-        if (streams_[i].stride) view["byteStride"] = streams_[i].stride;
-        view["target"] = streams_[i].target;
+        if (streams_[i].target == kArrayBuffer) view["byteStride"] = streams_[i].stride;
+        if (streams_[i].target != 0) view["target"] = streams_[i].target;
     }
     if (json_.contains("accessors"))
         for (Json& accessor : json_["accessors"]) {

@@ -66,6 +66,7 @@ inline const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) 
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    bool batched = false; // saveGlb() writes many instances of it as one node, by EXT_mesh_gpu_instancing
 };
 
 struct Instance {
