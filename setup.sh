@@ -16,6 +16,8 @@ packages=(
     glslang-dev glslang-tools                 # GLSL to SPIR-V, at build time and at run time
     libembree-dev libtbb-dev                  # CPU ray tracing; its CMake files name TBB
     libglm-dev libtinygltf-dev libopenexr-dev libstb-dev zlib1g-dev
+    libdraco-dev libmeshoptimizer-dev         # compressed meshes of glTF files
+    libwebp-dev                               # WebP pictures of glTF files
     libepoxy-dev libegl-dev libgl-dev         # OpenGL: the pictures; EGL makes them without a display
     libglfw3-dev libimgui-dev                 # the viewer's window and panels
     libcli11-dev libspdlog-dev nlohmann-json3-dev

@@ -36,7 +36,7 @@ void IdPass::draw(const Desc& desc, Output output, const gl::Framebuffer& to) {
     bindScene(desc.scene);
     std::vector<const gl::Program*> ready; // have the uniforms
     for (const SceneDraw* draw : visibleDraws(desc.scene, desc.viewProjection, desc.eye)) {
-        if (draw->instance == desc.without) continue;
+        if (draw->instance == desc.without || (draw->pane && !desc.panes)) continue;
         const SceneGpu::MaterialTextures& textures = desc.scene.textures(draw->material);
         const gl::Program& variant = program(textures, output);
         if (std::find(ready.begin(), ready.end(), &variant) == ready.end()) {

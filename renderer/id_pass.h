@@ -23,6 +23,7 @@ public:
         glm::vec3 eye{0.0f};
         uint32_t lightmapSize = 0;            // edge [texels], > 0
         std::optional<uint32_t> without = {}; // an instance that is left out
+        bool panes = false;                   // they are drawn too; else what is behind them is seen
     };
 
     /// Draws into a framebuffer of unsigned integers with depth: R32UI for Tile, else RGBA32UI. Throws Error

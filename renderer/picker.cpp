@@ -38,7 +38,8 @@ std::optional<Pick> Picker::pick(const Query& query) {
                             .viewProjection = viewProjection,
                             .eye = query.camera.eye,
                             .lightmapSize = query.lightmapSize,
-                            .without = query.without};
+                            .without = query.without,
+                            .panes = true};
     const glm::uvec4 surface = look(desc, IdPass::Output::Surface);
     if (surface.x == 0) return std::nullopt;
     const glm::uvec4 position = look(desc, IdPass::Output::Position);

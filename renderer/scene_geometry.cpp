@@ -93,19 +93,14 @@ float medianDensity(const WorldMesh& mesh) {
     return 0.0f;
 }
 
-} // namespace
-
-SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
+// Adds the draws of all triangles of a mesh.
+void addDraws(const Scene& scene, const WorldMesh& mesh, Welder& welder, SceneGeometry& geometry) {
     std::vector<uint32_t> order(mesh.triangleCount());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](uint32_t t) {
         return std::tuple(isDoubleSided(scene, mesh.material[t]), mesh.material[t], mesh.instance[t]);
     };
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-
-    SceneGeometry geometry;
-    geometry.indices.reserve(3 * order.size());
-    Welder welder(geometry.vertices, 3 * order.size());
     for (size_t i = 0; i < order.size(); ++i) {
         const uint32_t triangle = order[i];
         if (i == 0 || key(triangle) != key(order[i - 1])) {
@@ -114,6 +109,7 @@ SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
                                       .material = mesh.material[triangle],
                                       .instance = mesh.instance[triangle],
                                       .doubleSided = isDoubleSided(scene, mesh.material[triangle]),
+                                      .pane = false,
                                       .mapped = shader::kMappedNone,
                                       .bounds = {}});
         }
@@ -126,6 +122,20 @@ SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
         draw.mapped = mappedWith(draw.mapped, draw.indexCount == 0, mesh.chart[triangle] != kNoChart);
         draw.indexCount += 3;
     }
+}
+
+} // namespace
+
+SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh) {
+    const WorldMesh panes = flattenPanes(scene);
+    SceneGeometry geometry;
+    geometry.indices.reserve(mesh.positions.size() + panes.positions.size());
+    Welder welder(geometry.vertices, mesh.positions.size() + panes.positions.size());
+    addDraws(scene, mesh, welder, geometry);
+    const size_t solid = geometry.draws.size();
+    addDraws(scene, panes, welder, geometry);
+    for (size_t i = solid; i < geometry.draws.size(); ++i)
+        geometry.draws[i].pane = true;
     for (const SceneDraw& draw : geometry.draws)
         geometry.bounds.add(draw.bounds);
     geometry.medianDensity = medianDensity(mesh);

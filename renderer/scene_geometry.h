@@ -27,6 +27,7 @@ struct SceneDraw {
     uint32_t material = 0; // into Scene::materials; materials.size() is the default
     uint32_t instance = 0; // into Scene::instances
     bool doubleSided = false;
+    bool pane = false; // light passes it: what is behind it shows through
     uint32_t mapped =
         shader::kMappedNone; // which of its triangles have lightmap UVs: kMappedNone, Some or All
     Box bounds;
@@ -36,13 +37,15 @@ struct SceneDraw {
 struct SceneGeometry {
     std::vector<SceneVertex> vertices;
     std::vector<uint32_t> indices;
-    std::vector<SceneDraw> draws; // single-sided ones first, those of a material side by side
+    // Single-sided ones come first, those of a material side by side; panes are behind all others.
+    std::vector<SceneDraw> draws;
     Box bounds;
     // This is the square root of lightmap area over surface area, the median over the surface [1/m]; times
     // the lightmap's edge in texels it is the texels per metre. It is 0 without lightmap UVs.
     float medianDensity = 0;
 };
 
+/// Makes the geometry of a flattened scene; the scene's panes, which the mesh has not, are added.
 SceneGeometry makeGeometry(const Scene& scene, const WorldMesh& mesh);
 
 /// Returns the bounds of all triangles.

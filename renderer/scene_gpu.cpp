@@ -57,7 +57,9 @@ shader::SceneMaterial describe(const Material& material) {
     result.baseColor = material.baseColor;
     const bool masked = material.alphaMode == AlphaMode::Mask;
     result.emission = glm::vec4(material.emission, masked ? material.alphaCutoff : 0.0f);
-    result.metallic = glm::vec4(material.metallic, material.roughness, 0.0f, 0.0f);
+    const bool blends = material.alphaMode == AlphaMode::Blend;
+    result.metallic =
+        glm::vec4(material.metallic, material.roughness, material.transmission, blends ? 1.0f : 0.0f);
     return result;
 }
 

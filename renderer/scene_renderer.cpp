@@ -48,11 +48,11 @@ bool fetchesEmission(View view) {
 /// Tells what a variant of scene.frag is compiled for, in the order of its definitions.
 struct Variant {
     uint32_t view = 0, filter = 0, tone = 0, base = 0, emission = 0, metallic = 0, masked = 0, mapped = 0,
-             selected = 0, filled = 0;
+             selected = 0, filled = 0, pane = 0;
 
     uint32_t key() const {
         return view | filter << 5 | tone << 7 | base << 9 | emission << 10 | metallic << 11 | masked << 12 |
-               mapped << 13 | selected << 15 | filled << 16;
+               mapped << 13 | selected << 15 | filled << 16 | pane << 17;
     }
     std::vector<std::string> definitions() const {
         const auto define = [](const char* name, uint32_t value) {
@@ -61,7 +61,7 @@ struct Variant {
         return {define("VIEW", view),     define("FILTER", filter),     define("TONE", tone),
                 define("BASE", base),     define("EMISSION", emission), define("METALLIC", metallic),
                 define("MASKED", masked), define("MAPPED", mapped),     define("SELECTED", selected),
-                define("FILLED", filled)};
+                define("FILLED", filled), define("PANE", pane)};
     }
 };
 
@@ -76,7 +76,8 @@ Variant variantOf(const DrawSettings& settings, const SceneDraw& draw,
     if (readsLightmap(view)) variant.filter = static_cast<uint32_t>(settings.filter);
     if (showsLight(view)) variant.tone = static_cast<uint32_t>(settings.tone);
     variant.masked = textures.masked ? 1 : 0;
-    variant.base = textures.base != 0 && (fetchesAlbedo(view) || textures.masked) ? 1 : 0;
+    variant.pane = draw.pane ? 1 : 0;
+    variant.base = textures.base != 0 && (fetchesAlbedo(view) || textures.masked || draw.pane) ? 1 : 0;
     variant.emission = textures.emission != 0 && fetchesEmission(view) ? 1 : 0;
     variant.metallic = textures.metallic != 0 && fetchesAlbedo(view) ? 1 : 0;
     variant.filled = readsLightmap(view) && lightmap.filled ? 1 : 0;
@@ -168,15 +169,34 @@ void SceneRenderer::setUniforms(const gl::Program& program, const Frame& frame, 
 }
 
 void SceneRenderer::drawScene(const Frame& frame, const Pass& pass) {
-    bindScene(frame.scene);
-    glBindTextureUnit(kLightmapUnit, frame.lightmap.texture);
-    const std::vector<const SceneDraw*> visible =
-        visibleDraws(frame.scene, pass.viewProjection, frame.camera.eye);
+    std::vector<const SceneDraw*> visible = visibleDraws(frame.scene, pass.viewProjection, frame.camera.eye);
     counts_.drawn = static_cast<uint32_t>(visible.size());
     counts_.culled = static_cast<uint32_t>(frame.scene.draws().size()) - counts_.drawn;
+    std::erase_if(visible, [](const SceneDraw* draw) { return draw->pane; });
+    drawAll(frame, pass, visible);
+}
 
+// Draws the panes over what is behind them, the farthest first, so that all of them show. They hide nothing,
+// and what the meter reads of the light stays.
+void SceneRenderer::drawPanes(const Frame& frame, const Pass& pass) {
+    if (frame.scene.draws().empty() || !frame.scene.draws().back().pane) return; // they are the last ones
+    std::vector<const SceneDraw*> visible = visibleDraws(frame.scene, pass.viewProjection, frame.camera.eye);
+    std::erase_if(visible, [](const SceneDraw* draw) { return !draw->pane; });
+    std::reverse(visible.begin(), visible.end());
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    glDepthMask(GL_FALSE);
+    drawAll(frame, pass, visible);
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
+}
+
+void SceneRenderer::drawAll(const Frame& frame, const Pass& pass,
+                            const std::vector<const SceneDraw*>& draws) {
+    bindScene(frame.scene);
+    glBindTextureUnit(kLightmapUnit, frame.lightmap.texture);
     std::vector<const gl::Program*> ready; // have this frame's uniforms
-    for (const SceneDraw* draw : visible) {
+    for (const SceneDraw* draw : draws) {
         const gl::Program& program = sceneProgram(frame, *draw);
         if (std::find(ready.begin(), ready.end(), &program) == ready.end()) {
             ready.push_back(&program);
@@ -283,7 +303,10 @@ void SceneRenderer::render(const Frame& frame, float exposure) {
         drawVoxels(frame, pass);
     else
         drawScene(frame, pass);
-    if (frame.voxels == nullptr) drawSky(frame, pass);
+    if (frame.voxels == nullptr) {
+        drawSky(frame, pass);
+        drawPanes(frame, pass);
+    }
     if (frame.lines != nullptr) drawLines(frame, pass);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);

@@ -92,6 +92,8 @@ private:
     void render(const Frame& frame, float exposure);
     void resolve();
     void drawScene(const Frame& frame, const Pass& pass);
+    void drawPanes(const Frame& frame, const Pass& pass);
+    void drawAll(const Frame& frame, const Pass& pass, const std::vector<const SceneDraw*>& draws);
     void drawSky(const Frame& frame, const Pass& pass);
     void drawVoxels(const Frame& frame, const Pass& pass);
     void drawLines(const Frame& frame, const Pass& pass);

@@ -122,7 +122,8 @@ private:
 
 // Prepares the scene, with lamps alone unless the scene's own light is wanted; lights of the file come later.
 PreparedScene prepare(const EditsBenchDesc& desc) {
-    PreparedScene prepared = prepareScene({.path = desc.scene, .size = desc.size});
+    PreparedScene prepared = prepareScene(
+        {.path = desc.scene, .choice = desc.choice, .size = desc.size, .furnishing = {.daylight = false}});
     if (!desc.onlyLamps) return prepared;
     for (Material& material : prepared.scene.materials)
         material.emission = glm::vec3(0.0f);
@@ -205,7 +206,7 @@ private:
 
     // Writes the scene, for other programs to bake.
     void writeScene() const {
-        const Scene before = loadGltf(desc_.scene);
+        const Scene before = loadGltf(desc_.scene, desc_.choice);
         Scene after = edited_.scene();
         after.lights = moved(lightsOf(*std::max_element(desc_.lamps.begin(), desc_.lamps.end())));
         saveEditedGltf(desc_.scene, before, after, desc_.sceneOutput);

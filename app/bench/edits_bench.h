@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/bench/edits_report.h"
+#include "assets/gltf/gltf.h"
 #include "bake/baker/baker.h"
 #include "bake/trace/make_tracer.h"
 
@@ -13,6 +14,7 @@ namespace relume {
 /// Says what `relume bench edits` measures: edits of a baked scene, against baking it anew.
 struct EditsBenchDesc {
     std::string scene;                            // path
+    GltfChoice choice;                            // of it
     std::vector<uint32_t> lamps = {1, 8, 16, 32}; // how many there are, each > 0
     uint32_t size = 256;                          // lightmap edge [texels]
     double error = 0.02;                          // what bakes are to reach, relRMSE

@@ -134,7 +134,9 @@ private:
         std::vector<bool> covered;
     };
 
-    void prepare(uint32_t size) { prepared_ = prepareScene({.path = desc_.scene, .size = size}); }
+    void prepare(uint32_t size) {
+        prepared_ = prepareScene({.path = desc_.scene, .choice = desc_.choice, .size = size});
+    }
 
     void warmUp() {
         prepare(kWarmUpSize);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/bench/methods_report.h"
+#include "assets/gltf/gltf.h"
 #include "bake/baker/baker.h"
 #include "bake/trace/make_tracer.h"
 
@@ -12,6 +13,7 @@ namespace relume {
 
 struct MethodsBenchDesc {
     std::string scene;                       // path
+    GltfChoice choice;                       // of it
     std::vector<uint32_t> sizes;             // lightmap edges [texels]
     std::vector<Method> methods;             // DFPR refers to pure: without it there is none
     std::vector<uint32_t> windows = {1};     // of static, Monte-Carlo, mipmapped

@@ -1,5 +1,6 @@
 #include "app/bench/trace_bench.h"
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/edit/prepare.h"
 #include "app/offline/bake_options.h"
 #include "app/offline/command_files.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct BenchOptions {
     std::string scene, device, json;
+    GltfChoice choice;
     std::vector<std::string> tracers;
     std::vector<uint32_t> sizes = {128, 256};
     TraceBenchDesc bench;
@@ -44,7 +46,7 @@ void benchTrace(const BenchOptions& o) {
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
     for (uint32_t size : o.sizes)
-        scenes.push_back(prepareScene({.path = o.scene, .size = size}));
+        scenes.push_back(prepareScene({.path = o.scene, .choice = o.choice, .size = size}));
     const vk::Device device({.select = o.device});
     fmt::print(stderr, "device: {} ({})\n", device.info().name, device.info().driver);
     const std::string row = "{:<8} {:>5} {:>8} {:>9} {:>12} {:>12} {:>10} {:>12} {:>12}\n";
@@ -105,6 +107,7 @@ void addBenchCommand(CLI::App& app) {
     CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
     auto options = std::make_shared<BenchOptions>();
     trace->add_option("scene", options->scene, "glTF scene")->required();
+    addChoiceOptions(*trace, options->choice);
     trace->add_option("--sizes", options->sizes, "Lightmap edges")
         ->delimiter(',')
         ->capture_default_str()

@@ -1,5 +1,6 @@
 #include "app/bench/edits_bench.h"
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/offline/bake_options.h"
 #include "app/offline/command_files.h"
 #include "app/text/interrupt.h"
@@ -32,7 +33,7 @@ std::string commandOf(const BenchEditsOptions& o) {
                                    b.referenceSamples, b.runs, b.batchMs, o.tracer);
     if (!b.onlyLamps) text += " --all-lights";
     if (!o.device.empty()) text += " --device '" + o.device + "'";
-    return text;
+    return text + typedChoice(b.choice);
 }
 
 void runBench(BenchEditsOptions o) {
@@ -79,6 +80,7 @@ void addBenchEditsCommand(CLI::App& bench) {
     const auto options = std::make_shared<BenchEditsOptions>();
     EditsBenchDesc& b = options->bench;
     command->add_option("scene", b.scene, "glTF scene")->required();
+    addChoiceOptions(*command, b.choice);
     command->add_option("--lights", b.lamps, "Numbers of lamps; as many are added as the scene has too few")
         ->delimiter(',')
         ->capture_default_str()

@@ -1,5 +1,6 @@
 #include "app/bench/frames_bench.h"
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/offline/command_files.h"
 #include "app/text/option_checks.h"
 #include "app/viewer/shell/view_options.h"
@@ -85,6 +86,7 @@ void addBenchFramesCommand(CLI::App& bench) {
     const auto options = std::make_shared<BenchFramesOptions>();
     FramesBenchDesc& b = options->bench;
     command->add_option("scene", b.bake.files.scene, "glTF scene")->required();
+    addChoiceOptions(*command, b.bake.files.choice);
     addSizeOption(*command, "--lightmap-size", b.bake);
     addSolverOptions(*command, b.bake);
     command->add_option("--width", b.width, "Of the pictures, in pixels")

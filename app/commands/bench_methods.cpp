@@ -1,5 +1,6 @@
 #include "app/bench/methods_bench.h"
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/offline/bake_options.h"
 #include "app/offline/command_files.h"
 #include "app/text/interrupt.h"
@@ -76,7 +77,7 @@ std::string commandOf(const BenchMethodsOptions& o, const MethodsBenchDesc& desc
                     desc.referenceSamples, desc.maxSeconds, o.tracer, o.cache);
     if (o.noSmooth) text += " --no-smooth";
     if (!o.device.empty()) text += " --device '" + o.device + "'";
-    return text + " --html " + o.html;
+    return text + typedChoice(o.bench.choice) + " --html " + o.html;
 }
 
 void runBench(const BenchMethodsOptions& o) {
@@ -90,7 +91,7 @@ void runBench(const BenchMethodsOptions& o) {
     checkFileWritable(o.html, 0);
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
     const bool table = o.json != "-";
-    loadGltf(desc.scene); // a bad file leaves one line, its error
+    loadGltf(desc.scene, desc.choice); // a bad file leaves one line, its error
     const vk::Device device({.select = o.device});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     // The log is quieter, because what a bake tells of itself is the same for each of them.
@@ -155,6 +156,7 @@ void addBenchMethodsCommand(CLI::App& bench) {
     auto options = std::make_shared<BenchMethodsOptions>();
     BenchMethodsOptions& o = *options;
     command->add_option("scene", o.bench.scene, "glTF scene")->required();
+    addChoiceOptions(*command, o.bench.choice);
     command->add_option("--html", o.html, "Report to write: one page with plots and pictures")->required();
     command->add_option("--json", o.json, "Write the figures to this file, - for standard output");
     addSweep(*command, o);

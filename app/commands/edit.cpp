@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/edit/edit_options.h"
 #include "app/offline/bake_edits.h"
 #include "app/offline/command_files.h"
@@ -91,13 +92,11 @@ void runEdit(const EditOptions& options, const std::vector<TypedEdit>& typed) {
     if (!options.output.empty()) checkFileWritable(options.output, code ? 0 : bytes);
     if (bakes) checkWritable(bake.files.output);
     if (!bake.machine.shaders.empty()) setShaderFolder(bake.machine.shaders);
-    const Scene before = loadGltf(options.scene);
+    const Scene before = loadGltf(options.scene, options.bake.files.choice);
     for (const std::string& warning : before.warnings)
         spdlog::warn("{}", warning);
     SceneEdits edits = editsOf(before);
     const std::vector<std::string> done = applyEdits(before, typed, edits);
-    if (const std::string unsaved = unsavedPart(edits); !options.output.empty() && !unsaved.empty())
-        spdlog::warn("{}: {}", options.output, unsaved);
     Scene after = partsOfEdits(before);
     applyEdits(after, edits);
     if (!options.output.empty()) {
@@ -119,6 +118,7 @@ void addEditCommand(CLI::App& app) {
     command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
         ->required()
         ->type_name("SCENE");
+    addChoiceOptions(*command, options->bake.files.choice);
     command
         ->add_option("-o,--output", options->output,
                      "The edited scene, of the ending that SCENE has; may be SCENE itself")

@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/edit/scene_info.h"
 #include "assets/model/light_names.h"
 #include "app/text/option_checks.h"
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
     std::string scene;
+    GltfChoice choice;
     uint32_t size = 512;
     bool json = false;
 };
@@ -101,6 +103,8 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                        {"triangles", info.triangles},
                        {"maskedTriangles", info.maskedTriangles},
                        {"droppedTriangles", info.droppedTriangles},
+                       {"scenes", scene.sceneNames},
+                       {"variants", scene.variantNames},
                        {"meshes", scene.meshes.size()},
                        {"instances", scene.instances.size()},
                        {"materials", scene.materials.size()},
@@ -119,6 +123,13 @@ void printJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                        {"warnings", info.warnings}};
     // The names in the file need not be UTF-8.
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+std::string quotedList(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ", ") + inQuotes(name);
+    return text;
 }
 
 void line(const char* name, const std::string& value) {
@@ -172,6 +183,8 @@ void printLights(const Scene& scene) {
 void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
     line("scene", scene.path);
     line("triangles", fmt::format("{} ({} alpha-masked)", info.triangles, info.maskedTriangles));
+    if (scene.sceneNames.size() > 1) line("scenes", quotedList(scene.sceneNames));
+    if (!scene.variantNames.empty()) line("variants", quotedList(scene.variantNames));
     line("meshes", fmt::format("{} in {} instances", scene.meshes.size(), scene.instances.size()));
     line("materials", fmt::format("{}, {} textures", scene.materials.size(), scene.textures.size()));
     printLights(scene);
@@ -200,7 +213,7 @@ void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
 }
 
 void runInfo(const InfoOptions& options) {
-    const Scene scene = loadGltf(options.scene);
+    const Scene scene = loadGltf(options.scene, options.choice);
     const SceneInfo info = inspectScene(scene, options.size);
     if (options.json)
         printJson(scene, info, options.size);
@@ -216,6 +229,7 @@ void addInfoCommand(CLI::App& app) {
     command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
         ->required()
         ->type_name("SCENE");
+    addChoiceOptions(*command, options->choice);
     command->add_option("--size", options->size, "Lightmap edge [texels]")
         ->capture_default_str()
         ->check(wholeFrom(1, 65536));

@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/edit/choice_options.h"
 #include "app/offline/command_files.h"
 #include "app/text/option_checks.h"
 #include "assets/atlas/unwrap.h"
@@ -16,6 +17,7 @@ namespace {
 
 struct UnwrapOptions {
     std::string scene, output;
+    GltfChoice choice;
     UnwrapDesc desc;
     bool all = false;
 };
@@ -25,7 +27,7 @@ void runUnwrap(const UnwrapOptions& options) {
         throw UsageError(options.output + ": unwrap writes GLB: give a name that ends in .glb");
     CommandFiles().readsScene("SCENE", options.scene).writes("--output", options.output).check();
     checkFileWritable(options.output, 0);
-    Scene scene = loadGltf(options.scene);
+    Scene scene = loadGltf(options.scene, options.choice);
     for (const std::string& warning : scene.warnings)
         spdlog::warn("{}", warning);
     requireArea(scene);
@@ -50,6 +52,7 @@ void addUnwrapCommand(CLI::App& app) {
     command->add_option("scene", options->scene, "glTF 2.0 file (.gltf or .glb)")
         ->required()
         ->type_name("SCENE");
+    addChoiceOptions(*command, options->choice);
     command->add_option("-o,--output", options->output, "The scene with its new UVs (.glb)")
         ->required()
         ->type_name("OUT.glb");

@@ -2,36 +2,73 @@
 
 #include "assets/atlas/unwrap.h"
 #include "assets/base/clock.h"
+#include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/gltf/gltf.h"
+#include "assets/base/watch.h"
+#include "assets/survey/preview_light.h"
+
+#include <fmt/format.h>
 
 namespace relume {
+namespace {
 
-PreparedScene prepareScene(const PrepareDesc& desc) {
+void warn(const std::vector<std::string>& warnings, size_t first = 0) {
+    for (size_t i = first; i < warnings.size(); ++i)
+        spdlog::warn("{}", warnings[i]);
+}
+
+void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
+    const Furnishing& furnishing = desc.furnishing;
+    Scene& scene = prepared.scene;
+    if (furnishing.strict) {
+        const size_t missing = countUnmapped(scene);
+        if (missing == 0) return;
+        throw Error(
+            fmt::format("{}: {} of {} meshes have no usable lightmap UVs: run 'relume unwrap', or leave "
+                        "out --strict to have them made",
+                        desc.path, missing, scene.meshes.size()));
+    }
+    if (!furnishing.unwrap) return;
+    const UnwrapResult made = unwrap(scene, {.density = furnishing.density, .size = desc.size});
+    if (made.meshes == 0) return; // they are nothing but triangles without area
+    prepared.madeUvs = fmt::format("lightmap UVs were made for {} of {} meshes: {} charts at {:.3g} texels/m",
+                                   made.meshes, scene.meshes.size(), made.charts, made.density);
+    spdlog::warn("{}: {}", desc.path, prepared.madeUvs);
+}
+
+} // namespace
+
+void furnishLight(PreparedScene& prepared, const Furnishing& furnishing) {
+    Scene& scene = prepared.scene;
+    if (!isDark(scene)) return;
+    if (furnishing.strict)
+        throw Error(scene.path +
+                    ": nothing in it shines: add a light (relume edit --add), or leave out --strict "
+                    "to have it lit by a preview light");
+    if (!furnishing.daylight) return;
+    tellWatch("looking for light");
+    prepared.madeLight = addPreviewLight(scene, prepared.mesh);
+    spdlog::warn("{}: nothing in it shines: {} lights it, which is not in the file", scene.path,
+                 prepared.madeLight);
+}
+
+PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead) {
     PreparedScene result;
     const auto start = Clock::now();
-    result.scene = loadGltf(desc.path);
+    result.scene = loadGltf(desc.path, desc.choice);
     result.loadSeconds = secondsSince(start);
-    for (const std::string& warning : result.scene.warnings)
-        spdlog::warn("{}", warning);
+    warn(result.scene.warnings);
+    requireArea(result.scene);
+    if (whenRead && desc.furnishing.unwrap && countUnmapped(result.scene) > 0) whenRead(result.scene);
 
     const auto atlasStart = Clock::now();
-    requireArea(result.scene);
-    if (desc.unwrap) {
-        const UnwrapResult made = unwrap(result.scene, {.density = desc.density, .size = desc.size});
-        if (made.meshes == 0)
-            spdlog::info("unwrapped nothing: every mesh with an area has valid lightmap UVs");
-        else
-            spdlog::info("unwrapped {} meshes into {} charts at {:.3g} texels/m", made.meshes, made.charts,
-                         made.density);
-    }
-    result.atlas = buildAtlas(result.scene, desc.size, desc.unwrap);
-    for (const std::string& warning : result.atlas.warnings)
-        spdlog::warn("{}", warning);
+    furnishUvs(result, desc);
+    result.atlas = buildAtlas(result.scene, desc.size, desc.furnishing.unwrap);
+    warn(result.atlas.warnings);
     const size_t before = result.scene.warnings.size();
     result.mesh = flatten(result.scene, result.atlas);
-    for (size_t i = before; i < result.scene.warnings.size(); ++i)
-        spdlog::warn("{}", result.scene.warnings[i]);
+    warn(result.scene.warnings, before);
+    if (!desc.edited) furnishLight(result, desc.furnishing);
     result.atlasSeconds = secondsSince(atlasStart);
     return result;
 }

@@ -1,28 +1,46 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/world_mesh.h"
+#include "assets/gltf/gltf.h"
 
 namespace relume {
+
+/// Says what a level gets that its file lacks.
+struct Furnishing {
+    bool unwrap = true;   // lightmap UVs for the meshes that have no usable ones
+    double density = 0;   // of these [texels/m], 0: fitted to the size
+    bool daylight = true; // light where nothing shines: a sun and a sky, or a lamp in a closed interior
+    bool strict = false;  // nothing: what is missing is an Error
+};
 
 /// A scene that was read, given an atlas and flattened, from which a bake starts.
 struct PreparedScene {
     Scene scene;
     LightmapAtlas atlas;
     WorldMesh mesh;
+    std::string madeUvs;   // says which lightmap UVs were made, "" for none
+    std::string madeLight; // says what preview light was added, "" for none
     double loadSeconds = 0, atlasSeconds = 0;
 };
 
 struct PrepareDesc {
     std::string path;
+    GltfChoice choice = {};
     uint32_t size = 512; // lightmap edge [texels]
-    bool unwrap = false; // make lightmap UVs for meshes without usable ones
-    double density = 0;  // of the unwrap [texels/m], 0: fitted to the size
+    Furnishing furnishing = {};
+    bool edited = false; // edits follow, which may add light: furnishLight() is called after them
 };
 
-/// Prepares a scene and logs the warnings of each step. Throws Error.
-PreparedScene prepareScene(const PrepareDesc& desc);
+/// Prepares a scene and logs the warnings of each step. Where lightmap UVs are to be made, which takes a
+/// while, `whenRead` is called before with the scene as its file has it. Throws Error.
+PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead = {});
+
+/// Adds preview light to a prepared scene that is dark and warns about it, or throws Error, as the furnishing
+/// says.
+void furnishLight(PreparedScene& prepared, const Furnishing& furnishing);
 
 } // namespace relume

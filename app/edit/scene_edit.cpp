@@ -328,12 +328,6 @@ std::string Editor::operator()(const HideEdit& edit) const {
 
 } // namespace
 
-std::string unsavedPart(const SceneEdits& edits) {
-    const auto isHidden = [](const Placement& placement) { return placement.hidden; };
-    if (std::none_of(edits.placements.begin(), edits.placements.end(), isHidden)) return "";
-    return "a glTF file cannot say that an object is hidden: it is shown when it is read again";
-}
-
 std::string applyEdit(const Scene& scene, const SceneEdit& edit, SceneEdits& edits) {
     SceneEdits next = edits;
     std::string done = std::visit(Editor{scene, next}, edit);

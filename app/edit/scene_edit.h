@@ -78,7 +78,4 @@ using SceneEdit = std::variant<SetEdit, MoveEdit, RotateEdit, AimEdit, AddLightE
 /// out of range; `edits` are as they were then.
 std::string applyEdit(const Scene& scene, const SceneEdit& edit, SceneEdits& edits);
 
-/// Tells in one line what a glTF file cannot hold of the edits; "": it holds all.
-std::string unsavedPart(const SceneEdits& edits);
-
 } // namespace relume

@@ -59,7 +59,9 @@ void addWarnings(const Scene& scene, const WorldMesh& mesh, SceneInfo& info) {
     if (info.droppedTriangles > 0)
         warnings.add(fmt::format("{} triangles", info.droppedTriangles), "have no area and are dropped");
     if (info.emitters == 0 && scene.lights.empty() && !scene.sky.shines())
-        warnings.add("the scene", "has no emitter, no light and no sky: it bakes to black");
+        warnings.add("the scene",
+                     "has no emitter, no light and no sky: it is lit by a preview light, which is "
+                     "not in the file (--no-daylight: it bakes to black)");
     for (std::string& line : warnings.lines(scene.path))
         info.warnings.push_back(std::move(line));
 }

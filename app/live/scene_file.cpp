@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
@@ -29,16 +30,35 @@ void SceneFile::number(std::vector<Light>& lights) {
         if (light.node == -1) light.node = --lastNumber_;
 }
 
+namespace {
+
+// Preview light is in no file.
+std::vector<Light> ownLights(const std::vector<Light>& lights) {
+    std::vector<Light> own;
+    std::copy_if(lights.begin(), lights.end(), std::back_inserter(own),
+                 [](const Light& light) { return !light.preview; });
+    return own;
+}
+
+SkySettings ownSky(const SkySettings& sky) {
+    return sky.preview ? SkySettings{} : sky;
+}
+
+void dropPreview(Scene& scene) {
+    scene.lights = ownLights(scene.lights);
+    if (scene.sky.preview) scene.sky = {};
+}
+
+} // namespace
+
 bool SceneFile::differs(const SceneEdits& edits) const {
     const auto sameMaterial = [](const Material& a, const Material& b) {
         return a.emission == b.emission && a.baseColor == b.baseColor;
     };
-    const auto samePlace = [](const Placement& a, const Placement& b) { return a.transform == b.transform; };
-    return edits.lights != held_.lights || edits.sky != held_.sky ||
+    return ownLights(edits.lights) != ownLights(held_.lights) || ownSky(edits.sky) != ownSky(held_.sky) ||
            !std::equal(edits.materials.begin(), edits.materials.end(), held_.materials.begin(),
                        held_.materials.end(), sameMaterial) ||
-           !std::equal(edits.placements.begin(), edits.placements.end(), held_.placements.begin(),
-                       held_.placements.end(), samePlace);
+           edits.placements != held_.placements;
 }
 
 // Returns the file's node of a light, or -1. A light that became one of another kind stays in the node it
@@ -57,7 +77,10 @@ void SceneFile::save(const std::string& path, const SceneEdits& edits) {
     applyEdits(after, edits);
     for (Light& light : after.lights)
         light.node = fileNode(light);
-    saving_ = std::async(std::launch::async, [before = file_, after = std::move(after), path] {
+    dropPreview(after);
+    Scene before = file_;
+    dropPreview(before);
+    saving_ = std::async(std::launch::async, [before = std::move(before), after = std::move(after), path] {
         Result result;
         result.nodes = saveEditedGltf(before.path, before, after, path);
         std::error_code code;
@@ -88,9 +111,12 @@ void SceneFile::keep(const Result& result) {
     std::set<int> taken(result.nodes.lights.begin(), result.nodes.lights.end());
     // A deleted light may come back to its node, unless another light has that now.
     std::erase_if(nodes_, [&](const auto& entry) { return taken.contains(entry.second); });
+    size_t saved = 0; // of the lights that the file has
     for (size_t i = 0; i < file_.lights.size(); ++i) {
-        nodes_[placeOf(pending_.lights[i])] = result.nodes.lights[i];
-        file_.lights[i].node = result.nodes.lights[i];
+        if (file_.lights[i].preview) continue;
+        const int node = result.nodes.lights[saved++];
+        nodes_[placeOf(pending_.lights[i])] = node;
+        file_.lights[i].node = node;
     }
     held_ = std::move(pending_);
 }

@@ -30,8 +30,7 @@ public:
     /// Gives each light that is not in the file, and that has no number yet, a number of its own in
     /// Light::node (below -1). The light is known by it from then on, through undo too.
     void number(std::vector<Light>& lights);
-    /// Tells whether a save would change the file. What a file cannot hold, such as hidden objects, does not
-    /// count.
+    /// Tells whether a save would change the file.
     bool differs(const SceneEdits& edits) const;
 
     /// Saves edits of that scene into the file `path`, which is the scene's file from then on. Must not be

@@ -5,6 +5,8 @@
 #include "renderer/good_view.h"
 
 #include <chrono>
+#include <optional>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -27,33 +29,72 @@ private:
     WatchScope scope_;
 };
 
-std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number,
-                                  const std::atomic<bool>& unwanted) {
-    const LoadWatch watch(unwanted);
+ViewCamera viewOf(const Scene& file, const WorldMesh& mesh, const Box& bounds) {
+    return file.cameras.empty() ? goodView(mesh, kAspect) : cameraOfFile(file.cameras.front(), bounds);
+}
+
+// Returns what can be drawn of a scene that has no lightmap UVs yet.
+std::unique_ptr<LoadedScene> earlyLook(const Scene& file, uint64_t number) {
+    tellWatch("drawing the geometry");
+    auto look = std::make_unique<LoadedScene>();
+    Scene& scene = look->prepared.scene; // without the meshes, which are most of it
+    scene.path = file.path;
+    scene.images = file.images;
+    scene.textures = file.textures;
+    scene.materials = file.materials;
+    scene.instances = file.instances;
+    scene.cameras = file.cameras;
+    scene.sky = file.sky;
+    LightmapAtlas none;
+    none.instances.resize(file.instances.size());
+    const WorldMesh mesh = flatten(file, none);
+    look->geometry = makeGeometry(file, mesh);
+    look->view = viewOf(file, mesh, look->geometry.bounds);
+    look->number = number;
+    return look;
+}
+
+} // namespace
+
+std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t number, bool early) {
+    const LoadWatch watch(unwanted_);
     auto scene = std::make_unique<LoadedScene>();
-    scene->prepared = prepareScene(desc);
+    std::optional<ViewCamera> view;
+    const auto whenRead = [&](const Scene& file) {
+        std::unique_ptr<LoadedScene> look = earlyLook(file, number);
+        view = look->view;
+        handOut(std::move(look));
+    };
+    scene->prepared = early ? prepareScene(desc, whenRead) : prepareScene(desc);
     const Scene& file = scene->prepared.scene;
     scene->geometry = makeGeometry(file, scene->prepared.mesh);
-    scene->view = file.cameras.empty() ? goodView(scene->prepared.mesh, kAspect)
-                                       : cameraOfFile(file.cameras.front(), scene->geometry.bounds);
+    scene->view = view ? *view : viewOf(file, scene->prepared.mesh, scene->geometry.bounds);
     scene->size = desc.size;
     scene->number = number;
     return scene;
 }
 
-} // namespace
+void SceneLoader::handOut(std::unique_ptr<LoadedScene> early) {
+    const std::lock_guard lock(mutex_);
+    early_ = std::move(early);
+}
+
+std::unique_ptr<LoadedScene> SceneLoader::takeEarly() {
+    const std::lock_guard lock(mutex_);
+    return std::move(early_);
+}
 
 SceneLoader::~SceneLoader() {
     unwanted_ = true;
     if (loading_.valid()) loading_.wait();
 }
 
-void SceneLoader::start(const PrepareDesc& desc) {
+void SceneLoader::start(const PrepareDesc& desc, bool early) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
     loading_ = std::async(std::launch::async,
-                          [this, desc, number = ++loads_] { return load(desc, number, unwanted_); });
+                          [this, desc, early, number = ++loads_] { return load(desc, number, early); });
 }
 
 bool SceneLoader::ready() const {
@@ -62,6 +103,7 @@ bool SceneLoader::ready() const {
 
 std::unique_ptr<LoadedScene> SceneLoader::finish() {
     path_.clear();
+    handOut(nullptr);
     try {
         return loading_.get();
     } catch (const LoadUnwanted&) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "app/edit/prepare.h"
@@ -33,7 +34,11 @@ public:
     /// Returns the path of the scene that is loading, "" for none.
     const std::string& path() const { return path_; }
     /// Begins to load; nothing may be loading.
-    void start(const PrepareDesc& desc);
+    /// `early`: takeEarly() is asked.
+    void start(const PrepareDesc& desc, bool early);
+    /// Returns the scene under way as far as it can be drawn, where the rest takes a while: its geometry
+    /// without lightmap UVs, its materials and its view. Each is returned once; nullptr: none, or none yet.
+    std::unique_ptr<LoadedScene> takeEarly();
     /// Lets the load under way end early: nobody wants its scene any more.
     void drop() { unwanted_ = true; }
     /// Tells whether finish() would not wait.
@@ -43,6 +48,11 @@ public:
     std::unique_ptr<LoadedScene> finish();
 
 private:
+    std::unique_ptr<LoadedScene> load(const PrepareDesc& desc, uint64_t number, bool early);
+    void handOut(std::unique_ptr<LoadedScene> early);
+
+    std::mutex mutex_;
+    std::unique_ptr<LoadedScene> early_; // under the mutex
     std::future<std::unique_ptr<LoadedScene>> loading_;
     std::atomic<bool> unwanted_ = false;
     std::string path_;

@@ -32,20 +32,35 @@ Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prep
 }
 
 void Session::open(const std::string& path, bool keep) {
-    if (loader_.loading()) { // one at a time: the newest request is followed when the present load has ended
-        if (path != loader_.path()) loader_.drop();
-        next_ = Next{path, keep};
-        return;
-    }
+    const Next next{path, keep, path == prepare_.path ? prepare_.choice : GltfChoice{}};
+    if (!loader_.loading()) return load(next);
+    // One at a time: the newest request is followed when the present load has ended.
+    if (path != loader_.path()) loader_.drop();
+    next_ = next;
+}
+
+void Session::choose(const GltfChoice& choice) {
+    const Next next{prepare_.path, false, choice};
+    if (!loader_.loading()) return load(next);
+    loader_.drop();
+    next_ = next;
+}
+
+void Session::load(const Next& next) {
+    const auto& [path, keep, choice] = next;
     PrepareDesc desc = prepare_;
     desc.path = path;
+    desc.choice = choice;
     desc.size = document_.bake.size;
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
     const FileTime time = fileTime(path);
-    loading_ = {
-        .keep = keep, .time = time, .sameFile = keep && path == prepare_.path && watch_.isKnown(time)};
-    loader_.start(desc);
+    loading_ = {.keep = keep,
+                .time = time,
+                .sameFile = keep && path == prepare_.path && watch_.isKnown(time),
+                .choice = choice};
+    // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
+    loader_.start(desc, !keep);
 }
 
 bool Session::update() {
@@ -58,7 +73,9 @@ bool Session::update() {
 }
 
 bool Session::finishLoading() {
+    if (std::unique_ptr<LoadedScene> early = loader_.takeEarly()) early_ = std::move(early);
     if (!loader_.ready()) return false;
+    early_.reset();
     bool changed = false;
     const std::string path = loader_.path();
     // A file that cannot be read is not tried again until it is another one.
@@ -74,7 +91,7 @@ bool Session::finishLoading() {
         fail(error.what());
     }
     if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
-        open(next->path, next->keep);
+        load(*next);
     else if (changed && scene_->size != document_.bake.size)
         open(prepare_.path, true); // the size was edited meanwhile
     else if (!changed && scene_ && scene_->size != document_.bake.size) {
@@ -178,6 +195,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
     if (scene_) former_.push_back(std::move(scene_));
     scene_ = std::move(scene);
     prepare_.path = path;
+    prepare_.choice = loading_.choice;
     watch_.know(loading_.time);
     startBake(kept_);
 }

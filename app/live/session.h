@@ -25,14 +25,21 @@ public:
     /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
     /// when that cannot be read: then lastError() says why. With `keep` (the file changed) the camera and
     /// settings stay, and so do edits of materials, by name, and of objects and lights where the file's are
-    /// what they were. Where the file is still as it was loaded or saved, all edits stay.
+    /// what they were. Where the file is still as it was loaded or saved, all edits stay. Another file is
+    /// read by its own defaults.
     void open(const std::string& path, bool keep = false);
+    /// Loads the present scene's file by another choice of what it offers, as open() does without `keep`.
+    void choose(const GltfChoice& choice);
+    /// Returns the choice by which the present scene was read.
+    const GltfChoice& choice() const { return prepare_.choice; }
     bool loading() const { return loader_.loading(); }
     const std::string& loadingPath() const { return loader_.path(); }
     /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
     /// changed.
     bool update();
     const LoadedScene* scene() const { return scene_.get(); } // nullptr: none yet
+    /// Returns the scene that is loading as far as it can be drawn already, nullptr: not yet, or not at all.
+    const LoadedScene* early() const { return early_.get(); }
     /// Returns the number of the scene's first bake: maps of earlier ones show another scene.
     uint64_t firstBake() const { return firstBake_; }
     bool sceneWasKept() const { return kept_; } // the newest scene came with `keep`
@@ -83,12 +90,15 @@ private:
         bool keep = false;
         FileTime time;         // of its file
         bool sameFile = false; // the file is as it was read or saved before
+        GltfChoice choice;
     };
     /// Names the scene that is to be loaded next.
     struct Next {
         std::string path;
         bool keep = false;
+        GltfChoice choice;
     };
+    void load(const Next& next);
     void apply(const Document& next);
     void startBake(bool keepLight);
     bool finishLoading();
@@ -104,7 +114,7 @@ private:
     LiveBake& bake_;
     PrepareDesc prepare_; // of the present scene
     Document document_;
-    std::unique_ptr<LoadedScene> scene_;
+    std::unique_ptr<LoadedScene> scene_, early_;
     std::vector<std::unique_ptr<LoadedScene>> former_; // the bake thread may still read them
     SceneLoader loader_;
     Loading loading_;

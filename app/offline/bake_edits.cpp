@@ -20,11 +20,14 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     const InterruptGuard guard;
     const BakeRequest request = resolveBakeOptions(options);
     std::optional<PhaseProgress> phase(std::in_place, true);
-    PreparedScene prepared = prepareScene(request.prepare);
+    PrepareDesc desc = request.prepare;
+    desc.edited = true;
+    PreparedScene prepared = prepareScene(desc);
     const bool moved = editsOf(prepared.scene).placements != edits.placements;
     applyEdits(prepared.scene, edits);
     readEditedPicture(prepared.scene.sky);
     if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
+    furnishLight(prepared, request.prepare.furnishing);
     const vk::Device device({.select = options.machine.device, .validation = options.machine.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);

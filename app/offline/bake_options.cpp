@@ -1,5 +1,7 @@
 #include "app/offline/bake_options.h"
 
+#include "app/edit/choice_options.h"
+#include "app/edit/furnishing_options.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "bake/links/link_solver.h"
@@ -153,9 +155,7 @@ void addMachineOptions(CLI::App& command, BakeOptions& o) {
     command.add_flag("--no-sew", o.lightmap.noSew, "Leave the texels around charts empty");
     command.add_flag("--conservative", o.patches.conservative,
                      "Every texel that a triangle touches becomes a patch");
-    command.add_flag("--unwrap", o.patches.unwrap, "Make lightmap UVs for meshes that have none");
-    command.add_option("--density", o.patches.density, "Texels per metre of --unwrap (default: what fits)")
-        ->check(numberAbove(0, 1e6));
+    addFurnishingOptions(command, o.patches.furnishing);
     command.add_flag("--device-gather", o.machine.deviceGather,
                      "Gather by the device's shaders also where it is the CPU, whose own loops are faster");
     command.add_option("--batch-ms", o.machine.batchMs, "Aim of one submit in milliseconds")
@@ -183,6 +183,7 @@ CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("scene", o.files.scene, "glTF scene, .gltf or .glb")->required();
+    addChoiceOptions(command, o.files.choice);
     command.add_option("-o,--output", o.files.output, "Lightmap to write, .exr or .png")->required();
     command.add_option("--picture", o.files.picture, "Write the lightmap to this .png as well");
     addSizeOption(command, "--size", o);
@@ -231,7 +232,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     if (!rtrad && o.solve.distanceFactor >= 0) {
         throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
     }
-    if (!o.patches.unwrap && o.patches.density > 0) throw UsageError("--density: only with --unwrap");
+    checkFurnishing(o.patches.furnishing);
     if (!o.files.picture.empty() && !o.files.picture.ends_with(".png"))
         throw UsageError("--picture: '" + o.files.picture + "' does not end in .png");
     if (!o.files.sceneOut.empty() && !o.files.sceneOut.ends_with(".glb"))
@@ -243,9 +244,9 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
     BakeRequest request;
     request.prepare = {.path = o.files.scene,
+                       .choice = o.files.choice,
                        .size = o.patches.size,
-                       .unwrap = o.patches.unwrap,
-                       .density = o.patches.density};
+                       .furnishing = o.patches.furnishing};
     request.bake.size = o.patches.size;
     request.bake.conservative = o.patches.conservative;
     request.bake.tracer = parseTracerKind(o.machine.tracer);

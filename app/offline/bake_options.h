@@ -21,13 +21,14 @@ constexpr float kRtradReflectivity = 0.9f; // of RTRad's preset, unless told oth
 struct BakeFiles {
     std::string scene, output, picture, errorMap, json, sceneOut;
     bool half = false; // the output, if it is an .exr
+    GltfChoice choice; // of the scene
 };
 
 /// The patches that the lightmap has.
 struct PatchOptions {
     uint32_t size = 512; // lightmap edge [texels]
-    bool conservative = false, unwrap = false;
-    double density = 0; // of unwrap [texels per m], 0: what fits
+    bool conservative = false;
+    Furnishing furnishing;
 };
 
 /// Says how light is gathered, and when that is enough.

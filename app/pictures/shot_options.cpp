@@ -1,5 +1,6 @@
 #include "app/pictures/shot_options.h"
 
+#include "app/edit/choice_options.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -83,6 +84,7 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    addChoiceOptions(command, o.bake.files.choice);
     command.add_option("-o,--output", o.bake.files.output, "Picture to write, .png")->required();
     addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
@@ -90,7 +92,8 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     addSizeOption(command, "--lightmap-size", o.bake);
     const std::vector<CLI::Option*> before = command.get_options();
     addSolverOptions(command, o.bake);
-    const std::vector<std::string> used = {"--unwrap", "--density", "--shaders"}; // also without a bake
+    const std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
+                                           "--shaders"}; // also without a bake
     command.get_option("--lightmap-size")->excludes(lightmap);
     for (CLI::Option* option : command.get_options()) {
         const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();

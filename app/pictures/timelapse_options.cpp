@@ -1,5 +1,6 @@
 #include "app/pictures/timelapse_options.h"
 
+#include "app/edit/choice_options.h"
 #include "app/pictures/frame_writer.h"
 #include "app/text/frame_names.h"
 #include "app/text/option_checks.h"
@@ -49,6 +50,7 @@ void checkOutput(const std::string& path) {
 
 void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
     command.add_option("scene", o.shot.bake.files.scene, "glTF scene, .gltf or .glb")->required();
+    addChoiceOptions(command, o.shot.bake.files.choice);
     command
         .add_option(
             "-o,--output", o.shot.bake.files.output,

@@ -132,7 +132,7 @@ MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings, u
     if (choice.texCoord >= 0 && !choice.quality.complete)
         warnings.add(
             name, fmt::format("has parts without TEXCOORD_{}, which block light only: run 'relume unwrap' or "
-                              "pass --unwrap",
+                              "leave out --no-unwrap",
                               choice.texCoord));
     return choice;
 }
@@ -241,7 +241,8 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
 
 std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas,
                                    Warnings& warnings) {
-    const char* mend = unwrapped ? "give its triangles an area" : "run 'relume unwrap' or pass --unwrap";
+    const char* mend =
+        unwrapped ? "give its triangles an area" : "run 'relume unwrap' or leave out --no-unwrap";
     std::vector<MeshChoice> choices(scene.meshes.size());
     std::vector<bool> chosen(scene.meshes.size());
     size_t usable = 0;
@@ -279,6 +280,30 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped) {
     if (!formOneAtlas(scene, atlas)) repack(scene, choices, size, atlas);
     atlas.warnings = warnings.lines(scene.path);
     return atlas;
+}
+
+namespace {
+
+bool hasSurface(const Mesh& mesh) {
+    for (const Primitive& primitive : mesh.primitives)
+        for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            const auto corner = [&](size_t k) { return primitive.positions[primitive.indices[i + k]]; };
+            const glm::vec3 a = corner(0);
+            if (glm::cross(corner(1) - a, corner(2) - a) != glm::vec3(0.0f)) return true;
+        }
+    return false;
+}
+
+} // namespace
+
+size_t countUnmapped(const Scene& scene) {
+    std::vector<bool> used(scene.meshes.size(), false);
+    for (const Instance& instance : scene.instances)
+        used[static_cast<size_t>(instance.mesh)] = true;
+    size_t count = 0;
+    for (size_t i = 0; i < used.size(); ++i)
+        count += used[i] && hasSurface(scene.meshes[i]) && lightmapSet(scene.meshes[i]) < 0 ? 1 : 0;
+    return count;
 }
 
 int lightmapSet(const Mesh& mesh) {

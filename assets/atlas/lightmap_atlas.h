@@ -39,6 +39,9 @@ Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas);
 /// else -1.
 int lightmapSet(const Mesh& mesh);
 
+/// Returns how many meshes that instances use have a surface and no such set.
+size_t countUnmapped(const Scene& scene);
+
 /// Tells how well a scene's lightmap UVs use the atlas.
 struct AtlasStatistics {
     double coverage = 0; // covered share of the unit square [1]

@@ -6,6 +6,7 @@
 #include "assets/base/watch.h"
 #include "assets/model/scene_limits.h"
 
+#include <algorithm>
 #include <array>
 #include <cfloat>
 #include <cmath>
@@ -28,6 +29,18 @@ struct Part {
 
 bool isMasked(const Scene& scene, int material) {
     return material >= 0 && scene.materials[static_cast<size_t>(material)].alphaMode == AlphaMode::Mask;
+}
+
+bool isPane(const Scene& scene, int material) {
+    return material >= 0 && scene.materials[static_cast<size_t>(material)].pane;
+}
+
+/// Returns the instances that are not hidden.
+std::vector<uint32_t> shownInstances(const Scene& scene) {
+    std::vector<uint32_t> shown;
+    for (uint32_t i = 0; i < scene.instances.size(); ++i)
+        if (!scene.instances[i].hidden) shown.push_back(i);
+    return shown;
 }
 
 /// Returns the cofactors of the linear part: the inverse transpose times the determinant, which also serves
@@ -218,23 +231,39 @@ WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
     WorldMesh mesh;
     Flattener flattener(mesh);
     flattener.reserve(list.triangles());
-    for (const Part& part : list.parts())
-        if (!isMasked(scene, part.primitive->material)) flattener.add(part);
+    const auto addParts = [&](bool masked) {
+        for (const Part& part : list.parts())
+            if (const int material = part.primitive->material;
+                isMasked(scene, material) == masked && !isPane(scene, material))
+                flattener.add(part);
+    };
+    addParts(false);
     mesh.opaqueCount = mesh.triangleCount();
-    for (const Part& part : list.parts())
-        if (isMasked(scene, part.primitive->material)) flattener.add(part);
+    addParts(true);
     warnAboutDropped(scene, flattener);
     compactCharts(mesh, list.chartBound());
     return mesh;
 }
 
 WorldMesh flatten(const Scene& scene, const LightmapAtlas& atlas) {
-    std::vector<uint32_t> shown;
-    for (uint32_t i = 0; i < scene.instances.size(); ++i)
-        if (!scene.instances[i].hidden) shown.push_back(i);
-    WorldMesh mesh = flattenInstances(scene, atlas, shown);
+    WorldMesh mesh = flattenInstances(scene, atlas, shownInstances(scene));
     if (mesh.triangleCount() == 0)
         throw Error(scene.path + ": has no triangle with an area: export it with its geometry");
+    return mesh;
+}
+
+WorldMesh flattenPanes(const Scene& scene) {
+    WorldMesh mesh;
+    if (std::none_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.pane; }))
+        return mesh;
+    LightmapAtlas unmapped;
+    unmapped.instances.resize(scene.instances.size());
+    const PartList list(scene, unmapped, shownInstances(scene));
+    Flattener flattener(mesh);
+    for (const Part& part : list.parts())
+        if (isPane(scene, part.primitive->material)) flattener.add(part);
+    mesh.opaqueCount = mesh.triangleCount();
     return mesh;
 }
 

@@ -16,6 +16,13 @@ int hexDigit(char c) {
     return found == digits + 16 ? -1 : static_cast<int>(found - digits);
 }
 
+// Returns the value of a digit of base64 (RFC 4648), or -1 for another character.
+int base64Digit(char c) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const size_t found = kDigits.find(c);
+    return found == std::string_view::npos ? -1 : static_cast<int>(found);
+}
+
 // Returns how many bytes follow the first one of a letter, or -1 where it begins none.
 int followersOf(unsigned char first) {
     if (first < 0x80) return 0;
@@ -76,6 +83,29 @@ std::string encodedUri(std::string_view path) {
 bool isRelativeUri(std::string_view uri) {
     return !uri.empty() && uri[0] != '/' && uri[0] != '#' &&
            uri.find(':') > std::min(uri.find('/'), uri.size() - 1);
+}
+
+std::optional<std::vector<uint8_t>> bytesOfDataUri(std::string_view uri) {
+    constexpr std::string_view kScheme = "data:", kForm = ";base64";
+    const size_t comma = uri.find(',');
+    if (!uri.starts_with(kScheme) || comma == std::string_view::npos ||
+        !uri.substr(0, comma).ends_with(kForm))
+        return std::nullopt;
+    const std::string_view text = uri.substr(comma + 1);
+    std::vector<uint8_t> bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    uint32_t word = 0;
+    int bits = 0; // of the word that are not yet in a byte
+    for (const char c : text) {
+        const int digit = base64Digit(c);
+        if (digit < 0) break;
+        word = word << 6 | static_cast<uint32_t>(digit);
+        bits += 6;
+        if (bits < 8) continue;
+        bits -= 8;
+        bytes.push_back(static_cast<uint8_t>(word >> bits));
+    }
+    return bytes;
 }
 
 } // namespace relume

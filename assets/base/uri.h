@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace relume {
 
@@ -15,5 +18,8 @@ std::string decodedUri(std::string_view uri);
 std::string encodedUri(std::string_view path);
 /// Tells whether a URI is relative to the file that has it: not data, a web address or a path from the root.
 bool isRelativeUri(std::string_view uri);
+/// Returns the bytes that a URI holds itself ("data:image/png;base64,...", RFC 2397), up to the first
+/// character that is none of base64. Returns nothing for another URI and for data in another form.
+std::optional<std::vector<uint8_t>> bytesOfDataUri(std::string_view uri);
 
 } // namespace relume

@@ -1,14 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "assets/model/scene.h"
 
 namespace relume {
 
+/// Says what of a file is read where it offers a choice.
+struct GltfChoice {
+    std::string scene = {};          // name or number of a scene; "": the file's default
+    std::string variant = {};        // of KHR_materials_variants; "": the file's own materials
+    std::optional<double> time = {}; // of the first animation [s]; none: the rest pose
+};
+
 /// Reads a .gltf or .glb file. What it cannot use goes to Scene::warnings. Throws Error naming the file, the
-/// thing and the remedy.
-Scene loadGltf(const std::string& path);
+/// thing and the remedy; where a chosen name is none of the file's, it lists those that are.
+Scene loadGltf(const std::string& path, const GltfChoice& choice = {});
 
 /// Writes a scene as one binary .glb: meshes shared by instances, one node per instance (or one for all
 /// where Mesh::batched asks for it and there are eight or more), materials, textures

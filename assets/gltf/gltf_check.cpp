@@ -2,12 +2,13 @@
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "assets/gltf/gltf_check_extensions.h"
+#include "assets/gltf/gltf_check_json.h"
+#include "assets/gltf/gltf_node.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
 
 namespace relume::gltf {
 
@@ -15,33 +16,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                   "KHR_texture_transform", "KHR_mesh_quantization"};
-constexpr std::array kCompressions = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                      "MESHOPT_compression"};
-
-/// Checks one file's JSON and makes the messages about it.
-class Checker {
+/// Checks one file's JSON.
+class Checker : private JsonChecks {
 public:
-    explicit Checker(const File& file) : file_(file), root_(file.json) {}
+    explicit Checker(const File& file) : JsonChecks(file) {}
     void run() const;
 
 private:
     using Check = void (Checker::*)(const json&, const std::string&) const;
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Error(fmt::format("{}: {}: the file is damaged, export it again", file_.path, what));
-    }
-    const json* member(const json& object, const char* key) const;
-    uint64_t count(const char* section) const;
-    int64_t integer(const json& object, const char* key, const std::string& where, int64_t fallback = -1,
-                    int64_t limit = std::numeric_limits<int32_t>::max()) const;
-    int64_t index(const json& object, const char* key, const std::string& where, const char* section) const;
-    int64_t size(const json& object, const char* key, const std::string& where, int64_t fallback) const;
-    void numbers(const json& object, const char* key, const std::string& where, size_t length) const;
-    void number(const json& object, const char* key, const std::string& where) const;
-    void text(const json& object, const char* key, const std::string& where) const;
-    const json& object(const json& value, const std::string& where) const;
     void each(const char* section, Check checkOne) const;
 
     void version() const;
@@ -64,67 +47,8 @@ private:
     void texture(const json& value, const std::string& where) const;
     void image(const json& value, const std::string& where) const;
     void parents() const;
-
-    const File& file_;
-    const json& root_;
+    void climb(size_t root, const std::vector<int>& parentOf, std::vector<bool>& ends) const;
 };
-
-const json* Checker::member(const json& object, const char* key) const {
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : &*found;
-}
-
-uint64_t Checker::count(const char* section) const {
-    const json* list = member(root_, section);
-    return list ? list->size() : 0;
-}
-
-int64_t Checker::integer(const json& object, const char* key, const std::string& where, int64_t fallback,
-                         int64_t limit) const {
-    const json* value = member(object, key);
-    if (!value) return fallback;
-    // The parser gives unsigned to whatever is not negative, so this also bounds 64-bit values.
-    if (!value->is_number_unsigned() || value->get<uint64_t>() > static_cast<uint64_t>(limit))
-        fail(fmt::format("{}.{} is {}, not an integer from 0 to {}", where, key, inQuotes(value->dump()),
-                         limit));
-    return value->get<int64_t>();
-}
-
-int64_t Checker::size(const json& object, const char* key, const std::string& where, int64_t fallback) const {
-    return integer(object, key, where, fallback, int64_t(1) << 40);
-}
-
-int64_t Checker::index(const json& object, const char* key, const std::string& where,
-                       const char* section) const {
-    const int64_t value = integer(object, key, where);
-    const uint64_t entries = count(section);
-    if (value >= 0 && static_cast<uint64_t>(value) >= entries)
-        fail(fmt::format("{}.{} is {}, but there are {} {}", where, key, value, entries, section));
-    return value;
-}
-
-void Checker::numbers(const json& object, const char* key, const std::string& where, size_t length) const {
-    const json* value = member(object, key);
-    if (!value) return;
-    const bool good = value->is_array() && value->size() == length &&
-                      std::all_of(value->begin(), value->end(), [](const json& v) { return v.is_number(); });
-    if (!good) fail(fmt::format("{}.{} is not an array of {} numbers", where, key, length));
-}
-
-void Checker::number(const json& object, const char* key, const std::string& where) const {
-    const json* value = member(object, key);
-    if (value && !value->is_number()) fail(fmt::format("{}.{} is not a number", where, key));
-}
-
-void Checker::text(const json& object, const char* key, const std::string& where) const {
-    const json* value = member(object, key);
-    if (value && !value->is_string()) fail(fmt::format("{}.{} is not a string", where, key));
-}
-
-const json& Checker::object(const json& value, const std::string& where) const {
-    if (!value.is_object()) fail(where + " is not an object");
-    return value;
-}
 
 void Checker::each(const char* section, Check checkOne) const {
     const json* list = member(root_, section);
@@ -155,28 +79,17 @@ void Checker::extensions() const {
                                                           [](const json& v) { return v.is_string(); });
         if (!good) fail(fmt::format("{} is not an array of strings", section));
     }
-    const json* required = member(root_, "extensionsRequired");
-    if (!required) return;
-    for (const json& entry : *required) {
-        const std::string name = entry.get<std::string>();
-        if (std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end()) continue;
-        const bool compressed =
-            std::find(kCompressions.begin(), kCompressions.end(), name) != kCompressions.end();
-        throw Error(fmt::format("{}: requires the extension {}, which is not supported: export it without {}",
-                                file_.path, inQuotes(name), compressed ? "mesh compression" : "it"));
-    }
+    checkRequired(*this);
 }
 
 void Checker::buffer(const json& value, const std::string& where) const {
     const int64_t bytes = size(value, "byteLength", where, -1);
     if (bytes < 1) fail(where + ".byteLength is missing or 0");
     text(value, "uri", where);
-    if (!member(value, "uri")) {
-        if (!file_.binary) fail(where + " has no uri");
-        if (static_cast<uint64_t>(bytes) > file_.chunkBytes)
-            fail(fmt::format("{} holds {} bytes, but the binary chunk has {}", where, bytes,
-                             file_.chunkBytes));
-    }
+    if (member(value, "uri") || isPlaceholder(value)) return;
+    if (!file_.binary) fail(where + " has no uri");
+    if (static_cast<uint64_t>(bytes) > file_.chunkBytes + kPadding)
+        fail(fmt::format("{} holds {} bytes, but the binary chunk has {}", where, bytes, file_.chunkBytes));
 }
 
 void Checker::view(const json& value, const std::string& where) const {
@@ -190,6 +103,11 @@ void Checker::view(const json& value, const std::string& where) const {
     const int64_t stride = integer(value, "byteStride", where, 0);
     if (stride != 0 && (stride < 4 || stride > 252 || stride % 4 != 0))
         fail(fmt::format("{}.byteStride is {}, not a multiple of 4 up to 252", where, stride));
+    if (extension(value, kMeshopt, where))
+        checkCompressedView(*this, value, where);
+    else if (isPlaceholder(root_["buffers"][static_cast<size_t>(bufferIndex)]) &&
+             !member(root_["buffers"][static_cast<size_t>(bufferIndex)], "uri"))
+        fail(where + " lies in a buffer without bytes of its own");
 }
 
 /// Checks that the elements read from the view and offset that `holder` names end inside the view.
@@ -257,8 +175,11 @@ void Checker::primitive(const json& value, const std::string& where) const {
     if (!attributes || !attributes->is_object()) fail(where + ".attributes is missing or no object");
     for (const auto& [name, unused] : attributes->items())
         index(*attributes, name.c_str(), where + ".attributes", "accessors");
+    checkDraco(*this, value, where);
+    checkTargets(*this, value, where);
     const int64_t indices = index(value, "indices", where, "accessors");
-    if (indices >= 0 && !member(root_["accessors"][static_cast<size_t>(indices)], "bufferView"))
+    if (indices >= 0 && !extensionOf(value, kDraco) &&
+        !member(root_["accessors"][static_cast<size_t>(indices)], "bufferView"))
         fail(where + ".indices has no data");
     index(value, "material", where, "materials");
     integer(value, "mode", where, 4, 6);
@@ -273,6 +194,7 @@ void Checker::node(const json& value, const std::string& where) const {
     numbers(value, "scale", where, 3);
     numbers(value, "translation", where, 3);
     light(value, where);
+    checkInstancing(*this, value, where);
     if (const json* area = own(value, "areaLight", where)) {
         text(*area, "name", where + ".extras.relume.areaLight");
         text(*area, "type", where + ".extras.relume.areaLight");
@@ -378,43 +300,42 @@ void Checker::image(const json& value, const std::string& where) const {
     index(value, "bufferView", where, "bufferViews");
     text(value, "uri", where);
     text(value, "mimeType", where);
-    // The parser would hand these to the decoder as the wanted size; glTF does not have them.
-    if (member(value, "width") || member(value, "height")) fail(where + " has a width or height");
-    if ((member(value, "bufferView") != nullptr) == (member(value, "uri") != nullptr))
-        fail(where + " has neither or both of bufferView and uri");
 }
 
-/// Checks that each node has at most one parent: then a cycle cannot be reached from a root, and no walk is
-/// endless.
+/// Checks that each node has at most one parent, and that no parents of a scene's roots stand in a circle:
+/// then no walk is endless.
 void Checker::parents() const {
     const json* nodes = member(root_, "nodes");
     if (!nodes) return;
-    std::vector<bool> hasParent(nodes->size());
-    for (const json& parent : *nodes) {
-        const json* children = member(parent, "children");
-        if (!children) continue;
-        for (const json& child : *children) {
-            const size_t i = child.get<size_t>();
-            if (hasParent[i])
-                throw Error(
-                    fmt::format("{}: nodes[{}] has two parents: the node hierarchy must be a tree without "
+    const std::vector<int> parentOf = parentsOf(*nodes, [this](size_t node) {
+        throw Error(fmt::format("{}: nodes[{}] has two parents: the node hierarchy must be a tree without "
                                 "cycles, export it again",
-                                file_.path, i));
-            hasParent[i] = true;
-        }
-    }
+                                file_.path, node));
+    });
     const json* scenes = member(root_, "scenes");
     if (!scenes) return;
+    std::vector<bool> ends(nodes->size()); // the nodes from which a walk upwards is known to end
     for (const json& value : *scenes) {
         const json* roots = member(value, "nodes");
         if (!roots) continue;
         for (const json& root : *roots)
-            if (hasParent[root.get<size_t>()])
-                throw Error(fmt::format(
-                    "{}: nodes[{}] is a scene's root and another node's child: the node hierarchy "
-                    "must be a tree without cycles, export it again",
-                    file_.path, root.get<size_t>()));
+            climb(root.get<size_t>(), parentOf, ends);
     }
+}
+
+void Checker::climb(size_t root, const std::vector<int>& parentOf, std::vector<bool>& ends) const {
+    std::vector<size_t> way;
+    for (int node = static_cast<int>(root); node >= 0 && !ends[static_cast<size_t>(node)];
+         node = parentOf[static_cast<size_t>(node)]) {
+        way.push_back(static_cast<size_t>(node));
+        if (way.size() > ends.size())
+            throw Error(
+                fmt::format("{}: nodes[{}] is its own ancestor: the node hierarchy must be a tree without "
+                            "cycles, export it again",
+                            file_.path, root));
+    }
+    for (const size_t node : way)
+        ends[node] = true;
 }
 
 void Checker::run() const {
@@ -474,12 +395,14 @@ void check(const File& file) {
 
 std::vector<std::string> unknownExtensions(const File& file) {
     std::vector<std::string> unknown;
-    const auto used = file.json.find("extensionsUsed");
-    if (used == file.json.end()) return unknown;
-    for (const json& entry : *used) {
-        const std::string name = entry.get<std::string>();
-        if (std::find(kSupported.begin(), kSupported.end(), name) == kSupported.end())
-            unknown.push_back(name);
+    for (const char* section : {"extensionsUsed", "extensionsRequired"}) {
+        const auto listed = file.json.find(section);
+        if (listed == file.json.end()) continue;
+        for (const json& entry : *listed) {
+            const std::string name = entry.get<std::string>();
+            if (!isKnownExtension(name) && std::find(unknown.begin(), unknown.end(), name) == unknown.end())
+                unknown.push_back(name);
+        }
     }
     return unknown;
 }

@@ -8,6 +8,7 @@
 #include "assets/gltf/gltf_edit_light.h"
 #include "assets/gltf/gltf_edit_node.h"
 #include "assets/gltf/gltf_edit_parts.h"
+#include "assets/gltf/gltf_edit_visibility.h"
 #include "assets/gltf/gltf_light_json.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -38,15 +39,37 @@ void requireSameKind(const File& file, const std::string& target) {
                             target, file.path, kind));
 }
 
+/// Returns which of a file's scenes an edit is about: the one that was read.
+int editedSceneOf(const File& file, const Scene& before) {
+    const auto scenes = file.json.find("scenes");
+    if (before.sceneNumber < 0 || scenes == file.json.end()) return file.json.value("scene", 0);
+    if (static_cast<size_t>(before.sceneNumber) >= scenes->size())
+        throw Error(fmt::format("{}: has no scene {} any more: the file has changed, load it again",
+                                file.path, before.sceneNumber));
+    return before.sceneNumber;
+}
+
+/// Throws Error for an object that stands somewhere else than its node's transform says.
+void requireMovable(const Scene& before, const Instance& instance, const std::string& target) {
+    const char* why = instance.copy >= 0
+                          ? "is one of several of its node (EXT_mesh_gpu_instancing), whose places "
+                            "are not edited: put it back"
+                      : instance.bent ? "stands where the joints of its skin are: put it back and move these"
+                      : before.posed ? "stands as an animation has it: put it back, or read the file without "
+                                       "--time"
+                                     : nullptr;
+    if (why) throw Error(fmt::format("{}: object {} {}", target, inQuotes(instance.name), why));
+}
+
 /// Adds what has to move; returns the node of each instance of `after`.
 std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const Scene& after,
                                const std::string& target, Moves& moves) {
     std::vector<int> nodes;
-    std::map<int, const Instance*> known;
+    std::map<std::pair<int, int>, const Instance*> known;
     for (const Instance& instance : before.instances)
-        known[instance.node] = &instance;
+        known[{instance.node, instance.copy}] = &instance;
     for (const Instance& instance : after.instances) {
-        const auto found = known.find(instance.node);
+        const auto found = known.find({instance.node, instance.copy});
         if (instance.node < 0 || found == known.end() || static_cast<size_t>(instance.node) >= tree.size() ||
             !tree.node(instance.node).contains("mesh"))
             throw Error(fmt::format("{}: object {} is not in {}: objects cannot be added, remove it or load "
@@ -55,6 +78,7 @@ std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const 
         nodes.push_back(instance.node);
         const glm::mat4 &from = found->second->transform, &to = instance.transform;
         if (from == to) continue;
+        requireMovable(before, instance, target);
         for (int i = 0; i < 16; ++i)
             if (!std::isfinite(to[i / 4][i % 4]))
                 throw Error(fmt::format("{}: object {} has a position that is not finite: place it again",
@@ -64,16 +88,35 @@ std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const 
     return nodes;
 }
 
+/// Throws Error for a light of an animated scene that was moved: its node's transform in the file is another
+/// one.
+void requireStill(const Scene& before, const Scene& after, const std::string& target) {
+    std::map<std::pair<int, bool>, const Light*> known;
+    for (const Light& light : before.lights)
+        known[{light.node, isAreaLight(light.type)}] = &light;
+    for (const Light& light : after.lights) {
+        const auto found = known.find({light.node, isAreaLight(light.type)});
+        if (found != known.end() && found->second->transform != light.transform)
+            throw Error(
+                fmt::format("{}: light {} stands as an animation has it: put it back, or read the file "
+                            "without --time",
+                            target, inQuotes(light.name)));
+    }
+}
+
 /// Makes all changes in the JSON.
 EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const std::string& target) {
-    const NodeTree tree(edit.file);
+    const NodeTree tree(edit.file, edit.scene);
     EditedNodes nodes;
     Moves moves;
     editMaterials(edit, before.materials, after.materials, target);
     editSky(edit, before.sky, after.sky, target);
     LightEdit lights(edit, tree, target);
     nodes.lights = lights.apply(before.lights, after.lights, moves);
+    if (before.posed) requireStill(before, after, target);
     nodes.instances = moveInstances(tree, before, after, target, moves);
+    VisibilityEdit visibility(edit, tree);
+    visibility.apply(before, after, target, moves);
     const auto children = moveCarried(edit, tree, moves);
     for (size_t i = 0; i < nodes.lights.size(); ++i) {
         const bool area = isAreaLight(after.lights[i].type);
@@ -83,6 +126,7 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
     for (int& node : nodes.instances)
         if (const auto child = children.find({node, Carried::Instance}); child != children.end())
             node = child->second;
+    visibility.finish(children);
     lights.dropUnused();
     dropEmptyNodes(edit, lights.emptied());
     moveUris(edit, target);
@@ -100,6 +144,7 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
     gltf::requireSameKind(file, target);
     const std::string_view text = gltf::jsonText(file);
     gltf::FileEdit edit(file);
+    edit.scene = gltf::editedSceneOf(file, before);
     const gltf::EditedJson was = edit.json;
     EditedNodes nodes;
     try {
@@ -120,6 +165,8 @@ EditedNodes saveEditedGltf(const std::string& source, const Scene& before, const
 Scene partsOfEdits(const Scene& scene) {
     Scene parts;
     parts.path = scene.path;
+    parts.sceneNumber = scene.sceneNumber;
+    parts.posed = scene.posed;
     parts.materials = scene.materials;
     parts.instances = scene.instances;
     parts.lights = scene.lights;

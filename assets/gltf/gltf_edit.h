@@ -15,8 +15,9 @@ struct EditedNodes {
 
 /// Writes the file `source` again as `target` with what differs between `before` (the scene as
 /// loadGltf(source) gave it) and `after` (the same scene, edited): lights moved, changed, added (Light::node
-/// -1) and deleted; the sky; emission and base colour of materials; transforms of instances. All else in the
-/// file stays to the byte, its layout and the spelling of its numbers too; `target` may be `source`.
+/// -1) and deleted; the sky; emission and base colour of materials; transforms of instances, and which are
+/// hidden. All else in the file stays to the byte, its layout and the spelling of its numbers too; `target`
+/// may be `source`.
 ///
 /// Lights and the sky are in the file as README.md says. Sky::file is a path that can be opened; the file has
 /// it relative to its own folder.

@@ -20,6 +20,7 @@ using JsonPath = std::vector<const char*>; // keys from object to object
 struct FileEdit {
     const File& file; // as it was, checked
     EditedJson json;  // as it is to be
+    int scene = 0;    // which of its scenes is edited
     /// This is true where the file may name its parts by JSON pointers, as KHR_animation_pointer does: then
     /// what they may name must not be renumbered.
     bool hasPointers = false;

@@ -4,6 +4,7 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_edit_transform.h"
 #include "assets/gltf/gltf_light_json.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/model/light_names.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -18,7 +19,6 @@ namespace relume::gltf {
 
 namespace {
 
-constexpr const char* kPunctual = "KHR_lights_punctual";
 constexpr double kHalfPi = 1.57079632679489662;
 
 Carried carriedAs(const Light& light) {
@@ -50,22 +50,30 @@ void writeCones(const FileEdit& edit, EditedJson& entry, const Light& light, con
                   std::min(light.innerConeAngle, below));
 }
 
+/// Returns the scale by which EXT_lights_area multiplies the size of a node's light; that of a new node,
+/// which has none, is 1.
+double scaleOfNode(const NodeTree& tree, int node) {
+    if (static_cast<size_t>(node) >= tree.size()) return 1.0;
+    const glm::dmat4 world = tree.world(node);
+    double largest = 0.0;
+    for (int c = 0; c < 3; ++c)
+        largest = std::max(largest, glm::length(glm::dvec3(world[c])));
+    return largest > 0.0 && std::isfinite(largest) ? largest : 1.0;
+}
+
 } // namespace
 
 LightEdit::LightEdit(FileEdit& edit, const NodeTree& tree, const std::string& target)
-    : edit_(edit), tree_(tree), target_(target) {
-    if (const EditedJson* lights = find(edit.json, {"extensions", kPunctual, "lights"}))
-        users_.resize(lights->size());
-    if (EditedJson* nodes = find(edit.json, {"nodes"}))
-        for (EditedJson& node : *nodes)
-            if (const EditedJson* use = find(node, {"extensions", kPunctual, "light"}))
-                ++users_[use->get<size_t>()];
-}
+    : edit_(edit), tree_(tree), target_(target), punctual_(edit, kPunctualLights), area_(edit, kAreaLights) {}
 
 bool LightEdit::holds(int node, bool area) const {
     if (node < 0 || static_cast<size_t>(node) >= tree_.size()) return false;
-    EditedJson& entry = edit_.json["nodes"][static_cast<size_t>(node)];
-    return area ? find(entry, {"extras", "relume", "areaLight"}) : find(entry, {"extensions", kPunctual});
+    if (!area) return punctual_.has(node);
+    return hasAreaExtras(node) || area_.has(node);
+}
+
+bool LightEdit::hasAreaExtras(int node) const {
+    return find(edit_.json["nodes"][static_cast<size_t>(node)], {"extras", "relume", "areaLight"});
 }
 
 void LightEdit::requireGood(const Light& light) const {
@@ -127,10 +135,22 @@ void LightEdit::writePunctual(EditedJson& entry, const Light& light, const Light
     }
 }
 
-void LightEdit::writeArea(int index, const Light& light, const Light* before) const {
+/// Writes an area light into its node's extras, which say it whatever scale the node has, and into its entry
+/// of EXT_lights_area. A light that the file has by extras alone stays so.
+void LightEdit::writeArea(int index, const Light& light, const Light* before) {
     EditedJson& node = edit_.json["nodes"][static_cast<size_t>(index)];
-    const std::string where = fmt::format("nodes[{}]", index);
-    EditedJson& area = make(edit_, node, {"extras", "relume", "areaLight"}, where);
+    const JsonPath path = {"extras", "relume", "areaLight"};
+    const bool byExtension = area_.has(index), byExtras = find(node, path) != nullptr;
+    if (byExtension) {
+        writeAreaExtension(area_.own(index), light, scaleOfNode(tree_, index));
+    } else if (!byExtras) {
+        EditedJson entry = EditedJson::object();
+        writeAreaExtension(entry, light, scaleOfNode(tree_, index));
+        area_.add(index, std::move(entry));
+    }
+    if (!byExtras) before = nullptr;
+    EditedJson& area =
+        make(edit_, edit_.json["nodes"][static_cast<size_t>(index)], path, fmt::format("nodes[{}]", index));
     if (area.is_null()) area = EditedJson::object();
     const bool anew = !before || before->type != light.type;
     if (!before || before->name != light.name) area["name"] = light.name;
@@ -147,49 +167,44 @@ void LightEdit::writeArea(int index, const Light& light, const Light* before) co
     }
 }
 
-/// Returns the entry of a node's light, or a copy of it where other nodes use it too.
-EditedJson& LightEdit::ownLight(int node) {
-    EditedJson& use =
-        *find(edit_.json["nodes"][static_cast<size_t>(node)], {"extensions", kPunctual, "light"});
-    EditedJson& lights = *find(edit_.json, {"extensions", kPunctual, "lights"});
-    const size_t index = use.get<size_t>();
-    if (!lights[index].is_object()) edit_.fail(fmt::format("light {} is no object", index));
-    if (users_[index] == 1) return lights[index];
-    --users_[index];
-    users_.push_back(1);
-    use = lights.size();
-    EditedJson copy = lights[index];
-    lights.push_back(std::move(copy));
-    return lights.back();
+/// Writes all that an entry of EXT_lights_area says of a light whose node has this scale.
+void LightEdit::writeAreaExtension(EditedJson& entry, const Light& light, double scale) const {
+    const bool isDisc = light.type == LightType::Disc;
+    if (light.name.empty()) {
+        erase(entry, {"name"});
+    } else {
+        entry["name"] = light.name;
+    }
+    entry["type"] = isDisc ? "disk" : "rect";
+    setNumbers(entry["color"], numbersOf(light.color));
+    setNumber(entry["intensity"], light.intensity);
+    const double height = isDisc ? 2.0 * double(light.radius) : double(light.size.y);
+    setNumber(entry["size"], static_cast<float>(height / scale));
+    if (isDisc)
+        erase(entry, {"rect"});
+    else
+        setNumber(make(edit_, entry, {"rect", "aspect"}, "light " + inQuotes(light.name)),
+                  static_cast<float>(double(light.size.x) / double(light.size.y)));
 }
 
 void LightEdit::write(int node, const Light& light, const Light* before) {
     if (isAreaLight(light.type)) {
         writeArea(node, light, before);
     } else if (before) {
-        writePunctual(ownLight(node), light, before);
+        writePunctual(punctual_.own(node), light, before);
     } else {
         EditedJson entry = EditedJson::object();
         writePunctual(entry, light, nullptr);
-        EditedJson& lights = make(edit_, edit_.json, {"extensions", kPunctual, "lights"}, "the file");
-        if (lights.is_null()) lights = EditedJson::array();
-        if (!lights.is_array()) edit_.fail("the file's list of lights is no array");
-        lights.push_back(std::move(entry));
-        users_.push_back(1);
-        make(edit_, edit_.json["nodes"][static_cast<size_t>(node)], {"extensions", kPunctual, "light"},
-             fmt::format("nodes[{}]", node)) = users_.size() - 1;
-        useExtension(edit_, kPunctual);
+        punctual_.add(node, std::move(entry));
     }
 }
 
 void LightEdit::remove(const Light& light) {
-    EditedJson& node = edit_.json["nodes"][static_cast<size_t>(light.node)];
     if (isAreaLight(light.type)) {
-        erase(node, {"extras", "relume", "areaLight"});
+        erase(edit_.json["nodes"][static_cast<size_t>(light.node)], {"extras", "relume", "areaLight"});
+        area_.remove(light.node);
     } else {
-        unused_.push_back(find(node, {"extensions", kPunctual, "light"})->get<int>());
-        --users_[static_cast<size_t>(unused_.back())];
-        erase(node, {"extensions", kPunctual});
+        punctual_.remove(light.node);
     }
     emptied_.push_back(light.node);
 }
@@ -200,7 +215,7 @@ void LightEdit::remove(const Light& light) {
 size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
     EditedJson* scenes = find(edit_.json, {"scenes"});
     if (!scenes || scenes->empty()) return kLastPlace;
-    const EditedJson* roots = find(defaultScene(edit_), {"nodes"});
+    const EditedJson* roots = find(editedScene(edit_), {"nodes"});
     if (!roots) return kLastPlace;
     const auto placeOf = [&](int node) -> size_t {
         const int root = static_cast<size_t>(node) < tree_.size() ? tree_.root(node) : node;
@@ -219,7 +234,8 @@ size_t LightEdit::rootPlace(const std::vector<int>& nodes, size_t index) const {
 /// one.
 int LightEdit::adopt(const Light& light, size_t rootPlace, Moves& moves) {
     const bool known = light.node >= 0 && static_cast<size_t>(light.node) < tree_.size() &&
-                       tree_.inScene(light.node) && !holds(light.node, isAreaLight(light.type));
+                       tree_.inScene(light.node) && tree_.isVisible(light.node) &&
+                       !holds(light.node, isAreaLight(light.type));
     if (!known) {
         const int node = addNode(edit_, light.name, -1, rootPlace);
         writeRigid(edit_.json["nodes"][static_cast<size_t>(node)], light.transform);
@@ -250,7 +266,9 @@ std::vector<int> LightEdit::apply(const std::vector<Light>& before, const std::v
         nodes[i] = after[i].node;
         const bool moved = old.transform != after[i].transform, changed = !alike(old, after[i]);
         if (moved || changed) requireGood(after[i]);
-        if (changed) write(nodes[i], after[i], &old);
+        // A move may change its node's scale, which the extension's size follows: then the extras are needed.
+        const bool bare = moved && isAreaLight(old.type) && !hasAreaExtras(nodes[i]);
+        if (changed || bare) write(nodes[i], after[i], &old);
         if (moved) moves[nodes[i]][carriedAs(old)] = {after[i].name, old.transform, after[i].transform};
     }
     for (const auto& [key, light] : known)
@@ -261,27 +279,6 @@ std::vector<int> LightEdit::apply(const std::vector<Light>& before, const std::v
         nodes[i] = adopt(after[i], rootPlace(nodes, i), moves);
     }
     return nodes;
-}
-
-void LightEdit::dropUnused() {
-    if (unused_.empty() || edit_.hasPointers) return;
-    std::sort(unused_.begin(), unused_.end(), std::greater<>());
-    unused_.erase(std::unique(unused_.begin(), unused_.end()), unused_.end());
-    EditedJson& extension = *find(edit_.json, {"extensions", kPunctual});
-    EditedJson& lights = extension["lights"];
-    for (const int index : unused_) {
-        if (users_[static_cast<size_t>(index)] > 0) continue;
-        if (lights.size() == 1) { // glTF has no empty list
-            if (extension.size() > 1) return;
-            erase(edit_.json, {"extensions", kPunctual});
-            dropExtension(edit_, kPunctual);
-            return;
-        }
-        lights.erase(static_cast<size_t>(index));
-        for (EditedJson& node : edit_.json["nodes"])
-            if (EditedJson* use = find(node, {"extensions", kPunctual, "light"}); use && *use > index)
-                *use = use->get<int>() - 1;
-    }
 }
 
 } // namespace relume::gltf

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "assets/gltf/gltf_edit_entries.h"
 #include "assets/gltf/gltf_edit_node.h"
 #include "assets/model/scene.h"
 
@@ -17,7 +18,10 @@ public:
     std::vector<int> apply(const std::vector<Light>& before, const std::vector<Light>& after, Moves& moves);
 
     /// Drops the entries of lights that no node uses any more; call it once all has moved.
-    void dropUnused();
+    void dropUnused() {
+        punctual_.dropUnused();
+        area_.dropUnused();
+    }
     /// Returns the nodes whose light was deleted.
     const std::vector<int>& emptied() const { return emptied_; }
 
@@ -25,18 +29,19 @@ private:
     int adopt(const Light& light, size_t rootPlace, Moves& moves);
     size_t rootPlace(const std::vector<int>& nodes, size_t index) const;
     void remove(const Light& light);
-    EditedJson& ownLight(int node);
     void write(int node, const Light& light, const Light* before);
     void writePunctual(EditedJson& entry, const Light& light, const Light* before) const;
-    void writeArea(int node, const Light& light, const Light* before) const;
+    void writeArea(int node, const Light& light, const Light* before);
+    void writeAreaExtension(EditedJson& entry, const Light& light, double scale) const;
     void requireGood(const Light& light) const;
     bool holds(int node, bool area) const;
+    bool hasAreaExtras(int node) const;
 
     FileEdit& edit_;
     const NodeTree& tree_;
     const std::string& target_;
-    std::vector<int> users_;            // nodes that use each light entry
-    std::vector<int> emptied_, unused_; // nodes; light entries that lost a user
+    LightEntries punctual_, area_;
+    std::vector<int> emptied_; // nodes
 };
 
 } // namespace relume::gltf

@@ -4,6 +4,7 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_edit_transform.h"
 #include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -23,23 +24,11 @@ std::vector<JsonPath> membersOf(Carried carried) {
     case Carried::Instance:
         return {{"mesh"}, {"skin"}, {"weights"}, {"extensions", "EXT_mesh_gpu_instancing"}};
     case Carried::Light:
-        return {{"extensions", "KHR_lights_punctual"}};
+        return {{"extensions", kPunctualLights}};
     case Carried::AreaLight:
-        return {{"extras", "relume", "areaLight"}};
+        return {{"extras", "relume", "areaLight"}, {"extensions", kAreaLights}};
     }
     return {};
-}
-
-bool carries(EditedJson& node, Carried carried) {
-    switch (carried) {
-    case Carried::Instance:
-        return find(node, {"mesh"});
-    case Carried::Light:
-        return find(node, {"extensions", "KHR_lights_punctual"});
-    case Carried::AreaLight:
-        return find(node, {"extras", "relume", "areaLight"});
-    }
-    return false;
 }
 
 /// Tells whether two things go to the same place. Only place and direction of a light count: its transform
@@ -59,8 +48,9 @@ bool movesWhole(EditedJson& node, const std::map<Carried, Move>& moves) {
     if (const EditedJson* children = find(node, {"children"}); children && !children->empty()) return false;
     for (const Carried carried : {Carried::Instance, Carried::Light, Carried::AreaLight})
         if (carries(node, carried) && !moves.contains(carried)) return false;
-    return std::all_of(moves.begin(), moves.end(),
-                       [&](const auto& move) { return together(move.second, moves.begin()->second); });
+    return std::all_of(moves.begin(), moves.end(), [&](const auto& move) {
+        return !move.second.apart && together(move.second, moves.begin()->second);
+    });
 }
 
 /// Calls `visit` with the target of each animation channel that has one.
@@ -152,8 +142,8 @@ std::map<Carried, Move> withFollower(EditedJson& node, const glm::mat4& world,
 
 /// Tells whether a node may be named by a number that nothing here knows of.
 bool hasUnknownExtensions(const FileEdit& edit) {
-    constexpr std::array kNamesNoNode = {"KHR_materials_", "KHR_texture_",        "KHR_mesh_",
-                                         "KHR_draco_",     "KHR_lights_punctual", "EXT_texture_"};
+    constexpr std::array kNamesNoNode = {"KHR_materials_",      "KHR_texture_", "KHR_mesh_", "KHR_draco_",
+                                         "KHR_lights_punctual", "EXT_texture_", kAreaLights, kVisibility};
     const auto used = edit.file.json.find("extensionsUsed");
     if (used == edit.file.json.end()) return false;
     return std::any_of(used->begin(), used->end(), [&](const json& entry) {
@@ -185,20 +175,28 @@ void unlist(EditedJson& holder, const char* key, int node) {
 
 } // namespace
 
-NodeTree::NodeTree(const File& file) : file_(file) {
+bool carries(EditedJson& node, Carried carried) {
+    switch (carried) {
+    case Carried::Instance:
+        return find(node, {"mesh"});
+    case Carried::Light:
+        return find(node, {"extensions", kPunctualLights});
+    case Carried::AreaLight:
+        return find(node, {"extras", "relume", "areaLight"}) || find(node, {"extensions", kAreaLights});
+    }
+    return false;
+}
+
+NodeTree::NodeTree(const File& file, int scene) : file_(file) {
     const json none = json::array();
     const auto section = [&](const char* key) -> const json& {
         const auto found = file.json.find(key);
         return found == file.json.end() ? none : *found;
     };
     const json& nodes = section("nodes");
-    parents_.assign(nodes.size(), -1);
+    parents_ = parentsOf(nodes);
     roots_.assign(nodes.size(), false);
-    for (size_t i = 0; i < nodes.size(); ++i)
-        if (const auto children = nodes[i].find("children"); children != nodes[i].end())
-            for (const json& child : *children)
-                parents_[child.get<size_t>()] = static_cast<int>(i);
-    for (const int root : rootNodes(nodes, section("scenes"), file.json.value("scene", 0)))
+    for (const int root : rootNodes(nodes, section("scenes"), scene))
         roots_[static_cast<size_t>(root)] = true;
 }
 
@@ -213,7 +211,15 @@ int NodeTree::root(int index) const {
 }
 
 bool NodeTree::inScene(int index) const {
-    return roots_[static_cast<size_t>(root(index))];
+    while (index >= 0 && !roots_[static_cast<size_t>(index)])
+        index = parents_[static_cast<size_t>(index)];
+    return index >= 0;
+}
+
+bool NodeTree::isVisible(int index) const {
+    for (; index >= 0; index = parent(index))
+        if (!gltf::isVisible(node(index))) return false;
+    return true;
 }
 
 glm::dmat4 NodeTree::world(int index) const {
@@ -242,7 +248,7 @@ int addNode(FileEdit& edit, const std::string& name, int parent, size_t place) {
     // Without scenes all nodes that have no parent are shown.
     const bool hasScenes = edit.json.contains("scenes") && !edit.json["scenes"].empty();
     if (parent < 0 && !hasScenes) return index;
-    EditedJson& holder = parent < 0 ? defaultScene(edit) : nodes[static_cast<size_t>(parent)];
+    EditedJson& holder = parent < 0 ? editedScene(edit) : nodes[static_cast<size_t>(parent)];
     EditedJson& list = holder[parent < 0 ? "nodes" : "children"];
     if (list.is_null()) list = EditedJson::array();
     list.insert(list.begin() + static_cast<std::ptrdiff_t>(std::min(place, list.size())), index);
@@ -295,7 +301,7 @@ void dropEmptyNodes(FileEdit& edit, std::vector<int> candidates) {
     }
 }
 
-EditedJson& defaultScene(FileEdit& edit) {
+EditedJson& editedScene(FileEdit& edit) {
     if (!edit.json.contains("scenes") || edit.json["scenes"].empty()) {
         EditedJson scene = EditedJson::object();
         const json none = json::array();
@@ -304,7 +310,7 @@ EditedJson& defaultScene(FileEdit& edit) {
         edit.json["scene"] = 0;
         edit.json["scenes"] = EditedJson::array({std::move(scene)});
     }
-    return edit.json["scenes"][static_cast<size_t>(edit.json.value("scene", 0))];
+    return edit.json["scenes"][static_cast<size_t>(edit.scene)];
 }
 
 } // namespace relume::gltf

@@ -4,6 +4,7 @@
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -112,8 +113,12 @@ void editEmission(FileEdit& edit, EditedJson& material, const glm::vec3& before,
 }
 
 void editBaseColor(FileEdit& edit, EditedJson& material, const glm::vec4& color, const std::string& where) {
+    const JsonPath unlit = {"extensions", "KHR_materials_unlit"};
+    const JsonPath diffuse = {"extensions", kSpecularGlossiness, "diffuseFactor"};
     const JsonPath path = {"pbrMetallicRoughness", "baseColorFactor"};
-    if (color == glm::vec4(1.0f)) {
+    if (find(material, {"extensions", kSpecularGlossiness}) && !find(material, unlit)) {
+        setNumbers(make(edit, material, diffuse, where), {&color[0], 4});
+    } else if (color == glm::vec4(1.0f)) {
         erase(material, path);
     } else {
         setNumbers(make(edit, material, path, where), {&color[0], 4});
@@ -174,7 +179,7 @@ void editSky(FileEdit& edit, const Sky& before, const Sky& after, const std::str
     if (!std::isfinite(after.rotation))
         throw Error(
             fmt::format("{}: the sky has a rotation of {}: give a finite number", target, after.rotation));
-    EditedJson& scene = defaultScene(edit);
+    EditedJson& scene = editedScene(edit);
     const JsonPath path = {"extras", "relume", "sky"};
     const auto part = [&path](const char* key) { return JsonPath{path[0], path[1], path[2], key}; };
     if (!after.shines() && after.file.empty()) {

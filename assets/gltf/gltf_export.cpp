@@ -2,11 +2,11 @@
 
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
-#include "assets/base/uri.h"
 #include "assets/gltf/gltf_batches.h"
 #include "assets/gltf/gltf_light_json.h"
-#include "assets/images/float_image.h"
-#include "assets/images/image_file.h"
+#include "assets/gltf/gltf_png.h"
+#include "assets/gltf/gltf_sky_file.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,11 +17,6 @@
 
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
-
-// These functions are private to this file: tinygltf and others may bring the same ones.
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb_image_write.h>
 
 namespace relume {
 namespace {
@@ -245,6 +240,10 @@ Json GlbWriter::material(const Material& m) {
             use("KHR_materials_emissive_strength");
         }
     }
+    if (m.transmission > 0.0f) {
+        out["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
+        use("KHR_materials_transmission");
+    }
     if (m.emissionTexture.texture >= 0) out["emissiveTexture"] = textureInfo(m.emissionTexture, m.name);
     if (m.alphaMode == AlphaMode::Mask) {
         out["alphaMode"] = "MASK";
@@ -256,31 +255,9 @@ Json GlbWriter::material(const Material& m) {
     return out;
 }
 
-std::vector<uint8_t> encodePng(const Image& image) {
-    if (image.width == 0 || image.height == 0 || image.rgba.size() != size_t{4} * image.width * image.height)
-        throw Error("image '" + image.name + "' has no pixels: remove it or load its file");
-    bool opaque = true;
-    for (size_t i = 3; i < image.rgba.size(); i += 4)
-        opaque = opaque && image.rgba[i] == 255;
-    const int channels = opaque ? 3 : 4;
-    std::vector<uint8_t> pixels;
-    pixels.reserve(image.rgba.size());
-    for (size_t i = 0; i < image.rgba.size(); i += 4)
-        pixels.insert(pixels.end(), image.rgba.begin() + i, image.rgba.begin() + i + channels);
-    std::vector<uint8_t> png;
-    const auto append = [](void* context, void* data, int size) {
-        auto* out = static_cast<std::vector<uint8_t>*>(context);
-        out->insert(out->end(), static_cast<uint8_t*>(data), static_cast<uint8_t*>(data) + size);
-    };
-    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-    if (!stbi_write_png_to_func(append, &png, width, height, channels, pixels.data(), width * channels))
-        throw Error("image '" + image.name + "' cannot be written as PNG: out of memory");
-    return png;
-}
-
 void GlbWriter::addTextures() {
     for (const Image& image : scene_.images) {
-        pngs_.push_back(encodePng(image));
+        pngs_.push_back(gltf::encodePng(image));
         Json out; // its bufferView comes with the buffers
         if (!image.name.empty()) out["name"] = image.name;
         out["mimeType"] = "image/png";
@@ -348,14 +325,13 @@ Json GlbWriter::addCamera(const Camera& camera) {
 
 Json GlbWriter::addLight(const Light& light) {
     Json node = nodeOf(light.name, light.transform);
-    if (gltf::isAreaLight(light.type)) {
-        node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
-        return node;
-    }
-    Json& lights = json_["extensions"]["KHR_lights_punctual"]["lights"];
-    lights.push_back(gltf::punctualLightJson(light));
-    use("KHR_lights_punctual");
-    node["extensions"]["KHR_lights_punctual"]["light"] = lights.size() - 1;
+    const bool area = gltf::isAreaLight(light.type);
+    if (area) node["extras"]["relume"]["areaLight"] = gltf::areaLightJson(light);
+    const char* extension = area ? gltf::kAreaLights : gltf::kPunctualLights;
+    Json& lights = json_["extensions"][extension]["lights"];
+    lights.push_back(area ? gltf::areaExtensionJson(light) : gltf::punctualLightJson(light));
+    use(extension);
+    node["extensions"][extension]["light"] = lights.size() - 1;
     return node;
 }
 
@@ -368,6 +344,10 @@ void GlbWriter::addNodes() {
         Json node = nodeOf(instance.name, instance.transform);
         if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
             node["mesh"] = meshIndices_[instance.mesh];
+        if (instance.hidden) {
+            node["extensions"][gltf::kVisibility]["visible"] = false;
+            use(gltf::kVisibility);
+        }
         nodes.push_back(std::move(node));
     }
     for (const gltf::Batch& batch : batches.batches)
@@ -375,6 +355,7 @@ void GlbWriter::addNodes() {
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
+        if (!light.preview)
         nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
@@ -383,7 +364,7 @@ void GlbWriter::addNodes() {
         roots.push_back(i);
     Json root = Json::object();
     if (!nodes.empty()) root["nodes"] = std::move(roots);
-    if (scene_.sky.shines() || !skyFile_.empty())
+    if (!scene_.sky.preview && (scene_.sky.shines() || !skyFile_.empty()))
         root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
     json_["scenes"].push_back(std::move(root));
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);
@@ -470,53 +451,18 @@ std::vector<uint8_t> GlbWriter::write() {
     return out;
 }
 
-// Tells whether the picture is only in memory, so that it needs a file.
-bool skyIsHomeless(const Sky& sky) {
-    std::error_code code;
-    return !sky.pixels.empty() && (sky.file.empty() || !std::filesystem::exists(sky.file, code));
-}
-
-// Returns where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to
-// hold it.
-std::string skyPathFrom(const Sky& sky, const std::string& path) {
-    namespace fs = std::filesystem;
-    std::string file;
-    if (skyIsHomeless(sky)) {
-        file = fs::path(path).stem().string() + "_sky.exr";
-    } else if (!sky.file.empty()) {
-        const fs::path folder = fs::path(path).parent_path();
-        std::error_code code;
-        const fs::path relative = fs::relative(sky.file, folder.empty() ? "." : folder, code);
-        file = (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
-    }
-    if (!isUtf8(file))
-        throw Error(path + ": the path of the sky's picture, '" + file +
-                    "', is no UTF-8, as which glTF would hold it: rename it");
-    return file;
-}
-
-void writeSkyPicture(const Sky& sky, const std::string& path) {
-    FloatImage image{sky.width, sky.height, {}, {}, {}};
-    for (int c = 0; c < 3; ++c) {
-        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
-        for (size_t i = 0; i < plane.size(); ++i)
-            plane[i] = sky.pixels[i][c];
-    }
-    writeImage(path, image);
-}
-
 } // namespace
 
 void checkGlb(const Scene& scene, const std::string& path) {
-    const std::string skyFile = skyPathFrom(scene.sky, path);
-    if (skyIsHomeless(scene.sky))
+    const std::string skyFile = gltf::skyPathFrom(scene.sky, path);
+    if (gltf::skyIsHomeless(scene.sky))
         checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
 }
 
 void saveGlb(const Scene& scene, const std::string& path) {
-    const std::string skyFile = skyPathFrom(scene.sky, path);
-    if (skyIsHomeless(scene.sky))
-        writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
+    const std::string skyFile = gltf::skyPathFrom(scene.sky, path);
+    if (gltf::skyIsHomeless(scene.sky))
+        gltf::writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
     std::vector<uint8_t> bytes;
     try {
         bytes = GlbWriter(scene, skyFile).write();

@@ -41,25 +41,37 @@ std::vector<uint8_t> readBytes(const std::string& path) {
 
 /// Checks the chunks of a GLB and returns the JSON text's range in its bytes.
 std::pair<size_t, size_t> checkContainer(File& file) {
-    const std::vector<uint8_t>& bytes = file.bytes;
+    std::vector<uint8_t>& bytes = file.bytes;
     if (bytes.size() < kHeaderBytes + kChunkHeaderBytes)
         throwDamaged(file.path, "ends inside the GLB header");
     const uint32_t version = readU32(bytes, 4), length = readU32(bytes, 8);
     if (version != 2)
         throw Error(fmt::format("{}: is GLB version {}, only 2 is supported: export it as glTF 2.0",
                                 file.path, version));
-    if (length > bytes.size())
+    if (length > bytes.size() + kPadding)
         throwDamaged(file.path, fmt::format("is truncated: the header says {} bytes, the file has {}", length,
                                             bytes.size()));
+    const size_t held = bytes.size();
+    file.isShort = length > held;
+    if (file.isShort) bytes.resize(length);
     const size_t jsonBytes = readU32(bytes, kHeaderBytes);
     if (readU32(bytes, kHeaderBytes + 4) != kJsonChunk)
         throwDamaged(file.path, "the first GLB chunk is not JSON");
     const size_t jsonBegin = kHeaderBytes + kChunkHeaderBytes, jsonEnd = jsonBegin + jsonBytes;
     if (jsonEnd > length) throwDamaged(file.path, "is truncated inside the JSON chunk");
-    if (jsonEnd == length) return {jsonBegin, jsonEnd};
+    if (jsonEnd == length) {
+        for (size_t i = held; i < length; ++i)
+            bytes[i] = ' '; // JSON is padded by blanks
+        return {jsonBegin, jsonEnd};
+    }
     if (jsonEnd + kChunkHeaderBytes > length) throwDamaged(file.path, "is truncated behind the JSON chunk");
     const size_t chunkBegin = jsonEnd + kChunkHeaderBytes, chunkBytes = readU32(bytes, jsonEnd);
-    if (chunkBegin + chunkBytes > length) throwDamaged(file.path, "is truncated inside the binary chunk");
+    if (chunkBegin + chunkBytes > length + kPadding)
+        throwDamaged(file.path, "is truncated inside the binary chunk");
+    if (chunkBegin + chunkBytes > bytes.size()) {
+        file.isShort = true;
+        bytes.resize(chunkBegin + chunkBytes);
+    }
     if (readU32(bytes, jsonEnd + 4) == kBinChunk) {
         file.chunkBegin = chunkBegin;
         file.chunkBytes = chunkBytes;
@@ -125,13 +137,20 @@ File readFile(const std::string& path) {
     return file;
 }
 
+uint64_t chunkBytesOf(const nlohmann::json& json) {
+    const auto buffers = json.find("buffers");
+    if (buffers == json.end() || buffers->empty() || buffers->front().contains("uri")) return 0;
+    return buffers->front()["byteLength"].get<uint64_t>();
+}
+
 std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json) {
     std::string text = json.dump();
     if (!file.binary) return {text.begin(), text.end()};
     while (text.size() % 4 != 0)
         text += ' ';
     // The parser wants whole words of data, but some exporters do not pad it.
-    const uint64_t chunkBytes = (file.chunkBytes + 3) / 4 * 4;
+    const uint64_t wanted = file.chunkBytes > 0 ? std::max(file.chunkBytes, chunkBytesOf(json)) : 0;
+    const uint64_t chunkBytes = (wanted + 3) / 4 * 4;
     uint64_t length = kHeaderBytes + kChunkHeaderBytes + text.size();
     if (chunkBytes > 0) length += kChunkHeaderBytes + chunkBytes;
     if (length > std::numeric_limits<uint32_t>::max())

@@ -1,11 +1,14 @@
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
+#include "assets/base/uri.h"
+#include "assets/decode/webp.h"
 #include "assets/gltf/gltf_build.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/images/png_check.h"
 
 // This is our own static copy, which is asked for the sizes of pictures only; the parser's copy decodes. glTF
-// knows only PNG and JPEG; what else stb would read is refused here, since integers overflow in its other
-// readers.
+// knows PNG, JPEG and, by extensions, WebP, which libwebp decodes. What else stb would read is refused here,
+// since integers overflow in its other readers.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
@@ -26,6 +29,7 @@ namespace relume::gltf {
 
 namespace {
 
+using nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
 // These bound the pixels per byte. JPEG has at least two bits for 64 pixels of one channel, or one in a
@@ -74,23 +78,34 @@ bool hasSafeTables(const Bytes& bytes, size_t begin) {
     return true;
 }
 
-/// Counts the pixels before a decoder takes memory for them. Returns false where the bytes cannot be a
-/// picture of the size that they tell.
-bool countTexels(SizeLimit& limit, const Bytes& bytes) {
-    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return false;
+/// Returns the pixels of a picture as its header tells them, or 0 where the bytes cannot be a picture of that
+/// size.
+uint64_t pixelsOf(const Bytes& bytes) {
+    // WebP needs no bytes at all for a picture of one colour, so that only the bound on all pixels holds it.
+    if (const std::optional<WebpSize> size = webpSize(bytes)) return uint64_t{size->width} * size->height;
+    if (bytes.size() > static_cast<size_t>(std::numeric_limits<int>::max())) return 0;
     const size_t jpeg = jpegBegin(bytes);
-    if (jpeg > 0 && !hasSafeTables(bytes, jpeg)) return false;
+    if (jpeg > 0 && !hasSafeTables(bytes, jpeg)) return 0;
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels))
-        return false;
+        return 0;
     const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-    if (pixels / (jpeg > 0 ? kMostJpegPacking : kMostPngPacking) > bytes.size()) return false;
-    limit.addTexels(4 * pixels);
+    return pixels / (jpeg > 0 ? kMostJpegPacking : kMostPngPacking) > bytes.size() ? 0 : pixels;
+}
+
+bool decodeWebpInto(const Bytes& bytes, Image& image) {
+    const std::optional<WebpSize> size = webpSize(bytes);
+    std::optional<std::vector<uint8_t>> pixels = decodeWebp(bytes);
+    if (!size || !pixels) return false;
+    image.width = size->width;
+    image.height = size->height;
+    image.rgba = std::move(*pixels);
     return true;
 }
 
 /// Decodes to 8-bit RGBA. Returns false where the bytes are no such image.
 bool decode(const Bytes& bytes, int index, Image& image) {
+    if (isWebp(bytes)) return decodeWebpInto(bytes, image);
     tinygltf::Image decoded;
     std::string error, warning;
     const bool good = tinygltf::LoadImageData(&decoded, index, &error, &warning, 0, 0, bytes.data(),
@@ -112,39 +127,62 @@ bool decode(const Bytes& bytes, int index, Image& image) {
     return true;
 }
 
-/// Tells why there are no bytes of an image.
-std::string absence(const std::string& gltfPath, const tinygltf::Image& source) {
-    const std::string path = source.uri.empty() ? "" : pathOfUri(gltfPath, source.uri);
-    const std::string kind = path.empty() ? "" : oddKindOf(path);
-    return kind.empty() ? "is missing or empty" : kind;
+/// Returns the bytes of an image that the file holds or names, or what is wrong with them.
+Bytes bytesOf(const Build& build, const json& source, std::string& problem) {
+    Bytes bytes;
+    problem = "is missing or empty";
+    const int view = indexBelow(source, "bufferView", build.model.bufferViews.size());
+    const std::string uri = source.value("uri", "");
+    if (view >= 0) {
+        const tinygltf::BufferView& from = build.model.bufferViews[static_cast<size_t>(view)];
+        const Bytes& data = build.model.buffers[static_cast<size_t>(from.buffer)].data;
+        const size_t begin = std::min(from.byteOffset, data.size());
+        const auto at = data.begin() + static_cast<std::ptrdiff_t>(begin);
+        bytes.assign(at, at + static_cast<std::ptrdiff_t>(std::min(from.byteLength, data.size() - begin)));
+    } else if (uri.starts_with("data:")) {
+        bytes = bytesOfDataUri(uri).value_or(Bytes());
+    } else if (!uri.empty()) {
+        const std::string path = pathOfUri(build.path, uri), kind = oddKindOf(path);
+        if (!kind.empty()) problem = kind;
+        try {
+            RegularFile file(path, "name an image");
+            bytes.resize(file.size());
+            file.read(bytes.data(), bytes.size());
+        } catch (const Error&) {
+            bytes.clear(); // the problem stands above
+        }
+    }
+    return bytes;
 }
 
 } // namespace
 
-bool keepImageBytes(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                    const unsigned char* bytes, int size, void*) {
-    image->image.assign(bytes, bytes + size);
-    return true;
-}
-
-Image decodeImage(Build& build, int index) {
-    tinygltf::Image& source = build.model.images[static_cast<size_t>(index)];
-    const std::string where = source.uri.empty() ? fmt::format("image {} {}", index, inQuotes(source.name))
-                                                 : fmt::format("image file {}", inQuotes(source.uri));
-    if (source.image.empty())
-        throw Error(fmt::format("{}: {} {}: put it beside the scene or export with embedded images",
-                                build.path, where, absence(build.path, source)));
-    PngDamage damage =
-        findPngDamage({reinterpret_cast<const char*>(source.image.data()), source.image.size()});
+std::optional<Image> decodeImage(Build& build, size_t index) {
+    const json& source = build.images[index];
+    const std::string uri = source.value("uri", ""), name = source.value("name", "");
+    const bool named = !uri.empty() && !uri.starts_with("data:");
+    const std::string where = named ? fmt::format("image file {}", inQuotes(uri))
+                                    : fmt::format("image {} {}", index, inQuotes(name));
+    std::string problem;
+    Bytes bytes = bytesOf(build, source, problem);
+    if (bytes.empty()) {
+        build.warnings.add(where, problem + ", materials use their factors alone: put it beside the scene or "
+                                            "export with embedded images");
+        return std::nullopt;
+    }
+    PngDamage damage = findPngDamage({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (!damage.mended.empty()) bytes.assign(damage.mended.begin(), damage.mended.end());
+    Image image;
+    image.name = name;
+    const uint64_t pixels = pixelsOf(bytes);
+    build.limit.addTexels(4 * pixels);
+    if (pixels == 0 || !decode(bytes, static_cast<int>(index), image)) {
+        build.warnings.add(where, "cannot be decoded, materials use their factors alone: export textures as "
+                                  "PNG, JPEG or WebP");
+        return std::nullopt;
+    }
     if (!damage.problem.empty())
         build.warnings.add(where, "is damaged (" + damage.problem + "): export it again");
-    if (!damage.mended.empty()) source.image.assign(damage.mended.begin(), damage.mended.end());
-    Image image;
-    image.name = source.name;
-    if (!countTexels(build.limit, source.image) || !decode(source.image, index, image))
-        throw Error(
-            fmt::format("{}: {} cannot be decoded: export textures as PNG or JPEG", build.path, where));
-    source.image = {}; // no other use of it is decoded again
     return image;
 }
 

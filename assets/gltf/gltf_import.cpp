@@ -3,14 +3,20 @@
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
 #include "assets/base/watch.h"
+#include "assets/gltf/gltf_animation.h"
 #include "assets/gltf/gltf_build.h"
 #include "assets/gltf/gltf_check.h"
+#include "assets/gltf/gltf_compression.h"
 #include "assets/gltf/gltf_file.h"
+#include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/model/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace relume {
 
@@ -25,6 +31,30 @@ std::string firstLine(const std::string& text) {
     return inQuotes(text.substr(0, text.find('\n')));
 }
 
+/// Says which names there are, as far as they fit into a line.
+std::string listed(const char* begin, const std::vector<std::string>& names) {
+    constexpr size_t kMost = 20; // names that a line takes
+    if (names.empty()) return fmt::format("{} none", begin);
+    std::string text = begin;
+    for (size_t i = 0; i < std::min(names.size(), kMost); ++i)
+        text += (i == 0 ? " " : ", ") + inQuotes(names[i]);
+    if (names.size() > kMost) text += fmt::format(" and {} more", names.size() - kMost);
+    return text;
+}
+
+/// Tells whether a scene lists a node among its roots that is a child of another node.
+bool listsChildAsRoot(const json& document) {
+    const auto nodes = document.find("nodes"), scenes = document.find("scenes");
+    if (nodes == document.end() || scenes == document.end()) return false;
+    const std::vector<int> parents = parentsOf(*nodes);
+    return std::any_of(scenes->begin(), scenes->end(), [&](const json& scene) {
+        const auto roots = scene.find("nodes");
+        return roots != scene.end() && std::any_of(roots->begin(), roots->end(), [&](const json& root) {
+                   return parents[root.get<size_t>()] >= 0;
+               });
+    });
+}
+
 json takeArray(json& document, const char* section) {
     const auto found = document.find(section);
     if (found == document.end()) return json::array();
@@ -33,12 +63,14 @@ json takeArray(json& document, const char* section) {
     return taken;
 }
 
-json takeLights(json& document) {
-    const json::json_pointer extension("/extensions/KHR_lights_punctual");
-    if (!document.contains(extension)) return json::array();
-    json lights = takeArray(document[extension], "lights");
-    document["extensions"].erase("KHR_lights_punctual");
-    return lights;
+/// Takes the list of lights of an extension; it is empty where there is none, or none that is a list.
+json takeLights(json& document, const char* name) {
+    const auto extensions = document.find("extensions");
+    if (extensions == document.end() || !extensionOf(document, name)) return json::array();
+    json& extension = (*extensions)[name];
+    json lights = extension.is_object() ? takeArray(extension, "lights") : json::array();
+    extensions->erase(name);
+    return lights.is_array() ? lights : json::array();
 }
 
 /// Tells whether a path names a regular file, by its name alone; the parser's own function would wait for
@@ -52,32 +84,73 @@ std::string sameName(const std::string& path, void*) {
     return path;
 }
 
-bool readAll(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+/// Holds the sizes that buffers have by the JSON, by the path of their file.
+struct BufferFiles {
+    std::map<std::string, uint64_t> bytes;
+    std::vector<std::string> padded; // the files that were a little short
+};
+
+BufferFiles bufferFilesOf(const File& file) {
+    BufferFiles files;
+    const auto buffers = file.json.find("buffers");
+    if (buffers == file.json.end()) return files;
+    for (const json& buffer : *buffers)
+        if (const auto uri = buffer.find("uri"); uri != buffer.end())
+            if (const std::string path = pathOfUri(file, uri->get<std::string>()); !path.empty())
+                files.bytes[path] = buffer["byteLength"].get<uint64_t>();
+    return files;
+}
+
+/// Reads a file for the parser, which wants a buffer's to have exactly the size that the JSON tells. glTF
+/// allows more, and some exporters leave out the padding at the end.
+bool readAll(std::vector<unsigned char>* out, std::string* error, const std::string& path, void* user) {
+    BufferFiles& files = *static_cast<BufferFiles*>(user);
     try {
         RegularFile file(path, "name a file");
         out->resize(file.size());
         file.read(out->data(), out->size());
-        return true;
     } catch (const Error& reason) {
         *error = reason.what();
         return false;
     }
+    const auto known = files.bytes.find(path);
+    if (known == files.bytes.end() || out->size() == known->second) return true;
+    if (out->size() < known->second) {
+        if (out->size() + kPadding < known->second) return true; // the parser tells of it
+        files.padded.push_back(path);
+    }
+    out->resize(known->second);
+    return true;
+}
+
+void warnPadded(Build& build, const std::string& what) {
+    build.warnings.add(what, "ends a few bytes too early, which are taken as padding: export it again");
 }
 
 /// Hands the parser all but what the checked JSON tells already.
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
-    build.lights = takeLights(file.json);
-    build.defaultScene = file.json.value("scene", 0);
+    build.materials = takeArray(file.json, "materials");
+    build.textures = takeArray(file.json, "textures");
+    build.samplers = takeArray(file.json, "samplers");
+    build.images = takeArray(file.json, "images");
+    build.skins = takeArray(file.json, "skins");
+    build.animations = takeArray(file.json, "animations");
+    build.lights = takeLights(file.json, kPunctualLights);
+    build.areaLights = takeLights(file.json, kAreaLights);
     file.json.erase("scene");
+    hideDracoIndices(file.json);
+    const std::vector<CompressedView> compressed = takeCompressedViews(file.json);
+    if (file.isShort || (file.binary && chunkBytesOf(file.json) > file.chunkBytes))
+        warnPadded(build, "the binary chunk");
+    BufferFiles files = bufferFilesOf(file);
     const std::vector<uint8_t> bytes = withJson(file, file.json);
     file.json = nullptr;
     file.bytes = {};
 
     tinygltf::TinyGLTF parser;
-    parser.SetImageLoader(keepImageBytes, nullptr);
-    parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, nullptr});
+    parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, &files});
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
     const unsigned int size = static_cast<unsigned int>(bytes.size());
     std::string error, warning;
@@ -96,13 +169,51 @@ void parse(File file, Build& build) {
         throw Error(
             fmt::format("{}: cannot be read ({}): check that its files are beside it or export it again",
                         file.path, firstLine(error)));
+    for (const std::string& path : files.padded)
+        warnPadded(build, "file " + inQuotes(path));
+    decodeViews(build, compressed);
+}
+
+/// Chooses the scene that is read, and tells which there are.
+void chooseScene(const File& file, Build& build) {
+    const auto scenes = file.json.find("scenes");
+    const size_t count = scenes == file.json.end() ? 0 : scenes->size();
+    std::vector<std::string>& names = build.scene.sceneNames;
+    for (size_t i = 0; i < count; ++i) {
+        const std::string name = (*scenes)[i].value("name", "");
+        names.push_back(name.empty() ? std::to_string(i) : name);
+    }
+    if (count == 0 && build.choice.scene.empty()) return;
+    build.sceneNumber = file.json.value("scene", 0);
+    if (!build.choice.scene.empty()) {
+        auto found = std::find(names.begin(), names.end(), build.choice.scene);
+        for (size_t i = 0; i < count && found == names.end(); ++i)
+            if (build.choice.scene == std::to_string(i))
+                found = names.begin() + static_cast<std::ptrdiff_t>(i);
+        if (found == names.end())
+            throw Error(fmt::format("{}: has no scene {}: {}", build.path, inQuotes(build.choice.scene),
+                                    listed("it has", names)));
+        build.sceneNumber = static_cast<int>(found - names.begin());
+    }
+    build.scene.sceneNumber = build.sceneNumber;
+    if (count > 1 && build.choice.scene.empty())
+        build.warnings.add("scene " + inQuotes(names[static_cast<size_t>(build.sceneNumber)]),
+                           fmt::format("is one of {}, and is read: choose another by --scene ({})", count,
+                                       listed("there are", names)));
 }
 
 void warnUnsupported(const File& file, Build& build) {
     for (const std::string& name : unknownExtensions(file))
         build.warnings.add("extension " + inQuotes(name), "is not supported and ignored");
-    if (file.json.contains("animations") && !file.json["animations"].empty())
-        build.warnings.add("animations", "are not supported, the scene stands as stored");
+    if (const auto animations = file.json.find("animations");
+        animations != file.json.end() && !animations->empty() && !build.choice.time)
+        build.warnings.add("animations",
+                           "are not played, and the scene stands in its rest pose: pass --time to "
+                           "pose it by the first one");
+    if (listsChildAsRoot(file.json))
+        build.warnings.add("scene",
+                           "lists nodes as roots that are children of others, which are placed once, below "
+                           "their parents");
 }
 
 /// Returns the number of triangles of all instances.
@@ -124,21 +235,28 @@ double triangleCount(const Scene& scene) {
 
 } // namespace gltf
 
-Scene loadGltf(const std::string& path) {
+Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     gltf::Build build;
     build.path = path;
+    build.choice = choice;
     tellWatch("loading");
     gltf::File file = gltf::readFile(path);
     tellWatch("loading");
     gltf::check(file);
     build.limit = gltf::checkSizes(file);
     tellWatch("loading");
+    gltf::chooseScene(file, build);
     gltf::warnUnsupported(file, build);
+    gltf::chooseVariant(build, file.json);
     gltf::parse(std::move(file), build);
     build.scene.path = path;
     gltf::buildMaterials(build);
-    gltf::buildMeshes(build);
-    gltf::buildNodes(build);
+    const gltf::Poses poses = choice.time ? gltf::posesAt(build, *choice.time) : gltf::Poses{};
+    build.scene.posed = choice.time.has_value();
+    gltf::NodePlaces places(build.nodes, poses);
+    gltf::buildMeshes(build, places);
+    gltf::buildNodes(build, places);
+    gltf::markPanes(build);
     build.limit.require(gltf::Made::Triangles, gltf::triangleCount(build.scene));
     gltf::buildSky(build);
     if (build.scene.instances.empty())

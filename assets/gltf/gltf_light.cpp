@@ -1,6 +1,7 @@
 #include "assets/base/error.h"
 #include "assets/gltf/gltf_build.h"
 #include "assets/gltf/gltf_file.h"
+#include "assets/gltf/gltf_value.h"
 #include "assets/images/sky_picture.h"
 #include "assets/model/scene_limits.h"
 
@@ -90,15 +91,17 @@ struct Source {
     int node;
     std::string name; // the light's own, else the node's
     const glm::mat4& world;
+    float usualIntensity = 1.0f; // where the file has none
 
     std::string label() const {
         return name.empty() ? fmt::format("light of node {}", node) : "light " + inQuotes(name);
     }
 };
 
-std::string textOr(const json& object, const char* key, const std::string& fallback) {
-    const std::string text = object.value(key, "");
-    return text.empty() ? fallback : text;
+/// Returns the light's own name, or the node's where it has none.
+std::string nameOfLight(const json& light, const std::string& node) {
+    const std::string own = textOr(light, "name", "");
+    return own.empty() ? node : own;
 }
 
 /// Brings `v` to unit length. Returns false where it has no direction.
@@ -173,7 +176,7 @@ void addLight(Build& build, Light light, const Source& source, const Numbers& nu
     light.node = source.node;
     light.transform = *transform;
     light.color = glm::vec3(numbers.color());
-    light.intensity = numbers.notNegative("intensity", 1.0f);
+    light.intensity = numbers.notNegative("intensity", source.usualIntensity);
     for (const std::string& problem : limitLight(light))
         numbers.warn(problem);
     if (light.type == LightType::Directional) {
@@ -184,6 +187,16 @@ void addLight(Build& build, Light light, const Source& source, const Numbers& nu
         return;
     }
     build.scene.lights.push_back(std::move(light));
+}
+
+/// Returns a transform whose axes have the length 1, as far as they have a direction.
+glm::mat4 withUnitAxes(const glm::mat4& transform) {
+    glm::mat4 out = transform;
+    for (int c = 0; c < 3; ++c) {
+        glm::dvec3 axis(transform[c]);
+        if (normalize(axis)) out[c] = glm::vec4(glm::vec3(axis), 0.0f);
+    }
+    return out;
 }
 
 void readCone(Light& light, const Source& source, Warnings& warnings) {
@@ -252,6 +265,41 @@ void addArea(Build& build, const Source& source) {
     addLight(build, light, source, numbers);
 }
 
+/// Returns the largest scale of a node's axes, by which EXT_lights_area scales its lights.
+float largestScale(const glm::mat4& world) {
+    return std::max({glm::length(glm::vec3(world[0])), glm::length(glm::vec3(world[1])),
+                     glm::length(glm::vec3(world[2]))});
+}
+
+/// Adds a light of EXT_lights_area (a draft of the Khronos Group): `size` is a rectangle's height or a disc's
+/// diameter, and the node's scale applies to it.
+void addAreaExtension(Build& build, const Source& source) {
+    static const json kNone = json::object();
+    const Numbers numbers(source.object, source.label(), build.warnings);
+    const std::string type = textOr(source.object, "type", "rect");
+    const json* rect = memberOf(source.object, "rect");
+    const Numbers shape(rect ? *rect : kNone, source.label(), build.warnings);
+    const float scale = largestScale(source.world);
+    const float size = scale * numbers.number("size", 1.0f), aspect = shape.number("aspect", 1.0f);
+    Light light;
+    if (type != "rect" && type != "disk") {
+        numbers.warn(fmt::format("has the unknown type {} and is ignored", inQuotes(type)));
+        return;
+    }
+    if (!(size > 0.0f) || !std::isfinite(size) || !(aspect > 0.0f) || !std::isfinite(size * aspect)) {
+        numbers.warn("its size is not positive and finite, it is ignored");
+        return;
+    }
+    light.type = type == "disk" ? LightType::Disc : LightType::Rectangle;
+    light.size = {size * aspect, size};
+    light.radius = light.type == LightType::Disc ? 0.5f * size : 0.0f;
+    if (light.type == LightType::Disc) light.size = glm::vec2(1.0f); // which means nothing to it
+    // The scale is in the size now; told without it, it is nothing to warn about.
+    const glm::mat4 unscaled = withUnitAxes(source.world);
+    addLight(build, light, {source.object, source.node, source.name, unscaled, source.usualIntensity},
+             numbers);
+}
+
 } // namespace
 
 void addLights(Build& build, size_t node, const glm::mat4& world) {
@@ -260,15 +308,28 @@ void addLights(Build& build, size_t node, const glm::mat4& world) {
     const json::json_pointer use("/extensions/KHR_lights_punctual/light");
     if (holder.contains(use)) {
         const json& light = build.lights[holder[use].get<size_t>()];
-        addPunctual(build, {light, static_cast<int>(node), textOr(light, "name", nodeName), world});
+        addPunctual(build, {light, static_cast<int>(node), nameOfLight(light, nodeName), world});
     }
-    if (const json* light = ownExtra(holder, "areaLight"))
-        addArea(build, {*light, static_cast<int>(node), textOr(*light, "name", nodeName), world});
+    // Where a node has an area light by both, ours says more: the extension's size follows the node's scale.
+    const json* extension = extensionOf(holder, kAreaLights);
+    if (const json* light = ownExtra(holder, "areaLight")) {
+        addArea(build, {*light, static_cast<int>(node), nameOfLight(*light, nodeName), world});
+    } else if (extension) {
+        const int entry = indexBelow(*extension, "light", build.areaLights.size());
+        if (entry < 0) {
+            build.warnings.add("node " + inQuotes(nodeName), "names no light of EXT_lights_area");
+            return;
+        }
+        const json& named = build.areaLights[static_cast<size_t>(entry)];
+        constexpr float kUsualIntensity = 1000.0f; // [cd/m^2], the extension's
+        addAreaExtension(
+            build, {named, static_cast<int>(node), nameOfLight(named, nodeName), world, kUsualIntensity});
+    }
 }
 
 void buildSky(Build& build) {
     if (build.scenes.empty()) return;
-    const json* source = ownExtra(build.scenes[static_cast<size_t>(build.defaultScene)], "sky");
+    const json* source = ownExtra(build.scenes[static_cast<size_t>(build.sceneNumber)], "sky");
     if (!source) return;
     const Numbers numbers(*source, "sky", build.warnings);
     Sky& sky = build.scene.sky;

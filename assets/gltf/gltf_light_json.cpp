@@ -54,6 +54,15 @@ Json areaLightJson(const Light& light) {
     return out;
 }
 
+Json areaExtensionJson(const Light& light) {
+    ASSERT(isAreaLight(light.type));
+    const bool isDisc = light.type == LightType::Disc;
+    Json out = lightJson(light, isDisc ? "disk" : "rect");
+    out["size"] = isDisc ? 2.0f * light.radius : light.size.y; // a disc's is its diameter
+    if (!isDisc) out["rect"]["aspect"] = light.size.x / light.size.y;
+    return out;
+}
+
 Json skyJson(const Sky& sky, const std::string& file) {
     // This is in double precision, in which colour times intensity rounds to the radiance again, to the last
     // bit.

@@ -27,6 +27,9 @@ nlohmann::ordered_json punctualLightJson(const Light& light);
 /// Returns the member extras.relume.areaLight of a node.
 nlohmann::ordered_json areaLightJson(const Light& light);
 
+/// Returns an entry of the list of EXT_lights_area, for a node without scale.
+nlohmann::ordered_json areaExtensionJson(const Light& light);
+
 /// Returns the member extras.relume.sky of a scene. `file` is the path of the picture from the folder of the
 /// glTF file, "" for none.
 nlohmann::ordered_json skyJson(const Sky& sky, const std::string& file);

@@ -2,9 +2,12 @@
 
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
+#include "assets/gltf/gltf_compression.h"
+#include "assets/gltf/gltf_shape.h"
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -15,8 +18,8 @@ namespace {
 /// Reads one primitive; corrects what can be corrected and warns about it.
 class PrimitiveBuilder {
 public:
-    PrimitiveBuilder(Build& build, std::string where, const tinygltf::Primitive& source)
-        : build_(build), where_(std::move(where)), source_(source) {}
+    PrimitiveBuilder(Build& build, std::string where, const tinygltf::Primitive& source, const Shape& shape)
+        : build_(build), where_(std::move(where)), source_(source), shape_(shape) {}
     bool run(Primitive& primitive); // false: nothing usable
 
 private:
@@ -25,19 +28,24 @@ private:
             fmt::format("{}: {} {}: the file is damaged, export it again", build_.path, where_, what));
     }
     void warn(const std::string& problem) const { build_.warnings.add(where_, problem); }
-    const tinygltf::Accessor* attribute(const char* name) const;
+    const tinygltf::Accessor* attribute(const std::string& name) const;
     template<typename Vec>
-    std::vector<Vec> read(const char* name) const;
+    std::vector<Vec> read(const std::string& name) const;
+    template<typename Vec>
+    std::vector<Vec> read(const std::string& name, const tinygltf::Accessor& accessor) const;
     std::vector<glm::vec4> readColors() const;
     void readIndices(Primitive& primitive) const;
     void dropBadTriangles(Primitive& primitive) const;
     void mendTexCoords(std::vector<glm::vec2>& uvs, const char* name) const;
     void mendNormals(Primitive& primitive) const;
+    void morph(Primitive& primitive) const;
+    void bendBySkin(Primitive& primitive) const;
     void warnUnused() const;
 
     Build& build_;
     std::string where_;
     const tinygltf::Primitive& source_;
+    const Shape& shape_;
 };
 
 template<typename Vec>
@@ -54,25 +62,29 @@ glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& fallback) {
     return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : fallback;
 }
 
-const tinygltf::Accessor* PrimitiveBuilder::attribute(const char* name) const {
+const tinygltf::Accessor* PrimitiveBuilder::attribute(const std::string& name) const {
     const auto found = source_.attributes.find(name);
     return found == source_.attributes.end() ? nullptr
                                              : &build_.model.accessors[static_cast<size_t>(found->second)];
 }
 
 template<typename Vec>
-std::vector<Vec> PrimitiveBuilder::read(const char* name) const {
+std::vector<Vec> PrimitiveBuilder::read(const std::string& name) const {
     const tinygltf::Accessor* accessor = attribute(name);
-    if (!accessor) return {};
+    return accessor ? read<Vec>(name, *accessor) : std::vector<Vec>{};
+}
+
+template<typename Vec>
+std::vector<Vec> PrimitiveBuilder::read(const std::string& name, const tinygltf::Accessor& accessor) const {
     constexpr uint32_t kComponents = sizeof(Vec) / sizeof(float);
-    if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor->type)) != kComponents)
+    if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)) != kComponents)
         fail(fmt::format("has {} with a wrong number of components", name));
     const tinygltf::Accessor* positions = attribute("POSITION");
-    if (accessor->count != positions->count)
-        fail(fmt::format("has {} positions but {} of {}", positions->count, accessor->count, name));
-    std::vector<Vec> out(accessor->count);
+    if (accessor.count != positions->count)
+        fail(fmt::format("has {} positions but {} of {}", positions->count, accessor.count, name));
+    std::vector<Vec> out(accessor.count);
     try {
-        const std::vector<float> values = readFloats(build_.model, *accessor, kComponents);
+        const std::vector<float> values = readFloats(build_.model, accessor, kComponents);
         std::memcpy(out.data(), values.data(), values.size() * sizeof(float));
     } catch (const Error& error) {
         fail(fmt::format("{}: {}", name, error.what()));
@@ -223,12 +235,44 @@ void PrimitiveBuilder::mendNormals(Primitive& primitive) const {
 }
 
 void PrimitiveBuilder::warnUnused() const {
-    if (!source_.targets.empty()) warn("morph targets are not supported, the base shape is used");
     if (attribute("TEXCOORD_2")) warn("TEXCOORD_2 and higher are ignored");
     if (attribute("COLOR_1")) warn("COLOR_1 and higher are ignored");
-    for (const auto& [name, unused] : source_.extensions)
-        if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression")
-            warn(fmt::format("{} is not supported, the uncompressed part is used", name));
+}
+
+/// Adds the displacements of the morph targets, each times its weight (glTF 2.0, section 3.7.2.2).
+void PrimitiveBuilder::morph(Primitive& primitive) const {
+    for (size_t i = 0; i < std::min(source_.targets.size(), shape_.weights.size()); ++i) {
+        const float weight = shape_.weights[i];
+        if (weight == 0.0f || !std::isfinite(weight)) continue;
+        for (const auto& [name, index] : source_.targets[i]) {
+            const bool position = name == "POSITION";
+            if (!position && name != "NORMAL") {
+                if (name != "TANGENT") warn("has morph targets of " + name + ", which are left out");
+                continue;
+            }
+            std::vector<glm::vec3>& values = position ? primitive.positions : primitive.normals;
+            if (values.empty()) continue;
+            const std::vector<glm::vec3> steps = read<glm::vec3>(
+                "a morph target's " + name, build_.model.accessors[static_cast<size_t>(index)]);
+            for (size_t v = 0; v < values.size(); ++v)
+                values[v] += weight * steps[v];
+        }
+    }
+}
+
+void PrimitiveBuilder::bendBySkin(Primitive& primitive) const {
+    if (shape_.joints.empty()) return;
+    std::vector<std::vector<glm::vec4>> joints, weights;
+    for (size_t set = 0;; ++set) {
+        const std::string number = std::to_string(set);
+        if (!attribute("JOINTS_" + number) || !attribute("WEIGHTS_" + number)) break;
+        joints.push_back(read<glm::vec4>("JOINTS_" + number));
+        weights.push_back(read<glm::vec4>("WEIGHTS_" + number));
+    }
+    if (joints.empty())
+        warn("has no joints for its skin, and stays where it is");
+    else if (!bend(shape_, joints, weights, primitive))
+        warn("hangs at joints that its skin lacks, which count nothing");
 }
 
 bool PrimitiveBuilder::run(Primitive& primitive) {
@@ -241,12 +285,14 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
         warn("has no POSITION and is skipped");
         return false;
     }
-    primitive.material = source_.material;
+    primitive.material = materialOf(build_, source_);
     primitive.positions = read<glm::vec3>("POSITION");
     primitive.normals = read<glm::vec3>("NORMAL");
     primitive.texCoord0 = read<glm::vec2>("TEXCOORD_0");
     primitive.texCoord1 = read<glm::vec2>("TEXCOORD_1");
     primitive.colors = readColors();
+    morph(primitive);
+    bendBySkin(primitive);
     readIndices(primitive);
     dropBadTriangles(primitive);
     mendTexCoords(primitive.texCoord0, "TEXCOORD_0");
@@ -258,21 +304,26 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
 
 } // namespace
 
-void buildMeshes(Build& build) {
-    WatchedLoop loop("loading", static_cast<double>(build.model.meshes.size()));
-    for (size_t i = 0; i < build.model.meshes.size(); ++i, loop.step()) {
-        const tinygltf::Mesh& source = build.model.meshes[i];
+void buildMeshes(Build& build, NodePlaces& places) {
+    ShapePlan plan = planShapes(build, places);
+    WatchedLoop loop("loading", static_cast<double>(plan.entries.size()));
+    for (const ShapePlan::Entry& entry : plan.entries) {
+        const tinygltf::Mesh& source = build.model.meshes[entry.mesh];
         const std::string where =
-            source.name.empty() ? fmt::format("mesh {}", i) : "mesh " + inQuotes(source.name);
+            source.name.empty() ? fmt::format("mesh {}", entry.mesh) : "mesh " + inQuotes(source.name);
         Mesh mesh;
         mesh.name = source.name;
         for (const tinygltf::Primitive& part : source.primitives) {
+            const DecodedPrimitive decoded(build, where, part);
             Primitive primitive;
-            if (PrimitiveBuilder(build, where, part).run(primitive))
+            if (PrimitiveBuilder(build, where, decoded.primitive(), entry.shape).run(primitive))
                 mesh.primitives.push_back(std::move(primitive));
         }
         build.scene.meshes.push_back(std::move(mesh));
+        loop.step();
     }
+    build.bentMeshes = std::move(plan.ofNode);
+    build.skinnedNodes = std::move(plan.skinned);
 }
 
 } // namespace relume::gltf

@@ -1,7 +1,11 @@
 #include "assets/gltf/gltf_build.h"
 
-#include "assets/gltf/gltf_node.h"
 #include "assets/base/error.h"
+#include "assets/base/warnings.h"
+#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/gltf_instancing.h"
+#include "assets/gltf/gltf_node.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -65,39 +69,78 @@ Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const
     return camera;
 }
 
-void addNode(Build& build, size_t index, const glm::mat4& world) {
+bool hasLight(const json& node) {
+    return extensionOf(node, kPunctualLights) || extensionOf(node, kAreaLights) ||
+           ownExtra(node, "areaLight");
+}
+
+/// Tells whether all nodes above one are visible, also those that are not in the scene.
+bool visibleAbove(const json& nodes, const NodePlaces& places, int node) {
+    for (int i = places.parent(static_cast<size_t>(node)); i >= 0; i = places.parent(static_cast<size_t>(i)))
+        if (!isVisible(nodes[static_cast<size_t>(i)])) return false;
+    return true;
+}
+
+/// Adds the objects of a node: one, or one for each copy that it makes of its mesh.
+void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visible) {
     const json& node = build.nodes[index];
+    const auto bent = build.bentMeshes.find(index);
+    Instance instance;
+    instance.mesh = bent != build.bentMeshes.end() ? bent->second : indexOr(node, "mesh", -1);
+    if (instance.mesh < 0 || build.scene.meshes[static_cast<size_t>(instance.mesh)].primitives.empty())
+        return;
+    instance.name = nameOf(node);
+    if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(instance.mesh)].name;
+    instance.node = static_cast<int>(index);
+    instance.hidden = !visible;
+    instance.bent = build.skinnedNodes.contains(index);
+    instance.transform = instance.bent ? glm::mat4(1.0f) : glm::mat4(world);
+    const std::vector<glm::dmat4> copies = copiesOf(build, node, labelOf(node, index));
+    if (copies.empty() || instance.bent) {
+        if (instance.bent)
+            build.warnings.add(labelOf(node, index),
+                               build.choice.time ? "has a skin, which stands as its joints do at that time"
+                                                 : "has a skin, which stands in its rest pose");
+        build.scene.instances.push_back(std::move(instance));
+        return;
+    }
+    const std::string name = instance.name;
+    for (size_t i = 0; i < copies.size(); ++i) {
+        instance.transform = glm::mat4(world * copies[i]);
+        if (!finite(instance.transform)) {
+            build.warnings.add(labelOf(node, index),
+                               "has instances whose places are not finite, which are left out");
+            continue;
+        }
+        instance.name = fmt::format("{} #{}", name, i + 1);
+        instance.copy = static_cast<int>(i);
+        build.scene.instances.push_back(instance);
+    }
+}
+
+void addNode(Build& build, size_t index, const glm::dmat4& place, bool visible) {
+    const json& node = build.nodes[index];
+    const glm::mat4 world(place);
     if (!finite(world)) {
         build.warnings.add(labelOf(node, index), "has a transform that is not finite and is ignored");
         return;
     }
-    const int mesh = indexOr(node, "mesh", -1), camera = indexOr(node, "camera", -1);
-    if (mesh >= 0 && !build.scene.meshes[static_cast<size_t>(mesh)].primitives.empty()) {
-        Instance instance;
-        instance.name = nameOf(node);
-        if (instance.name.empty()) instance.name = build.scene.meshes[static_cast<size_t>(mesh)].name;
-        instance.mesh = mesh;
-        instance.transform = world;
-        instance.node = static_cast<int>(index);
-        build.scene.instances.push_back(std::move(instance));
-    }
+    addInstances(build, index, place, visible);
+    const int camera = indexOr(node, "camera", -1);
     if (camera >= 0)
         build.scene.cameras.push_back(
             makeCamera(build.model.cameras[static_cast<size_t>(camera)], nameOf(node), world));
-    if (member(node, "skin"))
-        build.warnings.add(labelOf(node, index), "skins are not supported, the rest pose is used");
-    addLights(build, index, world);
-    const json* extensions = member(node, "extensions");
-    if (extensions && member(*extensions, "EXT_mesh_gpu_instancing"))
-        build.warnings.add(labelOf(node, index),
-                           "EXT_mesh_gpu_instancing is not supported, one instance is used");
+    if (visible)
+        addLights(build, index, world);
+    else if (hasLight(node))
+        build.warnings.add(labelOf(node, index), "is hidden, its light is left out");
 }
 
 } // namespace
 
-glm::dmat4 localTransform(const json& node) {
+glm::dmat4 localTransform(const json& node, const NodePose* pose) {
     glm::dmat4 local(1.0);
-    if (const json* matrix = member(node, "matrix")) {
+    if (const json* matrix = member(node, "matrix")) { // animations leave such a node alone
         for (int i = 0; i < 16; ++i)
             local[i / 4][i % 4] = at(*matrix, i);
         // This is an affine transform's last row, which exporters round.
@@ -105,45 +148,113 @@ glm::dmat4 localTransform(const json& node) {
             local[c][3] = c == 3 ? 1.0 : 0.0;
         return local;
     }
-    if (const json* rotation = member(node, "rotation")) {
-        const glm::dquat q(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
-        const double length = glm::length(q);
-        if (length > 0.0) local = glm::mat4_cast(q / length);
-    }
-    if (const json* scale = member(node, "scale"))
+    const json *rotation = member(node, "rotation"), *scale = member(node, "scale"),
+               *translation = member(node, "translation");
+    glm::dquat q(1.0, 0.0, 0.0, 0.0);
+    if (rotation) q = glm::dquat(at(*rotation, 3), at(*rotation, 0), at(*rotation, 1), at(*rotation, 2));
+    if (pose && pose->rotation) q = *pose->rotation;
+    const double length = glm::length(q);
+    if (length > 0.0) local = glm::mat4_cast(q / length);
+    if (scale || (pose && pose->scale))
         for (int c = 0; c < 3; ++c)
-            local[c] *= at(*scale, c);
-    if (const json* translation = member(node, "translation"))
+            local[c] *= pose && pose->scale ? (*pose->scale)[c] : at(*scale, c);
+    if (pose && pose->translation)
+        local[3] = glm::dvec4(*pose->translation, 1.0);
+    else if (translation)
         local[3] = glm::dvec4(at(*translation, 0), at(*translation, 1), at(*translation, 2), 1.0);
     return local;
 }
 
-std::vector<int> rootNodes(const json& nodes, const json& scenes, int defaultScene) {
-    std::vector<int> roots;
-    if (!scenes.empty()) {
-        const json* listed = member(scenes[static_cast<size_t>(defaultScene)], "nodes");
-        return listed ? listed->get<std::vector<int>>() : roots;
+std::vector<int> parentsOf(const json& nodes, const std::function<void(size_t)>& twice) {
+    std::vector<int> parents(nodes.size(), -1);
+    for (size_t i = 0; i < nodes.size(); ++i) {
+        const json* children = member(nodes[i], "children");
+        if (!children) continue;
+        for (const json& child : *children) {
+            int& parent = parents[child.get<size_t>()];
+            if (parent >= 0 && twice) twice(child.get<size_t>());
+            parent = static_cast<int>(i);
+        }
     }
-    std::vector<bool> isChild(nodes.size());
-    for (const json& node : nodes)
-        if (const json* children = member(node, "children"))
-            for (const json& child : *children)
-                isChild[child.get<size_t>()] = true;
-    for (size_t i = 0; i < isChild.size(); ++i)
-        if (!isChild[i]) roots.push_back(static_cast<int>(i));
+    return parents;
+}
+
+std::vector<int> rootNodes(const json& nodes, const json& scenes, int scene) {
+    const std::vector<int> parents = parentsOf(nodes);
+    std::vector<int> roots;
+    if (scenes.empty()) {
+        for (size_t i = 0; i < parents.size(); ++i)
+            if (parents[i] < 0) roots.push_back(static_cast<int>(i));
+        return roots;
+    }
+    const json* listed = member(scenes[static_cast<size_t>(scene)], "nodes");
+    if (!listed) return roots;
+    enum class Above : uint8_t { Unknown, Nothing, Listed }; // what of the scene's list stands above a node
+    std::vector<Above> above(parents.size(), Above::Unknown);
+    std::vector<bool> isListed(parents.size());
+    for (const json& root : *listed)
+        isListed[root.get<size_t>()] = true;
+    for (const json& root : *listed) {
+        std::vector<size_t> way; // up to where it is known
+        size_t node = root.get<size_t>();
+        Above found = above[node];
+        while (found == Above::Unknown) {
+            way.push_back(node);
+            if (parents[node] < 0) {
+                found = Above::Nothing;
+                break;
+            }
+            node = static_cast<size_t>(parents[node]);
+            found = isListed[node] ? Above::Listed : above[node];
+        }
+        for (const size_t passed : way)
+            above[passed] = found;
+        if (above[root.get<size_t>()] == Above::Nothing) roots.push_back(root.get<int>());
+    }
     return roots;
 }
 
-void buildNodes(Build& build) {
+NodePlaces::NodePlaces(const json& nodes, const Poses& poses)
+    : nodes_(nodes), poses_(poses), parents_(parentsOf(nodes)) {}
+
+const NodePose* NodePlaces::pose(size_t node) const {
+    const auto found = poses_.find(node);
+    return found == poses_.end() ? nullptr : &found->second;
+}
+
+glm::dmat4 NodePlaces::local(size_t node) const {
+    return localTransform(nodes_[node], pose(node));
+}
+
+glm::dmat4 NodePlaces::world(size_t node) {
+    std::vector<size_t> way; // up to the first whose place is known
+    int next = static_cast<int>(node);
+    while (next >= 0 && !known_.contains(static_cast<size_t>(next)) && way.size() <= parents_.size()) {
+        way.push_back(static_cast<size_t>(next));
+        next = parents_[way.back()];
+    }
+    glm::dmat4 world = next >= 0 ? known_[static_cast<size_t>(next)] : glm::dmat4(1.0);
+    for (auto below = way.rbegin(); below != way.rend(); ++below)
+        known_[*below] = world = world * local(*below);
+    return world;
+}
+
+glm::dmat4 NodePlaces::parentWorld(size_t node) {
+    return parents_[node] < 0 ? glm::dmat4(1.0) : world(static_cast<size_t>(parents_[node]));
+}
+
+void buildNodes(Build& build, NodePlaces& places) {
     struct Visit {
         int node;
         glm::dmat4 parent;
+        bool visible; // its parent
     };
     std::vector<Visit> stack;
-    const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.defaultScene);
+    const std::vector<int> roots = rootNodes(build.nodes, build.scenes, build.sceneNumber);
     std::vector<bool> visited(build.nodes.size());
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-        stack.push_back({*root, glm::dmat4(1.0)});
+        stack.push_back({*root, places.parentWorld(static_cast<size_t>(*root)),
+                         visibleAbove(build.nodes, places, *root)});
     while (!stack.empty()) {
         const Visit visit = stack.back();
         stack.pop_back();
@@ -151,11 +262,12 @@ void buildNodes(Build& build) {
         if (visited[index]) continue; // a scene may list a root twice; the check excludes all else
         visited[index] = true;
         const json& node = build.nodes[index];
-        const glm::dmat4 world = visit.parent * localTransform(node);
-        addNode(build, index, glm::mat4(world));
+        const glm::dmat4 world = visit.parent * places.local(index);
+        const bool visible = visit.visible && isVisible(node);
+        addNode(build, index, world, visible);
         if (const json* children = member(node, "children"))
             for (auto child = children->rbegin(); child != children->rend(); ++child)
-                stack.push_back({child->get<int>(), world});
+                stack.push_back({child->get<int>(), world, visible});
     }
 }
 

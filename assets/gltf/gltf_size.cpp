@@ -4,9 +4,11 @@
 #include "assets/base/file_read.h"
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
+#include "assets/gltf/gltf_check_extensions.h"
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
@@ -98,10 +100,42 @@ double primitiveBytes(const json& root, const json& primitive) {
 
 double vertexBytes(const json& root) {
     double bytes = 0;
-    for (const json& mesh : section(root, "meshes"))
-        for (const json& primitive : mesh["primitives"])
-            bytes += primitiveBytes(root, primitive);
+    std::vector<double> ofBent; // of each mesh that a node may bend, which takes vertices of its own
+    for (const json& mesh : section(root, "meshes")) {
+        double ofMesh = 0;
+        bool bends = false;
+        for (const json& primitive : mesh["primitives"]) {
+            ofMesh += primitiveBytes(root, primitive);
+            bends = bends || find(primitive, "targets") || find(primitive["attributes"], "JOINTS_0");
+        }
+        bytes += ofMesh;
+        ofBent.push_back(bends ? ofMesh : 0);
+    }
+    for (const json& node : section(root, "nodes"))
+        if (const json* mesh = find(node, "mesh")) bytes += ofBent[mesh->get<size_t>()];
     return bytes;
+}
+
+/// Returns the size of the buffer views that are compressed, as they are when they are decoded [bytes].
+double decodedBytes(const json& root) {
+    double bytes = 0;
+    for (const json& view : section(root, "bufferViews"))
+        if (const json* use = extensionOf(view, kMeshopt))
+            bytes += static_cast<double>(numberOf(*use, "count")) *
+                     static_cast<double>(numberOf(*use, "byteStride"));
+    return bytes;
+}
+
+/// Returns how many copies of its mesh a node places; 0 where it is one object.
+uint64_t copiesOf(const json& root, const json& node) {
+    const json* use = extensionOf(node, kInstancing);
+    const json* attributes = use ? find(*use, "attributes") : nullptr;
+    uint64_t copies = 0;
+    if (!attributes) return 0;
+    for (const char* key : {"TRANSLATION", "ROTATION", "SCALE"})
+        if (const json* accessor = entry(root, *attributes, key, "accessors"))
+            copies = std::max(copies, numberOf(*accessor, "count"));
+    return copies;
 }
 
 /// Returns the size of the names of objects, lights and cameras, which have that of their mesh or node where
@@ -109,8 +143,12 @@ double vertexBytes(const json& root) {
 double nameBytes(const json& root) {
     const json::json_pointer use("/extensions/KHR_lights_punctual/light");
     const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+    constexpr double kCopy = 128; // what an object of its own takes beside its name
     double bytes = 0;
     for (const json& node : section(root, "nodes")) {
+        if (find(node, "mesh"))
+            bytes += static_cast<double>(copiesOf(root, node)) *
+                     (kCopy + lengthOf(&node) + lengthOf(entry(root, node, "mesh", "meshes")));
         bytes += lengthOf(&node) + lengthOf(entry(root, node, "mesh", "meshes")) +
                  lengthOf(entry(root, node, "camera", "cameras"));
         if (node.contains(use)) bytes += lengthOf(&root[lights][node[use].get<size_t>()]);
@@ -182,9 +220,11 @@ SizeLimit checkSizes(const File& file) {
     StoredBytes stored(file);
     double buffers = 0;
     for (const json& buffer : section(root, "buffers")) {
+        if (isPlaceholder(buffer)) continue;
         stored.external(buffer);
         buffers += static_cast<double>(numberOf(buffer, "byteLength"));
     }
+    buffers += decodedBytes(root);
     for (const json& image : section(root, "images")) {
         const json* view = entry(root, image, "bufferView", "bufferViews");
         buffers += view ? static_cast<double>(numberOf(*view, "byteLength")) : stored.external(image);

@@ -45,6 +45,8 @@ struct Material {
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
+    float transmission = 0.0f; // of KHR_materials_transmission, the mean of its texture included
+    bool pane = false; // light passes it (panes.h); decided when the scene is read, whatever is edited
 };
 
 /// Holds triangles of one material. Arrays other than positions may be empty where the file has none. Normals
@@ -75,6 +77,8 @@ struct Instance {
     glm::mat4 transform{1.0f}; // object to world
     bool hidden = false;       // left out: blocks no light, receives and sends none
     int node = -1;             // of the file
+    int copy = -1;     // which of the node's instances (EXT_mesh_gpu_instancing); -1: the node has one
+    bool bent = false; // by a skin, whose joints say where it stands: its node's transform does not
 };
 
 struct Camera {
@@ -105,6 +109,7 @@ struct Light {
     float angle = 0.0f;  // directional: across the disc in the sky that it comes from [rad], 0: one direction
     glm::vec2 size{1.0f}; // rectangle: along X and Y [m]
     int node = -1;        // of the file, whose light it is; -1: the file has it not
+    bool preview = false; // of a dark level: it is shown and baked, and in no file that is written
 
     bool operator==(const Light&) const = default;
 };
@@ -114,6 +119,7 @@ struct SkySettings {
     glm::vec3 radiance{0.0f}; // [cd/m^2]; of a picture: factor on it
     float rotation = 0.0f;    // of the picture about +Y, counter-clockwise from above [rad]
     std::string file;         // path of the picture, "" for none
+    bool preview = false;     // as Light::preview
 
     bool operator==(const SkySettings&) const = default;
 };
@@ -139,6 +145,11 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     Sky sky;
+    // What the file offers to choose from: its scenes (a number stands for a scene without a name) and the
+    // variants of its materials.
+    std::vector<std::string> sceneNames, variantNames;
+    int sceneNumber = -1; // of sceneNames, the one that was read; -1: the file has none
+    bool posed = false;   // by an animation: nodes stand elsewhere than the file's transforms say
     std::vector<std::string> warnings; // what of the file is unsupported or was corrected, one line each
 };
 

@@ -20,6 +20,7 @@ LightPattern patternOf(const Scene& scene, const LightKey& key) {
         pattern.light.color = glm::vec3(1.0f);
         pattern.light.intensity = 1.0f;
         pattern.light.node = -1;
+        pattern.light.preview = false;
         break;
     case LightKey::Kind::Sky:
         pattern.rotation = scene.sky.rotation;

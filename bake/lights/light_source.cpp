@@ -15,7 +15,9 @@ std::set<uint32_t> emittingMaterials(const Scene& scene, const Instance& instanc
     for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives) {
         if (primitive.material < 0) continue;
         const auto material = static_cast<uint32_t>(primitive.material);
-        if (scene.materials[material].emission != glm::vec3(0.0f)) found.insert(material);
+        // A pane has no triangles in a bake; one that is made to shine does so once its file is read again.
+        if (scene.materials[material].emission != glm::vec3(0.0f) && !scene.materials[material].pane)
+            found.insert(material);
     }
     return found;
 }

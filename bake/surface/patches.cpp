@@ -91,8 +91,8 @@ public:
                 addTile(x, y);
         set_.count = static_cast<uint32_t>(set_.scene.patches.size());
         if (set_.count == 0 && !part_) {
-            throw Error(
-                "the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or pass --unwrap");
+            throw Error("the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or leave "
+                        "out --no-unwrap");
         }
         NewPatch padding;
         padding.instance = static_cast<uint32_t>(scene_.instances.size());

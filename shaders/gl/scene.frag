@@ -1,6 +1,6 @@
 // Shades a fragment of the scene in view VIEW with lightmap filter FILTER and tone mapping TONE. What a
 // material does not need is not fetched: BASE, EMISSION, METALLIC say which textures it has, MASKED whether
-// it has holes, MAPPED whether there are lightmap UVs; SELECTED tints.
+// it has holes, MAPPED whether there are lightmap UVs; SELECTED tints; PANE says that what is behind shows.
 
 #include "lib/scene_material.glsl"
 #include "gl/light.glsl"
@@ -28,7 +28,7 @@ in vec2 fragLightmapUv;
 in vec4 fragColor;
 flat in uvec2 fragIds;
 
-out vec4 result; // as displayed; a: for the meter
+out vec4 result; // as displayed; a: for the meter, of a pane its opacity
 
 // These are constants, not uniforms: a software device would go through all branches.
 const uint view = VIEW;
@@ -64,6 +64,12 @@ vec3 albedo(SceneMaterial m, vec3 base) {
 
 vec3 emission(SceneMaterial m) {
     return EMISSION != 0 ? m.emission.rgb * texture(emissionTexture, fragEmissionUv).rgb : m.emission.rgb;
+}
+
+// Returns how much of a pane is seen; glass that lets all pass shows a little all the same.
+float opacity(SceneMaterial m, float alpha) {
+    const float kLeast = 0.08;
+    return clamp((m.metallic.w != 0.0 ? alpha : 1.0) * (1.0 - m.metallic.z), kLeast, 1.0);
 }
 
 // Returns hues a golden angle apart: neighbours in number are far apart in colour.
@@ -134,5 +140,5 @@ void main() {
     vec4 color = shown(m, base.rgb);
     if (SELECTED != 0) color.rgb = mix(color.rgb, kSelected, 0.35);
     if (MASKED != 0 && base.a < m.emission.a) discard; // behind all look-ups: mips need whole quads
-    result = color;
+    result = PANE != 0 ? vec4(color.rgb, opacity(m, base.a)) : color;
 }

@@ -38,7 +38,7 @@ CONST uint kNoUv = 0xffffffffu;    // in place of a coordinate's bits
 struct SceneMaterial {
     vec4 baseColor;  // linear
     vec4 emission;   // rgb [cd/m^2]; a: alpha below it is cut out, 0 for none
-    vec4 metallic;   // x metallic, y roughness
+    vec4 metallic;   // x metallic, y roughness; of a pane: z transmission, w 1 where alpha counts
 };
 
 // Returns the share of light that comes back from a surface: a rough metal sends some on, as the baker has

@@ -303,11 +303,16 @@ TEST_F(BakeCommand, ASceneWithoutLightmapUvsNamesTheMend) {
     SceneMaker maker(64);
     maker.blocker({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.material(0.5f, 1.0f));
     saveGlb(maker.scene(), scene_);
-    const ProcessResult r = bake({"-o", path("map.exr")});
+    const ProcessResult r = bake({"-o", path("map.exr"), "--no-unwrap"});
     EXPECT_EQ(r.status, 1) << r.err;
-    EXPECT_TRUE(contains(r.err, "--unwrap")) << r.err;
+    EXPECT_TRUE(contains(r.err, "--no-unwrap")) << r.err;
+    const ProcessResult strict = bake({"-o", path("map.exr"), "--strict"});
+    EXPECT_EQ(strict.status, 1) << strict.err;
+    EXPECT_TRUE(contains(strict.err, "1 of 1 meshes have no usable lightmap UVs")) << strict.err;
     expectFiles({});
-    EXPECT_EQ(bake({"-o", path("map.exr"), "--unwrap", "--passes", "1"}).status, 0);
+    const ProcessResult made = bake({"-o", path("map.exr"), "--passes", "1"});
+    EXPECT_EQ(made.status, 0);
+    EXPECT_TRUE(contains(made.err, "lightmap UVs were made for 1 of 1 meshes")) << made.err;
 }
 
 // The preset is held against RTRad's own picture, through the command line and the reference's own tool.

@@ -174,7 +174,7 @@ TEST(Atlas, OverlapAboveOnePercentIsRefused) {
     } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()), "test.glb: no mesh has usable lightmap UVs (mesh 'Wall' has a "
                                              "TEXCOORD_1 overlapping itself by more "
-                                             "than 1 %): run 'relume unwrap' or pass --unwrap");
+                                             "than 1 %): run 'relume unwrap' or leave out --no-unwrap");
     }
 }
 
@@ -232,7 +232,7 @@ TEST(Atlas, MeshesWithoutUsableUvsBlockLightOnly) {
     EXPECT_TRUE(warns(atlas, "mesh 'Tiled': has a TEXCOORD_1 outside [0,1]"));
     EXPECT_TRUE(warns(atlas, "mesh 'Point': has a TEXCOORD_1 without area"));
     for (const std::string& warning : atlas.warnings)
-        EXPECT_NE(warning.find("run 'relume unwrap' or pass --unwrap"), std::string::npos) << warning;
+        EXPECT_NE(warning.find("run 'relume unwrap' or leave out --no-unwrap"), std::string::npos) << warning;
 }
 
 TEST(Atlas, TexCoord0StandsInWhereItIsAnAtlas) {

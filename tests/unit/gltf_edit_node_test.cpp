@@ -265,7 +265,7 @@ TEST_F(GltfEditNode, LightsAreAddedToAFileWithoutAny) {
     const EditedNodes added = save(path, [&](Scene& s) { s.lights = {spot, panel, sun, disc}; });
     EXPECT_EQ(added.lights, (std::vector<int>{1, 2, 3, 4}));
     const json file = jsonOf(path);
-    EXPECT_EQ(file["extensionsUsed"], json::array({"KHR_lights_punctual"}));
+    EXPECT_EQ(file["extensionsUsed"], json({"KHR_lights_punctual", "EXT_lights_area"}));
     EXPECT_EQ(file["scenes"][1]["nodes"], json({0, 1, 2, 3, 4}));
     EXPECT_FALSE(file["scenes"][0].contains("nodes"));
     const json lights = file["extensions"]["KHR_lights_punctual"]["lights"];
@@ -312,6 +312,10 @@ TEST_F(GltfEditNode, AreaLightsAreEditedInTheirNode) {
     json& area = expected["nodes"][1]["extras"]["relume"]["areaLight"];
     area["color"][1] = 0.2;
     area["size"][1] = 0.3;
+    json& entry = expected["extensions"]["EXT_lights_area"]["lights"][0];
+    entry["color"][1] = 0.2;
+    entry["size"] = 0.3;
+    entry["rect"]["aspect"] = 3.3333333;
     expected["nodes"][1]["translation"] = {0, 2.2, 0};
     EXPECT_EQ(jsonOf(path), expected);
 
@@ -322,6 +326,9 @@ TEST_F(GltfEditNode, AreaLightsAreEditedInTheirNode) {
     area["type"] = "disc";
     area["radius"] = 0.5;
     area.erase("size");
+    entry["type"] = "disk";
+    entry["size"] = 1;
+    entry.erase("rect");
     EXPECT_EQ(jsonOf(path), expected);
 
     Scene point = disc;
@@ -419,7 +426,7 @@ TEST_F(GltfEditNode, ALightBecomesAnotherKind) {
     EXPECT_EQ(entry["type"], "directional");
     EXPECT_FALSE(entry.contains("spot"));
     EXPECT_EQ(entry["extras"]["relume"], json::object({{"angle", 0.01}}));
-    EXPECT_FALSE(file["nodes"][2].contains("extensions"));
+    EXPECT_EQ(file["nodes"][2]["extensions"], json({{"EXT_lights_area", {{"light", 0}}}}));
 }
 
 TEST_F(GltfEditNode, ExtrasThatAreNoObjectAreNamed) {

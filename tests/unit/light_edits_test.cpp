@@ -31,6 +31,27 @@ glm::vec3 direction(const glm::mat4& transform) {
     return -glm::normalize(glm::vec3(transform[2]));
 }
 
+TEST(LightEdits, PreviewLightIsKeptOnRequest) {
+    Document document = withLamps(3);
+    std::vector<Light>& lights = document.edits.lights;
+    EXPECT_FALSE(hasPreview(document.edits));
+    lights[0].name = "Preview sun";
+    lights[0].preview = lights[1].preview = true;
+    EXPECT_TRUE(hasPreview(document.edits));
+    EXPECT_TRUE(isPreview(document.edits, lamp(0)));
+    EXPECT_FALSE(isPreview(document.edits, lamp(2)));
+    EXPECT_FALSE(isPreview(document.edits, lamp(7)));
+    EXPECT_FALSE(isPreview(document.edits, {Kind::Sky, 0, 0}));
+    document.edits.sky.preview = true;
+    EXPECT_TRUE(isPreview(document.edits, {Kind::Sky, 0, 0}));
+    const LightKey copy = duplicateLamp(document, 0);
+    EXPECT_FALSE(isPreview(document.edits, copy)) << "what a user makes is theirs";
+    keepPreview(document.edits);
+    EXPECT_FALSE(hasPreview(document.edits));
+    EXPECT_EQ(lights[0].name, "Sun");
+    EXPECT_EQ(lights[1].name, "Lamp") << "another name stays";
+}
+
 TEST(LightEdits, PowerGoesWhereTheLightHasIt) {
     SceneEdits edits;
     edits.materials.resize(2);

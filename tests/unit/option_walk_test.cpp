@@ -50,7 +50,6 @@ const std::map<std::string, WalkWords> kWith = {
     {"--checkpoint-every", {"--checkpoint", "out.checkpoint"}},
     {"--layer-memory", {"--layers"}},
     {"--distance-factor", {"--preset", "rtrad"}},
-    {"--density", {"--unwrap"}},
     {"--window", {"--method", "static"}},
     {"--node", {"--method", "adaptive"}},
     {"--threshold", {"--method", "adaptive"}},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/unit/glb_builder.h"
+#include "tests/unit/webp_pictures.h"
 
 namespace relume::test {
 
@@ -35,10 +36,26 @@ inline GlbBuilder richScene() {
     b.json["scenes"] = {{{"nodes", {1}}}};
     b.json["scene"] = 0;
     b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", .7}, {"znear", .1}}}}};
+    b.json["images"].push_back({{"bufferView", b.view(kLossyWebp)}, {"mimeType", "image/webp"}});
+    b.json["textures"].push_back({{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}});
+    nlohmann::json& glass = b.json["materials"].emplace_back();
+    glass["alphaMode"] = "BLEND";
+    glass["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"diffuseFactor", {1, .5, 1, .5}},
+                                                                  {"diffuseTexture", {{"index", 1}}}};
+    glass["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1},
+                                                         {"transmissionTexture", {{"index", 1}}}};
+    b.json["materials"].push_back({{"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}});
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {0}}}};
+    b.node({{"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
+    b.node({{"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}, {"mesh", 0}});
+    b.json["nodes"][1]["children"] = {0, 2, 3};
     while (b.bin.size() % 4 != 0)
         b.bin.push_back(0);
     b.json["buffers"] = {{{"byteLength", b.bin.size()}}};
-    b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    b.json["extensionsUsed"] = {"KHR_lights_punctual", "EXT_lights_area", "EXT_texture_webp"};
+    b.json["extensions"]["EXT_lights_area"]["lights"] = {
+        {{"type", "rect"}, {"size", 2}, {"rect", {{"aspect", 2}}}}};
+    b.json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "night"}}};
     b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"},
                                                               {"color", {1, 1, 1}},
                                                               {"spot", {{"outerConeAngle", .6}}},

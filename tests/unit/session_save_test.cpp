@@ -75,8 +75,38 @@ TEST_F(SessionSaveTest, WhatIsEditedIsUnsavedUntilItIsSaved) {
     EXPECT_TRUE(session_.dirty()) << "not as the file has it now";
     change("Hide", [](SceneEdits& edits) { edits.placements[0].hidden = true; });
     ASSERT_TRUE(save());
-    EXPECT_FALSE(session_.dirty()) << "a file cannot hide";
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_TRUE(loadGltf(file()).instances[0].hidden);
+    session_.undo();
+    EXPECT_TRUE(session_.dirty()) << "the file hides it";
+    ASSERT_TRUE(save());
     EXPECT_EQ(bytesOf(file()), before) << "a value that is edited back is what it was";
+}
+
+TEST_F(SessionSaveTest, PreviewLightIsInNoFileUntilItIsKept) {
+    Scene dark = loadGltf(kScenes + "cornell_small.glb");
+    for (Material& material : dark.materials)
+        material.emission = glm::vec3(0.0f);
+    dark.lights.clear();
+    dark.sky = {};
+    saveGlb(dark, file());
+    open();
+    ASSERT_EQ(session_.document().edits.lights.size(), 1u);
+    EXPECT_FALSE(session_.scene()->prepared.madeLight.empty());
+    EXPECT_FALSE(session_.dirty());
+    change("Strength", [](SceneEdits& edits) { edits.lights[0].intensity *= 2; });
+    EXPECT_FALSE(session_.dirty()) << "it is no light of the file";
+    addLamp("Own");
+    ASSERT_TRUE(save());
+    ASSERT_EQ(loadGltf(file()).lights.size(), 1u);
+    EXPECT_EQ(loadGltf(file()).lights[0].name, "Own");
+    change("Keep", [](SceneEdits& edits) { keepPreview(edits); });
+    EXPECT_TRUE(session_.dirty());
+    ASSERT_TRUE(save());
+    EXPECT_EQ(loadGltf(file()).lights.size(), 2u);
+    change("Place", [](SceneEdits& edits) { edits.lights[0].transform[3].x += 0.1f; });
+    ASSERT_TRUE(save());
+    EXPECT_EQ(loadGltf(file()).lights.size(), 2u) << "each light has its node";
 }
 
 TEST_F(SessionSaveTest, ALampIsAddedToTheFileOnce) {

@@ -140,8 +140,8 @@ TEST(Unwrap, WithoutAnAreaNoUnwrapIsAdvised) {
         unwrap(mapped, {});
         return buildAtlas(mapped, 64, unwrapped).warnings.at(0);
     };
-    EXPECT_NE(warning(false).find("pass --unwrap"), std::string::npos) << warning(false);
-    EXPECT_EQ(warning(true).find("pass --unwrap"), std::string::npos) << warning(true);
+    EXPECT_NE(warning(false).find("leave out --no-unwrap"), std::string::npos) << warning(false);
+    EXPECT_EQ(warning(true).find("leave out --no-unwrap"), std::string::npos) << warning(true);
 }
 
 TEST(Unwrap, MoebiusStrip) {

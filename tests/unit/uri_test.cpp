@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace relume {
 namespace {
 
@@ -28,6 +32,27 @@ TEST(Uri, TellsWhatIsRelative) {
         EXPECT_TRUE(isRelativeUri(uri)) << uri;
     for (const char* uri : {"", "/a", "#a", "data:x", "https://x"})
         EXPECT_FALSE(isRelativeUri(uri)) << uri;
+}
+
+// The examples are those of RFC 4648, section 10.
+TEST(Uri, HoldsItsOwnBytes) {
+    const auto text = [](const std::string& base64) {
+        const auto bytes = bytesOfDataUri("data:image/png;base64," + base64);
+        return bytes ? std::string(bytes->begin(), bytes->end()) : "none";
+    };
+    for (const auto& [base64, plain] :
+         std::vector<std::pair<std::string, std::string>>{{"", ""},
+                                                          {"Zg==", "f"},
+                                                          {"Zm8=", "fo"},
+                                                          {"Zm9v", "foo"},
+                                                          {"Zm9vYg==", "foob"},
+                                                          {"Zm9vYmE=", "fooba"},
+                                                          {"Zm9vYmFy", "foobar"}})
+        EXPECT_EQ(text(base64), plain);
+    EXPECT_EQ(text("+/+/"), "\xfb\xff\xbf");
+    EXPECT_EQ(text("Zm9v!Zm9v"), "foo") << "up to what is no base64";
+    for (const char* other : {"a.png", "data:,x", "data:text/plain,Zm9v", "data:image/png;base64"})
+        EXPECT_FALSE(bytesOfDataUri(other)) << other;
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 #include "assets/base/error.h"
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -156,6 +158,7 @@ LightKey duplicateLamp(Document& document, uint32_t index) {
     const float across =
         std::max(light.type == LightType::Rectangle ? light.size.x : 0.0f, 2.0f * light.radius);
     const glm::vec3 right = glm::normalize(glm::vec3(light.transform[0]));
+    light.preview = false;
     light.transform[3] += glm::vec4(std::max((1.0f + kBeside) * across, kLeastBeside) * right, 0.0f);
     return addLamp(document, std::move(light));
 }
@@ -165,6 +168,30 @@ void eraseLamp(Document& document, uint32_t index) {
     ASSERT(index < lights.size());
     lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(index));
     document.mix.lampErased(index);
+}
+
+bool hasPreview(const SceneEdits& edits) {
+    return edits.sky.preview || std::any_of(edits.lights.begin(), edits.lights.end(),
+                                            [](const Light& light) { return light.preview; });
+}
+
+bool isPreview(const SceneEdits& edits, const LightKey& key) {
+    if (key.kind == LightKey::Kind::Sky) return edits.sky.preview;
+    return key.kind == LightKey::Kind::Lamp && key.index < edits.lights.size() &&
+           edits.lights[key.index].preview;
+}
+
+void keepPreview(SceneEdits& edits) {
+    edits.sky.preview = false;
+    for (Light& light : edits.lights) {
+        if (!light.preview) continue;
+        light.preview = false;
+        constexpr std::string_view kMark = "Preview "; // of addPreviewLight()
+        if (light.name.starts_with(kMark) && light.name.size() > kMark.size()) {
+            light.name.erase(0, kMark.size());
+            light.name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(light.name[0])));
+        }
+    }
 }
 
 void toggle(std::vector<LightKey>& keys, const LightKey& key) {

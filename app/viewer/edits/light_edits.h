@@ -45,6 +45,11 @@ LightKey addLamp(Document& document, Light light);
 /// Adds a copy a little beside the light, and returns its key.
 LightKey duplicateLamp(Document& document, uint32_t index);
 void eraseLamp(Document& document, uint32_t index);
+/// Tells whether there is preview light, which a dark level got; with a key, whether this light is.
+bool hasPreview(const SceneEdits& edits);
+bool isPreview(const SceneEdits& edits, const LightKey& key);
+/// Makes preview light the file's own, which a save writes. Its lights lose "Preview" from their names.
+void keepPreview(SceneEdits& edits);
 /// Puts a light among the muted ones, or the solo ones, or takes it out.
 void toggle(std::vector<LightKey>& keys, const LightKey& key);
 

@@ -90,9 +90,27 @@ void tellShared(const PanelContext& context, const LightKey& key) {
                       .c_str());
 }
 
-// Returns what tells in a row, behind the type, that the light is in a group.
-std::string groupMark(const LightGroup* group) {
-    return group != nullptr ? ", in " + group->source.name : "";
+// Returns what tells in a row, behind the type, that the light is in no file or in a group.
+std::string rowMark(const SceneEdits& edits, const LightKey& key, const LightGroup* group) {
+    return (isPreview(edits, key) ? ", preview" : "") +
+           (group != nullptr ? ", in " + group->source.name : "");
+}
+
+// Offers to keep the light that a level got which has none.
+void drawKeep(const PanelContext& context) {
+    if (!hasPreview(context.session.document().edits)) return;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Preview, not in the file:");
+    ImGui::SameLine();
+    if (ui::button("Keep")) {
+        Document next = context.session.document();
+        keepPreview(next.edits);
+        context.edit("Keep of the preview light", next);
+        context.endEdit();
+    }
+    ui::tip(
+        "Nothing in the file shines, so that it is lit by a preview. Keep makes this light the file's own: "
+        "saving writes it");
 }
 
 void tellGroup(const LightGroup* group) {
@@ -186,8 +204,8 @@ void LightsPanel::drawRow(const PanelContext& context, const LightSource& source
     const bool dark = !context.session.document().mix.shines(source.key);
     if (dark) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     const LightGroup* group = groupWith(context.status.groups, source.key);
-    const std::string title =
-        fmt::format("{} ({}{})###light", source.name, lightTypeOf(edits, source.key), groupMark(group));
+    const std::string title = fmt::format("{} ({}{})###light", source.name, lightTypeOf(edits, source.key),
+                                          rowMark(edits, source.key, group));
     if (ImGui::Selectable(title.c_str(), context.view.light == source.key, 0, {name, frame}))
         context.selectLight(source.key);
     if (dark) ImGui::PopStyleColor();
@@ -371,6 +389,7 @@ void LightsPanel::draw(const PanelContext& context) {
         ImGui::TextWrapped("%s.", remark.c_str());
         ui::mark("Shared layers", false);
     }
+    drawKeep(context);
     drawBoard(context);
     ImGui::Separator();
     drawAdd(context);

@@ -64,7 +64,7 @@ void ObjectPanel::draw(const PanelContext& context, uint32_t instance) {
     follow(context, "Scale", "Scale of " + name, changed ? &next : nullptr);
     bool hidden = placement.hidden;
     if (ui::checkbox("Hidden", &hidden)) context.perform(Action::HideObject, 0);
-    ui::tip("It blocks no light, receives and sends none (H). A glTF file cannot say so");
+    ui::tip("It blocks no light, receives and sends none (H)");
 }
 
 } // namespace relume

@@ -36,7 +36,8 @@ struct PanelContext {
     std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
     std::function<void(const std::string&, const Document&)> edit; // Session::edit, told to the log
     std::function<void()> endEdit;
-    std::function<void(const std::string&)> open; // a scene
+    std::function<void(const std::string&)> open;  // a scene
+    std::function<void(const GltfChoice&)> choose; // of what the scene's file offers
     std::function<void(const LightKey&)> selectLight;
     ui::ItemLog& items;
 };

@@ -39,14 +39,21 @@ void drawLabel(const glm::vec2& at, const char* text, const glm::vec4& color) {
     list.AddText({at.x, at.y}, ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, color.a}), text);
 }
 
-void drawBadge(const BakeBadge& badge, const PictureArea& area) {
-    if (badge.text.empty()) return;
+void drawBadge(const BakeBadge& badge, const std::string& furnished, const PictureArea& area) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const glm::vec2 low = area.corner, high = area.corner + area.size;
-    const ImVec2 size = ImGui::CalcTextSize(badge.text.c_str());
     const float margin = 2.0f * labelMargin();
     list.PushClipRect({low.x, low.y}, {high.x, high.y});
-    drawLabel({high.x - size.x - margin, high.y - size.y - margin}, badge.text.c_str(), colorOf(badge.state));
+    float bottom = high.y - margin;
+    const auto draw = [&](const std::string& text, const glm::vec4& colour) {
+        if (text.empty()) return;
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        bottom -= size.y;
+        drawLabel({high.x - size.x - margin, bottom}, text.c_str(), colour);
+        bottom -= margin;
+    };
+    draw(badge.text, colorOf(badge.state));
+    draw(furnished, {0.8f, 0.8f, 0.8f, 1.0f});
     list.PopClipRect();
 }
 

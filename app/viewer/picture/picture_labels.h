@@ -15,7 +15,8 @@ float labelMargin();
 float labelWidth(const char* text);
 /// Draws text on a dark ground behind the windows of Dear ImGui, its upper left corner at `at`.
 void drawLabel(const glm::vec2& at, const char* text, const glm::vec4& color);
-/// Draws how far the light is, in the lower right corner of the picture.
-void drawBadge(const BakeBadge& badge, const PictureArea& area);
+/// Draws how far the light is, in the lower right corner of the picture, and above it what the level was
+/// furnished with, "" for nothing.
+void drawBadge(const BakeBadge& badge, const std::string& furnished, const PictureArea& area);
 
 } // namespace relume

@@ -26,6 +26,7 @@ bool SceneView::takeMap() {
 }
 
 const PublishedMap* SceneView::map() const {
+    if (early_.pane) return nullptr;
     const PublishedMap* newest = bridge_.map();
     return newest != nullptr && newest->bake >= session_.firstBake() ? newest : nullptr;
 }
@@ -39,6 +40,26 @@ ScenePane::Look SceneView::look() const {
     return {.camera = camera_.camera(), .state = state_, .lightmap = lightmap, .map = map()};
 }
 
+bool SceneView::followEarly(const std::function<ViewCamera(const LoadedScene&)>& firstCamera) {
+    const LoadedScene* early = session_.early();
+    if (early == nullptr) {
+        if (!early_.pane) return false;
+        early_.pane.reset();
+        const LoadedScene* scene = session_.scene();
+        if (scene != nullptr && scene->number != early_.number)
+            camera_.set(early_.former, scene->geometry.bounds);
+        return true;
+    }
+    if (early_.pane && early_.number == early->number) return false;
+    if (!early_.pane) early_.former = camera_.camera();
+    early_.pane = std::make_unique<ScenePane>(pane_.software());
+    early_.pane->setScene(early);
+    early_.number = early->number;
+    const ViewCamera camera = firstCamera(*early);
+    camera_.set(camera, early->geometry.bounds);
+    return true;
+}
+
 void SceneView::place(const PictureArea& area, float scale, float pixels) {
     area_ = area;
     scale_ = scale;
@@ -46,6 +67,7 @@ void SceneView::place(const PictureArea& area, float scale, float pixels) {
 }
 
 std::optional<Pick> SceneView::pick(const glm::dvec2& at, std::optional<uint32_t> without) {
+    if (early_.pane) return std::nullopt; // what is picked is the session's
     return pane_.pick(look(), (glm::vec2(at) - area_.corner) * pixels_, without);
 }
 
@@ -61,7 +83,7 @@ LightSpot SceneView::lightSpot() {
 }
 
 bool SceneView::showsLights() const {
-    return session_.scene() != nullptr && !state_.uv && !state_.bare;
+    return session_.scene() != nullptr && !early_.pane && !state_.uv && !state_.bare;
 }
 
 bool SceneView::draw(bool anew, const glm::uvec2& window) {
@@ -70,9 +92,10 @@ bool SceneView::draw(bool anew, const glm::uvec2& window) {
                             window.y - std::min(window.y, toPixels(area_.corner.y + area_.size.y)));
     const glm::uvec2 size =
         glm::max(glm::uvec2(toPixels(area_.size.x), toPixels(area_.size.y)), glm::uvec2(1));
-    const bool resized = pane_.picture().width() != size.x || pane_.picture().height() != size.y;
+    ScenePane& pane = shownPane();
+    const bool resized = pane.picture().width() != size.x || pane.picture().height() != size.y;
     if (anew || resized) {
-        pane_.draw(look(), size);
+        pane.draw(look(), size);
         feedback_.sceneDrawn();
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -80,7 +103,7 @@ bool SceneView::draw(bool anew, const glm::uvec2& window) {
     glDisable(GL_SCISSOR_TEST);
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT);
-    pane_.show(corner);
+    pane.show(corner);
     return anew || resized;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 
 #include "app/live/session.h"
@@ -38,6 +40,13 @@ public:
     const PublishedMap* map() const;
     ScenePane::Look look() const;
 
+    /// Follows Session::early(): its geometry is shown until its scene is there; where that cannot be read,
+    /// the former scene is shown again, as it was seen. `firstCamera` chooses the view. Call it once per
+    /// frame, after the scene came. Returns whether another geometry is shown.
+    bool followEarly(const std::function<ViewCamera(const LoadedScene&)>& firstCamera);
+    /// Tells whether this scene's geometry has been shown: the camera may have been moved since.
+    bool wasEarly(const LoadedScene& scene) const { return early_.number == scene.number; }
+
     /// Sets where the picture lies. `scale` is that of text and controls, `pixels` the size of a screen
     /// coordinate.
     void place(const PictureArea& area, float scale, float pixels);
@@ -69,11 +78,20 @@ public:
     bool rests(double time) const { return time - moved_ >= kRestsAfter; }
 
 private:
+    /// A scene that is shown before it is there.
+    struct Early {
+        std::unique_ptr<ScenePane> pane; // nullptr: nothing is
+        uint64_t number = 0;             // of the newest one, LoadedScene::number
+        ViewCamera former;               // by which the scene before was seen
+    };
+    ScenePane& shownPane() { return early_.pane ? *early_.pane : pane_; }
+
     const Session& session_;
     Feedback& feedback_;
     ViewState state_;
     CameraControl camera_;
     ScenePane pane_;
+    Early early_;
     LightmapBridge bridge_;
     uint64_t mapVersion_ = 0; // of the newest map
     PictureArea area_;        // as in the last frame, like the two below

@@ -1,11 +1,11 @@
 #include "app/viewer/shell/scene_files.h"
 
-#include "app/edit/scene_edit.h"
 #include "app/offline/command_files.h"
 #include "assets/base/warnings.h"
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -86,7 +86,14 @@ void SceneFiles::askToExport() {
 
 void SceneFiles::open(const std::string& path) {
     desc_.feedback.pacer().input();
+    choice_.reset();
     leave({path});
+}
+
+void SceneFiles::choose(const GltfChoice& choice) {
+    desc_.feedback.pacer().input();
+    choice_ = choice;
+    leave({desc_.session.path()});
 }
 
 void SceneFiles::exportLightmap(const std::string& path) {
@@ -137,7 +144,9 @@ void SceneFiles::leave(const Departure::Goal& goal) {
 
 void SceneFiles::go(const std::optional<Departure::Goal>& goal) {
     if (!goal) return;
-    if (goal->scene)
+    if (goal->scene && choice_)
+        desc_.session.choose(*std::exchange(choice_, std::nullopt));
+    else if (goal->scene)
         desc_.session.open(*goal->scene);
     else
         desc_.window.close();
@@ -171,8 +180,7 @@ void SceneFiles::followSaves() {
     path_ = saved;
     desc_.preferences.addRecent(session.path());
     desc_.feedback.tell("saved", session.path());
-    const std::string unsaved = unsavedPart(session.document().edits);
-    desc_.feedback.note("saved " + session.path() + (unsaved.empty() ? "" : ": " + unsaved));
+    desc_.feedback.note("saved " + session.path());
 }
 
 void SceneFiles::followTitle() {

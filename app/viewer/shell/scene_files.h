@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/live/session.h"
@@ -36,6 +37,8 @@ public:
     /// Does an action from Open to Quit.
     void perform(Action action);
     void open(const std::string& path);
+    /// Reads the scene's file by another choice of what it offers.
+    void choose(const GltfChoice& choice);
 
     /// Says that another scene came.
     void sceneCame();
@@ -56,8 +59,9 @@ private:
 
     Desc desc_;
     Departure departure_;
-    uint64_t saves_ = 0;       // how many saves were told
-    std::string title_, path_; // of the window, and of the scene when it was loaded or saved
+    std::optional<GltfChoice> choice_; // of the scene that is opened next; none: as the session has it
+    uint64_t saves_ = 0;               // how many saves were told
+    std::string title_, path_;         // of the window, and of the scene when it was loaded or saved
 };
 
 } // namespace relume

@@ -6,6 +6,7 @@
 #include "app/viewer/panels/widgets.h"
 #include "app/viewer/picture/shown_lights.h"
 #include "app/viewer/state/views.h"
+#include "assets/base/warnings.h"
 
 #include <algorithm>
 
@@ -66,6 +67,41 @@ void drawRecent(const PanelContext& context, FileDialog& files) {
             context.open(path);
         }
     ImGui::EndMenu();
+}
+
+// Draws a menu of names of which one is chosen; returns the number of one that was clicked, -1 for none.
+int clickedName(const char* title, const std::vector<std::string>& names, int chosen) {
+    if (!ImGui::BeginMenu(title)) return -1;
+    int clicked = -1;
+    for (int i = 0; i < static_cast<int>(names.size()); ++i) {
+        ImGui::PushID(i); // two may have one name
+        if (ImGui::MenuItem(inQuotes(names[static_cast<size_t>(i)]).c_str(), nullptr, i == chosen))
+            clicked = i;
+        ImGui::PopID();
+    }
+    ImGui::EndMenu();
+    return clicked;
+}
+
+// Draws what the scene's file offers to choose from: its scenes and the variants of its materials.
+void drawChoices(const PanelContext& context, FileDialog& files) {
+    if (context.session.scene() == nullptr) return;
+    const Scene& scene = context.session.scene()->prepared.scene;
+    GltfChoice choice = context.session.choice();
+    int clicked = -1;
+    if (scene.sceneNames.size() > 1) {
+        clicked = clickedName("Scene of the file", scene.sceneNames, scene.sceneNumber);
+        if (clicked >= 0) choice.scene = std::to_string(clicked);
+    }
+    if (!scene.variantNames.empty() && clicked < 0) {
+        const auto now = std::find(scene.variantNames.begin(), scene.variantNames.end(), choice.variant);
+        clicked =
+            clickedName("Variant", scene.variantNames, static_cast<int>(now - scene.variantNames.begin()));
+        if (clicked >= 0) choice.variant = scene.variantNames[static_cast<size_t>(clicked)];
+    }
+    if (clicked < 0) return;
+    files.close();
+    context.choose(choice);
 }
 
 void drawMenu(const PanelContext& context, const std::string& group) {
@@ -136,7 +172,10 @@ float Ui::drawMenus(const PanelContext& context) {
     for (const char* group : {"File", "Edit", "Bake", "Light", "Move", "View", "Camera", "Capture", "Help"}) {
         if (!ImGui::BeginMenu(group)) continue;
         drawMenu(context, group);
-        if (std::string(group) == "File") drawRecent(context, files_);
+        if (std::string(group) == "File") {
+            drawRecent(context, files_);
+            drawChoices(context, files_);
+        }
         ImGui::EndMenu();
     }
     if (context.recording) ImGui::TextColored({1.0f, 0.35f, 0.3f, 1.0f}, "   recording");

@@ -1,5 +1,6 @@
 #include "app/viewer/shell/view_options.h"
 
+#include "app/edit/choice_options.h"
 #include "app/text/option_checks.h"
 
 #include <algorithm>
@@ -48,6 +49,7 @@ DisplayMode displayModeOf(const std::string& display) {
 
 void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_option("scene", o.bake.files.scene, "glTF scene, .gltf or .glb (default: none yet)");
+    addChoiceOptions(command, o.bake.files.choice);
     addSizeOption(command, "--size", o.bake);
     addSolverOptions(command, o.bake);
     command.add_option("--preset", o.bake.solve.preset, "rtrad: the reference implementation to the letter")

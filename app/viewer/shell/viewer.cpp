@@ -163,6 +163,11 @@ void Viewer::follow(double time) {
 
 void Viewer::followScene() {
     if (session_.update()) takeScene();
+    const auto view = [this](const LoadedScene& scene) { return firstCamera(scene); };
+    if (picture_.followEarly(view)) {
+        if (session_.early() != nullptr) feedback_.tell("geometry", session_.early()->prepared.scene.path);
+        feedback_.sceneChanged();
+    }
     if (!session_.lastError().empty()) {
         feedback_.showError(session_.lastError()); // the log has told it, too
         session_.clearError();
@@ -184,8 +189,8 @@ void Viewer::takeScene() {
     progress_.sceneCame(feedback_.now());
     comparison_.sceneCame();
     if (!session_.sceneWasKept()) {
-        const ViewCamera camera = firstCamera();
-        picture_.camera().set(camera, scene.geometry.bounds);
+        const ViewCamera camera = firstCamera(scene);
+        if (!picture_.wasEarly(scene)) picture_.camera().set(camera, scene.geometry.bounds);
         picture_.camera().setHome(camera);
     }
     files_.sceneCame();
@@ -195,8 +200,7 @@ void Viewer::takeScene() {
 }
 
 // Returns the camera that a scene is seen by at first: the one that was asked for, else its own.
-ViewCamera Viewer::firstCamera() {
-    const LoadedScene& scene = *session_.scene();
+ViewCamera Viewer::firstCamera(const LoadedScene& scene) {
     const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
     const auto named = std::find_if(cameras.begin(), cameras.end(),
                                     [&](const Camera& camera) { return camera.name == desc_.camera; });
@@ -247,6 +251,7 @@ PanelContext Viewer::context() {
             .edit = [this](const std::string& name, const Document& next) { editing_.edit(name, next); },
             .endEdit = [this] { editing_.end(); },
             .open = [this](const std::string& path) { files_.open(path); },
+            .choose = [this](const GltfChoice& choice) { files_.choose(choice); },
             .selectLight = [this](const LightKey& key) { lights_.select(key); },
             .items = ui_.items()};
 }
@@ -270,7 +275,10 @@ void Viewer::drawOverlay() {
         ui_.items().add("Line", glm::ivec2(glm::round(comparison_.grip())));
         comparison_.draw();
     }
-    if (!picture_.state().bare) drawBadge(progress_.badge(), picture_.area());
+    if (picture_.state().bare || session_.early() != nullptr) return;
+    const std::string furnished =
+        furnishedText(!session_.scene()->prepared.madeUvs.empty(), hasPreview(session_.document().edits));
+    drawBadge(progress_.badge(), furnished, picture_.area());
 }
 
 void Viewer::frame(const Redraw& redraw) {

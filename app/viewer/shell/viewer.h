@@ -60,7 +60,7 @@ private:
     void follow(double time);
     void followScene();
     void takeScene();
-    ViewCamera firstCamera();
+    ViewCamera firstCamera(const LoadedScene& scene);
     void followBake(double time);
     bool settled() const;
     PanelContext context();

@@ -45,6 +45,12 @@ const char* badgeName(State state) {
     return "";
 }
 
+std::string furnishedText(bool madeUvs, bool previewLight) {
+    if (!madeUvs) return previewLight ? "preview light: not in the file" : "";
+    return std::string("lightmap UVs ") + (previewLight ? "made, preview light" : "made") +
+           ": not in the file";
+}
+
 BakeBadge bakeBadge(const BakeBadgeDesc& desc) {
     BakeBadge badge{.state = stateOf(desc), .text = {}};
     if (badge.state == State::None) return badge;

@@ -27,6 +27,8 @@ struct BakeBadgeDesc {
     double seconds = 0; // since it, or since the scene came, up to when the light had converged
 };
 BakeBadge bakeBadge(const BakeBadgeDesc& desc);
+/// Returns what the level on screen has that its file lacks, "" where that is nothing.
+std::string furnishedText(bool madeUvs, bool previewLight);
 const char* badgeName(BakeBadge::State state); // "converged"
 
 } // namespace relume

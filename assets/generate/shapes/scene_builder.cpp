@@ -2,6 +2,7 @@
 
 #include "assets/atlas/rect_pack.h"
 #include "assets/base/error.h"
+#include "assets/model/panes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,6 +194,7 @@ Scene SceneBuilder::assemble(LightmapUvs uvs) {
         scene_.meshes.push_back(meshOf(part.name, part.solid, tiles_, uvs));
         scene_.meshes.back().batched = part.batched == Batched::Yes;
     }
+    markPanes(scene_);
     return std::move(scene_);
 }
 
