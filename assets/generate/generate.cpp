@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/generate/generate_scenes.h"
+#include "assets/generate/town/town.h"
 
 namespace relume {
 namespace {
@@ -23,6 +24,11 @@ const std::vector<Entry>& entries() {
         {{"octagon", "a textured octagonal room with coloured lights"}, generate::octagon},
         {{"atrium", "a two-storey court of columns and arches under a skylight"}, generate::atrium},
         {{"lamps", "a room with one light of each kind, a window, sun and sky"}, generate::lamps},
+        {{"town", "a street with arcades, alleys, a court and three rooms, in sun, sky and twenty lamps",
+          false},
+         generate::town},
+        {{"raw", "a corner of the town as levels come: no lightmap UVs, no lights, doubled faces", false},
+         generate::rawCorner},
     };
     return all;
 }

@@ -1,7 +1,7 @@
-#include "assets/generate/generate_builder.h"
-#include "assets/generate/generate_furniture.h"
+#include "assets/generate/shapes/scene_builder.h"
+#include "assets/generate/shapes/furniture.h"
 #include "assets/generate/generate_scenes.h"
-#include "assets/generate/generate_shapes.h"
+#include "assets/generate/shapes/shapes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "assets/generate/generate_builder.h"
-#include "assets/generate/generate_furniture.h"
-#include "assets/generate/generate_pixels.h"
+#include "assets/generate/shapes/scene_builder.h"
+#include "assets/generate/shapes/furniture.h"
+#include "assets/generate/shapes/pixels.h"
 #include "assets/generate/generate_scenes.h"
-#include "assets/generate/generate_shapes.h"
+#include "assets/generate/shapes/shapes.h"
 
 #include <cmath>
 

@@ -22,7 +22,8 @@ struct GltfChoice {
 /// thing and the remedy; where a chosen name is none of the file's, it lists those that are.
 Scene loadGltf(const std::string& path, const GltfChoice& choice = {});
 
-/// Writes a scene as one binary .glb: meshes shared by instances, one node per instance, materials, textures
+/// Writes a scene as one binary .glb: meshes shared by instances, one node per instance (or one for all
+/// where Mesh::batched asks for it and there are eight or more), materials, textures
 /// (PNG), cameras, lights (KHR_lights_punctual; extents, area lights and the sky as extras, see README.md),
 /// emission above 1 by KHR_materials_emissive_strength. The sky's picture stays where Sky::file is; one
 /// without a file is written beside the .glb as NAME_sky.exr. The file is written by a temporary name and

@@ -2,12 +2,11 @@
 
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
-#include "assets/base/uri.h"
+#include "assets/gltf/gltf_batches.h"
 #include "assets/gltf/gltf_light_json.h"
 #include "assets/gltf/gltf_png.h"
+#include "assets/gltf/gltf_sky_file.h"
 #include "assets/gltf/gltf_value.h"
-#include "assets/images/float_image.h"
-#include "assets/images/image_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -45,7 +44,17 @@ struct Stream {
     int target = 0;
 };
 
-enum StreamId { kPositions, kNormals, kTexCoords, kColors, kShortIndices, kIntIndices, kStreamCount };
+enum StreamId {
+    kPositions,
+    kNormals,
+    kTexCoords,
+    kColors,
+    kPlaces,
+    kTurns,
+    kShortIndices,
+    kIntIndices,
+    kStreamCount
+};
 
 class GlbWriter {
 public:
@@ -53,10 +62,12 @@ public:
     /// `pictures` as glbBytes() does.
     GlbWriter(const Scene& scene, std::string skyFile, std::span<const std::vector<uint8_t>> pictures = {})
         : scene_(scene), skyFile_(std::move(skyFile)), pictures_(pictures) {
-        const int strides[kStreamCount] = {12, 12, 8, 16, 0, 0};
+        const int strides[kStreamCount] = {12, 12, 8, 16, 12, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
             streams_[i].stride = strides[i];
             streams_[i].target = strides[i] ? kArrayBuffer : kElementArrayBuffer;
+            // What instances have is neither.
+            if (i == kPlaces || i == kTurns) streams_[i].target = 0;
         }
     }
 
@@ -72,6 +83,7 @@ private:
     void addMeshes();
     void addTextures();
     void addNodes();
+    Json addBatch(const gltf::Batch& batch);
     Json addCamera(const Camera& camera);
     Json addLight(const Light& light);
     void addBuffers();
@@ -286,6 +298,21 @@ void GlbWriter::addTextures() {
     if (!samplers.empty()) json_["samplers"] = std::move(samplers);
 }
 
+Json GlbWriter::addBatch(const gltf::Batch& batch) {
+    Json node = nodeOf(scene_.meshes[batch.mesh].name, glm::mat4(1.0f));
+    node["mesh"] = meshIndices_[batch.mesh];
+    Json attributes;
+    const size_t count = batch.translations.size();
+    attributes["TRANSLATION"] = addAccessor(kPlaces, batch.translations.data(), count, kFloat, "VEC3");
+    if (batch.isTurned)
+        attributes["ROTATION"] = addAccessor(kTurns, batch.rotations.data(), count, kFloat, "VEC4");
+    if (batch.isScaled)
+        attributes["SCALE"] = addAccessor(kPlaces, batch.scales.data(), count, kFloat, "VEC3");
+    node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = std::move(attributes);
+    use("EXT_mesh_gpu_instancing");
+    return node;
+}
+
 Json GlbWriter::addCamera(const Camera& camera) {
     Json lens, out;
     if (!camera.name.empty()) out["name"] = camera.name;
@@ -326,7 +353,10 @@ Json GlbWriter::addLight(const Light& light) {
 
 void GlbWriter::addNodes() {
     Json nodes = Json::array();
-    for (const Instance& instance : scene_.instances) {
+    const gltf::Batches batches = gltf::batchesOf(scene_);
+    for (size_t i = 0; i < scene_.instances.size(); ++i) {
+        if (batches.isBatched[i]) continue;
+        const Instance& instance = scene_.instances[i];
         Json node = nodeOf(instance.name, instance.transform);
         if (instance.mesh >= 0 && meshIndices_[instance.mesh] >= 0)
             node["mesh"] = meshIndices_[instance.mesh];
@@ -337,6 +367,8 @@ void GlbWriter::addNodes() {
         if (instance.density != 1.0f) node["extras"]["relume"]["density"] = instance.density;
         nodes.push_back(std::move(node));
     }
+    for (const gltf::Batch& batch : batches.batches)
+        if (meshIndices_[batch.mesh] >= 0) nodes.push_back(addBatch(batch));
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
@@ -372,8 +404,8 @@ void GlbWriter::addBuffers() {
         if (streams_[i].bytes.empty()) continue;
         viewOf[i] = static_cast<int>(views.size());
         Json& view = addView(streams_[i].bytes.size());
-        if (streams_[i].stride) view["byteStride"] = streams_[i].stride;
-        view["target"] = streams_[i].target;
+        if (streams_[i].target == kArrayBuffer) view["byteStride"] = streams_[i].stride;
+        if (streams_[i].target != 0) view["target"] = streams_[i].target;
     }
     if (json_.contains("accessors"))
         for (Json& accessor : json_["accessors"]) {
@@ -441,46 +473,11 @@ std::vector<uint8_t> GlbWriter::write() {
     return out;
 }
 
-// Tells whether the picture is only in memory, so that it needs a file.
-bool skyIsHomeless(const Sky& sky) {
-    std::error_code code;
-    return !sky.pixels.empty() && (sky.file.empty() || !std::filesystem::exists(sky.file, code));
-}
-
-// Returns where the sky's picture is, or will be, from the folder of the file at `path`. JSON must be able to
-// hold it.
-std::string skyPathFrom(const Sky& sky, const std::string& path) {
-    namespace fs = std::filesystem;
-    std::string file;
-    if (skyIsHomeless(sky)) {
-        file = fs::path(path).stem().string() + "_sky.exr";
-    } else if (!sky.file.empty()) {
-        const fs::path folder = fs::path(path).parent_path();
-        std::error_code code;
-        const fs::path relative = fs::relative(sky.file, folder.empty() ? "." : folder, code);
-        file = (code || relative.empty() ? fs::absolute(sky.file) : relative).generic_string();
-    }
-    if (!isUtf8(file))
-        throw Error(path + ": the path of the sky's picture, '" + file +
-                    "', is no UTF-8, as which glTF would hold it: rename it");
-    return file;
-}
-
-void writeSkyPicture(const Sky& sky, const std::string& path) {
-    FloatImage image{sky.width, sky.height, {}, {}, {}};
-    for (int c = 0; c < 3; ++c) {
-        std::vector<float>& plane = image.add(std::string(1, "RGB"[c]));
-        for (size_t i = 0; i < plane.size(); ++i)
-            plane[i] = sky.pixels[i][c];
-    }
-    writeImage(path, image);
-}
-
 } // namespace
 
 void checkGlb(const Scene& scene, const std::string& path) {
-    const std::string skyFile = skyPathFrom(scene.sky, path);
-    if (skyIsHomeless(scene.sky))
+    const std::string skyFile = gltf::skyPathFrom(scene.sky, path);
+    if (gltf::skyIsHomeless(scene.sky))
         checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
 }
 
@@ -489,9 +486,9 @@ std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<ui
 }
 
 void saveGlb(const Scene& scene, const std::string& path) {
-    const std::string skyFile = skyPathFrom(scene.sky, path);
-    if (skyIsHomeless(scene.sky))
-        writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
+    const std::string skyFile = gltf::skyPathFrom(scene.sky, path);
+    if (gltf::skyIsHomeless(scene.sky))
+        gltf::writeSkyPicture(scene.sky, (std::filesystem::path(path).parent_path() / skyFile).string());
     std::vector<uint8_t> bytes;
     try {
         bytes = GlbWriter(scene, skyFile).write();

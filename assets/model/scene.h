@@ -73,6 +73,7 @@ inline const std::vector<glm::vec2>& uvsOf(const Primitive& primitive, const Tex
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    bool batched = false; // saveGlb() writes many instances of it as one node, by EXT_mesh_gpu_instancing
 };
 
 struct Instance {

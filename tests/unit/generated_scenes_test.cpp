@@ -133,16 +133,28 @@ int runRelume(const std::string& arguments) {
     return WEXITSTATUS(std::system((std::string(RELUME_BINARY) + " " + arguments + " 2>/dev/null").c_str()));
 }
 
+/// Leaves out what one looks through or sees from behind: leaves, grilles, panes.
+std::vector<SoupTriangle> opaqueTrianglesOf(const Scene& scene) {
+    Scene opaque = scene;
+    for (Mesh& mesh : opaque.meshes)
+        std::erase_if(mesh.primitives, [&](const Primitive& p) {
+            return opaque.materials[p.material].alphaMode != AlphaMode::Opaque;
+        });
+    return trianglesOf(opaque);
+}
+
 class GeneratedScenes : public testing::TestWithParam<std::string> {
 protected:
     const Scene& scene() const { return sceneOf(GetParam()); }
+    bool hasLightmapUvs() const { return GetParam() != "town" && GetParam() != "raw"; }
 };
 
 TEST_P(GeneratedScenes, HasTheTrianglesItPromises) {
     const std::map<std::string, std::pair<size_t, size_t>> promised = {
         {"cornell_small", {30, 60}},        {"cornell_geom", {3000, 6000}}, {"cornell_layers", {60, 200}},
         {"cornell_statue", {28000, 40000}}, {"gallery", {5000, 40000}},     {"octagon", {5000, 40000}},
-        {"atrium", {150000, 172000}},       {"lamps", {100, 400}},
+        {"atrium", {150000, 172000}},       {"lamps", {100, 400}},          {"town", {280000, 340000}},
+        {"raw", {60000, 130000}},
     };
     const size_t count = trianglesOf(scene()).size();
     EXPECT_GE(count, promised.at(GetParam()).first);
@@ -158,12 +170,12 @@ TEST_P(GeneratedScenes, NamesEverythingAndHasALightAndACamera) {
     bool lit = false;
     for (const Material& material : scene().materials) {
         EXPECT_FALSE(material.name.empty());
-        EXPECT_FALSE(material.doubleSided);
+        EXPECT_EQ(material.doubleSided, material.alphaMode != AlphaMode::Opaque) << material.name;
         EXPECT_LE(std::max({material.baseColor.r, material.baseColor.g, material.baseColor.b}), 1.0f);
         lit = lit || material.emission.g > 0.0f;
     }
-    EXPECT_TRUE(lit);
-    EXPECT_GE(scene().cameras.size(), 1u);
+    EXPECT_EQ(lit, GetParam() != "raw");
+    EXPECT_EQ(scene().cameras.empty(), GetParam() == "raw");
     for (const Camera& camera : scene().cameras)
         EXPECT_FALSE(camera.name.empty());
     for (const Image& image : scene().images) {
@@ -173,6 +185,7 @@ TEST_P(GeneratedScenes, NamesEverythingAndHasALightAndACamera) {
 }
 
 TEST_P(GeneratedScenes, HasSoundTriangles) {
+    if (GetParam() == "raw") GTEST_SKIP() << "it has unsound ones by design: see Raw";
     int thin = 0, turned = 0, withoutTexels = 0;
     for (const SoupTriangle& t : trianglesOf(scene())) {
         if (!(t.area > 1e-9)) ++thin; // [m^2], a third of a millimetre by a few micrometres
@@ -180,12 +193,14 @@ TEST_P(GeneratedScenes, HasSoundTriangles) {
             if (!(glm::dot(normal, t.normal) > 0.0) || std::abs(glm::length(normal) - 1.0) > 1e-5) ++turned;
         if (!(uvArea(t) > 1e-12)) ++withoutTexels;
     }
+    if (!hasLightmapUvs()) withoutTexels = 0;
     EXPECT_EQ(thin, 0);
     EXPECT_EQ(turned, 0);
     EXPECT_EQ(withoutTexels, 0);
 }
 
 TEST_P(GeneratedScenes, HasNoEdgeUsedTwiceTheSameWay) {
+    if (GetParam() == "raw") GTEST_SKIP() << "it has doubled faces by design: see Raw";
     std::set<std::array<double, 7>> edges;
     int repeated = 0;
     for (const SoupTriangle& t : trianglesOf(scene()))
@@ -198,6 +213,7 @@ TEST_P(GeneratedScenes, HasNoEdgeUsedTwiceTheSameWay) {
 }
 
 TEST_P(GeneratedScenes, ChartsLieOnTheCellGridOneCellApart) {
+    if (!hasLightmapUvs()) GTEST_SKIP() << "it has no lightmap UVs";
     const std::vector<ChartBox> boxes = chartBoxes(trianglesOf(scene()));
     for (size_t i = 0; i < boxes.size(); ++i) {
         for (const glm::dvec2& corner : {boxes[i].low, boxes[i].high}) {
@@ -212,6 +228,7 @@ TEST_P(GeneratedScenes, ChartsLieOnTheCellGridOneCellApart) {
 }
 
 TEST_P(GeneratedScenes, FillsTheAtlasWithoutOverlap) {
+    if (!hasLightmapUvs()) GTEST_SKIP() << "it has no lightmap UVs";
     constexpr int kSize = 2048;
     const std::vector<SoupTriangle> triangles = trianglesOf(scene());
     const std::vector<uint8_t> count = coverCount(triangles, kSize);
@@ -229,15 +246,18 @@ TEST_P(GeneratedScenes, FillsTheAtlasWithoutOverlap) {
 
 // From every camera, the room is closed but to the sky, and nobody looks into a solid.
 TEST_P(GeneratedScenes, LetsNobodyOutAndShowsNoBacks) {
-    const TriangleSoup soup(trianglesOf(scene()));
+    const TriangleSoup soup(opaqueTrianglesOf(scene()));
     for (const Camera& camera : scene().cameras) {
         const Walks walks = walk(soup, camera.transform[3], 2000);
-        EXPECT_GT(walks.hits, 1000) << camera.name;
+        // From above a town most walks end in the sky.
+        EXPECT_GT(walks.hits, scene().sky.shines() ? 250 : 1000) << camera.name;
         // Steps that start closer to a corner than the offset of their origin pass behind it.
         if (!scene().sky.shines()) {
             EXPECT_LE(walks.escaped, walks.hits / 2000) << camera.name;
         }
-        EXPECT_LE(walks.backs, walks.hits / 2000) << camera.name;
+        // In a town there are more corners: rafters, louvres, balusters.
+        const int share = GetParam() == "town" ? 1000 : 2000;
+        EXPECT_LE(walks.backs, walks.hits / share + (share == 1000 ? 1 : 0)) << camera.name;
     }
 }
 
@@ -358,6 +378,92 @@ TEST(Lamps, AFileKeepsItsLights) {
         EXPECT_EQ(back.lights[i].radius, scene.lights[i].radius) << scene.lights[i].name;
     }
     EXPECT_EQ(back.sky.radiance, scene.sky.radiance);
+}
+
+TEST(Town, IsAsLargeAndAsLitAsItPromises) {
+    const Scene& scene = sceneOf("town");
+    std::map<LightType, int> lights;
+    for (const Light& light : scene.lights)
+        ++lights[light.type];
+    EXPECT_EQ(lights[LightType::Directional], 1);
+    EXPECT_EQ(scene.lights.size(), 21u); // the sun and twenty lamps
+    EXPECT_GE(lights[LightType::Spot], 1);
+    EXPECT_GE(lights[LightType::Rectangle] + lights[LightType::Disc], 2);
+    EXPECT_TRUE(scene.sky.shines());
+    std::set<std::string> cameras;
+    for (const Camera& camera : scene.cameras)
+        cameras.insert(camera.name);
+    for (const char* name : {"Street", "Arcade", "Alley", "Courtyard", "Tavern"})
+        EXPECT_TRUE(cameras.contains(name)) << name;
+    size_t masked = 0, panes = 0, batched = 0;
+    for (const Material& material : scene.materials) {
+        masked += material.alphaMode == AlphaMode::Mask;
+        panes += material.alphaMode == AlphaMode::Blend && material.baseColor.a < 0.5f;
+    }
+    for (const Mesh& mesh : scene.meshes) {
+        batched += mesh.batched;
+        for (const Primitive& primitive : mesh.primitives)
+            EXPECT_TRUE(primitive.texCoord1.empty()) << mesh.name;
+    }
+    EXPECT_GE(masked, 3u);
+    EXPECT_GE(panes, 1u);
+    EXPECT_GE(batched, 5u);
+    EXPECT_LT(std::filesystem::file_size(RELUME_SOURCE_DIR "/assets/scenes/town.glb"), size_t{8} << 20);
+}
+
+// Sun and sky balance: what the sun gives on the ground is between one and ten times what the sky gives
+// [lux].
+TEST(Town, SunAndSkyBothCount) {
+    const Scene& scene = sceneOf("town");
+    const Light& sun = lampOf(scene, "Sun");
+    const float height = glm::normalize(glm::vec3(sun.transform[2])).y;
+    const float sunLux = sun.intensity * height, skyLux = 3.14159265f * scene.sky.radiance.g;
+    EXPECT_GT(sunLux, skyLux);
+    EXPECT_LT(sunLux, 10.0f * skyLux);
+}
+
+// Each lamp stands free: within ten centimetres around it there is nothing, and something within ten metres.
+TEST(Town, LampsAreInNoSolid) {
+    const Scene& scene = sceneOf("town");
+    const TriangleSoup soup(opaqueTrianglesOf(scene));
+    for (const Light& light : scene.lights) {
+        if (light.type == LightType::Directional) continue;
+        const glm::dvec3 at(light.transform[3]), axis(-light.transform[2]);
+        const SoupHit hit = soup.closest(at, axis);
+        ASSERT_GE(hit.triangle, 0) << light.name;
+        EXPECT_GT(hit.distance, 0.1) << light.name;
+        EXPECT_LT(hit.distance, 10.0) << light.name;
+        EXPECT_LT(glm::dot(soup.triangles()[hit.triangle].normal, axis), 0.0) << light.name;
+    }
+}
+
+TEST(Raw, IsAsLevelsComeFromElsewhere) {
+    const Scene& scene = sceneOf("raw");
+    EXPECT_TRUE(scene.lights.empty());
+    EXPECT_TRUE(scene.cameras.empty());
+    EXPECT_FALSE(scene.sky.shines());
+    std::set<int> materials;
+    size_t flat = 0, doubled = 0;
+    for (const Mesh& mesh : scene.meshes) {
+        ASSERT_EQ(mesh.primitives.size(), 1u);
+        const Primitive& primitive = mesh.primitives[0];
+        EXPECT_TRUE(materials.insert(primitive.material).second) << mesh.name << ": two meshes of a material";
+        EXPECT_EQ(scene.materials[primitive.material].emission, glm::vec3(0.0f));
+        EXPECT_TRUE(primitive.texCoord1.empty());
+        std::set<std::array<uint32_t, 3>> known;
+        for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            std::array<uint32_t, 3> face = {primitive.indices[i], primitive.indices[i + 1],
+                                            primitive.indices[i + 2]};
+            std::sort(face.begin(), face.end());
+            doubled += !known.insert(face).second;
+            const glm::dvec3 a(primitive.positions[face[0]]), b(primitive.positions[face[1]]),
+                c(primitive.positions[face[2]]);
+            flat += glm::length(glm::cross(b - a, c - a)) < 1e-9;
+        }
+    }
+    EXPECT_GE(flat, scene.meshes.size());
+    EXPECT_LT(flat, 5 * scene.meshes.size());
+    EXPECT_GT(doubled, 1000u);
 }
 
 TEST(GenerateScene, ListsTheNamesWhenUnknown) {

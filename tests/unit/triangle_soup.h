@@ -15,7 +15,7 @@ namespace relume {
 struct SoupTriangle {
     glm::dvec3 position[3];
     glm::dvec3 shadingNormal[3];
-    glm::dvec2 uv[3]; // TEXCOORD_1
+    glm::dvec2 uv[3]{}; // TEXCOORD_1, where there is one
     glm::dvec3 normal{0.0};
     double area = 0.0; // [m^2]
     int instance = -1;
@@ -25,6 +25,7 @@ inline std::vector<SoupTriangle> trianglesOf(const Scene& scene) {
     std::vector<SoupTriangle> triangles;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const glm::dmat4 transform(scene.instances[i].transform);
+        const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(transform)));
         for (const Primitive& primitive : scene.meshes[scene.instances[i].mesh].primitives)
             for (size_t k = 0; k + 2 < primitive.indices.size(); k += 3) {
                 SoupTriangle t;
@@ -32,8 +33,9 @@ inline std::vector<SoupTriangle> trianglesOf(const Scene& scene) {
                 for (int c = 0; c < 3; ++c) {
                     const uint32_t index = primitive.indices[k + c];
                     t.position[c] = glm::dvec3(transform * glm::dvec4(primitive.positions[index], 1.0));
-                    t.shadingNormal[c] = glm::dmat3(transform) * glm::dvec3(primitive.normals[index]);
-                    t.uv[c] = primitive.texCoord1[index];
+                    const glm::dvec3 normal(primitive.normals[index]);
+                    t.shadingNormal[c] = glm::length(normal) * glm::normalize(turn * normal);
+                    if (!primitive.texCoord1.empty()) t.uv[c] = primitive.texCoord1[index];
                 }
                 const glm::dvec3 cross =
                     glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);

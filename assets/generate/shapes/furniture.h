@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assets/generate/generate_shapes.h"
+#include "assets/generate/shapes/shapes.h"
 
 // These things stand or hang in more than one generated scene. They point up or stand on the ground like all
 // shapes.

@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/generate/generate_solid.h"
+#include "assets/generate/shapes/solid.h"
 
 // These are the shapes of the generated scenes. Y is up, lengths are in metres and angles in degrees. Fronts
 // face outwards unless said otherwise. A shape's charts are chosen so that every triangle covers real texels.

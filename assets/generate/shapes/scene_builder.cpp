@@ -1,7 +1,8 @@
-#include "assets/generate/generate_builder.h"
+#include "assets/generate/shapes/scene_builder.h"
 
 #include "assets/atlas/rect_pack.h"
 #include "assets/base/error.h"
+#include "assets/model/panes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,70 +12,6 @@
 
 namespace relume::generate {
 namespace {
-
-// Surfaces that bend by more than 38 degrees between neighbouring triangles have an edge there: rounds of 12
-// segments and more look round, hexagons and boxes keep their edges.
-constexpr double kCreaseCosine = 0.788;
-
-using Corner = std::tuple<double, double, double>;
-
-Corner cornerOf(const glm::dvec3& p) {
-    return {p.x, p.y, p.z};
-}
-
-// A face is a triangle of a solid with snapped corners; degenerate ones are left out.
-struct Face {
-    size_t chart;
-    uint32_t vertex[3];
-    int corner[3]; // welded positions over all charts
-    glm::dvec3 areaNormal;
-    glm::dvec3 normal;
-};
-
-std::vector<Face> facesOf(const Solid& solid) {
-    std::map<Corner, int> corners;
-    std::vector<Face> faces;
-    for (size_t c = 0; c < solid.charts.size(); ++c) {
-        const Chart& chart = solid.charts[c];
-        for (size_t i = 0; i + 2 < chart.indices.size(); i += 3) {
-            Face face{};
-            face.chart = c;
-            glm::dvec3 p[3];
-            for (int k = 0; k < 3; ++k) {
-                face.vertex[k] = chart.indices[i + k];
-                p[k] = snap(chart.vertices[face.vertex[k]].position);
-                face.corner[k] =
-                    corners.try_emplace(cornerOf(p[k]), static_cast<int>(corners.size())).first->second;
-            }
-            face.areaNormal = glm::cross(p[1] - p[0], p[2] - p[0]);
-            const double length = glm::length(face.areaNormal);
-            if (length == 0.0) continue;
-            face.normal = face.areaNormal / length;
-            faces.push_back(face);
-        }
-    }
-    return faces;
-}
-
-// Returns the shading normal of each face's corners: the area-weighted mean of the faces around the corner on
-// this side of a crease.
-std::vector<glm::vec3> cornerNormals(const std::vector<Face>& faces) {
-    std::map<int, std::vector<int>> around;
-    for (size_t f = 0; f < faces.size(); ++f)
-        for (int corner : faces[f].corner)
-            around[corner].push_back(static_cast<int>(f));
-    std::vector<glm::vec3> normals;
-    normals.reserve(faces.size() * 3);
-    for (const Face& face : faces)
-        for (int corner : face.corner) {
-            glm::dvec3 sum(0.0);
-            for (int other : around[corner])
-                if (glm::dot(faces[other].normal, face.normal) > kCreaseCosine)
-                    sum += faces[other].areaNormal;
-            normals.emplace_back(sum / glm::length(sum));
-        }
-    return normals;
-}
 
 uint32_t cellsOf(double metres, double density) {
     return static_cast<uint32_t>(std::clamp(roundSteadily(metres * density), 1.0, double{kAtlasCells}));
@@ -115,6 +52,19 @@ glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
                      glm::vec4(eye, 1));
 }
 
+/// Returns the transform of an instance. Sine and cosine are snapped as coordinates are.
+glm::mat4 transformOf(const Placement& placement) {
+    const double angle = glm::radians(placement.turn);
+    const glm::dvec2 turn = glm::normalize(glm::dvec2(snap({std::cos(angle), std::sin(angle), 0.0})));
+    const glm::dvec3 scale = snap(placement.scale);
+    glm::mat4 transform(1.0f);
+    transform[0] = glm::vec4(scale.x * glm::dvec4(turn.x, 0.0, 0.0 - turn.y, 0.0));
+    transform[1] = glm::vec4(scale.y * glm::dvec4(0.0, 1.0, 0.0, 0.0));
+    transform[2] = glm::vec4(scale.z * glm::dvec4(turn.y, 0.0, turn.x, 0.0));
+    transform[3] = glm::vec4(snap(placement.position), 1.0f);
+    return transform;
+}
+
 } // namespace
 
 int SceneBuilder::paint(const std::string& name, const glm::vec3& color) {
@@ -142,8 +92,37 @@ int SceneBuilder::textured(const std::string& name, Image image, const glm::dvec
     return material;
 }
 
+int SceneBuilder::masked(const std::string& name, Image image, const glm::dvec2& tile) {
+    const int material = textured(name, std::move(image), tile);
+    scene_.materials.back().alphaMode = AlphaMode::Mask;
+    scene_.materials.back().doubleSided = true;
+    return material;
+}
+
+int SceneBuilder::glass(const std::string& name, const glm::vec4& color) {
+    const int material = paint(name, glm::vec3(color));
+    Material& glass = scene_.materials.back();
+    glass.baseColor = color;
+    glass.alphaMode = AlphaMode::Blend;
+    glass.doubleSided = true;
+    return material;
+}
+
+int SceneBuilder::share(const std::string& name, Solid solid, Batched batched) {
+    parts_.push_back({name, std::move(solid), {}, batched});
+    return static_cast<int>(parts_.size()) - 1;
+}
+
+void SceneBuilder::place(int part, const std::string& name, const Placement& placement) {
+    parts_[part].instances.push_back({.name = name, .mesh = part, .transform = transformOf(placement)});
+}
+
+void SceneBuilder::place(int part, const Placement& placement) {
+    place(part, parts_[part].name + " " + std::to_string(parts_[part].instances.size() + 1), placement);
+}
+
 void SceneBuilder::add(const std::string& name, Solid solid, const glm::dvec3& position) {
-    parts_.push_back({name, std::move(solid), snap(position)});
+    place(share(name, std::move(solid)), name, {.position = position});
 }
 
 void SceneBuilder::camera(const std::string& name, const glm::vec3& eye, const glm::vec3& target,
@@ -169,11 +148,13 @@ void SceneBuilder::sky(const glm::vec3& radiance) {
 void SceneBuilder::layOut() {
     std::vector<Chart*> charts;
     double area = 0.0;
-    for (Part& part : parts_)
+    for (Part& part : parts_) {
+        ASSERT(part.instances.size() == 1);
         for (Chart& chart : part.solid.charts) {
             charts.push_back(&chart);
             area += chart.size.x * chart.size.y * chart.density * chart.density;
         }
+    }
     ASSERT(!charts.empty());
 
     std::vector<PackedRect> rects(charts.size());
@@ -207,50 +188,23 @@ void SceneBuilder::layOut() {
     }
 }
 
-Mesh SceneBuilder::makeMesh(const Part& part) const {
-    const std::vector<Face> faces = facesOf(part.solid);
-    const std::vector<glm::vec3> normals = cornerNormals(faces);
-    Mesh mesh;
-    mesh.name = part.name;
-    using Key = std::tuple<size_t, uint32_t, float, float, float>;
-    std::map<Key, uint32_t> known;
-    for (size_t f = 0; f < faces.size(); ++f) {
-        const Chart& chart = part.solid.charts[faces[f].chart];
-        auto primitive = std::find_if(mesh.primitives.begin(), mesh.primitives.end(),
-                                      [&](const Primitive& p) { return p.material == chart.material; });
-        if (primitive == mesh.primitives.end()) {
-            primitive = mesh.primitives.emplace(mesh.primitives.end());
-            primitive->material = chart.material;
-        }
-        for (int k = 0; k < 3; ++k) {
-            const uint32_t index = faces[f].vertex[k];
-            const glm::vec3& n = normals[3 * f + k];
-            const auto fresh = static_cast<uint32_t>(primitive->positions.size());
-            const auto [entry, inserted] = known.try_emplace({faces[f].chart, index, n.x, n.y, n.z}, fresh);
-            primitive->indices.push_back(entry->second);
-            if (!inserted) continue;
-            const ChartVertex& vertex = chart.vertices[index];
-            primitive->positions.emplace_back(snap(vertex.position));
-            primitive->normals.push_back(n);
-            primitive->texCoord1.emplace_back(vertex.place);
-            const glm::dvec2& tile = tiles_[chart.material];
-            // They are snapped for the same reason as positions.
-            if (tile.x > 0.0)
-                primitive->texCoord0.emplace_back(glm::dvec2(snap(glm::dvec3(vertex.texCoord / tile, 0.0))));
-        }
+Scene SceneBuilder::assemble(LightmapUvs uvs) {
+    for (const Part& part : parts_) {
+        scene_.instances.insert(scene_.instances.end(), part.instances.begin(), part.instances.end());
+        scene_.meshes.push_back(meshOf(part.name, part.solid, tiles_, uvs));
+        scene_.meshes.back().batched = part.batched == Batched::Yes;
     }
-    return mesh;
+    markPanes(scene_);
+    return std::move(scene_);
 }
 
 Scene SceneBuilder::build() {
     layOut();
-    for (const Part& part : parts_) {
-        glm::mat4 transform(1.0f);
-        transform[3] = glm::vec4(part.position, 1.0f);
-        scene_.instances.push_back({part.name, static_cast<int>(scene_.meshes.size()), transform});
-        scene_.meshes.push_back(makeMesh(part));
-    }
-    return std::move(scene_);
+    return assemble(LightmapUvs::Places);
+}
+
+Scene SceneBuilder::buildWithoutAtlas() {
+    return assemble(LightmapUvs::None);
 }
 
 } // namespace relume::generate

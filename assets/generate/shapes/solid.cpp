@@ -1,4 +1,4 @@
-#include "assets/generate/generate_solid.h"
+#include "assets/generate/shapes/solid.h"
 
 #include <cmath>
 

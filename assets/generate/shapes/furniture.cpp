@@ -1,4 +1,4 @@
-#include "assets/generate/generate_furniture.h"
+#include "assets/generate/shapes/furniture.h"
 
 namespace relume::generate {
 

@@ -1,4 +1,4 @@
-#include "assets/generate/generate_shapes.h"
+#include "assets/generate/shapes/shapes.h"
 
 #include "assets/base/error.h"
 
