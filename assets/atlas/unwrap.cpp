@@ -30,6 +30,10 @@ std::string nameOf(const Scene& scene, const Mesh& mesh) {
     return scene.path + ": mesh " + inQuotes(mesh.name);
 }
 
+bool isStillUsed(const ChartLayout& now, const ChartLayout& before) {
+    return static_cast<double>(now.touched) >= kStillUsed * static_cast<double>(before.touched);
+}
+
 /// Makes the UVs of one scene.
 class Unwrapper {
 public:
@@ -225,11 +229,9 @@ std::optional<ChartLayout> Unwrapper::layOutAgain(const std::vector<LayoutChart>
         result_.stayed += same;
     }
     std::optional<ChartLayout> layout = extendLayout(charts, {size, desc_.density}, memory_->layout, places);
-    if (layout &&
-        static_cast<double>(layout->touched) < kStillUsed * static_cast<double>(memory_->layout.touched))
-        layout.reset();
-    if (!layout) result_.stayed = 0;
-    return layout;
+    if (layout && isStillUsed(*layout, memory_->layout)) return layout;
+    result_.stayed = 0;
+    return std::nullopt;
 }
 
 void Unwrapper::layOut() {
