@@ -30,6 +30,10 @@ std::string nameOf(const Scene& scene, const Mesh& mesh) {
     return scene.path + ": mesh " + inQuotes(mesh.name);
 }
 
+bool isStillUsed(const ChartLayout& now, const ChartLayout& before) {
+    return static_cast<double>(now.touched) >= kStillUsed * static_cast<double>(before.touched);
+}
+
 /// Makes the UVs of one scene.
 class Unwrapper {
 public:
@@ -45,7 +49,8 @@ private:
     double densityOf(const UnwrapObject& object) const;
     uint32_t chooseSize(const std::vector<LayoutChart>& charts) const;
     void layOut();
-    std::optional<ChartLayout> layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size);
+    /// Lays the charts out where the memory has them; returns false where that does not go.
+    bool layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size);
     std::vector<std::optional<ChartPlace>> remembered(size_t charts);
     bool write();
     void remember();
@@ -209,8 +214,8 @@ std::vector<std::optional<ChartPlace>> Unwrapper::remembered(size_t charts) {
     return places;
 }
 
-std::optional<ChartLayout> Unwrapper::layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size) {
-    if (!memory_ || memory_->size != size || memory_->asked != desc_.density) return std::nullopt;
+bool Unwrapper::layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size) {
+    if (!memory_ || memory_->size != size || memory_->asked != desc_.density) return false;
     std::vector<std::optional<ChartPlace>> places = remembered(charts.size());
     // An object that is smaller or larger now looks for a new place; all its charts do.
     for (size_t i = 0; i < parts_.objects.size(); ++i) {
@@ -224,11 +229,12 @@ std::optional<ChartLayout> Unwrapper::layOutAgain(const std::vector<LayoutChart>
         result_.stayed += same;
     }
     std::optional<ChartLayout> layout = extendLayout(charts, {size, desc_.density}, memory_->layout, places);
-    if (layout &&
-        static_cast<double>(layout->touched) < kStillUsed * static_cast<double>(memory_->layout.touched))
-        layout.reset();
-    if (!layout) result_.stayed = 0;
-    return layout;
+    if (layout && isStillUsed(*layout, memory_->layout)) {
+        layout_ = std::move(*layout);
+        return true;
+    }
+    result_.stayed = 0;
+    return false;
 }
 
 void Unwrapper::layOut() {
@@ -242,10 +248,10 @@ void Unwrapper::layOut() {
     size_ = memory_ && desc_.size == 0 && memory_->size > 0 && memory_->asked == desc_.density
                 ? memory_->size
                 : chooseSize(all);
-    std::optional<ChartLayout> again = layOutAgain(all, size_);
-    if (!again && desc_.size == 0) size_ = chooseSize(all);
+    if (layOutAgain(all, size_)) return;
+    if (desc_.size == 0) size_ = chooseSize(all);
     try {
-        layout_ = again ? std::move(*again) : layOutCharts(all, {size_, desc_.density}, pool_);
+        layout_ = layOutCharts(all, {size_, desc_.density}, pool_);
     } catch (const Error& error) {
         throw Error(scene_.path + ": " + error.what());
     }
