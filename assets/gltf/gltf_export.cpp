@@ -355,8 +355,7 @@ void GlbWriter::addNodes() {
     for (const Camera& camera : scene_.cameras)
         nodes.push_back(addCamera(camera));
     for (const Light& light : scene_.lights)
-        if (!light.preview)
-        nodes.push_back(addLight(light));
+        if (!light.preview) nodes.push_back(addLight(light));
 
     json_["scene"] = 0;
     Json roots = Json::array();
