@@ -8,7 +8,7 @@ namespace relume::generate {
 namespace {
 
 // The corner is what has its middle in here [m]: the crossing of street and alley with the houses around it.
-constexpr glm::vec2 kCornerLow(-15.0f, -11.0f), kCornerHigh(4.5f, 11.5f); // (x, z)
+constexpr glm::vec2 kCornerLow(-15.0f, -11.6f), kCornerHigh(4.5f, 11.5f); // (x, z)
 // Of the triangles of houses one in five is there twice, and one in seven has a copy that faces the other
 // way.
 constexpr size_t kEveryTwice = 5, kEveryFlipped = 7;
