@@ -88,9 +88,10 @@ bool Session::finishLoading() {
             changed = true;
         } // else another scene is opened below
     } catch (const std::bad_alloc&) {
-        failLoad(path, path + ": does not fit in memory: make it smaller, or close other programs");
+        fail(path + ": does not fit in memory: make it smaller, or close other programs",
+             loading_.keep ? "" : path);
     } catch (const std::exception& error) {
-        failLoad(path, error.what());
+        fail(error.what(), loading_.keep ? "" : path);
     }
     if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
         load(*next);
@@ -103,17 +104,14 @@ bool Session::finishLoading() {
     return changed;
 }
 
-// Says that a scene could not be read. Where it is the present one, which was only to be read anew, that is a
-// line like others.
-void Session::failLoad(const std::string& path, const std::string& message) {
-    if (loading_.keep) return fail(message);
+// Tells what went wrong. `opened` is the scene that could not be read by it; "" where it was only to be read
+// anew, and for all else.
+void Session::fail(const std::string& message, const std::string& opened) {
     spdlog::error("{}", message);
-    openFailure_ = OpenFailure{path, message};
-}
-
-void Session::fail(const std::string& message) {
-    spdlog::error("{}", message);
-    lastError_ = message;
+    if (opened.empty())
+        lastError_ = message;
+    else
+        openFailure_ = OpenFailure{opened, message};
 }
 
 // Carries edits over to a file that was written anew; the rest is as the file has it now. Where the file's

@@ -117,8 +117,7 @@ private:
     void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
     void takeSaved();
     void finishSaving();
-    void failLoad(const std::string& path, const std::string& message);
-    void fail(const std::string& message);
+    void fail(const std::string& message, const std::string& opened = "");
     void dropFormer();
     void pollFile();
 
