@@ -115,11 +115,8 @@ TEST(Panes, CanBePickedAndHideNoTiles) {
     EXPECT_FALSE(at(16)->lightmapUv) << "it has no light of its own";
     ASSERT_TRUE(at(48));
     EXPECT_EQ(at(48)->instance, 0u);
-    const Scene bare = [] {
-        Scene scene = wallBehindGlass(0.25f);
-        scene.instances.pop_back();
-        return scene;
-    }();
+    Scene bare = wallBehindGlass(0.25f);
+    bare.instances.pop_back();
     const SceneGpu wallAlone(bare, flatten(bare, buildAtlas(bare, kWallSize)));
     const auto tilesOf = [](const SceneGpu& seen) {
         TileIds ids;

@@ -241,7 +241,7 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
             const std::vector<uint8_t> bytes(other.begin(), other.end());
             useImage(b, {{"bufferView", b.view(bytes)}, {"mimeType", "image/png"}, {"name", "Wood"}});
         });
-    expectWithoutTexture("none", "texture 0: has no PNG, JPEG or WebP image", [](GlbBuilder& b) {
+    expectWithoutTexture("no_image", "texture 0: has no PNG, JPEG or WebP image", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
         b.json["textures"] = {json::object()};
     });
