@@ -4,6 +4,7 @@
 #include <string>
 
 #include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/unwrap_memory.h"
 #include "assets/atlas/world_mesh.h"
 #include "assets/gltf/gltf.h"
 
@@ -38,7 +39,8 @@ struct PrepareDesc {
     double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it,
                              // as far as kMostFitted goes; 0: the edge is `size`
     Furnishing furnishing = {};
-    bool edited = false; // edits follow, which may add light: furnishLight() is called after them
+    UnwrapMemory* memory = nullptr; // of the file's last unwrap, by which charts stay where they are
+    bool edited = false;            // edits follow, which may add light: furnishLight() is called after them
 };
 
 /// Prepares a scene and logs the warnings of each step. Where lightmap UVs are to be made, which takes a

@@ -73,7 +73,9 @@ std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t
         view = look->view;
         handOut(std::move(look));
     };
-    scene->prepared = early ? prepareScene(desc, whenRead) : prepareScene(desc);
+    PrepareDesc remembered = desc;
+    remembered.memory = &memory_;
+    scene->prepared = early ? prepareScene(remembered, whenRead) : prepareScene(remembered);
     const Scene& file = scene->prepared.scene;
     scene->geometry = makeGeometry(file, scene->prepared.mesh);
     scene->view = view ? *view : viewOf(file, scene->prepared.mesh, scene->geometry.bounds);
@@ -101,6 +103,8 @@ void SceneLoader::start(const PrepareDesc& desc, bool early) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
+    if (path_ != unwrapped_) memory_ = {}; // another file has other charts
+    unwrapped_ = path_;
     progress_ = {}; // nobody else has it now
     loading_ = std::async(std::launch::async,
                           [this, desc, early, number = ++loads_] { return load(desc, number, early); });

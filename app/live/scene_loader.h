@@ -64,6 +64,8 @@ private:
     std::unique_ptr<LoadedScene> early_;
     LoadProgress progress_;
     std::string path_;
+    std::string unwrapped_; // the path whose unwrap is remembered
+    UnwrapMemory memory_;   // for the thread that loads
     uint64_t loads_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "assets/atlas/world_mesh.h"
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
+#include "tests/unit/glb_builder.h"
 #include "tests/unit/shapes.h"
 
 #include <gtest/gtest.h>
@@ -283,12 +284,24 @@ TEST(Unwrap, TexturesOnTexCoord1MoveAside) {
     scene.meshes[0].primitives[0].material = 0;
     unwrap(scene, {});
     const Primitive& primitive = scene.meshes[0].primitives[0];
-    EXPECT_EQ(scene.materials[static_cast<size_t>(primitive.material)].baseColorTexture.texCoord, 0);
+    EXPECT_TRUE(primitive.uvsMoved);
+    EXPECT_EQ(&uvsOf(primitive, scene.materials[0].baseColorTexture), &primitive.texCoord0);
+    EXPECT_EQ(scene.materials.size(), 1u) << "edits go by the file's list";
     EXPECT_EQ(scene.materials[0].baseColorTexture.texCoord, 1); // other meshes may still use it
     EXPECT_EQ(*std::max_element(primitive.texCoord0.begin(), primitive.texCoord0.end(),
                                 [](const glm::vec2& a, const glm::vec2& b) { return a.x + a.y < b.x + b.y; }),
               glm::vec2(4, 4));
     EXPECT_EQ(lightmapSet(scene.meshes[0]), 1);
+    // Whoever reads the scene that is written finds the texture where it was, and the lightmap beside it.
+    const WorldMesh mesh = flatten(scene, buildAtlas(scene, 64));
+    const std::string path = test::tempPath("moved.glb");
+    saveGlb(scene, path);
+    const Scene written = loadGltf(path);
+    ASSERT_EQ(written.materials.size(), 2u) << "a copy for the primitive";
+    EXPECT_EQ(written.materials[1].baseColorTexture.texCoord, 0);
+    const WorldMesh again = flatten(written, buildAtlas(written, 64));
+    EXPECT_EQ(again.baseUv, mesh.baseUv);
+    EXPECT_EQ(again.lightmapUv, mesh.lightmapUv);
 }
 
 TEST(Unwrap, AMeshThatNeedsBothItsSetsIsLeftAlone) {
