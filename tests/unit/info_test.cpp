@@ -75,8 +75,8 @@ TEST(SceneInfo, SceneWithoutLightOrUvsIsDescribedAllTheSame) {
     EXPECT_EQ(info.triangles, 12u);
     EXPECT_FALSE(info.mapped);
     EXPECT_EQ(info.charts, 0u);
-    EXPECT_TRUE(warns(info, "no emitter, no light and no sky: it bakes to black"));
-    EXPECT_TRUE(warns(info, "--unwrap"));
+    EXPECT_TRUE(warns(info, "no emitter, no light and no sky: it is lit by a preview light"));
+    EXPECT_TRUE(warns(info, "leave out --no-unwrap"));
 }
 
 TEST(InfoCommand, JsonHoldsTheAtlasMapping) {
@@ -185,7 +185,9 @@ TEST(UnwrapCommand, WritesASceneThatCanBeBaked) {
     const json made = json::parse(run("unwrap " + in + " -o " + out + " --json --size 100"));
     EXPECT_EQ(made["size"], 100);
     EXPECT_EQ(made["charts"], 1);
-    EXPECT_EQ(made["density"], 100.0); // a square of 1 m
+    // A square of 1 m gets 100 texels; a chart that is longer than the atlas is shortened by up to 15 %.
+    EXPECT_GE(made["density"].get<double>(), 100.0);
+    EXPECT_LE(made["density"].get<double>(), 115.0);
     EXPECT_EQ(made["covered"], 1.0);
     EXPECT_NEAR(made["stretch"].get<double>(), 1.0, 1e-5);
     EXPECT_GE(made["seconds"].get<double>(), 0.0);

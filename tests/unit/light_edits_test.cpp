@@ -49,7 +49,7 @@ TEST(LightEdits, PreviewLightIsKeptOnRequest) {
     keepPreview(document.edits);
     EXPECT_FALSE(hasPreview(document.edits));
     EXPECT_EQ(lights[0].name, "Sun");
-    EXPECT_EQ(lights[1].name, "Lamp") << "another name stays";
+    EXPECT_EQ(lights[1].name, "Lamp 2") << "another name stays";
 }
 
 TEST(LightEdits, PowerGoesWhereTheLightHasIt) {

@@ -34,6 +34,7 @@ const std::map<std::string, WalkWords> kVerbs = {
     {"edit", {"missing.glb", "-o", "out.glb", "--delete", "Lamp", "--bake", "out.exr"}},
     {"info", {"missing.glb"}},
     {"unwrap", {"missing.glb", "-o", "out.glb"}},
+    {"import", {"missing.obj", "-o", "out.glb"}},
     {"scene", {"nosuchscene", "-o", "out.glb"}},
     {"devices", {}},
     {"mix", {"missing.exr", "-o", "out.exr"}},
@@ -62,11 +63,12 @@ const std::map<std::string, WalkWords> kWith = {
 /// These options take a text of any kind: names, and files that may be called so. What they mean by it
 /// decides whether it is a mistake.
 const OptionNames kTexts = {
-    "scene",    "name",     "a",        "b",      "layers",       "--output",    "--picture",
-    "--json",   "--html",   "--plot",   "--diff", "--mask",       "--error-map", "--scene-out",
-    "--camera", "--device", "--resume", "--bake", "--checkpoint", "--lightmap",  "--write-scene",
-    "--set",    "--move",   "--rotate", "--aim",  "--add",        "--duplicate", "--delete",
-    "--hide",   "--show",   "--mute",   "--solo"};
+    "--scene",  "--variant", "in",       "scene",        "name",        "a",
+    "b",        "layers",    "--output", "--picture",    "--json",      "--html",
+    "--plot",   "--diff",    "--mask",   "--error-map",  "--scene-out", "--camera",
+    "--device", "--resume",  "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
+    "--set",    "--move",    "--rotate", "--aim",        "--add",       "--duplicate",
+    "--delete", "--hide",    "--show",   "--mute",       "--solo"};
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {
@@ -79,6 +81,7 @@ const std::map<std::string, WalkWords> kMeanings = {
     {"--rate", {"0"}}, // as many frames as there can be
     {"--msaa", {"0"}}, // one sample
     {"--seed", {"0"}},
+    {"--time", {"0"}},           // where the animation begins
     {"--exposure", {"-1", "0"}}, // [EV]
     // An empty text is as good as none.
     {"--cache-memory", {""}},

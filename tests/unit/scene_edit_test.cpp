@@ -306,7 +306,7 @@ TEST_F(SceneEditTest, WrongValuesAreNamedWithTheirMend) {
         {"Lamp.intensty=1",
          "usage: 'intensty' is no property: there is name, intensity, color, temperature, "
          "radius, angle, size, range, inner, outer, strength, baseColor, emission, rotation, "
-         "file"},
+         "file, density"},
         {"Lamp", "usage: write NAME.PROP=VALUE"},
         {"lmap.intensity=1", "no light is called 'lmap': did you mean 'Lamp'?"},
     };
