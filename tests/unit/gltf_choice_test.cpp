@@ -56,7 +56,7 @@ TEST(GltfChoice, AScenesNameOrNumberChooses) {
     }
     EXPECT_NE(refusalOf(path, {.scene = "Dusk"}).find("has no scene 'Dusk': it has 'Day', '1', 'Night'"),
               std::string::npos);
-    EXPECT_NE(refusalOf(squareScene().write("none.glb"), {.scene = "Day"}).find("it has none"),
+    EXPECT_NE(refusalOf(squareScene().write("no_scene.glb"), {.scene = "Day"}).find("it has none"),
               std::string::npos);
 }
 

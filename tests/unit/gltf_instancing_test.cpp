@@ -94,7 +94,8 @@ TEST(GltfInstancing, WhatDoesNotFitIsToldAndLeftOut) {
                                  }).write("fewer.glb"));
     EXPECT_EQ(fewer.instances.size(), 1u);
     EXPECT_TRUE(tells(fewer, "has 1 instances with all they need, and 2 without"));
-    const Scene none = loadGltf(instancedScene([](GlbBuilder&) { return json::object(); }).write("none.glb"));
+    const Scene none =
+        loadGltf(instancedScene([](GlbBuilder&) { return json::object(); }).write("no_copies.glb"));
     ASSERT_EQ(none.instances.size(), 1u);
     EXPECT_EQ(none.instances[0].name, "Floor");
     const Scene flat = loadGltf(instancedScene([](GlbBuilder& b) -> json {
