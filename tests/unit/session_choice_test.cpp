@@ -28,7 +28,9 @@ TEST_F(SessionTest, AChoiceOfTheFilesScenesLastsUntilAnotherFile) {
     EXPECT_EQ(session_.choice().scene, "Two");
     session_.choose({.scene = "Three"});
     ASSERT_TRUE(untilLoaded());
-    EXPECT_NE(session_.lastError().find("has no scene 'Three': it has 'One', 'Two'"), std::string::npos);
+    const std::optional<OpenFailure> failure = session_.takeOpenFailure();
+    ASSERT_TRUE(failure);
+    EXPECT_NE(failure->message.find("has no scene 'Three': it has 'One', 'Two'"), std::string::npos);
     EXPECT_EQ(session_.choice().scene, "Two"); // the scene before stays
     session_.open(two);
     ASSERT_TRUE(untilLoaded());
