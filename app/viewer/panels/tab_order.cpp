@@ -36,7 +36,8 @@ void TabOrder::begin(int steps) {
 }
 
 void TabOrder::add() {
-    if (ImGui::IsItemFocused()) focused_ = drawn_;
+    // A focus that is not shown yet is the first thing that Tab shows.
+    if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) focused_ = drawn_;
     if (drawn_ == wanted_) {
         ImGui::SetKeyboardFocusHere(-1); // on the control before, which is the last one
         focused_ = drawn_;
