@@ -206,7 +206,7 @@ TEST_F(BakeCommand, TwoRunsGiveTheSameFile) {
 
 TEST_F(BakeCommand, ASceneWithoutLightBakesBlackWithAWarning) {
     saveGlb(room(0.5f, 0.0f, 14), scene_);
-    const ProcessResult r = bake({"-o", path("map.exr")});
+    const ProcessResult r = bake({"-o", path("map.exr"), "--no-daylight"});
     EXPECT_EQ(r.status, 0) << r.err;
     EXPECT_TRUE(contains(r.err, "the lightmap will be black")) << r.err;
     EXPECT_TRUE(contains(r.err, "emissive factor")) << r.err;
@@ -215,12 +215,26 @@ TEST_F(BakeCommand, ASceneWithoutLightBakesBlackWithAWarning) {
     EXPECT_EQ(*std::max_element(map.planes[3].begin(), map.planes[3].end()), 1.0f);
 }
 
+TEST_F(BakeCommand, ASceneWithoutLightIsLitByAPreview) {
+    saveGlb(room(0.5f, 0.0f, 14), scene_);
+    const ProcessResult strict = bake({"-o", path("map.exr"), "--strict"});
+    EXPECT_EQ(strict.status, 1);
+    EXPECT_TRUE(contains(strict.err, "nothing in it shines")) << strict.err;
+    expectFiles({});
+    const ProcessResult r = bake({"-o", path("map.exr"), "--scene-out", path("out.glb"), "--passes", "1"});
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(contains(r.err, "a preview lamp lights it, which is not in the file")) << r.err;
+    const FloatImage map = readImage(path("map.exr"));
+    EXPECT_GT(*std::max_element(map.planes[0].begin(), map.planes[0].end()), 0.0f);
+    EXPECT_TRUE(loadGltf(path("out.glb")).lights.empty()) << "a preview is in no file";
+}
+
 TEST_F(BakeCommand, AContradictionIsAUsageError) {
     const std::string out = path("map.exr");
     for (const Strings& more : {Strings{"--tracer", "sloppy"},
                                 {"--quantity", "lighting", "--preset", "rtrad"},
                                 {"--distance-factor", "0.5"},
-                                {"--density", "4"},
+                                {"--density", "4", "--no-unwrap"},
                                 {"--size", "4"},
                                 {"--passes", "0"},
                                 {"--error", "0"},

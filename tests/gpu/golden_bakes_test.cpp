@@ -11,14 +11,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include <spdlog/fmt/fmt.h>
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
 
 namespace relume {
 namespace {
@@ -52,14 +60,32 @@ std::vector<GoldenBake> readList() {
     return bakes;
 }
 
-/// Tells which machines make the same bits: those with this device and this widest vector unit, as both
-/// Embree and the software device choose their code by it.
+/// Names the processor: its vendor and the signature of its family and model; "" on other architectures.
+std::string processorName() {
+#if defined(__x86_64__)
+    unsigned int most = 0, signature = 0, b = 0, c = 0, d = 0;
+    std::array<char, 12> vendor{};
+    if (__get_cpuid(0, &most, &b, &c, &d) == 0) return "";
+    std::memcpy(vendor.data(), &b, 4);
+    std::memcpy(vendor.data() + 4, &d, 4);
+    std::memcpy(vendor.data() + 8, &c, 4);
+    __get_cpuid(1, &signature, &b, &c, &d);
+    constexpr unsigned int kStepping = 0xf;
+    return fmt::format(", {} {:x}", std::string(vendor.begin(), vendor.end()), signature & ~kStepping);
+#else
+    return "";
+#endif
+}
+
+/// Tells which machines make the same bits: those with this device, this widest vector unit and this model of
+/// processor. Embree and the software device choose their code by the vector unit, and the estimates of
+/// reciprocals that they start from are the model's own.
 std::string kindOfMachine() {
     __builtin_cpu_init();
     const std::string vectors = __builtin_cpu_supports("avx512f") ? "avx512"
                                 : __builtin_cpu_supports("avx2")  ? "avx2"
                                                                   : "sse";
-    return testDevice().info().name + ", " + vectors;
+    return testDevice().info().name + ", " + vectors + processorName();
 }
 
 std::string kindOfList() {

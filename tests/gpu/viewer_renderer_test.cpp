@@ -238,7 +238,7 @@ TEST(ViewerRenderer, KeepsItsShadersWhenNewOnesAreBroken) {
     EXPECT_TRUE(viewer.draw());
     EXPECT_EQ(viewer.pixel(), glm::ivec3(encoded(0.5)));
     std::string other = text;
-    const std::string line = "    result = color;\n";
+    const std::string line = "    result = PANE != 0 ? vec4(color.rgb, opacity(m, base.a)) : color;\n";
     ASSERT_NE(other.find(line), std::string::npos);
     other.replace(other.find(line), line.size(), "    result = vec4(1.0, 0.0, 0.0, 1.0);\n");
     shaders.write("gl/scene.frag", other);

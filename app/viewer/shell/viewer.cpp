@@ -200,6 +200,8 @@ void Viewer::takeScene() {
     files_.sceneCame();
     inspection_.sceneCame();
     feedback_.tell("scene", scene.prepared.scene.path);
+    if (const std::string furnished = furnishedLine(); !furnished.empty())
+        feedback_.tell("furnished", furnished);
     feedback_.sceneChanged();
 }
 
@@ -321,6 +323,11 @@ std::vector<std::string> Viewer::captionLines() const {
     return lines;
 }
 
+// Returns what the scene on screen has that its file lacks.
+std::string Viewer::furnishedLine() const {
+    return furnishedText(!session_.scene()->prepared.madeUvs.empty(), hasPreview(session_.document().edits));
+}
+
 // Draws what lies over the picture of the scene.
 void Viewer::drawOverlay() {
     const bool mayHold = !input_.pressed() && overScene(input_.cursor());
@@ -332,9 +339,7 @@ void Viewer::drawOverlay() {
         comparison_.draw();
     }
     if (picture_.state().bare || session_.early() != nullptr) return;
-    const std::string furnished =
-        furnishedText(!session_.scene()->prepared.madeUvs.empty(), hasPreview(session_.document().edits));
-    drawBadge(progress_.badge(), furnished, picture_.area());
+    drawBadge(progress_.badge(), furnishedLine(), picture_.area());
 }
 
 void Viewer::frame(const Redraw& redraw) {

@@ -69,6 +69,7 @@ private:
     MiddleView middleView();
     PanelContext context();
     void frame(const Redraw& redraw);
+    std::string furnishedLine() const;
     void drawOverlay();
     std::vector<std::string> captionLines() const;
     float pixelsPerPoint() const;
