@@ -45,7 +45,8 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
                         desc.path, missing, scene.meshes.size()));
     }
     if (!furnishing.unwrap) return;
-    const UnwrapResult made = unwrap(scene, {.density = furnishing.density, .size = prepared.size}, desc.memory);
+    const UnwrapResult made =
+        unwrap(scene, {.density = furnishing.density, .size = prepared.size}, desc.memory);
     if (made.meshes == 0) return; // they are nothing but triangles without area
     prepared.madeUvs = fmt::format("lightmap UVs were made for {} of {} meshes: {} charts at {:.3g} texels/m",
                                    made.meshes, scene.meshes.size(), made.charts, made.density);

@@ -82,6 +82,7 @@ const std::map<std::string, WalkWords> kMeanings = {
     {"--msaa", {"0"}}, // one sample
     {"--seed", {"0"}},
     {"--time", {"0"}},           // where the animation begins
+    {"--up", {"x"}},             // an axis
     {"--exposure", {"-1", "0"}}, // [EV]
     // An empty text is as good as none.
     {"--cache-memory", {""}},
