@@ -52,8 +52,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     gltf::Build build;
     build.path = path;
     build.limit = gltf::SizeLimit(path, size);
-    build.model.images.resize(1);
-    build.model.images[0].image.assign(data, data + size);
+    build.images = nlohmann::json::array({{{"bufferView", 0}}});
+    build.model.bufferViews.resize(1);
+    build.model.bufferViews[0].buffer = 0;
+    build.model.bufferViews[0].byteLength = size;
+    build.model.buffers.resize(1);
+    build.model.buffers[0].data.assign(data, data + size);
     try {
         gltf::decodeImage(build, 0);
     } catch (const Error& error) {
