@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include <glm/gtc/constants.hpp>
 
@@ -110,6 +111,33 @@ BestView viewFromRooms(const LevelRays& rays, const Box& bounds, float aspect) {
     return best;
 }
 
+// Tells whether all of these points are in the picture, but for a margin.
+bool seesAll(const ViewCamera& camera, float aspect, std::span<const glm::vec3> points, size_t step) {
+    constexpr float kMargin = 0.95f;
+    const glm::vec3 ahead = forward(camera), side = right(camera), above = glm::cross(side, ahead);
+    const float tanY = kMargin * std::tan(0.5f * camera.yfov), tanX = aspect * tanY;
+    for (size_t i = 0; i < points.size(); i += step) {
+        const glm::vec3 way = points[i] - camera.eye;
+        const float depth = glm::dot(way, ahead);
+        if (depth <= 0.0f || std::abs(glm::dot(way, above)) > tanY * depth ||
+            std::abs(glm::dot(way, side)) > tanX * depth)
+            return false;
+    }
+    return true;
+}
+
+// Comes closer while the level is in the picture. The eye stays outside, as all of the level is before it.
+ViewCamera comeCloser(const ViewCamera& camera, float aspect, const WorldMesh& mesh) {
+    constexpr size_t kLooked = 100000; // points at most: a share of a large level tells its outline
+    const size_t step = mesh.positions.size() / kLooked + 1;
+    float near = 0.1f, far = 1.0f; // shares of the distance
+    for (int i = 0; i < 10; ++i) {
+        const float middle = 0.5f * (near + far);
+        (seesAll(zoom(camera, middle), aspect, mesh.positions, step) ? far : near) = middle;
+    }
+    return zoom(camera, far);
+}
+
 // A quarter view from outside and a little above; from the side where the level fills the picture, and its
 // backs are not seen.
 ViewCamera viewFromOutside(const LevelRays& rays, const Box& bounds, float aspect) {
@@ -132,7 +160,7 @@ ViewCamera goodView(const WorldMesh& mesh, float aspect) {
     const LevelRays rays(mesh);
     BestView best = viewFromCorners(rays, bounds, aspect);
     if (best.score <= 0.0f) best = viewFromRooms(rays, bounds, aspect);
-    return best.score > 0.0f ? best.camera : viewFromOutside(rays, bounds, aspect);
+    return best.score > 0.0f ? best.camera : comeCloser(viewFromOutside(rays, bounds, aspect), aspect, mesh);
 }
 
 } // namespace relume

@@ -68,6 +68,16 @@ TEST(GoodView, StandsOutsideAnObject) {
     EXPECT_FALSE(glm::all(glm::greaterThan(camera.eye, bounds.low)) &&
                  glm::all(glm::lessThan(camera.eye, bounds.high)));
     EXPECT_EQ(camera.target, bounds.centre());
+    // It fills the picture: one of its corners is near the edge, and none beyond.
+    float most = 0.0f;
+    const glm::mat4 projection = projectionMatrix(camera, 1.5f) * viewMatrix(camera);
+    for (const glm::vec3& corner : mesh.positions) {
+        const glm::vec4 clip = projection * glm::vec4(corner, 1.0f);
+        ASSERT_GT(clip.w, 0.0f);
+        most = std::max({most, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
+    }
+    EXPECT_GT(most, 0.9f);
+    EXPECT_LE(most, 0.96f);
 }
 
 TEST(GlslSource, ReplacesIncludesOnceAndNumbersFiles) {
