@@ -23,7 +23,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using gltf::jsonArray;
-
 static_assert(std::endian::native == std::endian::little,
               "glTF buffers are little-endian and written by memcpy");
 
