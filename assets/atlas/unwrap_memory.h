@@ -21,8 +21,8 @@ struct UnwrapShape {
     std::vector<PlanarChart> charts; // [m of the shape]
 };
 
-/// What an unwrap leaves for the next one of the same file, so that what did not change stays where it is:
-/// charts of meshes with the same positions and indices, and the places of objects as large as before. A
+/// Holds what an unwrap leaves for the next one of the same file, so that what did not change stays where it
+/// is: charts of meshes with the same positions and indices, and the places of objects as large as before. A
 /// value: drop it, and the next unwrap begins anew.
 struct UnwrapMemory {
     struct Object {

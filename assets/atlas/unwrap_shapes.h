@@ -13,7 +13,7 @@ struct UnwrapObject {
     double scale = 1.0; // of the instance against its shape
 };
 
-/// What of a scene goes into an atlas.
+/// Holds what of a scene goes into an atlas.
 struct UnwrapParts {
     std::vector<UnwrapShape> shapes;
     std::vector<UnwrapObject> objects;

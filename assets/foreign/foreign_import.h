@@ -9,7 +9,7 @@
 
 namespace relume {
 
-/// What importForeign() is to do.
+/// Says what importForeign() is to do.
 struct ImportDesc {
     std::string path; // of the file
     ForeignChoice choice;

@@ -53,7 +53,8 @@ bool isPlaced(const glm::mat4& transform) {
     return true;
 }
 
-/// By how much a light falls off at a distance in units of the file; 1 where the file has no word for it.
+/// Says by how much a light falls off at a distance in units of the file; 1 where the file has no word for
+/// it.
 float fallOff(const Build& build, const aiLight& light, float distance) {
     const float c = light.mAttenuationConstant, l = light.mAttenuationLinear, q = light.mAttenuationQuadratic;
     const bool unsaid = c == 0.0f && l == 1.0f && q == 0.0f; // as libassimp makes a light
@@ -176,7 +177,7 @@ void addCamera(Build& build, const aiCamera& source, const Placing& placing) {
                 directionOf(placing.world, vec3Of(source.mLookAt), glm::vec3(0.0f, 0.0f, -1.0f)),
                 directionOf(placing.world, vec3Of(source.mUp), glm::vec3(0.0f, 1.0f, 0.0f)));
     if (!isPlaced(camera.transform)) return;
-    // What width and height belong to an angle where the file has no word for it: those of old programs.
+    // These width and height belong to an angle where the file has no word for it: those of old programs.
     constexpr float kUsualAspect = 4.0f / 3.0f, kWideAspect = 16.0f / 9.0f;
     const bool known = std::isfinite(source.mAspect) && source.mAspect > 0.01f && source.mAspect < 100.0f;
     const bool old = build.ending == ".3ds" || build.ending == ".ase";

@@ -132,7 +132,7 @@ unsigned firstUvSet(const Build& build, const aiMesh& mesh) {
                : 0;
 }
 
-/// What a mesh of the file has beside positions.
+/// Says what a mesh of the file has beside positions.
 struct Streams {
     const aiVector3D* uv[2] = {nullptr, nullptr};
     bool colors = false;

@@ -48,7 +48,7 @@ private:
     ForeignProgress progress_;
 };
 
-/// What a reader of libassimp may get wrong at a damaged file, before other parts of it rely on that.
+/// Tells what a reader of libassimp may get wrong at a damaged file, before other parts of it rely on that.
 std::string damageOf(const aiScene& scene) {
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
         const aiMesh* mesh = scene.mMeshes[i];

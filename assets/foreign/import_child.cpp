@@ -33,7 +33,7 @@
 namespace relume {
 namespace {
 
-/// What importForeign() says on the command line.
+/// Holds what importForeign() says on the command line.
 struct ChildTask {
     int output = -1, messages = -1; // descriptors
     pid_t parent = 0;
@@ -65,7 +65,7 @@ void limit(decltype(RLIMIT_AS) what, rlim_t most) {
     setrlimit(what, &wanted);
 }
 
-/// What of the address space this process has taken already [bytes].
+/// Returns what of the address space this process has taken already [bytes].
 [[maybe_unused]] uint64_t addressSpace() {
     std::ifstream facts("/proc/self/statm");
     uint64_t pages = 0;

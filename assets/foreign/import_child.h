@@ -4,8 +4,8 @@
 
 namespace relume {
 
-/// What the program is called with as its first word to convert a file for importForeign(). It is no command
-/// for users.
+/// Names what the program is called with as its first word to convert a file for importForeign(). It is no
+/// command for users.
 inline constexpr const char* kImportWord = "--relume-import-child";
 
 /// Does what importForeign() started this process for, where `arguments` say so, and returns the exit status

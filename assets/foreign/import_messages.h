@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// What a process that converts a file says, line by line.
+/// Holds what a process that converts a file says, line by line.
 enum class ImportWord : char {
     Progress = 'p', // a number from 0 to 1
     Warning = 'w',  // one of the scene's

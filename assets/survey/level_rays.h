@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What a ray meets first.
+/// Says what a ray meets first.
 struct LevelHit {
     float distance = std::numeric_limits<float>::infinity(); // in lengths of the direction; infinite: nothing
     bool front = false;                                      // of the triangle, else its back

@@ -12,7 +12,7 @@ struct LevelPlace {
     float sky = 0.0f; // share of all directions in which nothing is met
 };
 
-/// What a level is like inside its bounds.
+/// Says what a level is like inside its bounds.
 struct LevelRooms {
     std::vector<LevelPlace> places; // in the air: of a grid, those that see fronts and sky only
     /// Tells whether the level is a closed interior: there are places, and from none is the sky seen.

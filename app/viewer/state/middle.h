@@ -7,7 +7,7 @@
 
 namespace relume {
 
-/// What stands in the middle of the window.
+/// Says what stands in the middle of the window.
 struct Middle {
     /// A card lies over what else is there.
     enum class Card {

@@ -14,7 +14,7 @@ struct PictureNotice {
     std::optional<Action> mend; // an action that helps
 };
 
-/// What the picture of a scene shows, and what the bake has to say.
+/// Says what the picture of a scene shows, and what the bake has to say.
 struct PictureFacts {
     BakeStatus::Phase phase = BakeStatus::Phase::Idle;
     std::string doing = {};         // as in BakeStatus

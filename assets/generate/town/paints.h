@@ -8,21 +8,21 @@ namespace relume::generate {
 
 constexpr int kPlasters = 5, kFruits = 4, kCloths = 3;
 
-/// What walls, roofs and the ground are made of.
+/// Holds what walls, roofs and the ground are made of.
 struct MasonryPaints {
     std::array<int, kPlasters> plaster{}; // of houses
     int ashlar = 0, stone = 0, brick = 0; // walls of cut stone; trim; chimneys and garden walls
     int cobbles = 0, flags = 0, tiles = 0, tileRows = 0, terracotta = 0, soil = 0;
 };
 
-/// What is built into them.
+/// Holds what is built into them.
 struct JoineryPaints {
     int boards = 0, timber = 0, planks = 0, green = 0, blue = 0, white = 0, brown = 0;
     int darkGlass = 0, glass = 0, iron = 0, brass = 0, water = 0;
     int glow = 0; // of bulbs
 };
 
-/// What stands about and hangs.
+/// Holds what stands about and hangs.
 struct GoodsPaints {
     int leaves = 0, ivy = 0, flowers = 0, grille = 0; // alpha mask
     int stripes = 0, rug = 0, books = 0, inside = 0, wallpaper = 0;
