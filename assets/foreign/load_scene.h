@@ -4,7 +4,7 @@
 
 #include "assets/foreign/foreign_import.h"
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 
 namespace relume {
 

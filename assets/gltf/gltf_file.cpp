@@ -137,19 +137,19 @@ File readFile(const std::string& path) {
     return file;
 }
 
-uint64_t chunkBytesOf(const nlohmann::json& json) {
-    const auto buffers = json.find("buffers");
-    if (buffers == json.end() || buffers->empty() || buffers->front().contains("uri")) return 0;
+uint64_t chunkBytesOf(const nlohmann::json& root) {
+    const auto buffers = root.find("buffers");
+    if (buffers == root.end() || buffers->empty() || buffers->front().contains("uri")) return 0;
     return buffers->front()["byteLength"].get<uint64_t>();
 }
 
-std::vector<uint8_t> withJson(const File& file, const nlohmann::json& json) {
-    std::string text = json.dump();
+std::vector<uint8_t> withJson(const File& file, const nlohmann::json& root) {
+    std::string text = root.dump();
     if (!file.binary) return {text.begin(), text.end()};
     while (text.size() % 4 != 0)
         text += ' ';
     // The parser wants whole words of data, but some exporters do not pad it.
-    const uint64_t wanted = file.chunkBytes > 0 ? std::max(file.chunkBytes, chunkBytesOf(json)) : 0;
+    const uint64_t wanted = file.chunkBytes > 0 ? std::max(file.chunkBytes, chunkBytesOf(root)) : 0;
     const uint64_t chunkBytes = (wanted + 3) / 4 * 4;
     uint64_t length = kHeaderBytes + kChunkHeaderBytes + text.size();
     if (chunkBytes > 0) length += kChunkHeaderBytes + chunkBytes;

@@ -1,7 +1,7 @@
 // What is edited and saved can be read again, with what the edits made.
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/gltf_corpus.h"
 

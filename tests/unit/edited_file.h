@@ -1,7 +1,7 @@
 #pragma once
 
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/glb_builder.h"
 

@@ -1,5 +1,5 @@
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "tests/unit/edited_file.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,5 +1,5 @@
 // After random edits of random files, what is read back is what was saved, however often.
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "tests/unit/edited_file.h"
 
 #include <glm/gtc/matrix_transform.hpp>

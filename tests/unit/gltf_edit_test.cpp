@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 
 #include "assets/base/error.h"
 #include "assets/images/float_image.h"

@@ -1,5 +1,5 @@
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 
 #include "assets/base/error.h"
 #include "tests/unit/glb_builder.h"

@@ -3,7 +3,7 @@
 #include "assets/gltf/gltf.h"
 
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "tests/unit/edited_file.h"
 #include "tests/unit/webp_pictures.h"
 

@@ -6,7 +6,7 @@
 #include "assets/model/light_names.h"
 #include "app/text/near_names.h"
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_edit.h"
+#include "assets/gltf/edit/gltf_edit.h"
 #include "assets/model/black_body.h"
 #include "tests/unit/edited_file.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/gltf/gltf_edit_json.h"
+#include "assets/gltf/edit/gltf_edit_json.h"
 #include "assets/model/scene.h"
 
 namespace relume::gltf {

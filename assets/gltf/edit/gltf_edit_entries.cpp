@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_edit_entries.h"
+#include "assets/gltf/edit/gltf_edit_entries.h"
 
 #include <spdlog/fmt/fmt.h>
 

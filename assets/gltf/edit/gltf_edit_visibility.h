@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/edit/gltf_edit_node.h"
 #include "assets/model/scene.h"
 
 namespace relume::gltf {

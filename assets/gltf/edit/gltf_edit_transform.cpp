@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_edit_transform.h"
+#include "assets/gltf/edit/gltf_edit_transform.h"
 
 #include "assets/gltf/gltf_node.h"
 

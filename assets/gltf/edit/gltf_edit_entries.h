@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/gltf/gltf_edit_json.h"
+#include "assets/gltf/edit/gltf_edit_json.h"
 
 namespace relume::gltf {
 

@@ -1,8 +1,8 @@
-#include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/edit/gltf_edit_node.h"
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf_edit_transform.h"
+#include "assets/gltf/edit/gltf_edit_transform.h"
 #include "assets/gltf/gltf_node.h"
 #include "assets/gltf/gltf_value.h"
 

@@ -1,8 +1,8 @@
-#include "assets/gltf/gltf_edit_light.h"
+#include "assets/gltf/edit/gltf_edit_light.h"
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf_edit_transform.h"
+#include "assets/gltf/edit/gltf_edit_transform.h"
 #include "assets/gltf/gltf_light_json.h"
 #include "assets/gltf/gltf_value.h"
 #include "assets/model/light_names.h"

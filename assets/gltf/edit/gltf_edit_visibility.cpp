@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_edit_visibility.h"
+#include "assets/gltf/edit/gltf_edit_visibility.h"
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"

@@ -1,9 +1,9 @@
-#include "assets/gltf/gltf_edit_parts.h"
+#include "assets/gltf/edit/gltf_edit_parts.h"
 
 #include "assets/base/error.h"
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/edit/gltf_edit_node.h"
 #include "assets/gltf/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>

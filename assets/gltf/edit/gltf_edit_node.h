@@ -7,7 +7,7 @@
 
 #include <glm/glm.hpp>
 
-#include "assets/gltf/gltf_edit_json.h"
+#include "assets/gltf/edit/gltf_edit_json.h"
 
 namespace relume::gltf {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "assets/gltf/gltf_edit_entries.h"
-#include "assets/gltf/gltf_edit_node.h"
+#include "assets/gltf/edit/gltf_edit_entries.h"
+#include "assets/gltf/edit/gltf_edit_node.h"
 #include "assets/model/scene.h"
 
 namespace relume::gltf {
