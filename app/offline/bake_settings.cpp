@@ -24,13 +24,14 @@ std::string describe(Method method, const PairSettings& settings) {
 }
 
 std::string describe(const LinkSettings& settings) {
-    const auto& [directions, rotation, samples, smooth, indirectScale, footprint] = settings;
-    return fmt::format(" samples={} indirect-scale={} smooth={} footprint={} directions={} rotate={}",
-                       samples, indirectScale, smooth ? 1 : 0, footprint ? 1 : 0,
-                       directions == DirectionSet::Lec ? "lec" : "sobol",
-                       rotation == Rotation::Interleaved ? "interleaved"
-                       : rotation == Rotation::Tile      ? "tile"
-                                                         : "patch");
+    const auto& [directions, rotation, samples, smooth, indirectScale, footprint, uniform] = settings;
+    return fmt::format(
+        " samples={} indirect-scale={} smooth={} footprint={} uniform={} directions={} rotate={}", samples,
+        indirectScale, smooth ? 1 : 0, footprint ? 1 : 0, uniform ? 1 : 0,
+        directions == DirectionSet::Lec ? "lec" : "sobol",
+        rotation == Rotation::Interleaved ? "interleaved"
+        : rotation == Rotation::Tile      ? "tile"
+                                          : "patch");
 }
 
 } // namespace
@@ -39,11 +40,14 @@ std::string describeSettings(const BakeSettings& settings) {
     const auto& [size, conservative, tracer, voxels, solver] = settings;
     const auto& [resolution, ratio] = voxels;
     const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
-    const auto& [method, layers, pairs, links, cache, transport, passes, error, batchMs, live] = solver;
-    return fmt::format("size={} passes={} error={} method={}{} conservative={} voxels={} voxel-ratio={}{}{}",
-                       size, passes, error, methodName(method), layers.on ? " layers=1" : "",
-                       conservative ? 1 : 0, marches ? resolution : 0, ratio, describe(transport),
-                       isPairMethod(method) ? describe(method, pairs) : describe(links));
+    const auto& [method, layers, pairs, links, cache, transport, passes, error, localError, batchMs, live] =
+        solver;
+    return fmt::format(
+        "size={} passes={} error={} local-error={} method={}{} conservative={} voxels={} voxel-ratio={}{}{}",
+        size, passes, error, localError, methodName(method),
+        layers.on ? fmt::format(" layers=1 layer-error={}", layers.error) : "", conservative ? 1 : 0,
+        marches ? resolution : 0, ratio, describe(transport),
+        isPairMethod(method) ? describe(method, pairs) : describe(links));
 }
 
 } // namespace relume

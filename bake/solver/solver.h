@@ -59,6 +59,8 @@ struct LinkSettings {
     // Links read the mean light over the part of a chart that their direction stands for
     // (bake/links/footprint.h).
     bool footprint = false;
+    // Every patch takes as many samples; else they go where they lower the error most.
+    bool uniform = false;
 };
 
 /// The memory that bits and links may take for later bounces. Without a cache the same rays are traced again.
@@ -76,6 +78,7 @@ struct LayerSettings {
     bool on = false;
     uint64_t bytes = 0;    // for layers, at most; 0: a third of the free device memory
     bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
+    double error = 0;      // that each layer is to have by itself (relRMSE); 0: none is asked for
 };
 
 struct SolverSettings {
@@ -89,6 +92,7 @@ struct SolverSettings {
                          // by error alone
     double error =
         0.01; // stop when the remaining error (relRMSE) is below this; 0: by passes and samples alone
+    double localError = 0; // link methods: and when the local error (localError95) is, too; 0: it may be any
     double batchMs = 20.0; // aim of one submit
     bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
 };
@@ -99,7 +103,11 @@ struct SolverCounters {
     uint32_t samples = 0;    // link methods: directions per patch (with a coarser grid: of that) so far
     double passFraction = 0; // of the current pass
     double error = 1.0;      // remaining error, relRMSE; 1 until it can be told
-    double gridError = 0;    // share of it that a coarser grid of directions leaves, however many samples
+    // The local error of a texel is |light - true light| / max(true light, 5 % of the median light). These
+    // are the 95th and 99th percentile over all texels; 1 until they can be told, as the pair methods never
+    // do.
+    double localError95 = 1.0, localError99 = 1.0;
+    double gridError = 0; // share of it that a coarser grid of directions leaves, however many samples
     uint64_t rays = 0; // facing pairs whose visibility was found, each once per pass (RTRad preset: from both
                        // ends), or directions and segments traced
     uint64_t pairs = 0;                         // receiver-sender pairs or links that were gathered
