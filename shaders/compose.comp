@@ -13,5 +13,6 @@ void main() {
     vec3 sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) sum += Vec4s(push.sums).items[q * push.patchCount + index].rgb;
     vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
-    Vec4s(push.light).items[index] = vec4(max(direct + sum * push.scale, 0.0), 1.0);
+    float scale = push.scales != 0ul ? Vec2s(push.scales).items[index / kChunk][push.sampled] / float(kReplicates) : push.scale;
+    Vec4s(push.light).items[index] = vec4(max(direct + sum * scale, 0.0), 1.0);
 }

@@ -4,7 +4,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"
-#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -36,6 +35,13 @@ void main() {
     uint reachedLamps = 0u, hiddenLamps = 0u;
     for (uint k = 0u; k < push.lampCount; ++k) {
         Lamp l = loadLamp(k);
+        uint bit = lampBit(k);
+        LightNote note = lampNote(l, p, index, k);
+        if (!note.asked) {
+            if (note.seen > 0.0)
+                for (uint q = 0u; q < kReplicates; ++q) value[q] += l.color * wholeLight(l, p);
+            continue;
+        }
         vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
         for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
         float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
@@ -44,15 +50,18 @@ void main() {
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
             all += ray.light.r;
-            uint bit = ray.light != vec3(0.0) ? 1u << (k % 32u) : 0u;
             if (reached) reachedLamps |= bit;
-            else hiddenLamps |= bit;
+            else if (ray.light != vec3(0.0)) hiddenLamps |= bit;
             if (!reached) continue;
             partSeen[s % kReplicates] += ray.light;
             visible += ray.light.r;
         }
         float whole = lampWhole(l, p), share = all > 0.0 ? visible / all : 0.0;
-        if (l.samples > 1u && whole < 0.0 && all > 0.0) reachedLamps = hiddenLamps = ~0u; // no share is known
+        // Where no share is known, what is reached is asked again.
+        if (l.samples > 1u && whole < 0.0 && all > 0.0) {
+            if (!takesNotes()) reachedLamps = hiddenLamps = ~0u;
+            else if (visible > 0.0 && wholeLight(l, p).r < 0.0) hiddenLamps |= bit;
+        }
         for (uint q = 0u; q < kReplicates; ++q) {
             vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
             if (l.samples == 1u) {
@@ -60,6 +69,10 @@ void main() {
             } else if (whole >= 0.0) { // a ratio, and its residuals as in direct.comp
                 float residual = all > 0.0 ? float(kReplicates) * (partSeen[q].r - share * part[q].r) / all : 0.0;
                 unit = vec3(whole * (share + residual));
+            }
+            if (note.known) {
+                vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);
+                unit = noted + float(kNoteRounds) * (unit - noted);
             }
             value[q] += l.color * unit;
         }

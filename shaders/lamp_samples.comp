@@ -3,7 +3,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/lamp_group.glsl"
-#include "lib/penumbra_rounds.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -12,7 +11,7 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
-    bool leftOut = roundLeftOut(index);
+    bool leftOut = roundLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
     for (uint s = 0u; s < l.samples; ++s) {
         vec4 target = vec4(0.0);
         if (!leftOut) {

@@ -7,21 +7,55 @@
 layout(push_constant, scalar) uniform Push { SmoothPush push; };
 #include "lib/smoothing.glsl"
 #include "lib/replicates.glsl"
+#include "lib/local_error.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer SumsList { ResolveSums items[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LocalErrors {
+    uint lights[kLightBins];
+    uint errors[kErrorBins];
+    LocalSums items[];
+};
 
 layout(local_size_x = 64) in;
 
 shared ResolveSums terms[kChunk];
+shared LocalSums localTerms[kChunk];
+
+float channelMean(vec3 v) { return (v.r + v.g + v.b) / 3.0; }
+
+// Returns the three ways to take the mean of two replicates from that of the two others, halved. Each has the
+// distribution that the error of the mean of all four has.
+vec3 contrasts(vec3 v[kReplicates]) {
+    float a = channelMean(v[0]), b = channelMean(v[1]), c = channelMean(v[2]), d = channelMean(v[3]);
+    return 0.25 * vec3(a + b - c - d, a - b + c - d, a - b - c + d);
+}
+
+// Notes the light of a texel that is shown, and how far it is off.
+LocalSums localTerm(vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplicates], vec3 moved[kReplicates]) {
+    LocalErrors local = LocalErrors(push.local);
+    float own = channelMean(light), relativeTo = max(max(own, push.floor), 1e-30);
+    atomicAdd(local.lights[binOf(own, kLeastLightOctave, kLightBinsPerOctave, kLightBins)], 1u);
+    vec3 directOff = contrasts(direct), off = contrasts(smoothed), moves = contrasts(moved);
+    for (uint k = 0u; k < 3u; ++k) {
+        float error = abs(directOff[k] + off[k]) / relativeTo;
+        atomicAdd(local.errors[binOf(error, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins)], 1u);
+    }
+    float move = 0.25 * channelMean(moved[0] + moved[1] + moved[2] + moved[3]);
+    return LocalSums(dot(directOff, directOff) / (3.0 * relativeTo * relativeTo),
+                     dot(off, off) / (3.0 * relativeTo * relativeTo),
+                     (move * move - dot(moves, moves) / 3.0) / (relativeTo * relativeTo));
+}
 
 void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     if (chunk >= push.chunkCount) return;
     uint index = chunk * kChunk + lane;
     vec3 direct[kReplicates], raw[kReplicates], smoothed[kReplicates], moved[kReplicates];
+    vec2 scales = push.scales != 0ul ? Vec2s(push.scales).items[chunk] : vec2(push.scale, push.directScale);
+    float rowScale = push.scales != 0ul ? 1.0 : push.scale; // else rows are of means
     for (uint q = 0u; q < kReplicates; ++q) {
-        direct[q] = push.directSums != 0ul ? push.directScale * Vec4s(push.directSums).items[q * push.patchCount + index].rgb
+        direct[q] = push.directSums != 0ul ? scales.y * Vec4s(push.directSums).items[q * push.patchCount + index].rgb
                                            : vec3(0.0);
-        raw[q] = push.scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+        raw[q] = scales.x * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
         smoothed[q] = vec3(0.0);
     }
     if (push.reach > 0u) {
@@ -30,7 +64,7 @@ void main() {
             if (taps.weight[t] == 0.0) continue;
             for (uint q = 0u; q < kReplicates; ++q) {
                 vec3 row = Vec4s(push.rows).items[q * push.patchCount + taps.index[t]].rgb;
-                smoothed[q] += push.scale * taps.weight[t] * row;
+                smoothed[q] += rowScale * taps.weight[t] * row;
             }
         }
     } else {
@@ -53,6 +87,8 @@ void main() {
         term.bias = dot(move, move) - spread(moved);
         term.count = 1.0;
     }
+    if (push.local != 0ul)
+        localTerms[lane] = patchIsShown(flags) ? localTerm(light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0);
     Vec4s(push.result).items[index] = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
     terms[lane] = term;
     barrier();
@@ -66,4 +102,12 @@ void main() {
         term.count += terms[i].count;
     }
     SumsList(push.chunkSums).items[chunk] = term;
+    if (push.local == 0ul) return;
+    LocalSums total = localTerms[0];
+    for (uint i = 1u; i < kChunk; ++i) {
+        total.direct += localTerms[i].direct;
+        total.indirect += localTerms[i].indirect;
+        total.bias += localTerms[i].bias;
+    }
+    LocalErrors(push.local).items[chunk] = total;
 }

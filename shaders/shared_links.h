@@ -122,6 +122,8 @@ struct ComposePush {
     ADDRESS sums;
     ADDRESS direct; // 0: nothing
     ADDRESS light;  // vec4[], written
+    ADDRESS scales; // vec2[chunkCount], as of SmoothPush; 0: `scale` holds for all
+    uint sampled;   // 0: the sums are of links; 1: of direct light
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };
@@ -141,6 +143,13 @@ struct ResolveSums {
     float bias;     // squares of what smoothing moves, less what noise explains of it
     float count;
 };
+// Sums over a chunk's patches: squares relative to the square of what local error is relative to. They are of
+// light as the mean of R, G and B.
+struct LocalSums {
+    float direct;   // variance
+    float indirect; // variance, smoothed
+    float bias;     // as of ResolveSums
+};
 struct SmoothPush {
     ADDRESS patches;
     ADDRESS patchChart;
@@ -151,10 +160,14 @@ struct SmoothPush {
     ADDRESS result;     // vec4[patchCount]: lighting, standard error
     ADDRESS chunkSums;  // ResolveSums[chunkCount]
     ADDRESS distances;  // float[patchCount] [m], of what lights a patch
+    ADDRESS scales;     // vec2[chunkCount]: in place of scale and directScale; 0: these hold for all
+    ADDRESS
+    local; // uint[kLightBins + kErrorBins], then LocalSums[chunkCount] (lib/local_error.glsl); 0: none
     uint chunkCount;
     uint patchCount;
     uint size;                // lightmap edge [texels]
     uint reach;               // [texels], 0: no smoothing
     float sigma;              // [texels]
     float scale, directScale; // from a replicate's sum to its mean
+    float floor;              // light below which local error is not relative to it any more [cd/m^2]
 };

@@ -64,8 +64,9 @@ struct InspectVoxels {
 };
 
 struct ConvergencePoint {
-    double seconds = 0; // of solving
-    double error = 1;   // remaining, relRMSE
+    double seconds = 0;    // of solving
+    double error = 1;      // remaining, relRMSE
+    double localError = 1; // SolverCounters::localError95
 };
 
 /// Tells how far the bake thread is. The main thread takes a copy once per frame.

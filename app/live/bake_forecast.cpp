@@ -4,17 +4,17 @@
 
 namespace relume {
 
-double secondsUntil(std::span<const ConvergencePoint> history, double aim) {
+double secondsUntil(std::span<const ConvergencePoint> history, double aim, double ConvergencePoint::*error) {
     if (history.size() < 2 || aim <= 0) return -1;
     const ConvergencePoint now = history.back();
-    if (now.error <= aim) return 0;
+    if (now.*error <= aim) return 0;
     size_t then = history.size() - 2;
     while (then > 0 && history[then].seconds > 0.5 * now.seconds)
         --then;
     const ConvergencePoint before = history[then];
-    if (!(before.seconds > 0 && before.seconds < now.seconds && before.error > now.error)) return -1;
-    const double power = std::log(before.error / now.error) / std::log(now.seconds / before.seconds);
-    return now.seconds * (std::pow(now.error / aim, 1.0 / power) - 1.0);
+    if (!(before.seconds > 0 && before.seconds < now.seconds && before.*error > now.*error)) return -1;
+    const double power = std::log(before.*error / now.*error) / std::log(now.seconds / before.seconds);
+    return now.seconds * (std::pow(now.*error / aim, 1.0 / power) - 1.0);
 }
 
 void RayMeter::add(double seconds, uint64_t rays) {

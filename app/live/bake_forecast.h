@@ -9,7 +9,8 @@ namespace relume {
 /// Returns the seconds until the error falls to `aim`, by the power law through the newest point and one from
 /// about half its time: sampling errors fall as a power of the time that was spent. The result is negative
 /// when the error does not fall, or when there are too few points to tell.
-double secondsUntil(std::span<const ConvergencePoint> history, double aim);
+double secondsUntil(std::span<const ConvergencePoint> history, double aim,
+                    double ConvergencePoint::*error = &ConvergencePoint::error);
 
 /// Measures rays per second over the last window of time.
 class RayMeter {

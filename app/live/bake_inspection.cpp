@@ -1,5 +1,6 @@
 #include "app/live/bake_inspection.h"
 
+#include "bake/base/local_error.h"
 #include "bake/layers/layer_solver.h"
 
 #include <algorithm>
@@ -75,9 +76,25 @@ PatchValues BakeInspection::nothing() const {
     return PatchValues(baker_.patches().scene.patches.size(), glm::vec4(0.0f));
 }
 
+// Returns the local error of each patch: one standard deviation.
 PatchValues BakeInspection::errors() const {
-    const std::vector<float> errors = baker_.solver().errors();
-    return errors.empty() ? nothing() : PatchInspector::grey(errors);
+    std::vector<float> errors = baker_.solver().errors();
+    if (errors.empty()) return nothing();
+    const std::vector<glm::vec4>& light = baker_.solver().light();
+    const std::vector<shader::Patch>& patches = baker_.patches().scene.patches;
+    const auto brightness = [&](size_t i) { return (light[i].r + light[i].g + light[i].b) / 3.0f; };
+    std::vector<float> shown;
+    for (size_t i = 0; i < patches.size(); ++i)
+        if (shader::patchIsShown(patches[i].flags)) shown.push_back(brightness(i));
+    if (shown.empty()) return nothing();
+    const auto middle = shown.begin() + static_cast<std::ptrdiff_t>(shown.size() / 2);
+    std::nth_element(shown.begin(), middle, shown.end());
+    const float floor = static_cast<float>(kLocalFloor) * *middle;
+    for (size_t i = 0; i < errors.size(); ++i) {
+        const float relativeTo = std::max(brightness(i), floor);
+        errors[i] = relativeTo > 0.0f ? errors[i] / relativeTo : 0.0f;
+    }
+    return PatchInspector::grey(errors);
 }
 
 PatchValues BakeInspection::seenFrom(uint32_t texel) {

@@ -14,6 +14,14 @@ constexpr double kMeasureSeconds = 0.25;
 // The convergence curve keeps so many points: more than a screen has columns.
 constexpr size_t kMaxHistory = 4096;
 
+// Returns the seconds until both errors that are asked for are reached; negative where that cannot be told.
+double secondsLeft(const std::vector<ConvergencePoint>& history, const SolverSettings& settings) {
+    const double whole = secondsUntil(history, settings.error);
+    if (!(settings.localError > 0) || history.empty() || history.back().localError >= 1) return whole;
+    const double local = secondsUntil(history, settings.localError, &ConvergencePoint::localError);
+    return whole < 0 || local < 0 ? -1.0 : std::max(whole, local);
+}
+
 } // namespace
 
 void addPoint(std::vector<ConvergencePoint>& history, const ConvergencePoint& point, size_t most) {
@@ -45,8 +53,8 @@ void BakeMeter::update(BakeStatus& status, Baker& baker, const BakeSettings& set
     const LayerSolver* layers = baker.layers();
     status.stale = layers ? staleReasons(*layers) : std::vector<std::string>();
     status.groups = layers ? groupsOf(*layers) : std::vector<LightGroup>();
-    addPoint(status.history, {now.seconds, now.error}, kMaxHistory);
-    status.secondsLeft = baking ? secondsUntil(status.history, settings.solver.error) : -1.0;
+    addPoint(status.history, {now.seconds, now.error, now.localError95}, kMaxHistory);
+    status.secondsLeft = baking ? secondsLeft(status.history, settings.solver) : -1.0;
     if (secondsSince(measured_) >= kMeasureSeconds) measure(status, solver, device);
 }
 

@@ -14,6 +14,8 @@ namespace relume {
 namespace {
 
 constexpr double kDefaultError = 0.01;
+// The local error that is asked for where only the error of the whole is given.
+constexpr double kLocalErrorShare = 5.0;
 
 // Adds the options of the methods that follow directions.
 void addLinkOptions(CLI::App& command, LinkOptions& o) {
@@ -40,6 +42,10 @@ void addLinkOptions(CLI::App& command, LinkOptions& o) {
     command.add_flag("--footprint", o.footprint,
                      "directional, hybrid: read the mean light over what each direction stands for, within a "
                      "chart: less noise from few directions, but biased, which --error does not tell");
+    command.add_flag(
+        "--uniform", o.uniform,
+        "directional, hybrid: every patch takes as many samples; else they go where the light is "
+        "still off");
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -67,6 +73,10 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (o.links.indirectScale > 0 && !links)
         throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
                          "indirect light apart");
+    if (o.links.uniform && !links)
+        throw UsageError("--uniform: only with --method directional or hybrid, others have no samples");
+    if (o.solve.localError >= 0 && !links)
+        throw UsageError("--local-error: only with --method directional or hybrid, others cannot tell it");
     if (o.links.footprint && !links)
         throw UsageError("--footprint: only with --method directional or hybrid, others have no directions");
     if (links && solver.transport.rtrad) {
@@ -88,7 +98,10 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     solver.links.indirectScale = std::max(o.links.indirectScale, 1u);
     solver.links.footprint = o.links.footprint;
     // The passes of these methods are bounces: how many samples they need is another question.
-    if (links) solver.error = o.solve.error > 0 ? o.solve.error : o.links.samples > 0 ? 0.0 : kDefaultError;
+    if (!links) return;
+    solver.links.uniform = o.links.uniform;
+    solver.error = o.solve.error > 0 ? o.solve.error : o.links.samples > 0 ? 0.0 : kDefaultError;
+    solver.localError = o.solve.localError >= 0 ? o.solve.localError : kLocalErrorShare * solver.error;
 }
 
 void addVoxelOptions(CLI::App& command, VoxelOptions& o) {
@@ -135,6 +148,12 @@ void addSolverOptions(CLI::App& command, BakeOptions& o) {
         .add_option("--error", o.solve.error,
                     "Stop when the remaining error is below this (default 0.01 without --passes)")
         ->check(numberFrom(1e-6, 1.0));
+    command
+        .add_option(
+            "--local-error", o.solve.localError,
+            "directional, hybrid: and when the local error of 95 % of all texels, relative to their own "
+            "light, is below this; 0: it may be any (default: five times --error)")
+        ->check(numberFrom(0.0, 100.0));
     addLinkOptions(command, o.links);
     addVoxelOptions(command, o.voxels);
     addMachineOptions(command, o);

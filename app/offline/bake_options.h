@@ -38,6 +38,7 @@ struct SolveOptions {
     std::string preset;
     uint32_t passes = 0;                           // 0: not given
     double error = 0;                              // 0: not given
+    double localError = -1;                        // negative: not given
     double reflectivity = -1, distanceFactor = -1; // negative: not given
 };
 
@@ -46,7 +47,7 @@ struct LinkOptions {
     uint32_t samples = 0;           // 0: not given
     std::string directions, rotate; // "": not given
     uint32_t indirectScale = 0;     // 0: not given
-    bool noSmooth = false, footprint = false;
+    bool noSmooth = false, footprint = false, uniform = false;
 };
 
 struct LayerOptions {

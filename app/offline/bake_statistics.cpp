@@ -54,6 +54,8 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                        {"indirectScale", std::max(s.options.links.indirectScale, 1u)},
                        {"footprint", s.options.links.footprint},
                        {"error", p.error},
+                       {"localError", p.localError95},
+                       {"localError99", p.localError99},
                        {"gridError", p.gridError},
                        {"converged", p.converged},
                        {"pairs", p.pairs},

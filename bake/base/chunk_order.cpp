@@ -50,6 +50,14 @@ void ChunkOrder::begin(uint32_t count, const std::vector<uint8_t>& seen) {
     restore(count, seen);
 }
 
+void ChunkOrder::beginMarked(const std::vector<uint8_t>& marks, const std::vector<uint8_t>& seen) {
+    ASSERT(marks.size() <= marks_.size());
+    std::fill(marks_.begin(), marks_.end(), uint8_t{0});
+    std::transform(marks.begin(), marks.end(), marks_.begin(),
+                   [](uint8_t mark) { return mark != 0 ? kLeft : uint8_t{0}; });
+    restore(static_cast<uint32_t>(marks.size()), seen);
+}
+
 void ChunkOrder::restore(uint32_t count, const std::vector<uint8_t>& seen) {
     count_ = count;
     left_ = static_cast<uint32_t>(count - std::count(marks_.begin(), marks_.begin() + count, 0));

@@ -28,6 +28,8 @@ public:
 
     /// Begins a pass over `count` chunks of which none is done; `seen` is as for prefer().
     void begin(uint32_t count, const std::vector<uint8_t>& seen);
+    /// Begins a pass over the chunks whose mark is not 0.
+    void beginMarked(const std::vector<uint8_t>& marks, const std::vector<uint8_t>& seen);
     /// Lets chunks whose `seen` is not 0 come before the others from now on; it has one entry per chunk, or
     /// none: all are alike.
     void prefer(const std::vector<uint8_t>& seen);

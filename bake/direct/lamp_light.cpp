@@ -129,7 +129,7 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .skyPixels = skyPixels_.address(),
             .skyRows = skyRows_.address(),
             .parts = work.penumbra ? work.penumbra->parts.address() : 0,
-            .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+            .penumbra = penumbraOf(work.penumbra, work.notes),
             .skySize = set_.skySize,
             .skyRotation = set_.skyRotation,
             .reach = set_.reach,
@@ -179,7 +179,9 @@ void LampLight::gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const W
 }
 
 void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
-    samples_.dispatch(cmd, push(light, work), work.range.count, groups_[work.group].count);
+    shader::LampPush p = push(light, work);
+    p.direct = work.soFar ? work.soFar->address() : 0;
+    samples_.dispatch(cmd, p, work.range.count, groups_[work.group].count);
 }
 
 SegmentWork LampLight::segments(const Work& work, const vk::Buffer& rays) const {

@@ -10,4 +10,9 @@ struct Penumbra {
     vk::Buffer lights; // uvec2 per part; of the light under way
 };
 
+/// Returns what shaders find penumbrae in, or the notes of patches; 0 for neither.
+inline VkDeviceAddress penumbraOf(const Penumbra* penumbra, const vk::Buffer* notes) {
+    return penumbra ? penumbra->lights.address() : notes ? notes->address() : 0;
+}
+
 } // namespace relume

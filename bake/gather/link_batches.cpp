@@ -23,26 +23,46 @@ LinkBatches::Portion LinkBatches::next(uint32_t round, double spent) {
     return {
         .trace = trace,
         .range = range,
-        .closest = {.firstChunk = range.first,
-                    .chunkCount = range.count,
-                    .firstSample = round * kit_.linksOfRound,
-                    .sampleCount = kit_.linksOfRound,
-                    .rotation = kit_.settings.links.rotation,
-                    .links = place.links,
-                    .linksOffset = place.offset},
+        .closest = closestWork(round, 1, place, range),
         .gather = {
             .links = place.links, .linksOffset = place.offset, .samples = kit_.linksOfRound, .range = range}};
 }
 
+LinkBatches::Portion LinkBatches::nextOnce(uint32_t round, uint32_t rounds) {
+    const LinkCache::Place place = cache_.passing(rounds, kit_.order.count());
+    const ChunkRange range = kit_.nextRange(traceRate_, place.count, rounds);
+    return {.trace = true,
+            .once = true,
+            .rounds = rounds,
+            .range = range,
+            .closest = closestWork(round, rounds, place, range),
+            .gather = {.links = place.links,
+                       .linksOffset = place.offset,
+                       .samples = rounds * kit_.linksOfRound,
+                       .range = range}};
+}
+
+ClosestWork LinkBatches::closestWork(uint32_t round, uint32_t rounds, const LinkCache::Place& place,
+                                     ChunkRange range) const {
+    return {.firstChunk = range.first,
+            .chunkCount = range.count,
+            .firstSample = round * kit_.linksOfRound,
+            .sampleCount = rounds * kit_.linksOfRound,
+            .rotation = kit_.settings.links.rotation,
+            .links = place.links,
+            .linksOffset = place.offset};
+}
+
 void LinkBatches::finish(uint32_t round, const Portion& portion) {
-    cache_.note(round, portion.range);
+    if (!portion.once) cache_.note(round, portion.range);
     kit_.order.finish(portion.range);
 }
 
 void LinkBatches::run(const Portion& portion, const Steps& steps, bool atOnce) {
     const auto start = Clock::now();
     atOnce ? runAtOnce(portion, steps) : runBySubmit(portion, steps);
-    (portion.trace ? traceRate_ : gatherRate_).note(portion.range.count, kit_.batchMs, secondsSince(start));
+    (portion.trace ? traceRate_ : gatherRate_)
+        .note(double(portion.range.count) * portion.rounds, kit_.batchMs, secondsSince(start));
 }
 
 void LinkBatches::runAtOnce(const Portion& portion, const Steps& steps) {

@@ -1,5 +1,6 @@
 #include "bake/gather/link_cache.h"
 
+#include "assets/base/error.h"
 #include "bake/base/shader_types.h"
 
 #include <algorithm>
@@ -51,6 +52,19 @@ LinkCache::Place LinkCache::find(uint32_t round, uint32_t first, uint32_t most) 
     const bool known = *from != 0;
     const auto count = static_cast<uint32_t>(std::find(from, end, known ? 0 : 1) - from);
     return {&kept.links, uint64_t{first} * desc_.links * kChunk, known, count};
+}
+
+LinkCache::Place LinkCache::passing(uint32_t rounds, uint32_t most) {
+    forget();
+    const vk::Buffer* links = desc_.oneRound && !kept_.empty() ? &kept_.front().links : nullptr;
+    if (!links || links->size() < desc_.batch * chunkBytes_) {
+        if (!staging_)
+            staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
+        links = &staging_;
+    }
+    const auto room = static_cast<uint32_t>(links->size() / (rounds * chunkBytes_));
+    ASSERT(room > 0);
+    return {links, 0, false, std::min({most, room, desc_.batch})};
 }
 
 void LinkCache::note(uint32_t round, ChunkRange range) {

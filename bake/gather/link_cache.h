@@ -38,6 +38,9 @@ public:
     };
     /// Returns the place of the links of up to `most` chunks from `first` on.
     Place find(uint32_t round, uint32_t first, uint32_t most);
+    /// Returns a place for links that are read once: those of up to `most` chunks with so many sample passes
+    /// each. What is kept of a sample pass is forgotten first.
+    Place passing(uint32_t rounds, uint32_t most);
     /// Notes that the links of these chunks were traced to where find() said.
     void note(uint32_t round, ChunkRange range);
     /// Forgets all links, but keeps the memory.

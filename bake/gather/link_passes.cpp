@@ -32,6 +32,11 @@ uint64_t vec4s(uint64_t count) {
     return count * sizeof(glm::vec4);
 }
 
+// Counts of light and errors, and sums per chunk.
+uint64_t localBytes(uint64_t chunks) {
+    return (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t) + chunks * sizeof(shader::LocalSums);
+}
+
 } // namespace
 
 uint32_t linkBatchChunks(uint32_t chunks, bool software) {
@@ -61,6 +66,8 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
     direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
+    if (desc.notes)
+        notes = vk::Buffer(device, {.size = chunks * sizeof(glm::uvec2), .name = "notes of lights"});
     if (desc.smooth) {
         rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
         distances = vk::Buffer(device, {.size = count * sizeof(float), .name = "link distances"});
@@ -71,6 +78,10 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
     chunkSums = vk::Buffer(device, {.size = chunks * kSumBytes, .name = "sums per chunk"});
     sums = vk::Buffer(device, {.size = kSumBytes, .name = "sums over chunks"});
+    if (desc.local) {
+        local = vk::Buffer(device, {.size = localBytes(chunks), .name = "local errors"});
+        scales = vk::Buffer(device, {.size = chunks * sizeof(glm::vec2), .name = "scales of chunks"});
+    }
     rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 }
 
@@ -82,8 +93,11 @@ uint64_t LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64
     const uint64_t direct = desc.direct ? vec4s(kReplicates) : 0;
     const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(float) : 0;
     const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(float) : 0;
+    const uint64_t notes = desc.notes ? extent.chunkCount * sizeof(glm::uvec2) : 0;
+    const uint64_t localError =
+        desc.local ? localBytes(extent.chunkCount) + extent.chunkCount * sizeof(glm::vec2) : 0;
     return count * (sizeof(uint32_t) + vec4s(kReplicates + 2) + direct + smooth) +
-           extent.texels * sizeof(uint32_t) + coarse + coarseDistances +
+           extent.texels * sizeof(uint32_t) + coarse + coarseDistances + localError + notes +
            (uint64_t{extent.chunkCount} + 1) * kSumBytes + shader::kRayCounters * sizeof(uint32_t);
 }
 
@@ -219,19 +233,24 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
 }
 
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                                   const vk::Buffer* direct, uint32_t samples) const {
+                                   const vk::Buffer* direct, uint32_t samples,
+                                   const vk::Buffer* scales) const {
     const shader::ComposePush push{.sums = buffers.linkSums.address(),
                                    .direct = direct ? direct->address() : 0,
                                    .light = light.ligIn.address(),
+                                   .scales = scales ? scales->address() : 0,
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
     dispatchChunks(compose_, cmd, push, light.chunkCount);
 }
 
 void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,
-                                      const LinkBuffers& buffers, uint32_t rounds) const {
+                                      const LinkBuffers& buffers, uint32_t rounds,
+                                      const vk::Buffer* scales) const {
     const shader::ComposePush push{.sums = buffers.directSums.address(),
                                    .light = buffers.direct.address(),
+                                   .scales = scales ? scales->address() : 0,
+                                   .sampled = 1,
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale =
                                        rounds > 0 ? 1.0f / static_cast<float>(kReplicates * rounds) : 0.0f};
@@ -275,13 +294,20 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .result = buffers.result.address(),
         .chunkSums = buffers.chunkSums.address(),
         .distances = buffers.distances ? buffers.distances.address() : 0,
+        .scales = work.scaled ? buffers.scales.address() : 0,
+        .local = work.local ? buffers.local.address() : 0,
         .chunkCount = light.chunkCount,
         .patchCount = light.chunkCount * kChunk,
         .size = work.size,
         .reach = reach,
         .sigma = work.sigma,
         .scale = work.samples > 0 ? 1.0f / perReplicate : 0.0f,
-        .directScale = work.directRounds > 0 ? 1.0f / static_cast<float>(work.directRounds) : 0.0f};
+        .directScale = work.directRounds > 0 ? 1.0f / static_cast<float>(work.directRounds) : 0.0f,
+        .floor = work.floor};
+    if (work.local) {
+        vkCmdFillBuffer(cmd, buffers.local.handle(), 0, VK_WHOLE_SIZE, 0);
+        vk::barrier(cmd);
+    }
     if (reach > 0) {
         dispatchChunks(smooth_, cmd, push, light.chunkCount);
         vk::barrier(cmd);

@@ -26,10 +26,13 @@ struct LinkBuffers {
     vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
+    vk::Buffer notes;         // uvec2 per chunk, of lights (lib/light_notes.glsl)
     vk::Buffer distances;     // float per patch [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back
     vk::Buffer sums;          // or over all of them
+    vk::Buffer local;         // of local error, read back: LocalCounts
+    vk::Buffer scales;        // vec2 per chunk, where chunks have sample passes of their own
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
     // These are there where links are followed from fewer patches than there are.
@@ -41,6 +44,8 @@ struct LinkBuffers {
     struct Desc {
         bool direct = false; // direct light is sampled
         bool smooth = false;
+        bool local = false;                    // local error is told
+        bool notes = false;                    // chunks take notes of lights
         const CoarsePatches* coarse = nullptr; // bytes() takes their number instead
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
@@ -99,12 +104,13 @@ public:
     /// each.
     void recordInterpolate(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                            const Work& work) const;
-    /// Makes ligIn of direct light (vec4 per patch, nullptr for none) and the mean of `samples` links.
+    /// Makes ligIn of direct light (vec4 per patch, nullptr for none) and the mean of `samples` links; with
+    /// `scales` each chunk has as many as these say.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                       const vk::Buffer* direct, uint32_t samples) const;
-    /// Makes direct what it was after so many sample passes.
+                       const vk::Buffer* direct, uint32_t samples, const vk::Buffer* scales = nullptr) const;
+    /// Makes direct what it was after so many sample passes, or those that `scales` say.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                          uint32_t rounds) const;
+                          uint32_t rounds, const vk::Buffer* scales = nullptr) const;
 
 private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
@@ -131,6 +137,9 @@ public:
         uint32_t directRounds = 0;        // in directSums; 0: no direct light
         float sigma = 0;                  // of smoothing [texels], 0: none
         const vk::Buffer* sums = nullptr; // in place of linkSums
+        bool scaled = false;              // chunks have as many samples as LinkBuffers::scales say
+        bool local = false;               // makes LinkBuffers::local
+        float floor = 0;                  // as of SmoothPush
     };
     /// Makes result, and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

@@ -10,14 +10,6 @@ namespace {
 // There are at most so many times as many sample passes as before.
 constexpr uint32_t kMostGrowth = 8;
 
-// Returns the least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least.
-uint32_t onLadder(double rounds) {
-    constexpr double kAlmostWhole = 1e-9;
-    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
-    const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
-    return whole <= between ? between : above;
-}
-
 uint32_t limited(const SampledPart& part, double rounds) {
     if (part.rounds >= part.most) return part.rounds;
     const double most = double{kMostGrowth} * std::max(1u, part.rounds);
@@ -52,6 +44,13 @@ Rounds doubled(const SampledPart& first, const SampledPart& second) {
 }
 
 } // namespace
+
+uint32_t onLadder(double rounds) {
+    constexpr double kAlmostWhole = 1e-9;
+    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
+    const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
+    return whole <= between ? between : above;
+}
 
 double gainOfRound(const SampledPart& part, uint32_t now) {
     return part.variance * part.rounds / (static_cast<double>(now) * now * part.costOfRound);

@@ -19,6 +19,10 @@ struct SampledPart {
 /// The variance is as it was after part.rounds of them; it falls as 1 / rounds at least.
 double gainOfRound(const SampledPart& part, uint32_t now);
 
+/// Returns the least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least: what is planned on its own
+/// meets on few numbers.
+uint32_t onLadder(double rounds);
+
 struct Rounds {
     uint32_t first = 0, second = 0;
 

@@ -19,10 +19,37 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
                  {.size = kit_.input.patches.scene.size,
                   .samples = state.linkRounds * kit_.linksOfRound,
                   .directRounds = state.directRounds,
-                  .sigma = static_cast<float>(sigma)});
+                  .sigma = static_cast<float>(sigma),
+                  .scaled = state.scaled,
+                  .local = bool(kit_.buffers.local),
+                  .floor = static_cast<float>(kLocalFloor * state.median)});
     kit_.run(cmd);
     return sumsOf(
         vk::readBuffer<shader::ResolveSums>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount()));
+}
+
+LinkErrors::Local LinkErrors::local() const {
+    const auto bins = vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local,
+                                               shader::kLightBins + shader::kErrorBins);
+    const std::span<const uint32_t> all = bins;
+    return {medianLight(all.first(shader::kLightBins)), localErrorOf(all.subspan(shader::kLightBins))};
+}
+
+std::vector<ChunkVariance> LinkErrors::chunks() const {
+    const vk::Device& device = kit_.input.device;
+    const size_t count = kit_.chunkCount();
+    const size_t bins = (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t);
+    const auto sums = vk::readBuffer<shader::ResolveSums>(device, kit_.buffers.chunkSums, count);
+    std::vector<shader::LocalSums> local(count);
+    vk::download(device, kit_.buffers.local, local.data(), count * sizeof(shader::LocalSums), bins);
+    std::vector<ChunkVariance> chunks;
+    for (size_t i = 0; i < count; ++i)
+        chunks.push_back({.patches = sums[i].count,
+                          .direct = sums[i].direct,
+                          .indirect = sums[i].indirect,
+                          .localDirect = local[i].direct,
+                          .localIndirect = local[i].indirect});
+    return chunks;
 }
 
 double LinkErrors::coarseVariance(const LinkState& state, double patches) const {

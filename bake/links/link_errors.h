@@ -1,5 +1,7 @@
 #pragma once
 
+#include "bake/base/local_error.h"
+#include "bake/gather/chunk_plan.h"
 #include "bake/gather/link_kit.h"
 #include "bake/links/link_schedule.h"
 
@@ -13,6 +15,14 @@ public:
     /// Makes the result after the state's sample passes, smoothed by sigma [texels]. Returns what sums over
     /// all patches say.
     shader::ResolveSums resolve(const LinkState& state, double sigma) const;
+    /// What the last resolve() says of local error.
+    struct Local {
+        double median = 0; // light of all texels [cd/m^2]
+        LocalError error;
+    };
+    Local local() const;
+    /// Returns what the last resolve() says of each chunk.
+    std::vector<ChunkVariance> chunks() const;
     /// Returns the variance that interpolation from a coarser grid leaves, R, G and B of so many patches
     /// together: a share of how far the receivers themselves are from what their neighbours say.
     double coarseVariance(const LinkState& state, double patches) const;

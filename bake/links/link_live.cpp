@@ -110,7 +110,7 @@ void LinkSolver::undo() {
     vkCmdCopyBuffer(cmd, (undo_ ? undo_ : kit_.buffers.rows).handle(), sums.handle(), 1, &all);
     vk::barrier(cmd);
     if (state_.stage == Stage::Direct) {
-        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directRounds);
+        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directRounds, scales());
         vk::barrier(cmd);
     }
     vk::hostBarrier(cmd);

@@ -35,6 +35,11 @@ DirectNeeds directNeeds(const SolverExtent& extent, bool meshLights, uint32_t li
 
 } // namespace
 
+bool samplesPerChunk(const SolverSettings& settings) {
+    const bool wanted = settings.error > 0 || settings.localError > 0;
+    return wanted && !settings.links.uniform && settings.passes == 0 && settings.links.indirectScale == 1;
+}
+
 uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     const uint64_t count = extent.patches();
     const bool hybrid = settings.method == Method::Hybrid;
@@ -42,7 +47,10 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const auto least = static_cast<uint32_t>(count - std::min<uint64_t>(count, shader::kChunk - 1));
     const uint32_t links = linksOfRound(least, settings.links.samples, extent.software);
     const DirectNeeds direct = directNeeds(extent, hybrid, links);
-    const LinkBuffers::Desc desc{.direct = direct.any, .smooth = hybrid && settings.links.smooth};
+    const LinkBuffers::Desc desc{.direct = direct.any,
+                                 .smooth = hybrid && settings.links.smooth,
+                                 .local = true,
+                                 .notes = direct.any && samplesPerChunk(settings)};
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint32_t scale = settings.links.indirectScale;
     const uint64_t receivers = scale > 1 ? extent.receivers.value_or(count / scale) : 0;

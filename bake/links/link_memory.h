@@ -7,6 +7,9 @@ namespace relume {
 /// The ledger counts what link methods take as that of this owner (vk::MemoryOwner).
 constexpr const char* kLinksOwner = "links";
 
+/// Tells whether chunks get sample passes of their own.
+bool samplesPerChunk(const SolverSettings& settings);
+
 /// Returns the most device bytes that LinkSolver takes at a time, beside LightBuffers. Where no number is
 /// known for the cache (CacheSettings::bytes is 0), the links of a whole sample pass are kept.
 uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings);

@@ -1,5 +1,6 @@
 #include "bake/links/link_schedule.h"
 
+#include "bake/base/batch_rate.h"
 #include "bake/gather/sample_plan.h"
 
 #include <algorithm>
@@ -10,6 +11,10 @@ namespace {
 // The error is looked at again when so much of the sample passes that it seems to need are done (variance
 // falls as 1 / rounds or faster), and when their number has doubled.
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
+// 95 % of normally distributed errors are within so many standard deviations.
+constexpr double kDeviationsOf95 = 1.96;
+// Samples are planned for at least this share of the variance that is allowed, whatever else is left.
+constexpr double kLeastOfVariance = 0.25;
 
 } // namespace
 
@@ -25,9 +30,30 @@ uint32_t LinkSchedule::footprintSamples(const LinkState& state) const {
     return rules_.linksOfRound * (rules_.samples > 0 ? roundsWanted() : state.linkRounds + 1);
 }
 
-uint32_t LinkSchedule::nextCheck(const LinkState& state, double error) const {
-    const double off = error / rules_.error;
-    const double growth = std::min(kCheckGrowth, kCheckShare * off * off);
+double LinkSchedule::excess(double error, double localError) const {
+    return std::max(rules_.error > 0 ? error / rules_.error : 0.0,
+                    rules_.localError > 0 ? localError / rules_.localError : 0.0);
+}
+
+ChunkPlanRules LinkSchedule::planRules(const LinkState& state) const {
+    ChunkPlanRules plan{.directCost = std::max(1.0, kSegmentCost * state.raysToLights),
+                        .linkCost = rules_.linkCost,
+                        .mostRounds = roundsWanted(),
+                        .hasDirect = rules_.hasDirect && state.directRounds > 0};
+    plan.localError = rules_.localError * state.strictness / kDeviationsOf95;
+    if (rules_.error > 0 && state.patches > 0) {
+        const double mean = state.light / (3.0 * state.patches), iteration = state.series.error;
+        const double square = std::max(0.0, rules_.error * rules_.error - iteration * iteration);
+        const double all = square * mean * mean * 3.0 * state.patches;
+        // What samples do not take away leaves less for them, but never nothing.
+        plan.variance =
+            state.strictness * state.strictness * std::max(kLeastOfVariance * all, all - state.bias);
+    }
+    return plan;
+}
+
+uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
+    const double growth = std::min(kCheckGrowth, kCheckShare * excess * excess);
     return std::max(state.rounds() + 1, static_cast<uint32_t>(growth * state.rounds()));
 }
 
@@ -53,7 +79,8 @@ bool LinkSchedule::isLastBounce(const LinkState& state) const {
 }
 
 bool LinkSchedule::hasConverged(const LinkState& state) const {
-    const double aim = rules_.error > 0 ? kIterationShare * rules_.error : kLeastIterationError;
+    const double asked = rules_.error > 0 ? rules_.error : rules_.localError;
+    const double aim = asked > 0 ? kIterationShare * asked : kLeastIterationError;
     return state.series.error <= aim || state.bounce + 1 >= kMostBounces;
 }
 

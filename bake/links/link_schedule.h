@@ -2,6 +2,7 @@
 
 #include "bake/base/light_error.h"
 #include "bake/base/settling.h"
+#include "bake/gather/chunk_plan.h"
 #include "bake/gather/smoothing_width.h"
 
 namespace relume {
@@ -11,16 +12,23 @@ namespace relume {
 struct LinkState {
     enum class Stage : uint32_t { Plan, Direct, Links };
     Stage stage = Stage::Plan;
-    uint32_t directRounds = 0, linkRounds = 0; // finished
+    uint32_t directRounds = 0, linkRounds = 0; // finished, of the chunks that have most
+    uint32_t passRounds = 1;                   // that the pass under way takes
     uint32_t bounce = 0;                       // of the current sample pass
     uint32_t nextCheck = 0;                    // sample passes of both kinds before the next check
     bool last = false;                         // this bounce is the sample pass's last one: it counts
     BounceSeries series;                       // of the first sample pass, then its last bounce's own share
     // These are of the light, R, G and B of all patches together.
     double directVariance = 0, indirectVariance = 0, coarseVariance = 0;
+    double light = 0, patches = 0; // likewise, of those that are shown
+    double bias = 0;               // likewise, squares of what is left however many samples there are
     SmoothingWidth width;
     uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
     Settling settling;                            // of the first sample pass, then of the result
+    bool scaled = false;                          // chunks have sample passes of their own, of both kinds
+    double raysToLights = 0;                      // of a patch, in the last sample pass of direct light
+    double median = 0;                            // light of all texels [cd/m^2]
+    double strictness = 1; // what is asked for is planned with so many times less error
 
     uint32_t rounds() const { return directRounds + linkRounds; }
 };
@@ -33,9 +41,11 @@ struct LinkRules {
     bool hybrid = false;
     bool hasDirect = false; // rays go to lights
     uint32_t linksOfRound = 16;
-    uint32_t samples = 0;                // per patch, at most; 0: as many as the error needs
-    uint32_t passes = 0;                 // bounces of each sample pass; 0: until they have converged
-    double error = 0.01;                 // relRMSE to be reached; 0: all samples are taken
+    uint32_t samples = 0;  // per patch, at most; 0: as many as the error needs
+    uint32_t passes = 0;   // bounces of each sample pass; 0: until they have converged
+    double error = 0.01;   // relRMSE to be reached; 0: any will do
+    double localError = 0; // local error to be reached; 0: any will do. With both 0 all samples are taken
+    bool perChunk = false; // chunks may have sample passes of their own
     double directCost = 1, linkCost = 1; // of a sample pass of each kind, in one unit
 };
 
@@ -50,10 +60,18 @@ public:
     uint32_t footprintSamples(const LinkState& state) const;
     /// Tells whether the error is to be found before the next sample pass.
     bool wantsCheck(const LinkState& state) const {
-        return rules_.error > 0 && state.rounds() > 0 && state.rounds() >= state.nextCheck;
+        return wantsError() && state.rounds() > 0 && state.rounds() >= state.nextCheck;
     }
-    /// Returns the sample passes before the check after one that has told this error.
-    uint32_t nextCheck(const LinkState& state, double error) const;
+    /// Tells whether an error decides when sampling ends.
+    bool wantsError() const { return rules_.error > 0 || rules_.localError > 0; }
+    /// Returns what was told over what is asked for, of the error that is farther off: 1 or less is enough.
+    double excess(double error, double localError) const;
+    /// Returns the sample passes before the check after one that has told this excess.
+    uint32_t nextCheck(const LinkState& state, double excess) const;
+    /// Tells whether chunks get sample passes of their own from the first check on.
+    bool perChunk() const { return rules_.perChunk; }
+    /// Returns what sample passes of chunks are planned by.
+    ChunkPlanRules planRules(const LinkState& state) const;
     /// Tells whether all sample passes are made.
     bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
     /// Tells whether direct light comes next: at first, then where it takes more of the variance away for its

@@ -19,6 +19,10 @@ constexpr uint32_t kInterpolatedChunks = 4096;
 // Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
 // square.
 constexpr double kBesideGrid = 0.1;
+// Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
+// many times at most.
+constexpr double kStricter = 0.8;
+constexpr uint32_t kMostStricter = 32;
 
 static_assert(std::is_trivially_copyable_v<LinkState>);
 static_assert(kMostBounces == Solver::kMaxPasses);
@@ -59,6 +63,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                    .linksOfRound = linksOf(input, settings),
                    .buffers = {.direct = hasDirect(),
                                .smooth = settings.method == Method::Hybrid && settings.links.smooth,
+                               .local = true,
+                               .notes = hasDirect() && samplesPerChunk(settings),
                                .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
                    .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
                    .progress = progress_,
@@ -69,7 +75,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
                       .oneRound = true}),
       errors_(kit_), senders_(receiversOf(input, coarse_)), schedule_(rules()), disc_(makeDisc()),
-      radiancePass_(input.device) {
+      radiancePass_(input.device), directRounds_(kit_.chunkCount()), linkRounds_(senders_.chunks()) {
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
     LinkBuffers& buffers = kit_.buffers;
@@ -101,6 +107,8 @@ LinkRules LinkSolver::rules() const {
             .samples = settings.links.samples,
             .passes = settings.passes,
             .error = settings.error,
+            .localError = settings.localError,
+            .perChunk = samplesPerChunk(settings),
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
             .linkCost = kit_.linksOfRound * linkShare};
 }
@@ -131,32 +139,87 @@ void LinkSolver::step() {
     progress_.seconds += secondsSince(start);
 }
 
-// Plans direct light first, then links; then whichever takes more of the error away for its rays.
+// Plans direct light first, then links; then whichever takes more of the error away for its rays, or chunk by
+// chunk.
 void LinkSolver::plan() {
-    // With a number of samples alone, errors decide nothing.
-    if (schedule_.wantsCheck(state_)) check();
-    if (progress_.converged || gridLimits_ || schedule_.isDone(state_)) {
-        if (stale_) resolve();
-        done_ = true;
-        return;
+    const bool pending = directRounds_.pending() || linkRounds_.pending();
+    if (!pending) {
+        // With a number of samples alone, errors decide nothing.
+        if (schedule_.wantsCheck(state_)) check();
+        const bool planned = !progress_.converged && !gridLimits_ &&
+                             (state_.scaled || !schedule_.isDone(state_)) && planChunks();
+        if (!planned) {
+            if (stale_) resolve();
+            done_ = true;
+            return;
+        }
     }
     if (kit_.settings.live) look();
-    begin(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links);
+    begin(directRounds_.pending() ? Stage::Direct : Stage::Links);
+}
+
+// Makes chunks want more sample passes, and tells whether any does.
+bool LinkSolver::planChunks() {
+    if (!state_.scaled) {
+        roundsOf(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links).wantOneMore();
+        return true;
+    }
+    const std::vector<ChunkVariance> chunks = errors_.chunks();
+    const std::span<const uint32_t> direct = directRounds_.done(), links = linkRounds_.done();
+    const ChunkPlan now{{direct.begin(), direct.end()}, {links.begin(), links.end()}};
+    ChunkPlan plan = now;
+    for (uint32_t tries = 0; tries < kMostStricter && plan == now; ++tries) {
+        if (tries > 0) state_.strictness *= kStricter;
+        plan = relume::planChunks(schedule_.planRules(state_), chunks, now);
+    }
+    directRounds_.want(plan.direct);
+    linkRounds_.want(plan.links);
+    return plan != now;
 }
 
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
     state_.bounce = 0;
+    pass_ = roundsOf(stage).next(stage == Stage::Links && state_.scaled ? batches_.mostRounds() : 1);
+    state_.passRounds = pass_.count;
     if (stage == Stage::Links) {
         batches_.cache().forget();
         return beginBounce();
     }
-    kit_.order.begin(chunksOfStage(), seenOfStage());
+    beginOrder();
     VkCommandBuffer cmd = kit_.commands.begin();
     vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+    if (kit_.buffers.notes && pass_.first == 0)
+        vkCmdFillBuffer(cmd, kit_.buffers.notes.handle(), 0, VK_WHOLE_SIZE, 0);
     recordUndo(cmd);
     vk::barrier(cmd);
     kit_.commands.run();
+}
+
+void LinkSolver::beginOrder() {
+    if (pass_.all)
+        kit_.order.begin(chunksOfStage(), seenOfStage());
+    else
+        kit_.order.beginMarked(pass_.chunks, seenOfStage());
+}
+
+// Takes note of the pass that has ended.
+void LinkSolver::endPass() {
+    ChunkRounds& rounds = roundsOf(state_.stage);
+    rounds.finish(pass_);
+    (state_.stage == Stage::Direct ? state_.directRounds : state_.linkRounds) = rounds.deepest();
+    if (state_.scaled) uploadScales();
+    stale_ = true;
+    state_.stage = Stage::Plan;
+}
+
+void LinkSolver::uploadScales() {
+    const auto scale = [](double samples) { return static_cast<float>(samples > 0 ? 1.0 / samples : 0.0); };
+    const double perReplicate = static_cast<double>(kit_.linksOfRound) / shader::kReplicates;
+    std::vector<glm::vec2> scales;
+    for (size_t i = 0; i < linkRounds_.done().size(); ++i)
+        scales.emplace_back(scale(perReplicate * linkRounds_.done()[i]), scale(directRounds_.done()[i]));
+    vk::upload(kit_.input.device, kit_.buffers.scales, scales.data(), scales.size() * sizeof(glm::vec2));
 }
 
 const std::vector<uint8_t>& LinkSolver::seenOfStage() const {
@@ -172,7 +235,11 @@ template<typename Lights>
 void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
-    const typename Lights::Work work{.group = group, .round = state_.directRounds, .range = range};
+    typename Lights::Work work{.group = group,
+                               .round = pass_.first,
+                               .range = range,
+                               .notes = buffers.notes ? &buffers.notes : nullptr};
+    if constexpr (requires { work.soFar; }) work.soFar = &buffers.direct;
     const PointTimes times = tracePoints(
         {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(work, buffers.rays),
         [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },
@@ -197,10 +264,11 @@ void LinkSolver::directBatch() {
     if (kit_.order.left() > 0) return;
     const auto counters =
         vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
-    progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
-    ++state_.directRounds;
-    stale_ = true;
-    state_.stage = Stage::Plan;
+    const uint64_t rays = std::accumulate(counters.begin(), counters.end(), uint64_t{0});
+    progress_.rays += rays;
+    const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
+    state_.raysToLights = static_cast<double>(rays) / static_cast<double>(chunks * kChunk);
+    endPass();
 }
 
 // Makes what links read: radiance of patches and, where they have footprints, of nodes.
@@ -222,13 +290,13 @@ void LinkSolver::beginBounce() {
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
-        kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples);
+        kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales());
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
     if (buffers.coarseSums) vkCmdFillBuffer(cmd, buffers.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
     kit_.run(cmd);
-    kit_.order.begin(chunksOfStage(), seenOfStage());
+    beginOrder();
     if (!schedule_.hasSolution(state_)) {
         live_.all = true;
         live_.ranges.clear();
@@ -238,7 +306,8 @@ void LinkSolver::beginBounce() {
 // Mostly links are there from the sample pass's second bounce on; after a restore they are traced once more.
 void LinkSolver::linkBatch() {
     const bool coarse = coarse_.count > 0;
-    LinkBatches::Portion portion = batches_.next(state_.linkRounds);
+    LinkBatches::Portion portion =
+        state_.scaled ? batches_.nextOnce(pass_.first, pass_.count) : batches_.next(pass_.first);
     portion.closest.receivers = coarse ? &kit_.buffers.receivers : nullptr;
     portion.closest.receiversHost = coarse ? coarse_.receivers.data() : nullptr;
     portion.closest.disc = disc_.points ? &disc_.points : nullptr;
@@ -246,6 +315,7 @@ void LinkSolver::linkBatch() {
     portion.gather.nodes = footprints_ ? footprints_->nodes() : 0;
     portion.gather.direct = direct();
     portion.gather.accumulate = state_.last;
+    portion.gather.output = !state_.scaled; // what goes on comes of the sums then
     const bool atOnce = batches_.onCpu() && !footprints_;
     const auto recordDistances = [&](VkCommandBuffer cmd) {
         if (wantsDistances())
@@ -268,10 +338,10 @@ void LinkSolver::linkBatch() {
                           if (atOnce) recordDistances(cmd);
                       }},
                  atOnce);
-    const uint64_t count = senders_.count(portion.range) * kit_.linksOfRound;
+    const uint64_t count = senders_.count(portion.range) * kit_.linksOfRound * portion.rounds;
     (portion.trace ? progress_.rays : progress_.raysSaved) += count;
     progress_.pairs += count;
-    batches_.finish(state_.linkRounds, portion);
+    batches_.finish(pass_.first, portion);
     if (kit_.settings.live && !schedule_.hasSolution(state_) && !coarse)
         live_.ranges.push_back(portion.range);
     if (kit_.order.left() == 0) endBounce();
@@ -330,10 +400,9 @@ void LinkSolver::endBounce() {
             state_.settling.round(state_.linkRounds);
     } else
         state_.series.error = 0; // what more bounces would add is not asked for
-    ++state_.linkRounds;
-    progress_.samples = state_.linkRounds * kit_.linksOfRound;
-    stale_ = true;
-    state_.stage = Stage::Plan;
+    endPass();
+    const double links = static_cast<double>(linkRounds_.total()) * kit_.linksOfRound;
+    progress_.samples = static_cast<uint32_t>(std::lround(links / linkRounds_.done().size()));
 }
 
 // Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
@@ -342,17 +411,25 @@ void LinkSolver::check() {
     if (!schedule_.hasSolution(state_)) return; // no bounces yet
     resolve();
     const double aim = kit_.settings.error;
-    progress_.converged = progress_.error <= aim;
-    state_.nextCheck = schedule_.nextCheck(state_, progress_.error);
+    const double excess = schedule_.excess(progress_.error, progress_.localError95);
+    progress_.converged = excess <= 1.0;
+    state_.nextCheck = schedule_.perChunk() ? 0 : schedule_.nextCheck(state_, excess);
+    state_.scaled = schedule_.perChunk();
+    if (state_.scaled) uploadScales();
     // No number of samples makes up for a grid that is too coarse.
     const double grid2 = progress_.gridError * progress_.gridError;
-    gridLimits_ =
-        progress_.gridError > aim && progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
+    gridLimits_ = aim > 0 && progress_.gridError > aim &&
+                  progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
 }
 
 void LinkSolver::resolve() {
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
-    learn(kit_.buffers.rows ? state_.width.settle(at) : at(0.0));
+    const bool isNew = state_.median == 0;
+    shader::ResolveSums sums = kit_.buffers.rows ? state_.width.settle(at) : at(0.0);
+    state_.median = errors_.local().median;
+    // What local error is relative to hangs on the median, which hardly changes once it is known.
+    if (isNew && state_.median > 0) sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
+    learn(sums);
     stale_ = false;
     light_.clear();
 }
@@ -362,6 +439,12 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
     requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
     state_.directVariance = sums.direct;
     state_.indirectVariance = smoothedVariance(sums);
+    state_.light = sums.light;
+    state_.patches = sums.count;
+    state_.bias = std::max(0.0f, sums.bias);
+    const LocalError local = errors_.local().error;
+    progress_.localError95 = local.p95;
+    progress_.localError99 = local.p99;
     state_.directAtCheck = state_.directRounds;
     state_.linksAtCheck = state_.linkRounds;
     progress_.error = 0;
@@ -412,15 +495,21 @@ std::vector<StatePart> LinkSolver::stateParts() {
     std::vector<StatePart> parts;
     for (const vk::Buffer* buffer :
          {&std::as_const(light.ligIn), &std::as_const(light.ligOut), &buffers.linkSums, &buffers.directSums,
-          &buffers.direct, &buffers.distances, &buffers.coarseSums, &buffers.rays}) {
+          &buffers.direct, &buffers.notes, &buffers.distances, &buffers.coarseSums, &buffers.rays}) {
         if (*buffer) parts.push_back(part(kit_.input.device, *buffer));
     }
     parts.push_back(part(kit_.order));
+    for (ChunkRounds* rounds : {&directRounds_, &linkRounds_}) {
+        parts.push_back(part(rounds->doneArray()));
+        parts.push_back(part(rounds->wantedArray()));
+    }
     return parts;
 }
 
 void LinkSolver::restore(const SolverState& state) {
     state_ = takeState<LinkState>(state);
+    if (state_.stage != Stage::Plan) pass_ = roundsOf(state_.stage).next(state_.passRounds);
+    if (state_.scaled) uploadScales();
     kit_.order.restore(chunksOfStage(), seenOfStage());
     done_ = false;
     stale_ = true;

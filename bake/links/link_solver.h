@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "assets/base/clock.h"
+#include "bake/base/chunk_rounds.h"
 #include "bake/direct/emitter_light.h"
 #include "bake/direct/lamp_light.h"
 #include "bake/direct/point_trace.h"
@@ -18,7 +19,8 @@ namespace relume {
 /// Solves with the directional or the hybrid method. A sample pass takes a few samples of every patch: points
 /// on lights (on mesh lights in hybrid only) or links. The first sample pass of links is iterated until its
 /// bounces have converged; later ones start from the light so far and need one bounce each, so that light and
-/// samples improve together. With a number of passes given, each sample pass starts from nothing and has just
+/// samples improve together. From the first check on chunks get sample passes of their own, where light is
+/// still off (chunk_plan.h). With a number of passes given, each sample pass starts from nothing and has just
 /// so many bounces. The mean over sample passes is the result; the spread of the replicates is its error.
 class LinkSolver final : public Solver {
 public:
@@ -51,7 +53,14 @@ private:
     Disc makeDisc() const;
     LinkRules rules() const;
     void plan();
+    bool planChunks();
     void begin(Stage stage);
+    void beginOrder();
+    void endPass();
+    /// Returns the scales of chunks, where these have sample passes of their own.
+    const vk::Buffer* scales() const { return state_.scaled ? &kit_.buffers.scales : nullptr; }
+    void uploadScales();
+    ChunkRounds& roundsOf(Stage stage) { return stage == Stage::Direct ? directRounds_ : linkRounds_; }
     /// Tells whether there is direct light: of mesh lights, which hybrid samples, or of analytic lights.
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
@@ -90,6 +99,8 @@ private:
     Disc disc_;
     RadiancePass radiancePass_;
     LinkState state_;
+    ChunkRounds directRounds_, linkRounds_;
+    ChunkRounds::Pass pass_;             // under way
     std::vector<uint8_t> seenReceivers_; // chunks of the coarser grid that come first
     BatchRate directRate_;
     bool gridLimits_ = false;      // more samples are of no use

@@ -68,6 +68,14 @@ StatePart Solver::part(ChunkOrder& order) {
             }};
 }
 
+StatePart Solver::part(std::vector<uint32_t>& values) {
+    const auto bytes = [&values] { return reinterpret_cast<uint8_t*>(values.data()); };
+    return {
+        values.size() * sizeof(uint32_t),
+        [=](void* to, uint64_t offset, uint64_t size) { std::memcpy(to, bytes() + offset, size); },
+        [=](const void* from, uint64_t offset, uint64_t size) { std::memcpy(bytes() + offset, from, size); }};
+}
+
 void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,
                 const std::vector<ChunkRange>& ranges) {
     constexpr VkDeviceSize kChunkBytes = shader::kChunk * sizeof(glm::vec4);

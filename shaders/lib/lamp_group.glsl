@@ -5,6 +5,7 @@
 #include "lib/polygon_sample.glsl"
 #include "lib/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
+#include "lib/penumbra_rounds.glsl"
 vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
 float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
 #include "lib/sky.glsl"
@@ -36,4 +37,28 @@ LampRay lampRay(Lamp l, Patch p, uint s) {
     // Below the geometric horizon the end is hidden, and not asked for.
     ray.traced = ray.light != vec3(0.0) && (p.flags & kPatchSends) != 0u && dot(ray.target - p.position, p.normal) > p.offset;
     return ray;
+}
+
+// Returns the bit of a light in notes and penumbrae.
+uint lampBit(uint indexInGroup) {
+    return push.parts == 0ul ? 1u << ((push.firstLamp + indexInGroup) % kNotedLamps) : 1u << (indexInGroup % 32u);
+}
+
+// Returns the light of a whole one, unshadowed, per unit of its colour; negative where only samples tell.
+vec3 wholeLight(Lamp l, Patch p) {
+    if (l.type == kLampSky && push.skySize.x == 0u) return lampRay(l, p, 0u).light;
+    return vec3(lampWhole(l, p));
+}
+
+// A light that brings a patch no more than this share of its direct light is asked in one sample pass of
+// kNoteRounds, too: its noise is small whatever is in its way.
+const float kMinorShare = 0.01;
+
+LightNote lampNote(Lamp l, Patch p, uint patchIndex, uint indexInGroup) {
+    uint light = push.firstLamp + indexInGroup;
+    LightNote note = lightNote(patchIndex, lampBit(indexInGroup), light);
+    if (!takesNotes() || push.round == 0u || note.known || l.samples == 1u) return note;
+    vec3 whole = wholeLight(l, p) * l.color, soFar = Vec4s(push.direct).items[patchIndex].rgb;
+    bool minor = whole.r >= 0.0 && whole.r + whole.g + whole.b <= kMinorShare * (soFar.r + soFar.g + soFar.b);
+    return minor ? LightNote(true, isAsked(patchIndex, light), 0.0) : note;
 }

@@ -76,20 +76,32 @@ std::vector<Struct> readStructs() {
 
 #define SIZE_OF(name)                                                                                        \
     { #name, sizeof(shader::name) }
-const std::map<std::string, size_t> kSizes = {
-    SIZE_OF(VoxelGrid),        SIZE_OF(CvmPush),         SIZE_OF(Patch),          SIZE_OF(PatchEdges),
-    SIZE_OF(ChunkBounds),      SIZE_OF(HitTriangle),     SIZE_OF(AlphaTriangle),  SIZE_OF(AlphaMaterial),
-    SIZE_OF(BvhNode),          SIZE_OF(BvhTriangle),     SIZE_OF(TraceGeometry),  SIZE_OF(OcclusionPush),
-    SIZE_OF(ClosestPush),      SIZE_OF(TransposePush),   SIZE_OF(PublishPush),    SIZE_OF(GatherPush),
-    SIZE_OF(ReducePush),       SIZE_OF(RadiancePush),    SIZE_OF(FinishPush),     SIZE_OF(CitPush),
-    SIZE_OF(CitMaterial),      SIZE_OF(SegmentPush),     SIZE_OF(EmitterPolygon), SIZE_OF(EmitterNode),
-    SIZE_OF(LinkPush),         SIZE_OF(PackPush),        SIZE_OF(DirectPush),     SIZE_OF(EmitterSamplesPush),
-    SIZE_OF(ComposePush),      SIZE_OF(ChangePush),      SIZE_OF(ResolveSums),    SIZE_OF(SmoothPush),
-    SIZE_OF(LinkDistancePush), SIZE_OF(PyramidNode),     SIZE_OF(PyramidPush),    SIZE_OF(FootprintPush),
-    SIZE_OF(SuperBlock),       SIZE_OF(Sender),          SIZE_OF(CoarseTaps),     SIZE_OF(InterpolatePush),
-    SIZE_OF(CoarseNeighbours), SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),           SIZE_OF(LampPush),
-    SIZE_OF(LayerDirectPush),  SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),    SIZE_OF(LayerMixPush),
-    SIZE_OF(BounceLane),       SIZE_OF(BouncePush),      SIZE_OF(ChunkSumPush)};
+const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),       SIZE_OF(CvmPush),
+                                              SIZE_OF(Patch),           SIZE_OF(PatchEdges),
+                                              SIZE_OF(ChunkBounds),     SIZE_OF(HitTriangle),
+                                              SIZE_OF(AlphaTriangle),   SIZE_OF(AlphaMaterial),
+                                              SIZE_OF(BvhNode),         SIZE_OF(BvhTriangle),
+                                              SIZE_OF(TraceGeometry),   SIZE_OF(OcclusionPush),
+                                              SIZE_OF(ClosestPush),     SIZE_OF(TransposePush),
+                                              SIZE_OF(PublishPush),     SIZE_OF(GatherPush),
+                                              SIZE_OF(ReducePush),      SIZE_OF(RadiancePush),
+                                              SIZE_OF(FinishPush),      SIZE_OF(CitPush),
+                                              SIZE_OF(CitMaterial),     SIZE_OF(SegmentPush),
+                                              SIZE_OF(EmitterPolygon),  SIZE_OF(EmitterNode),
+                                              SIZE_OF(LinkPush),        SIZE_OF(PackPush),
+                                              SIZE_OF(DirectPush),      SIZE_OF(EmitterSamplesPush),
+                                              SIZE_OF(ComposePush),     SIZE_OF(ChangePush),
+                                              SIZE_OF(ResolveSums),     SIZE_OF(SmoothPush),
+                                              SIZE_OF(LocalSums),       SIZE_OF(LinkDistancePush),
+                                              SIZE_OF(PyramidNode),     SIZE_OF(PyramidPush),
+                                              SIZE_OF(FootprintPush),   SIZE_OF(SuperBlock),
+                                              SIZE_OF(Sender),          SIZE_OF(CoarseTaps),
+                                              SIZE_OF(InterpolatePush), SIZE_OF(CoarseNeighbours),
+                                              SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),
+                                              SIZE_OF(LampPush),        SIZE_OF(LayerDirectPush),
+                                              SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),
+                                              SIZE_OF(LayerMixPush),    SIZE_OF(BounceLane),
+                                              SIZE_OF(BouncePush),      SIZE_OF(ChunkSumPush)};
 #undef SIZE_OF
 
 // Appends the byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all

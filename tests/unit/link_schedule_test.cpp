@@ -123,9 +123,9 @@ TEST(LinkSchedule, TheErrorIsFoundAgainWhenItMayHaveFallenEnough) {
     EXPECT_FALSE(schedule.wantsCheck(after(0, 0)));
     EXPECT_TRUE(schedule.wantsCheck(after(1, 1)));
     LinkState state = after(50, 50);
-    EXPECT_EQ(schedule.nextCheck(state, 0.1), 200u) << "at twice as many, however far it is";
-    EXPECT_EQ(schedule.nextCheck(state, 0.015), 135u) << ".6 of 225 that it seems to need";
-    EXPECT_EQ(schedule.nextCheck(state, 0.0101), 101u);
+    EXPECT_EQ(schedule.nextCheck(state, 10.0), 200u) << "at twice as many, however far it is";
+    EXPECT_EQ(schedule.nextCheck(state, 1.5), 135u) << ".6 of 225 that it seems to need";
+    EXPECT_EQ(schedule.nextCheck(state, 1.01), 101u);
     state.nextCheck = 101;
     EXPECT_FALSE(schedule.wantsCheck(state));
     state.linkRounds = 51;

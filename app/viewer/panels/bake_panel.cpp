@@ -199,6 +199,12 @@ void BakePanel::drawStop(bool& done) {
     done |= ui::number("Error", solver.error, "%.4g");
     solver.error = std::clamp(solver.error, 0.0, 1.0);
     ui::tip("Stop when the remaining error is below this; 0: by passes and samples alone");
+    if (isPairMethod(solver.method)) return;
+    done |= ui::number("Local error", solver.localError, "%.4g");
+    solver.localError = std::clamp(solver.localError, 0.0, 100.0);
+    ui::tip(
+        "And when 95 % of all texels are off by less than this, relative to their own light; 0: they may be "
+        "off by any");
 }
 
 // Applies the draft unless it contradicts itself.

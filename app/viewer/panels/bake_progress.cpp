@@ -50,6 +50,11 @@ void drawBakeProgress(const PanelContext& context) {
         else
             ui::row("Directions", fmt::format("{} per patch", progress.samples));
         ui::row("Error left", progress.error < 1.0 ? fmt::format("{:.3g}", progress.error) : "not known yet");
+        if (!pairs)
+            ui::row("Local error left", progress.localError95 < 1.0
+                                            ? fmt::format("{:.3g}; of 1 % of texels more than {:.3g}",
+                                                          progress.localError95, progress.localError99)
+                                            : "not known yet");
         ui::row("Rays", fmt::format("{:.1f} M/s", status.raysPerSecond * 1e-6));
         ui::row("Time", formatDuration(progress.seconds));
         if (status.phase == Phase::Baking)
@@ -60,7 +65,7 @@ void drawBakeProgress(const PanelContext& context) {
         ui::row("Display", status.display);
         ImGui::EndTable();
     }
-    drawConvergencePlot(status.history, status.settings.solver.error);
+    drawConvergencePlot(status.history, status.settings.solver.error, status.settings.solver.localError);
 }
 
 } // namespace relume

@@ -24,12 +24,17 @@ struct Axes {
     }
 };
 
+bool isLocalTold(const ConvergencePoint& point) {
+    return point.localError < 1;
+}
+
 Axes axesOf(const std::vector<ConvergencePoint>& history, double aim) {
     Axes axes;
     double least = aim > 0 ? aim : 0.1, most = 0.1;
     for (const ConvergencePoint& point : history) {
         least = std::min(least, std::max(point.error, kLeastError));
         most = std::max(most, point.error);
+        if (isLocalTold(point)) most = std::max(most, point.localError);
     }
     axes.seconds = std::max(history.empty() ? 1.0 : history.back().seconds, 1e-3);
     axes.top = std::ceil(std::log10(most));
@@ -37,9 +42,16 @@ Axes axesOf(const std::vector<ConvergencePoint>& history, double aim) {
     return axes;
 }
 
+void drawCurve(ImDrawList& list, const std::vector<ImVec2>& points, ImU32 color) {
+    if (points.size() > 1)
+        list.AddPolyline(points.data(), static_cast<int>(points.size()), color, ImDrawFlags_None, 1.5f);
+    else if (points.size() == 1)
+        list.AddCircleFilled(points.front(), 2.0f, color);
+}
+
 } // namespace
 
-void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim) {
+void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim, double localAim) {
     const float line = ImGui::GetTextLineHeight();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size(std::max(ImGui::GetContentRegionAvail().x, 4 * line), kHeightLines * line);
@@ -59,15 +71,21 @@ void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double ai
         list->AddText({corner.x + 0.2f * line, at.y - 0.5f * line}, text,
                       fmt::format("{:g}", std::pow(10.0, decade)).c_str());
     }
+    const ImU32 paleCurve = ImGui::GetColorU32(ImGuiCol_PlotLines, 0.5f),
+                paleGoal = IM_COL32(110, 190, 110, 90);
     if (aim > 0) list->AddLine(axes.at(0, aim), axes.at(axes.seconds, aim), goal);
-    std::vector<ImVec2> points;
-    for (const ConvergencePoint& point : history)
+    std::vector<ImVec2> points, local;
+    for (const ConvergencePoint& point : history) {
         points.push_back(axes.at(point.seconds, point.error));
-    if (points.size() > 1)
-        list->AddPolyline(points.data(), static_cast<int>(points.size()), curve, ImDrawFlags_None, 1.5f);
-    else if (points.size() == 1)
-        list->AddCircleFilled(points.front(), 2.0f, curve);
-    list->AddText({axes.low.x, axes.high.y + 0.1f * line}, text, "error left over seconds of solving");
+        if (isLocalTold(point)) local.push_back(axes.at(point.seconds, point.localError));
+    }
+    if (localAim > 0 && !local.empty())
+        list->AddLine(axes.at(0, localAim), axes.at(axes.seconds, localAim), paleGoal);
+    drawCurve(*list, local, paleCurve);
+    drawCurve(*list, points, curve);
+    list->AddText({axes.low.x, axes.high.y + 0.1f * line}, text,
+                  local.empty() ? "error left over seconds of solving"
+                                : "error and, paler, local error left over seconds");
     const std::string end = fmt::format("{:.3g} s", axes.seconds);
     list->AddText({axes.high.x - ImGui::CalcTextSize(end.c_str()).x, axes.high.y + 0.1f * line}, text,
                   history.empty() ? "" : end.c_str());

@@ -7,7 +7,7 @@
 namespace relume {
 
 /// Draws the remaining error over seconds of solving, with the error on a logarithmic axis and a line at
-/// `aim`; 0: no line.
-void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim);
+/// `aim`; 0: no line. The local error, where it is told, is a paler curve with a line of its own.
+void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double aim, double localAim);
 
 } // namespace relume

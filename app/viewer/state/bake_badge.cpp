@@ -59,6 +59,8 @@ BakeBadge bakeBadge(const BakeBadgeDesc& desc) {
         if (const std::string reason = reasonOf(desc); !reason.empty()) badge.text += ": " + reason;
     } else if (desc.status.progress.error < 1.0) {
         badge.text += fmt::format(", error {:.2g}", desc.status.progress.error);
+        if (desc.status.progress.localError95 < 1.0)
+            badge.text += fmt::format(", local {:.2g}", desc.status.progress.localError95);
     }
     badge.text += fmt::format(", {:.1f} s", desc.seconds);
     return badge;
