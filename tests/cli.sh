@@ -122,6 +122,7 @@ expectUsageError bench edits room.glb --error 0
 expectUsageError bench edits room.glb --tracer nosuchtracer
 expectUsageError compare a.exr b.exr --metric nosuchmetric
 expectUsageError compare a.exr b.exr --diff diff.exr
+expectUsageError compare a.exr b.exr --metric local --diff diff.exr
 
 expectUsageError bake room.glb -o room.exr --method pure --directions lec
 expectUsageError bake room.glb -o room.exr --method pure --rotate tile
@@ -196,6 +197,7 @@ expectWorldError missing.glb bench trace missing.glb
 expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.glb bench edits missing.glb
 expectWorldError missing.exr compare missing.exr other.exr
+expectWorldError missing.exr compare missing.exr other.exr --metric local
 
 printf 'not a scene' >broken.glb
 expectWorldError broken.glb info broken.glb
