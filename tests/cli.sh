@@ -117,11 +117,16 @@ expectUsageError bench methods room.glb --html r.html --windows 3
 expectUsageError bench methods room.glb --html r.html --samples 0
 expectUsageError bench methods room.glb --html r.html --methods nosuchmethod
 expectUsageError bench methods room.glb --html r.html --sizes 64 --picture-size 128
+expectUsageError bench quality room.glb --modes nosuchmode
+expectUsageError bench quality room.glb --reference reference.png
+expectUsageError bench quality room.glb --no-pictures --pictures folder
+expectUsageError bench quality room.glb --seconds 0
 expectUsageError bench edits room.glb --lights 0
 expectUsageError bench edits room.glb --error 0
 expectUsageError bench edits room.glb --tracer nosuchtracer
 expectUsageError compare a.exr b.exr --metric nosuchmetric
 expectUsageError compare a.exr b.exr --diff diff.exr
+expectUsageError compare a.exr b.exr --metric local --diff diff.exr
 
 expectUsageError bake room.glb -o room.exr --method pure --directions lec
 expectUsageError bake room.glb -o room.exr --method pure --rotate tile
@@ -195,7 +200,9 @@ expectWorldError missing.obj info missing.obj
 expectWorldError missing.glb bench trace missing.glb
 expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.glb bench edits missing.glb
+expectWorldError missing.glb bench quality missing.glb
 expectWorldError missing.exr compare missing.exr other.exr
+expectWorldError missing.exr compare missing.exr other.exr --metric local
 
 printf 'not a scene' >broken.glb
 expectWorldError broken.glb info broken.glb
@@ -265,6 +272,7 @@ expectOneFile --json SCENE bench trace s.glb --json s.glb
 expectOneFile --json SCENE bench frames s.glb --json s.glb
 expectOneFile --json SCENE bench edits s.glb --json s.glb
 expectOneFile --json --plot bench edits s.glb --json j --plot j
+expectOneFile --plot --plot-rays bench quality s.glb --plot j --plot-rays j
 expectOneFile --html SCENE bench methods s.glb --html s.glb
 expectOneFile --html --json bench methods s.glb --html j --json j
 

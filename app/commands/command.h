@@ -24,5 +24,6 @@ void addSamplesCommand(CLI::App& app);
 void addBenchMethodsCommand(CLI::App& bench);
 void addBenchFramesCommand(CLI::App& bench);
 void addBenchEditsCommand(CLI::App& bench);
+void addBenchQualityCommand(CLI::App& bench);
 
 } // namespace relume

@@ -42,11 +42,21 @@ bool wants(const CompareOptions& options, const char* metric) {
     return chosen.empty() || std::find(chosen.begin(), chosen.end(), metric) != chosen.end();
 }
 
-std::array<Value, 6> valuesOf(const Metrics& m, double flipMean) {
+/// What of the metrics is asked for.
+struct Measured {
+    Metrics all;
+    double flipMean = 0;
+    LocalPercentiles local;
+};
+
+std::array<Value, 7> valuesOf(const Measured& measured) {
+    const Metrics& m = measured.all;
     return {{{"relrmse", "relRMSE", "RMSE / mean of B", m.relRmse},
              {"rmse", "RMSE", "root of the mean squared difference", m.rmse},
              {"dfpr", "DFPR", "mean RGB distance as displayed (sRGB), full scale 1", m.dfpr},
-             {"flip", "FLIP", "mean difference seen when flipping between the two, full scale 1", flipMean},
+             {"flip", "FLIP", "mean difference seen when flipping between the two, full scale 1",
+              measured.flipMean},
+             {"local", "local", "95th percentile of |A - B| / max(B, 5 % of its median)", measured.local.p95},
              {"maximum", "maximum", "largest difference of a channel", m.maximum},
              {"bias", "bias", "mean of A - B", m.bias}}};
 }
@@ -57,40 +67,60 @@ struct Difference {
     double scale = 1;
 };
 
+// Returns the round end of a scale for the values that are finite.
+double finiteScale(const std::vector<float>& map, std::vector<bool> covered) {
+    for (size_t i = 0; i < map.size(); ++i)
+        if (!std::isfinite(map[i])) covered[i] = false;
+    return heatScale(map, covered);
+}
+
 // Writes the picture, which shows what the first --metric measures.
-Difference writeDifference(const CompareOptions& options, const ImagePair& pair, const Metrics& m,
-                           const std::vector<float>& flipMap) {
+Difference writeDifference(const CompareOptions& options, const ImagePair& pair, const Measured& m,
+                           const std::vector<float>& flipMap, const std::vector<float>& localMap) {
     const std::string first = options.metrics.empty() ? "relrmse" : options.metrics.front();
     Difference difference;
     std::vector<float> map;
     if (first == "flip") {
         difference.quantity = "FLIP";
         map = flipMap;
+    } else if (first == "local") {
+        difference.quantity = "local error";
+        map = localMap;
     } else if (first == "dfpr") {
         difference.quantity = "RGB distance as displayed";
         map = pair.displayedDifferences();
     } else {
         difference.quantity = "difference";
         map = pair.differences();
-        if (first == "relrmse" && m.meanB > 0) { // relative to a black image there is nothing
+        if (first == "relrmse" && m.all.meanB > 0) { // relative to a black image there is nothing
             difference.quantity = "difference / mean of B";
             for (float& value : map)
-                value = static_cast<float>(value / m.meanB);
+                value = static_cast<float>(value / m.all.meanB);
         }
     }
-    if (first != "flip") difference.scale = heatScale(map, pair.covered());
+    if (first != "flip") difference.scale = finiteScale(map, pair.covered());
     writeImage(options.diff, heatMap(pair.width(), map, pair.covered(), difference.scale));
     return difference;
 }
 
-Json jsonOf(const CompareOptions& options, const Metrics& m, double flipMean,
+// Returns null for what is infinite, which JSON does not have.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json jsonOf(const CompareOptions& options, const Measured& measured,
             const std::optional<Difference>& difference) {
+    const Metrics& m = measured.all;
+    const LocalPercentiles& local = measured.local;
     Json json = {{"a", options.a}, {"b", options.b}};
     if (!options.mask.empty()) json["mask"] = options.mask;
-    for (const Value& v : valuesOf(m, flipMean)) {
-        if (wants(options, v.option))
-            json[v.name] = std::isfinite(v.value) ? Json(v.value) : nullptr; // JSON has no infinity
-    }
+    for (const Value& v : valuesOf(measured))
+        if (wants(options, v.option)) json[v.name] = number(v.value);
+    if (wants(options, "local"))
+        json["local"] = {{"p50", number(local.p50)},
+                         {"p90", number(local.p90)},
+                         {"p95", number(local.p95)},
+                         {"p99", number(local.p99)}};
     if (wants(options, "flip")) json["pixelsPerDegree"] = options.pixelsPerDegree;
     json["meanA"] = m.meanA;
     json["meanB"] = m.meanB;
@@ -104,13 +134,17 @@ Json jsonOf(const CompareOptions& options, const Metrics& m, double flipMean,
     return json;
 }
 
-void printTable(const CompareOptions& options, const Metrics& m, double flipMean,
+void printTable(const CompareOptions& options, const Measured& measured,
                 const std::optional<Difference>& difference) {
+    const Metrics& m = measured.all;
+    const LocalPercentiles& local = measured.local;
     const auto line = [](const char* name, double value, const char* meaning) {
         std::printf("%-8s %12.6g  %s\n", name, value, meaning);
     };
-    for (const Value& v : valuesOf(m, flipMean))
+    for (const Value& v : valuesOf(measured))
         line(v.name, v.value, v.meaning);
+    std::printf("%-8s %12s  p50 %.6g, p90 %.6g, p95 %.6g, p99 %.6g\n", "", "", local.p50, local.p90,
+                local.p95, local.p99);
     line("mean A", m.meanA, "");
     line("mean B", m.meanB, "");
     std::printf("%-8s %12llu  compared; covered only in A %llu, only in B %llu", "texels",
@@ -139,26 +173,28 @@ void runCompare(const CompareOptions& options) {
     const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImage(options.mask);
     const NamedImage mask{maskImage, options.mask};
     const ImagePair pair({a, options.a}, {b, options.b}, options.mask.empty() ? nullptr : &mask);
-    const Metrics metrics = pair.measure();
-    std::vector<float> flipMap;
+    Measured measured{.all = pair.measure(), .flipMean = 0, .local = {}};
+    std::vector<float> flipMap, localMap;
     if (wants(options, "flip")) flipMap = pair.flipDifferences(options.pixelsPerDegree);
-    const double flipMean = flipMap.empty() ? 0.0 : pair.mean(flipMap);
+    if (!flipMap.empty()) measured.flipMean = pair.mean(flipMap);
+    if (wants(options, "local")) localMap = pair.localErrors();
+    if (!localMap.empty()) measured.local = pair.percentiles(localMap);
 
     std::optional<Difference> difference;
     if (!options.diff.empty()) {
-        difference = writeDifference(options, pair, metrics, flipMap);
+        difference = writeDifference(options, pair, measured, flipMap, localMap);
         spdlog::info("wrote {}: {} from 0 (black) to {:g} (white)", options.diff, difference->quantity,
                      difference->scale);
     }
     if (options.json) {
         // A file name need not be UTF-8.
-        const Json json = jsonOf(options, metrics, flipMean, difference);
+        const Json json = jsonOf(options, measured, difference);
         std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else if (options.metrics.empty()) {
-        printTable(options, metrics, flipMean, difference);
+        printTable(options, measured, difference);
     } else {
         for (const std::string& metric : options.metrics)
-            for (const Value& v : valuesOf(metrics, flipMean))
+            for (const Value& v : valuesOf(measured))
                 if (metric == v.option) std::printf("%.9g\n", v.value);
     }
 }
@@ -171,11 +207,11 @@ void addCompareCommand(CLI::App& app) {
     command->add_option("a", options->a, "OpenEXR or PNG image")->required()->type_name("A");
     command->add_option("b", options->b, "The reference, of the same size")->required()->type_name("B");
     std::vector<std::string> names;
-    for (const Value& v : valuesOf({}, 0))
+    for (const Value& v : valuesOf({}))
         names.emplace_back(v.option);
     command
         ->add_option("--metric", options->metrics,
-                     "Print only these values, a line each: relrmse, rmse, dfpr, flip, maximum, bias")
+                     "Print only these values, a line each: relrmse, rmse, dfpr, flip, local, maximum, bias")
         ->delimiter(',')
         ->allow_extra_args(false) // else it would take A and B
         ->transform(oneOfAnyCase(names))

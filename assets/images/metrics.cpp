@@ -32,12 +32,27 @@ float displayed(float linear) {
     return std::clamp(linear, 0.0f, 1.0f);
 }
 
+// A texel darker than this share of the median light is off relative to that share: otherwise a corner that
+// nobody can tell from black would decide how good a map is.
+constexpr double kLocalFloor = 0.05;
+
 double ratio(double part, double whole) {
     if (part == 0) return 0;
     return whole == 0 ? std::numeric_limits<double>::infinity() : part / whole;
 }
 
 } // namespace
+
+double nearestRank(std::span<const float> values, double share) {
+    if (values.empty()) return 0;
+    // Without the tolerance 0.95 * 20 would be a little above 19.
+    const double rank = std::ceil(share * static_cast<double>(values.size()) * (1.0 - 1e-12));
+    const size_t index = static_cast<size_t>(std::max(rank, 1.0)) - 1;
+    std::vector<float> sorted(values.begin(), values.end());
+    const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(index, sorted.size() - 1));
+    std::nth_element(sorted.begin(), place, sorted.end());
+    return *place;
+}
 
 ImagePair::Planes ImagePair::planesOf(const NamedImage& named) {
     Planes planes{};
@@ -79,10 +94,12 @@ ImagePair::ImagePair(const NamedImage& a, const NamedImage& b, const NamedImage*
     const std::vector<float>* coverageB = b.image.find("coverage");
 
     covered_.resize(static_cast<size_t>(width_) * height_);
+    if (maskValues) hidden_.resize(covered_.size());
     for (size_t i = 0; i < covered_.size(); ++i) {
         const bool inA = !coverageA || (*coverageA)[i] == 1.0f, inB = !coverageB || (*coverageB)[i] == 1.0f;
         const bool shown = !maskValues || (*maskValues)[i] > kMaskThreshold;
         covered_[i] = inA && inB && shown;
+        if (maskValues) hidden_[i] = inA && inB && !shown;
         texels_ += covered_[i];
         onlyA_ += inA && !inB;
         onlyB_ += inB && !inA;
@@ -158,6 +175,37 @@ std::vector<float> ImagePair::flipDifferences(double pixelsPerDegree) const {
                              : glm::vec3(0.0f));
     }
     return flip(input, pixelsPerDegree);
+}
+
+double ImagePair::medianOfB() const {
+    std::vector<float> light;
+    for (size_t i = 0; i < covered_.size(); ++i) {
+        if (!covered_[i] && (hidden_.empty() || !hidden_[i])) continue;
+        const float mean = (b(i, 0) + b(i, 1) + b(i, 2)) / 3.0f;
+        if (std::isfinite(mean)) light.push_back(mean);
+    }
+    return nearestRank(light, 0.5);
+}
+
+std::vector<float> ImagePair::localErrors() const {
+    const double floor = kLocalFloor * std::max(medianOfB(), 0.0);
+    std::vector<float> map(covered_.size(), 0.0f);
+    for (size_t i = 0; i < map.size(); ++i) {
+        if (!covered_[i]) continue;
+        const double of = (double{b(i, 0)} + b(i, 1) + b(i, 2)) / 3.0;
+        const double off = std::abs((double{a(i, 0)} + a(i, 1) + a(i, 2)) / 3.0 - of);
+        map[i] = static_cast<float>(ratio(off, std::max(of, floor)));
+    }
+    return map;
+}
+
+LocalPercentiles ImagePair::percentiles(const std::vector<float>& localErrors) const {
+    std::vector<float> values;
+    values.reserve(texels_);
+    for (size_t i = 0; i < localErrors.size(); ++i)
+        if (covered_[i]) values.push_back(localErrors[i]);
+    return {nearestRank(values, 0.5), nearestRank(values, 0.9), nearestRank(values, 0.95),
+            nearestRank(values, 0.99)};
 }
 
 double ImagePair::mean(const std::vector<float>& map) const {

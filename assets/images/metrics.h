@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,17 @@ struct Metrics {
     uint64_t texels = 0;           // compared
     uint64_t onlyA = 0, onlyB = 0; // covered in one image only, left out
     uint64_t masked = 0;           // covered in both, left out by the mask
+};
+
+/// Returns the value that this share of all values does not exceed, by the nearest rank: the k-th smallest of
+/// n, where k is share * n rounded up, and at least 1. The median is that of 0.5, so it is always one of the
+/// values. Of none it is 0. share: [0, 1].
+double nearestRank(std::span<const float> values, double share);
+
+/// Tells how clean a map is where it is dark, too: percentiles, by the nearest rank, of ImagePair's
+/// localErrors() over the texels compared. That of 95 % is called the map's local error.
+struct LocalPercentiles {
+    double p50 = 0, p90 = 0, p95 = 0, p99 = 0;
 };
 
 /// Holds an image and what messages call it.
@@ -52,6 +64,14 @@ public:
     std::vector<float> differences() const;
     std::vector<float> displayedDifferences() const;
     std::vector<float> flipDifferences(double pixelsPerDegree) const;
+    /// Returns the local error of each texel, 0 where nothing is compared: |a - b| / max(b, 5 % of b's
+    /// median), where a and b are the means of R, G and B. The median is that of all texels covered in both
+    /// images, whatever the mask hides, so that a mask changes no texel's error; what is hidden and not
+    /// finite is left out. Where half of b or more is black the median is 0 and each texel is measured by
+    /// itself: one that is black in b has no error where a is black, too, else an infinite one.
+    std::vector<float> localErrors() const;
+    /// Returns the percentiles of such a map over the texels compared; infinite ones count.
+    LocalPercentiles percentiles(const std::vector<float>& localErrors) const;
     /// Returns the mean of such a map over the texels compared.
     double mean(const std::vector<float>& map) const;
 
@@ -61,10 +81,11 @@ private:
     static Planes planesOf(const NamedImage& named);
     static void checkFinite(const NamedImage& named, const Planes& planes, const std::vector<bool>& covered);
     double displayedDifference(size_t texel) const;
+    double medianOfB() const;
 
     uint32_t width_ = 0, height_ = 0;
     Planes planesA_ = {}, planesB_ = {};
-    std::vector<bool> covered_;
+    std::vector<bool> covered_, hidden_; // hidden_: by the mask, else covered; empty without a mask
     uint64_t texels_ = 0, onlyA_ = 0, onlyB_ = 0, masked_ = 0;
 };
 

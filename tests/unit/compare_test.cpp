@@ -173,5 +173,28 @@ TEST_F(CompareTest, DrawsTheDifferences) {
     EXPECT_NE(unwritable.errors.find("diff.png"), std::string::npos) << unwritable.errors;
 }
 
+TEST_F(CompareTest, TellsTheLocalError) {
+    const std::string a = image("a.exr", 4, 0.75f), b = image("b.exr", 4, 0.5f), c = image("c.exr", 4, 0.0f);
+    EXPECT_EQ(compare(a + " " + b + " --metric local").output, "0.5\n");
+    EXPECT_EQ(compare(a + " " + c + " --metric local").output, "inf\n");
+    EXPECT_EQ(compare(c + " " + c + " --metric local").output, "0\n");
+    const std::string table = compare(a + " " + b).output;
+    EXPECT_NE(table.find("local             0.5  "), std::string::npos) << table;
+    EXPECT_NE(table.find("p50 0.5, p90 0.5, p95 0.5, p99 0.5"), std::string::npos) << table;
+    const auto json = nlohmann::json::parse(compare(a + " " + b + " --json --metric local").output);
+    for (const char* name : {"p50", "p90", "p95", "p99"})
+        EXPECT_EQ(json.at("local").at(name), 0.5) << name;
+    EXPECT_FALSE(json.contains("RMSE"));
+    const auto black = nlohmann::json::parse(compare(a + " " + c + " --json").output);
+    EXPECT_TRUE(black.at("local").at("p95").is_null());
+    const std::string png = folder_.path("diff.png");
+    const Outcome outcome = compare(a + " " + b + " --metric local --diff " + png);
+    EXPECT_NE(outcome.errors.find("local error from 0 (black) to 0.5 (white)"), std::string::npos)
+        << outcome.errors;
+    EXPECT_EQ(readImage(png).planes[0][5], 1.0f);
+    EXPECT_EQ(compare(a + " " + c + " --metric local --diff " + png).status, 0);
+    EXPECT_EQ(readImage(png).planes[0][5], 1.0f); // what is infinitely off is at the bright end
+}
+
 } // namespace
 } // namespace relume

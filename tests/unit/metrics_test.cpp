@@ -143,5 +143,69 @@ TEST(Metrics, MapTheDifferencesOfEachTexel) {
     EXPECT_EQ(seen[2], 0.0f);
 }
 
+TEST(NearestRank, IsAlwaysOneOfTheValues) {
+    const std::vector<float> four = {4, 1, 3, 2};
+    EXPECT_EQ(nearestRank(four, 0.5), 2);
+    EXPECT_EQ(nearestRank(four, 0.51), 3);
+    EXPECT_EQ(nearestRank(four, 0), 1);
+    EXPECT_EQ(nearestRank(four, 1), 4);
+    std::vector<float> twenty;
+    for (int i = 20; i > 0; --i)
+        twenty.push_back(static_cast<float>(i));
+    EXPECT_EQ(nearestRank(twenty, 0.95), 19);
+    EXPECT_EQ(nearestRank(twenty, 0.99), 20);
+    EXPECT_EQ(nearestRank({}, 0.5), 0);
+}
+
+TEST(LocalError, IsRelativeToTheTexelsOwnLightDownToAShareOfTheMedian) {
+    FloatImage a = flat(4, 1, 0.0f), b = flat(4, 1, 0.0f);
+    for (size_t c = 0; c < 3; ++c)
+        b.planes[c] = {10.0f, 2.0f, 0.2f, 0.01f}; // the median is 0.2, and 5 % of it 0.01
+    a.planes[0] = {13.0f, 2.0f, 0.2f, 0.01f};     // +1 in the mean of the channels
+    a.planes[1] = {10.0f, 2.6f, 0.2f, 0.01f};     // +0.2
+    a.planes[2] = {10.0f, 2.0f, 0.26f, 0.04f};    // +0.02, +0.01
+    const ImagePair pair({a, "a"}, {b, "b"});
+    const std::vector<float> map = pair.localErrors();
+    for (size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(map[i], 0.1, 1e-6) << i;
+    EXPECT_NEAR(map[3], 1.0, 1e-5);
+    b.planes[0][3] = b.planes[1][3] = b.planes[2][3] = 0.005f; // darker than that share
+    a.planes[0][3] = a.planes[1][3] = a.planes[2][3] = 0.004f;
+    EXPECT_NEAR(pair.localErrors()[3], 0.1, 1e-5);
+    const LocalPercentiles local = pair.percentiles(map);
+    EXPECT_NEAR(local.p50, 0.1, 1e-6);
+    EXPECT_NEAR(local.p90, 1.0, 1e-5);
+    EXPECT_NEAR(local.p95, 1.0, 1e-5);
+    EXPECT_NEAR(local.p99, 1.0, 1e-5);
+}
+
+TEST(LocalError, HasAMedianThatNoMaskChanges) {
+    FloatImage a = flat(4, 1, 1.0f), b = flat(4, 1, 1.0f), mask = flat(4, 1, 1.0f);
+    for (size_t c = 0; c < 3; ++c) {
+        a.planes[c] = {0.02f, 1.0f, 1.0f, 1.0f};
+        b.planes[c] = {0.01f, 1.0f, 1.0f, std::nanf("")};
+    }
+    mask.planes[0] = {1.0f, 0.0f, 0.0f, 0.0f}; // hides all that is bright, and what is not finite
+    const NamedImage named{mask, "mask.png"};
+    const ImagePair pair({a, "a"}, {b, "b"}, &named);
+    EXPECT_NEAR(pair.localErrors()[0], 0.01 / 0.05, 1e-5);
+    EXPECT_EQ(pair.localErrors()[1], 0.0f);
+    EXPECT_NEAR(pair.percentiles(pair.localErrors()).p95, 0.2, 1e-5);
+}
+
+TEST(LocalError, HasAnAnswerToABlackReference) {
+    FloatImage a = flat(3, 1, 0.0f), b = flat(3, 1, 0.0f);
+    a.planes[0][1] = 1.0f;
+    a.planes[0][2] = 3.0f;
+    b.planes[0][2] = 2.0f; // the median is 0 all the same
+    const ImagePair pair({a, "a"}, {b, "b"});
+    const std::vector<float> map = pair.localErrors();
+    EXPECT_EQ(map[0], 0.0f);
+    EXPECT_TRUE(std::isinf(map[1]));
+    EXPECT_NEAR(map[2], 0.5, 1e-6);
+    EXPECT_NEAR(pair.percentiles(map).p50, 0.5, 1e-6);
+    EXPECT_TRUE(std::isinf(pair.percentiles(map).p95));
+}
+
 } // namespace
 } // namespace relume
