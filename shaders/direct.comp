@@ -31,12 +31,6 @@ void main() {
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     for (uint pick = 0u; pick < push.pickCount; ++pick) {
         vec3 light = Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane].rgb;
-        LightNote note = LightNote(false, true, 0.0);
-        if (all) note = lightNote(index, noteBitOfEmitter(pick), kNotedLamps + pick);
-        if (!note.asked) {
-            for (uint q = 0u; q < kReplicates; ++q) value[q] += light * note.seen;
-            continue;
-        }
         uint first = pick * push.pointCount;
         float sum = 0.0, visible = 0.0;
         float part[kReplicates], partVisible[kReplicates]; // of each replicate's points
@@ -52,16 +46,15 @@ void main() {
             }
         }
         float share = sum > 0.0 ? visible / sum : 0.0;
-        uint bit = takesNotes() ? noteBitOfEmitter(pick) : 1u << (pick % 32u);
-        if (light == vec3(0.0)) bit = 0u;
+        uint bit = light != vec3(0.0) ? 1u << (pick % 32u) : 0u;
         if (visible > 0.0) reachedEmitters |= bit;
         if (visible < sum) hiddenEmitters |= bit;
-        if (!all && bit != 0u && !takesNotes()) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
+        if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
         for (uint q = 0u; q < kReplicates; ++q) {
             // A ratio's error comes from the residuals V - share alone: what is seen as a whole is exact
             // [Cochran 1977, Sampling Techniques, 6.3].
             float residual = sum > 0.0 ? float(kReplicates) * (partVisible[q] - share * part[q]) / sum : 0.0;
-            if (all) value[q] += light * notedShare(note, share + residual);
+            if (all) value[q] += light * (share + residual);
             else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
         }
     }

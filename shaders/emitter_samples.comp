@@ -41,7 +41,6 @@ void main() {
         light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
     }
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
-    if (all) shines = shines && lightNote(index, noteBitOfEmitter(pick), kNotedLamps + pick).asked;
     vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
     for (uint s = 0u; s < push.pointCount; ++s) {
         vec4 target = vec4(0.0);

@@ -102,22 +102,21 @@ void addBenchQualityCommand(CLI::App& bench) {
     command->add_option("--size", b.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(wholeFrom(8, Baker::kMaxSize));
-    command->add_option("--modes", b.modes, "Bakes that are measured: plain, layers, uniform")
+    command->add_option("--modes", b.modes, "Bakes that are measured: plain, layers, per-chunk")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(oneOf({"plain", "layers", "uniform"}));
-    command->add_option("--error", b.error, "At which a bake ends, relRMSE as it is told; 0: not asked for")
+        ->check(oneOf({"plain", "layers", "per-chunk"}));
+    command->add_option("--error", b.error, "At which a bake ends, relRMSE as it is told")
         ->capture_default_str()
-        ->check(numberFrom(0.0, 1.0));
+        ->check(numberFrom(1e-6, 1.0));
     command->add_option("--local-error", b.localError, "And the local error, as it is told; 0: not asked for")
         ->capture_default_str()
         ->check(numberFrom(0.0, 1.0));
     command->add_option("--seconds", b.seconds, "End a bake after so much solver time")
         ->capture_default_str()
         ->check(numberAbove(0.0, 1e6));
-    command->add_option("--rays", b.rays, "End a bake after so many rays; 0: any number")
-        ->capture_default_str()
-        ->check(numberFrom(0.0, 1e18));
+    command->add_option("--rays", b.rays, "End a bake after so many rays (default: any number)")
+        ->check(numberAbove(0.0, 1e18));
     command->add_option("--reference-samples", b.referenceSamples, "Directions per patch of the reference")
         ->capture_default_str()
         ->check(wholeFrom(1, LinkSolver::kMaxSamples));

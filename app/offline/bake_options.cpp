@@ -43,9 +43,9 @@ void addLinkOptions(CLI::App& command, LinkOptions& o) {
                      "directional, hybrid: read the mean light over what each direction stands for, within a "
                      "chart: less noise from few directions, but biased, which --error does not tell");
     command.add_flag(
-        "--uniform", o.uniform,
-        "directional, hybrid: every patch takes as many samples; else they go where the light is "
-        "still off");
+        "--per-chunk", o.perChunk,
+        "directional, hybrid: samples go, chunk by chunk of the lightmap, where light is still off; on the "
+        "CPU only: a GPU gives every patch as many");
     command.add_flag("--no-smooth", o.noSmooth, "hybrid: leave the indirect light as it was sampled");
 }
 
@@ -73,8 +73,8 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (o.links.indirectScale > 0 && !links)
         throw UsageError("--indirect-scale: only with --method directional or hybrid, others know no "
                          "indirect light apart");
-    if (o.links.uniform && !links)
-        throw UsageError("--uniform: only with --method directional or hybrid, others have no samples");
+    if (o.links.perChunk && !links)
+        throw UsageError("--per-chunk: only with --method directional or hybrid, others have no samples");
     if (o.solve.localError >= 0 && !links)
         throw UsageError("--local-error: only with --method directional or hybrid, others cannot tell it");
     if (o.links.footprint && !links)
@@ -99,7 +99,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     solver.links.footprint = o.links.footprint;
     // The passes of these methods are bounces: how many samples they need is another question.
     if (!links) return;
-    solver.links.uniform = o.links.uniform;
+    solver.links.perChunk = o.links.perChunk;
     solver.error = o.solve.error > 0 ? o.solve.error : o.links.samples > 0 ? 0.0 : kDefaultError;
     solver.localError = o.solve.localError >= 0 ? o.solve.localError : kLocalErrorShare * solver.error;
 }

@@ -47,7 +47,7 @@ struct LinkOptions {
     uint32_t samples = 0;           // 0: not given
     std::string directions, rotate; // "": not given
     uint32_t indirectScale = 0;     // 0: not given
-    bool noSmooth = false, footprint = false, uniform = false;
+    bool noSmooth = false, footprint = false, perChunk = false;
 };
 
 struct LayerOptions {

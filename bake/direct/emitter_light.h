@@ -32,9 +32,6 @@ public:
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
         const Penumbra* penumbra = nullptr;
-        // Or each chunk notes in the first sample pass which lights all of its rays agree on, and asks those
-        // in few later ones (lib/light_notes.glsl): uvec2 per chunk, all 0 before; not on the CPU.
-        const vk::Buffer* notes = nullptr;
     };
     /// Records the samples. The caller writes the barriers, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;

@@ -12,7 +12,8 @@ namespace {
 
 /// Holds what the direct light of a link method takes.
 struct DirectNeeds {
-    bool any = false; // there is direct light
+    bool any = false;   // there is direct light
+    bool lamps = false; // there is that of analytic lights
     uint64_t bytes = 0;
 };
 
@@ -30,14 +31,15 @@ DirectNeeds directNeeds(const SolverExtent& extent, bool meshLights, uint32_t li
         EmitterLight::bytes(extent.chunkCount, extent.software, links, meshLights ? polygons : 0);
     const uint64_t lamps = LampLight::bytes(extent.chunkCount, extent.software, rays);
     const bool any = rays > 0 || (meshLights && polygons > 0);
-    return {.any = any, .bytes = emitters + lamps + lampTableBytes(extent)};
+    return {.any = any, .lamps = rays > 0, .bytes = emitters + lamps + lampTableBytes(extent)};
 }
 
 } // namespace
 
-bool samplesPerChunk(const SolverSettings& settings) {
+bool samplesPerChunk(const SolverSettings& settings, bool software) {
     const bool wanted = settings.error > 0 || settings.localError > 0;
-    return wanted && !settings.links.uniform && settings.passes == 0 && settings.links.indirectScale == 1;
+    return software && wanted && settings.links.perChunk && settings.passes == 0 &&
+           settings.links.indirectScale == 1;
 }
 
 uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
@@ -50,7 +52,7 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const LinkBuffers::Desc desc{.direct = direct.any,
                                  .smooth = hybrid && settings.links.smooth,
                                  .local = true,
-                                 .notes = direct.any && samplesPerChunk(settings)};
+                                 .notes = direct.lamps && samplesPerChunk(settings, extent.software)};
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint32_t scale = settings.links.indirectScale;
     const uint64_t receivers = scale > 1 ? extent.receivers.value_or(count / scale) : 0;

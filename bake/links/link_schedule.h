@@ -72,6 +72,9 @@ public:
     bool perChunk() const { return rules_.perChunk; }
     /// Returns what sample passes of chunks are planned by.
     ChunkPlanRules planRules(const LinkState& state) const;
+    /// Returns how many sample passes of links follow so many at once, from the same light. Each next one
+    /// would start from better light, which matters less the more there are.
+    static uint32_t roundsAtOnce(uint32_t rounds) { return rounds / 16 + 1; }
     /// Tells whether all sample passes are made.
     bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
     /// Tells whether direct light comes next: at first, then where it takes more of the variance away for its

@@ -59,16 +59,17 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
-      kit_(input, {.settings = withTransport(settings),
-                   .linksOfRound = linksOf(input, settings),
-                   .buffers = {.direct = hasDirect(),
-                               .smooth = settings.method == Method::Hybrid && settings.links.smooth,
-                               .local = true,
-                               .notes = hasDirect() && samplesPerChunk(settings),
-                               .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
-                   .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
-                   .progress = progress_,
-                   .batchMs = batchMs_}),
+      kit_(input,
+           {.settings = withTransport(settings),
+            .linksOfRound = linksOf(input, settings),
+            .buffers = {.direct = hasDirect(),
+                        .smooth = settings.method == Method::Hybrid && settings.links.smooth,
+                        .local = true,
+                        .notes = !lamps_.empty() && samplesPerChunk(settings, input.device.info().software()),
+                        .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
+            .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
+            .progress = progress_,
+            .batchMs = batchMs_}),
       batches_(kit_, {.chunkCount = static_cast<uint32_t>(receiversOf(input, coarse_).size() / kChunk),
                       .links = kit_.linksOfRound,
                       .batch = kit_.buffers.batchChunks,
@@ -108,7 +109,7 @@ LinkRules LinkSolver::rules() const {
             .passes = settings.passes,
             .error = settings.error,
             .localError = settings.localError,
-            .perChunk = samplesPerChunk(settings),
+            .perChunk = samplesPerChunk(settings, kit_.input.device.info().software()),
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
             .linkCost = kit_.linksOfRound * linkShare};
 }
@@ -180,7 +181,9 @@ bool LinkSolver::planChunks() {
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
     state_.bounce = 0;
-    pass_ = roundsOf(stage).next(stage == Stage::Links && state_.scaled ? batches_.mostRounds() : 1);
+    pass_ = roundsOf(stage).next(1);
+    if (stage == Stage::Links && state_.scaled)
+        pass_ = linkRounds_.next(std::min(batches_.mostRounds(), schedule_.roundsAtOnce(pass_.first)));
     state_.passRounds = pass_.count;
     if (stage == Stage::Links) {
         batches_.cache().forget();
@@ -235,11 +238,11 @@ template<typename Lights>
 void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
-    typename Lights::Work work{.group = group,
-                               .round = pass_.first,
-                               .range = range,
-                               .notes = buffers.notes ? &buffers.notes : nullptr};
-    if constexpr (requires { work.soFar; }) work.soFar = &buffers.direct;
+    typename Lights::Work work{.group = group, .round = pass_.first, .range = range};
+    if constexpr (requires { work.notes; }) {
+        work.notes = buffers.notes ? &buffers.notes : nullptr;
+        work.soFar = &buffers.direct;
+    }
     const PointTimes times = tracePoints(
         {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(work, buffers.rays),
         [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },

@@ -59,8 +59,8 @@ struct LinkSettings {
     // Links read the mean light over the part of a chart that their direction stands for
     // (bake/links/footprint.h).
     bool footprint = false;
-    // Every patch takes as many samples; else they go where they lower the error most.
-    bool uniform = false;
+    // Chunks take samples where light is still off; else every patch takes as many.
+    bool perChunk = false;
 };
 
 /// The memory that bits and links may take for later bounces. Without a cache the same rays are traced again.

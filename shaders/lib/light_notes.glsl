@@ -1,9 +1,9 @@
-// Notes of which lights the rays of a chunk's first sample pass have reached and not reached. A light that all of
+// Notes of which analytic lights the rays of a chunk's first sample pass have reached and not reached. A light that all of
 // them agree on is asked again in one sample pass of kNoteRounds only; what that finds to be otherwise counts so
 // many times, so the mean stays unbiased. push.penumbra is uvec2 per chunk where push.parts is 0: a bit for each
 // light that was reached, and one for each that was not; lights beyond kNotedLamps share bits.
 const uint kNoteRounds = 8u;
-const uint kNotedLamps = 28u; // the other bits are of mesh lights
+const uint kNotedLamps = 32u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer LightNotes { uvec2 items[]; };
 
@@ -26,14 +26,6 @@ LightNote lightNote(uint patchIndex, uint bit, uint light) {
     return LightNote(!(reached && hidden), (reached && hidden) || isAsked(patchIndex, light),
                      reached ? 1.0 : 0.0);
 }
-
-// Returns the share of a light that is seen, where `measured` is what rays say.
-float notedShare(LightNote note, float measured) {
-    return note.known ? note.seen + float(kNoteRounds) * (measured - note.seen) : measured;
-}
-
-// Few mesh lights are noted, where all of them are sampled.
-uint noteBitOfEmitter(uint emitter) { return 1u << (kNotedLamps + emitter % (32u - kNotedLamps)); }
 
 void takeNote(uint patchIndex, uint reached, uint hidden) {
     if (push.round != 0u) return;

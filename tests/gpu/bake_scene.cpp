@@ -194,6 +194,8 @@ BakeSettings settingsOf(const BakeDesc& desc) {
     settings.voxels = desc.voxels;
     settings.solver.passes = desc.passes;
     settings.solver.error = desc.error;
+    settings.solver.localError = desc.localError;
+    settings.solver.links.perChunk = desc.perChunk;
     settings.solver.batchMs = desc.batchMs;
     settings.solver.method = desc.method;
     settings.solver.links.samples = desc.samples;

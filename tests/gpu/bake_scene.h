@@ -71,6 +71,8 @@ struct BakeDesc {
     TracerKind tracer = TracerKind::Auto;
     uint32_t passes = 1;
     double error = 0;
+    double localError = 0;
+    bool perChunk = false; // samples go where light is still off
     double batchMs = 20;
     Method method = Method::Pure;
     uint32_t samples = 0; // link methods: directions per patch

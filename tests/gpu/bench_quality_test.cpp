@@ -13,7 +13,7 @@
 namespace relume {
 namespace {
 
-std::string textOf(const std::string& name) {
+std::string contentOf(const std::string& name) {
     std::ifstream in(name);
     return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -29,9 +29,9 @@ TEST(BenchQuality, TellsEveryFigure) {
                    "--pictures", folder.path("pictures")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("local error 20 %"), std::string::npos) << run.out;
-    EXPECT_EQ(markupProblem(textOf(plot)), "");
+    EXPECT_EQ(markupProblem(contentOf(plot)), "");
     EXPECT_TRUE(std::filesystem::exists(reference));
-    const auto report = nlohmann::json::parse(textOf(json));
+    const auto report = nlohmann::json::parse(contentOf(json));
     const size_t pictures = report.at("pictures").size();
     EXPECT_GE(pictures, 1u);
     ASSERT_EQ(report.at("runs").size(), 3u);
@@ -50,11 +50,11 @@ TEST(BenchQuality, TellsEveryFigure) {
         EXPECT_LT(mode.at("points").back().at("relRMSE"), 0.1);
     }
     EXPECT_TRUE(std::filesystem::exists(folder.path("pictures/reference-1.png")));
-    EXPECT_TRUE(std::filesystem::exists(folder.path("pictures/uniform-1.png")));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("pictures/per-chunk-1.png")));
 
     // A reference that is there is read, of another size refused.
     const ProcessResult again =
-        runRelume({"bench", "quality", scene, "--size", "64", "--modes", "uniform", "--rays", "1",
+        runRelume({"bench", "quality", scene, "--size", "64", "--modes", "per-chunk", "--rays", "1",
                    "--no-pictures", "--reference", reference, "--json", "-"});
     ASSERT_EQ(again.status, 0) << again.err;
     const auto second = nlohmann::json::parse(again.out);

@@ -42,6 +42,7 @@ const std::map<std::string, WalkWords> kVerbs = {
     {"samples", {"4", "-o", "missing/out.csv"}},
     {"bench trace", {"missing.glb"}},
     {"bench frames", {"missing.glb"}},
+    {"bench quality", {"missing.glb"}},
     {"bench edits", {"missing.glb"}},
     {"bench methods", {"missing.glb", "--html", "out.html"}},
 };
@@ -63,12 +64,13 @@ const std::map<std::string, WalkWords> kWith = {
 /// These options take a text of any kind: names, and files that may be called so. What they mean by it
 /// decides whether it is a mistake.
 const OptionNames kTexts = {
-    "--scene",  "--variant", "in",       "scene",        "name",        "a",
-    "b",        "layers",    "--output", "--picture",    "--json",      "--html",
-    "--plot",   "--diff",    "--mask",   "--error-map",  "--scene-out", "--camera",
-    "--device", "--resume",  "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
-    "--set",    "--move",    "--rotate", "--aim",        "--add",       "--duplicate",
-    "--delete", "--hide",    "--show",   "--mute",       "--solo"};
+    "--scene",     "--variant",  "in",       "scene",        "name",        "a",
+    "b",           "layers",     "--output", "--picture",    "--json",      "--html",
+    "--plot",      "--diff",     "--mask",   "--error-map",  "--scene-out", "--camera",
+    "--device",    "--resume",   "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
+    "--set",       "--move",     "--rotate", "--aim",        "--add",       "--duplicate",
+    "--delete",    "--hide",     "--show",   "--mute",       "--solo",      "--pictures",
+    "--plot-rays", "--reference"};
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {
@@ -81,6 +83,7 @@ const std::map<std::string, WalkWords> kMeanings = {
     {"--rate", {"0"}}, // as many frames as there can be
     {"--msaa", {"0"}}, // one sample
     {"--seed", {"0"}},
+    {"--local-error", {"0"}},    // any will do
     {"--time", {"0"}},           // where the animation begins
     {"--up", {"x"}},             // an axis
     {"--exposure", {"-1", "0"}}, // [EV]

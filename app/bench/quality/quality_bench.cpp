@@ -25,13 +25,13 @@ SolverSettings settingsOf(const QualityBenchDesc& desc, const std::string& mode)
     solver.localError = desc.localError;
     solver.batchMs = desc.batchMs;
     solver.layers.on = mode == "layers";
-    solver.links.uniform = mode == "uniform";
+    solver.links.perChunk = mode == "per-chunk";
     return solver;
 }
 
 // Its directions are scrambled otherwise than those of what is measured, whose noise it must not share.
 SolverSettings settingsOfReference(const QualityBenchDesc& desc) {
-    SolverSettings solver = settingsOf(desc, "uniform");
+    SolverSettings solver = settingsOf(desc, "plain");
     solver.error = solver.localError = 0;
     solver.links.samples = desc.referenceSamples;
     solver.links.smooth = false;
@@ -115,9 +115,8 @@ private:
             reference_.attributes["relume:scene"] = desc_.scene.substr(desc_.scene.find_last_of('/') + 1);
             reference_.attributes["relume:quantity"] = "lighting";
             if (!desc_.reference.empty()) writeImage(desc_.reference, reference_);
-            report_.reference =
-                fmt::format("uniform, {} directions per patch, scrambled otherwise, not smoothed",
-                            desc_.referenceSamples);
+            report_.reference = fmt::format("{} directions per patch, scrambled otherwise, not smoothed",
+                                            desc_.referenceSamples);
         } else {
             reference_ = readImage(desc_.reference);
             checkReference();

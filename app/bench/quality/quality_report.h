@@ -23,7 +23,7 @@ struct QualityPoint {
 };
 
 struct QualityRun {
-    std::string mode; // "plain", "layers" or "uniform"
+    std::string mode; // "plain", "layers" or "per-chunk"
     uint32_t patches = 0;
     bool converged = false; // by what the solver tells; else a limit ended it
     std::vector<QualityPoint> points;
