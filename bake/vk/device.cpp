@@ -1,6 +1,7 @@
 #include "bake/vk/device.h"
 
 #include "assets/base/log.h"
+#include "bake/vk/compute_pipelines.h"
 #include "bake/vk/device_info.h"
 #include "bake/vk/instance.h"
 #include "bake/vk/memory_ledger.h"
@@ -105,6 +106,7 @@ Device::Device(const Desc& desc) {
         createDevice();
         ledger_ = std::make_unique<MemoryLedger>();
         pipelineCache_ = loadPipelineCache(device_, info_);
+        computePipelines_ = std::make_unique<ComputePipelines>();
         staging_ = std::make_unique<Staging>(*this);
     } catch (...) {
         release();
@@ -120,6 +122,7 @@ void Device::release() {
     if (device_ != VK_NULL_HANDLE) {
         vkDeviceWaitIdle(device_);
         staging_.reset();
+        computePipelines_.reset();
         if (pipelineCache_ != VK_NULL_HANDLE) {
             savePipelineCache(device_, info_, pipelineCache_);
             vkDestroyPipelineCache(device_, pipelineCache_, nullptr);

@@ -54,6 +54,7 @@ const char* deviceTypeName(VkPhysicalDeviceType type);
 /// Returns all Vulkan devices of this machine; the list is empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
+class ComputePipelines;
 class MemoryLedger;
 class Staging;
 
@@ -109,6 +110,7 @@ public:
     /// Returns the same number for all devices of this process, those destroyed as well.
     static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
+    ComputePipelines& computePipelines() const { return *computePipelines_; }
     Staging& staging() const { return *staging_; }
     /// Returns the pool for the CPU's share of all work on this device: nobody makes threads of his own.
     WorkerPool& workers() const { return *workers_; }
@@ -139,6 +141,7 @@ private:
     bool anisotropy_ = false;
     mutable std::mutex queueMutex_;
     VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+    std::unique_ptr<ComputePipelines> computePipelines_;
     std::unique_ptr<WorkerPool> workers_;
     std::unique_ptr<MemoryLedger> ledger_;
     std::unique_ptr<Staging> staging_;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,18 +15,17 @@ namespace relume::vk {
 /// Values of specialization constants 0, 1, 2, ... (bool as 0 or 1).
 using Constants = std::vector<uint32_t>;
 
+class ComputePipeline;
+
 /// A compute shader. Everything it reads comes by address in its push constants (at most 128 bytes).
 class ComputeProgram {
 public:
     ComputeProgram() = default;
-    ComputeProgram(const Device& device, const std::string& shader,
-                   const Constants& constants = {}); // throws Error
+    /// Takes a shader of the library, whose pipeline all its programs on this device share. Throws Error.
+    ComputeProgram(const Device& device, const std::string& shader, const Constants& constants = {});
     /// Makes the program from SPIR-V; `name` is for messages.
     ComputeProgram(const Device& device, std::span<const uint32_t> code, const std::string& name,
                    const Constants& constants = {});
-    ~ComputeProgram();
-    ComputeProgram(ComputeProgram&& other) noexcept;
-    ComputeProgram& operator=(ComputeProgram&& other) noexcept;
 
     /// Binds, pushes and dispatches. The caller writes the barriers.
     template<typename Push>
@@ -37,10 +37,8 @@ public:
 private:
     void dispatchBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t x, uint32_t y,
                        uint32_t z) const;
-    void release();
     const Device* device_ = nullptr;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    std::shared_ptr<const ComputePipeline> pipeline_;
 };
 
 /// A ray tracing pipeline: one raygen, one miss, one hit group (closest hit and any hit, either may be "").
