@@ -52,6 +52,7 @@ struct LinkOptions {
 struct LayerOptions {
     bool on = false;
     std::string memory; // "": not given
+    double error = 0;   // 0: not given
 };
 
 struct VoxelOptions {
