@@ -23,10 +23,10 @@ void main() {
     vec3 mean = max(sum / float(kReplicates), 0.0);
     float variance = spread(value);
     if (share < 1.0) {
-        vec4 before = Vec4s(push.direct).items[index];
-        float rest = 1.0 - share;
-        mean = share * mean + rest * before.rgb;
-        variance = share * share * variance + rest * rest * before.w;
+        // The points of all sample passes together are spread evenly, so that the variance falls faster than if
+        // these were independent of those before. That it falls as one over their number is the least.
+        mean = mix(Vec4s(push.direct).items[index].rgb, mean, share);
+        variance *= share;
     }
     Vec4s(push.direct).items[index] = vec4(mean, variance);
 }

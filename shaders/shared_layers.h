@@ -25,6 +25,14 @@ struct LayerResultPush {
     ADDRESS chunkSums; // vec4[chunkCount]: light, variance of direct light, patches; R, G and B together
     uint chunkCount;
 };
+// Every kSketchStride-th chunk goes into the same group of entries, one for each half of its patches.
+const uint kSketchStride = 512u, kSketchParts = 2u;
+struct SketchPush {
+    ADDRESS patches;
+    ADDRESS sums;   // vec4[kReplicates][patchCount], over links
+    ADDRESS sketch; // vec3[kSketchStride][kSketchParts][kReplicates]: how far each replicate is from the mean
+    uint chunkCount;
+};
 struct LayerWeight {
     ADDRESS light; // vec4[]: lighting, standard error
     vec3 weight;

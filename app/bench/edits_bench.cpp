@@ -191,6 +191,9 @@ private:
     SolverSettings layers() const {
         SolverSettings settings = hybrid();
         settings.layers.on = true;
+        // Each layer is to have the error by itself, so that what an edit costs does not depend on how good
+        // the composite happens to be.
+        settings.layers.error = std::exchange(settings.error, 0.0);
         return settings;
     }
     static SolverSettings live(SolverSettings settings) {
@@ -198,7 +201,7 @@ private:
         return settings;
     }
     static SolverSettings fixed(SolverSettings settings, uint32_t samples) {
-        settings.error = 0;
+        settings.error = settings.layers.error = 0;
         settings.links.samples = samples;
         return settings;
     }

@@ -88,6 +88,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
     if (o.layers.on && (o.links.indirectScale > 1 || o.links.footprint || o.links.directions == "lec"))
         throw UsageError("--layers: not with --indirect-scale, --footprint or --directions lec");
     solver.layers.on = o.layers.on;
+    solver.layers.error = o.layers.error;
     if (!o.layers.memory.empty()) solver.layers.bytes = typedMemory("--layer-memory", o.layers.memory);
     solver.links.samples = o.links.samples;
     solver.links.smooth = !o.links.noSmooth;
@@ -222,6 +223,12 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         "Bake each light by itself and write its share of the lightmap, too: a multi-part .exr "
         "that 'relume mix' weighs anew");
     addLayerMemory(command, o)->needs(layers);
+    command
+        .add_option("--layer-error", o.layers.error,
+                    "Go on until the remaining error of each layer by itself is below this (default: "
+                    "--error is about all of them together)")
+        ->check(numberFrom(1e-6, 1.0))
+        ->needs(layers);
     command.add_flag("--half", o.files.half, "Write 16-bit floats");
     addCheckpointOptions(command, o.checkpoint);
     command.add_option("--json", o.files.json, "Write statistics to this file, - for standard output");

@@ -53,6 +53,7 @@ struct LinkOptions {
 struct LayerOptions {
     bool on = false;
     std::string memory; // "": not given
+    double error = 0;   // 0: not given
 };
 
 struct VoxelOptions {

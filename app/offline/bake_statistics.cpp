@@ -24,6 +24,21 @@ Json atlasJson(const PreparedScene& prepared) {
     return {{"repacked", prepared.atlas.repacked}, {"instances", instances}};
 }
 
+// Tells how far each layer is, and how good by itself.
+Json layersJson(const LayerSolver& solver) {
+    Json layers = Json::array();
+    for (const std::unique_ptr<Layer>& layer : solver.layers()) {
+        const glm::vec3& weight = layer->source.weight;
+        layers.push_back({{"name", layer->source.name},
+                          {"weight", {weight.r, weight.g, weight.b}},
+                          {"error", layer->error},
+                          {"directRounds", layer->level.directRounds},
+                          {"linkRounds", layer->level.linkRounds},
+                          {"share", solver.shareOf(*layer)}});
+    }
+    return layers;
+}
+
 } // namespace
 
 void writeStatistics(const std::string& path, const BakeStatistics& s) {
@@ -36,41 +51,42 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
     }
     seconds["total"] = total;
     const VoxelSettings voxels = resolveVoxels(s.options);
-    const Json json = {{"version", RELUME_VERSION},
-                       {"scene", s.options.files.scene},
-                       {"output", s.options.files.output},
-                       {"method", s.options.solve.method},
-                       {"size", s.options.patches.size},
-                       {"device", s.device.name},
-                       {"driver", s.device.driver},
-                       {"tracer", s.baker.tracer().name()},
-                       {"voxels", voxels.ratio > 0 ? voxels.resolution : 0},
-                       {"voxelRatio", voxels.ratio},
-                       {"triangles", s.baker.patches().scene.mesh.triangleCount()},
-                       {"patches", s.baker.patches().count},
-                       {"invalidPatches", s.baker.invalidPatches()},
-                       {"passes", p.passes},
-                       {"samples", p.samples},
-                       {"indirectScale", std::max(s.options.links.indirectScale, 1u)},
-                       {"footprint", s.options.links.footprint},
-                       {"error", p.error},
-                       {"localError", p.localError95},
-                       {"localError99", p.localError99},
-                       {"gridError", p.gridError},
-                       {"converged", p.converged},
-                       {"pairs", p.pairs},
-                       {"linksRead", p.linksRead},
-                       {"rays", p.rays},
-                       {"raysSaved", p.raysSaved},
-                       {"cacheBytes", p.cacheBytes},
-                       {"cachedShare", p.cachedShare},
-                       {"raysPerSecond", p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds : 0.0},
-                       {"traceSeconds", p.traceSeconds},
-                       {"gatherSeconds", p.gatherSeconds},
-                       {"passSeconds", p.passSeconds},
-                       {"seconds", seconds},
-                       {"bakeCpuSeconds", s.bakeCpuSeconds},
-                       {"atlas", atlasJson(s.prepared)}};
+    Json json = {{"version", RELUME_VERSION},
+                 {"scene", s.options.files.scene},
+                 {"output", s.options.files.output},
+                 {"method", s.options.solve.method},
+                 {"size", s.options.patches.size},
+                 {"device", s.device.name},
+                 {"driver", s.device.driver},
+                 {"tracer", s.baker.tracer().name()},
+                 {"voxels", voxels.ratio > 0 ? voxels.resolution : 0},
+                 {"voxelRatio", voxels.ratio},
+                 {"triangles", s.baker.patches().scene.mesh.triangleCount()},
+                 {"patches", s.baker.patches().count},
+                 {"invalidPatches", s.baker.invalidPatches()},
+                 {"passes", p.passes},
+                 {"samples", p.samples},
+                 {"indirectScale", std::max(s.options.links.indirectScale, 1u)},
+                 {"footprint", s.options.links.footprint},
+                 {"error", p.error},
+                 {"localError", p.localError95},
+                 {"localError99", p.localError99},
+                 {"gridError", p.gridError},
+                 {"converged", p.converged},
+                 {"pairs", p.pairs},
+                 {"linksRead", p.linksRead},
+                 {"rays", p.rays},
+                 {"raysSaved", p.raysSaved},
+                 {"cacheBytes", p.cacheBytes},
+                 {"cachedShare", p.cachedShare},
+                 {"raysPerSecond", p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds : 0.0},
+                 {"traceSeconds", p.traceSeconds},
+                 {"gatherSeconds", p.gatherSeconds},
+                 {"passSeconds", p.passSeconds},
+                 {"seconds", seconds},
+                 {"bakeCpuSeconds", s.bakeCpuSeconds},
+                 {"atlas", atlasJson(s.prepared)}};
+    if (s.baker.layers()) json["layers"] = layersJson(*s.baker.layers());
     // The names of files, and those from the scene's file, need not be UTF-8.
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     if (path == "-")

@@ -22,6 +22,7 @@ using glm::uint;
 #include "shaders/lib/packed_light.glsl"
 #include "shaders/lib/seams.glsl"
 #include "shaders/lib/local_error.glsl"
+#include "shaders/lib/sketch.glsl"
 
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
 static_assert(sizeof(SuperBlock) == 56 && sizeof(Sender) == 12);

@@ -5,6 +5,14 @@
 #include <cmath>
 
 namespace relume {
+
+uint32_t onLadder(double rounds, bool doubles) {
+    constexpr double kAlmostWhole = 1e-9;
+    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
+    const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
+    return !doubles && whole <= between ? between : above;
+}
+
 namespace {
 
 // There are at most so many times as many sample passes as before.
@@ -13,7 +21,7 @@ constexpr uint32_t kMostGrowth = 8;
 uint32_t limited(const SampledPart& part, double rounds) {
     if (part.rounds >= part.most) return part.rounds;
     const double most = double{kMostGrowth} * std::max(1u, part.rounds);
-    return std::min(part.most, onLadder(std::clamp(rounds, double(part.rounds), most)));
+    return std::min(part.most, onLadder(std::clamp(rounds, double(part.rounds), most), part.doubles));
 }
 
 double varianceOfRound(const SampledPart& part) {
@@ -45,11 +53,38 @@ Rounds doubled(const SampledPart& first, const SampledPart& second) {
 
 } // namespace
 
-uint32_t onLadder(double rounds) {
-    constexpr double kAlmostWhole = 1e-9;
-    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
-    const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
-    return whole <= between ? between : above;
+// Parts that have more than the others would leave them keep what they have, and the others share what is
+// left; so on, until none is added to those.
+std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allowed) {
+    std::vector<uint32_t> rounds;
+    for (const SampledPart& part : parts)
+        rounds.push_back(part.rounds);
+    if (!(allowed > 0.0)) return rounds;
+    std::vector<bool> settled(parts.size());
+    std::vector<double> wanted(parts.size());
+    for (bool more = true; more;) {
+        double roots = 0, left = allowed;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            if (settled[i])
+                left -= varianceOfRound(parts[i]) / std::max(1.0, wanted[i]);
+            else
+                roots += std::sqrt(varianceOfRound(parts[i]) * parts[i].costOfRound);
+        }
+        more = false;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            if (settled[i]) continue;
+            const SampledPart& part = parts[i];
+            const double free = left > 0.0
+                                    ? std::sqrt(varianceOfRound(part) / part.costOfRound) * roots / left
+                                    : double(part.most);
+            wanted[i] = within(part, part.variance > 0.0 ? free : 0.0);
+            settled[i] = wanted[i] != free;
+            more = more || settled[i];
+        }
+    }
+    for (size_t i = 0; i < parts.size(); ++i)
+        rounds[i] = limited(parts[i], wanted[i]);
+    return rounds;
 }
 
 double gainOfRound(const SampledPart& part, uint32_t now) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace relume {
 
@@ -13,15 +15,22 @@ struct SampledPart {
     uint32_t most = 0;      // sample passes that there can be
     double variance = 0;    // of the part, as it is
     double costOfRound = 1; // in the same unit as the other part's
+    bool doubles = false;   // their number is a power of two, unless it is the most
 };
 
 /// Returns what one more sample pass after `now` of them takes away from the part's variance, for its cost.
 /// The variance is as it was after part.rounds of them; it falls as 1 / rounds at least.
 double gainOfRound(const SampledPart& part, uint32_t now);
 
-/// Returns the least of 1, 2, 3, 4, 6, 8, 12, 16, ... that is so many at least: what is planned on its own
-/// meets on few numbers.
-uint32_t onLadder(double rounds);
+/// Returns the least number on the ladder of sample passes (1, 2, 3, 4, 6, 8, 12, 16, ...) that is so many at
+/// least, so that what is planned on its own meets on few numbers; with `doubles` of the powers of two.
+uint32_t onLadder(double rounds, bool doubles = false);
+
+/// Returns for each part the sample passes that cost least in all of those by which the parts' variances come
+/// to `allowed` together: their number goes as the root of variance over cost, but no part has less than it
+/// has. They are on the ladder and no more than a few times as many as there are. Where `allowed` is not
+/// positive each has as many as it has.
+std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allowed);
 
 struct Rounds {
     uint32_t first = 0, second = 0;

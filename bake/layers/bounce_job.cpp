@@ -320,7 +320,9 @@ std::vector<uint32_t> BounceJob::lookAtGather() {
 }
 
 double BounceJob::iterationAim() const {
-    const double error = tools_->kit.settings.error;
+    const SolverSettings& settings = tools_->kit.settings;
+    const double own = settings.layers.error, composite = settings.error;
+    const double error = own > 0 && composite > 0 ? std::min(own, composite) : std::max(own, composite);
     const double aim = error > 0 ? kIterationShare * error : kLeastIterationError;
     return desc_.hasty ? std::max(aim, kFirstIterationError) : aim;
 }

@@ -10,13 +10,17 @@ namespace {
 
 // These are floats per chunk.
 constexpr uint32_t kResolveValues = sizeof(shader::ResolveSums) / sizeof(float);
+constexpr VkDeviceSize kSketchAt = 256; // where it is read back, behind sums
 constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
 
 } // namespace
 
 DeviceGather::DeviceGather(LinkKit& kit, const LayerPass& pass)
     : kit_(kit), layerPass_(pass), bounces_(kit.input.device, kit.input.light, kit.buffers.linkSums),
-      resolvePass_(kit.input.device), chunkSums_(kit.input.device) {}
+      resolvePass_(kit.input.device), chunkSums_(kit.input.device),
+      sketch_(kit.input.device, {.size = kSketchEntries * sizeof(glm::vec3), .name = "sketch of an error"}) {
+    kit.reserveBack(kSketchAt + sketch_.size());
+}
 
 void DeviceGather::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) {
     bounces_.recordStart(cmd, light);
@@ -76,6 +80,8 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
     const LinkBuffers& buffers = kit_.buffers;
     VkCommandBuffer cmd = kit_.commands.begin();
     if (linkRounds > 0) {
+        const vk::Buffer& own = lane > 0 ? bounces_.sums(lane) : buffers.linkSums;
+        layerPass_.recordSketch(cmd, light, own, sketch_);
         resolvePass_.record(cmd, light, buffers,
                             {.size = kit_.input.patches.scene.size,
                              .samples = linkRounds * kit_.linksOfRound,
@@ -86,9 +92,14 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
     }
     layerPass_.recordResult(cmd, light, layer, linkRounds > 0 ? &buffers.result : nullptr, buffers.chunkSums);
     recordChunkSums(cmd, kResultValues, sizeof(shader::ResolveSums));
+    if (linkRounds > 0) kit_.recordBack(cmd, sketch_, sketch_.size(), kSketchAt);
     kit_.run(cmd);
     LevelSums sums;
-    if (linkRounds > 0) sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
+    if (linkRounds > 0) {
+        sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
+        const auto* entries = kit_.back<glm::vec3>(kSketchAt);
+        sums.sketch.entries.assign(entries, entries + kSketchEntries);
+    }
     sums.result = *kit_.back<glm::vec4>(sizeof(shader::ResolveSums));
     return sums;
 }

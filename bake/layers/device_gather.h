@@ -33,6 +33,7 @@ private:
     LayerBounces bounces_;
     ResolvePass resolvePass_;
     ChunkSumPass chunkSums_;
+    vk::Buffer sketch_;
 };
 
 } // namespace relume

@@ -131,10 +131,7 @@ void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
 // Returns the sample pass before which this step ends.
 uint32_t DirectJob::endOfStep() const {
     if (mended_) return layer_->directSteps[*mended_];
-    // A level that was there before is made in the steps that it was made in.
-    const std::vector<uint32_t>& steps = layer_->redoSteps;
-    const auto next = std::upper_bound(steps.begin(), steps.end(), layer_->directRounds);
-    return next == steps.end() ? target_.directRounds : std::min(*next, target_.directRounds);
+    return std::min(nextDirectStep(layer_->directRounds), target_.directRounds);
 }
 
 std::vector<uint8_t> DirectJob::mendedMarks() const {

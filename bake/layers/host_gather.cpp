@@ -82,7 +82,12 @@ LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkRounds,
                                               .reach = smooths ? smoothingReach(width) : 0,
                                               .sigma = width,
                                               .scale = scale});
-    return {sumsOf(sums.indirect), sumsOf(sums.result)};
+    LevelSums level{sumsOf(sums.indirect), sumsOf(sums.result), {}};
+    const std::span patches(kit_.input.light.patches.as<shader::Patch>(),
+                            size_t{kit_.chunkCount()} * shader::kChunk);
+    if (linkRounds > 0)
+        level.sketch = sketchOf(kit_.gatherPass.pool(), patches, buffers.linkSums.as<glm::vec4>());
+    return level;
 }
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #include "bake/layers/layer.h"
 
 #include "bake/base/shader_types.h"
+#include "bake/gather/sample_plan.h"
 
 #include <algorithm>
 
@@ -71,6 +72,12 @@ LightPattern patternOf(const Scene& scene, const LightGroup& group) {
         pattern.weights.push_back(member.weight);
     }
     return pattern;
+}
+
+// The first step is that of the first level, which is in haste.
+uint32_t nextDirectStep(uint32_t rounds) {
+    constexpr uint32_t kFirst = 2;
+    return rounds < kFirst ? kFirst : onLadder(rounds + 1.0, true);
 }
 
 double Layer::directShare() const {

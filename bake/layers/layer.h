@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/gather/smoothing_width.h"
+#include "bake/layers/error_sketch.h"
 #include "bake/layers/light_groups.h"
 #include "bake/vk/buffer.h"
 
@@ -36,6 +37,11 @@ struct LayerLevel {
 
     bool operator==(const LayerLevel&) const = default;
 };
+
+/// Returns the sample pass before which a step of direct light ends that begins with this one, unless its
+/// level ends it: these steps are the same whatever levels a layer goes through, and so are the sums' last
+/// bits.
+uint32_t nextDirectStep(uint32_t rounds);
 
 /// Part of a layer's direct light: a group of EmitterLight or of LampLight.
 struct DirectPart {
@@ -73,12 +79,15 @@ struct Layer {
     SmoothingWidth width;        // of the last result
     double light = 0, count = 0; // sums over patches, R, G and B together
     double directVariance = 0, indirectVariance = 0, iterationError = 1;
+    ErrorSketch sketch;              // of the indirect light's error; empty: not known
     double error = 1;                // relRMSE of result
     std::optional<LayerLevel> redo;  // the level it had with other surfaces, or before memory was short
     std::vector<uint32_t> redoSteps; // its directSteps then; empty: redo is made in one
-    bool converged = false;          // error below the aim, or all samples taken
-    std::unique_ptr<Layer> before;   // shown until there is a result
-    bool covered = false;            // LayerMixer's stand-in is shown in its place
+    // These follow from all layers and their weights as they are now (LayerSchedule::apportion).
+    LayerLevel wanted;             // the level to be made next, where it has one and goes on
+    bool converged = false;        // it needs no further level
+    std::unique_ptr<Layer> before; // shown until there is a result
+    bool covered = false;          // LayerMixer's stand-in is shown in its place
 
     /// Returns the share of the patches that takes a sample pass of direct light, in the mean; 1 before the
     /// first one.

@@ -9,10 +9,12 @@
 
 namespace relume {
 
-/// Sums over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it.
+/// Sums over all patches: of bounces as they were smoothed, and of the result as LayerPass tells it; and how
+/// bounces are off before they are smoothed.
 struct LevelSums {
     shader::ResolveSums indirect{};
     glm::dvec4 result{0.0};
+    ErrorSketch sketch;
 };
 
 /// Gathers light over links for the layers that bounce together, each in a lane, and makes their results. The

@@ -40,6 +40,15 @@ void LayerPass::recordResult(VkCommandBuffer cmd, const LightBuffers& light, con
     dispatchChunks(result_, cmd, push, light.chunkCount);
 }
 
+void LayerPass::recordSketch(VkCommandBuffer cmd, const LightBuffers& light, const vk::Buffer& sums,
+                             const vk::Buffer& sketch) const {
+    const shader::SketchPush push{.patches = light.patches.address(),
+                                  .sums = sums.address(),
+                                  .sketch = sketch.address(),
+                                  .chunkCount = light.chunkCount};
+    sketch_.dispatch(cmd, push, shader::kSketchStride, 1);
+}
+
 void LayerPass::recordMix(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count,
                           const vk::Buffer* base, const vk::Buffer& light) const {
     const auto patches = static_cast<uint32_t>(light.size() / sizeof(glm::vec4));

@@ -15,7 +15,7 @@ class LayerPass {
 public:
     explicit LayerPass(const vk::Device& device)
         : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix"),
-          mixDirect_(device, "layer_mix_direct") {}
+          mixDirect_(device, "layer_mix_direct"), sketch_(device, "layer_sketch") {}
 
     /// Direct light of a layer, and what is new of it.
     struct DirectWork {
@@ -30,6 +30,9 @@ public:
     /// the direct part, number of patches. indirect is laid out as result; nullptr stands for none.
     void recordResult(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
                       const vk::Buffer* indirect, const vk::Buffer& chunkSums) const;
+    /// Makes a sketch (SketchPush) of sums over links, vec4[kReplicates][patches].
+    void recordSketch(VkCommandBuffer cmd, const LightBuffers& light, const vk::Buffer& sums,
+                      const vk::Buffer& sketch) const;
     /// Makes light = base + the sum of weights (LayerWeight[count]) times layers. base is nullptr for
     /// nothing.
     void recordMix(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count, const vk::Buffer* base,
@@ -39,7 +42,7 @@ public:
                          const vk::Buffer& direct) const;
 
 private:
-    vk::ComputeProgram direct_, result_, mix_, mixDirect_;
+    vk::ComputeProgram direct_, result_, mix_, mixDirect_, sketch_;
 };
 
 } // namespace relume

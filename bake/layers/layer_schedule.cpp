@@ -1,7 +1,7 @@
 #include "bake/layers/layer_schedule.h"
 
 #include "bake/base/settling.h"
-#include "bake/gather/sample_plan.h"
+#include "bake/layers/composite.h"
 #include "bake/layers/layer_bounces.h"
 
 #include <algorithm>
@@ -9,10 +9,11 @@
 namespace relume {
 namespace {
 
-// A segment towards a light counts as so many links. Links are traced once for all layers, and what a layer
-// pays for itself is to gather them, so with many lights they cost far less than a segment; but those beyond
-// the memory are traced for each.
+// A segment towards a light counts as so many links.
 constexpr double kSegmentLinks = 1.0;
+// Links are traced once for all layers, as far as there is memory; what a layer pays for itself is to gather
+// them, in all its bounces, which is this share of tracing them (two CPU cores, three bounces).
+constexpr double kGatherShare = 0.15;
 // A level aims at this share of the variance that is allowed: a little too much costs bounces of another
 // level.
 constexpr double kAimed = 0.85;
@@ -26,6 +27,10 @@ double strength(const glm::vec3& weight) {
 // Tells whether the layer has direct light, made for where objects are.
 bool isLit(const Layer& layer) {
     return layer.directRounds > 0 && !layer.isOutdated();
+}
+
+LayerLevel atLeast(LayerLevel a, LayerLevel b) {
+    return {std::max(a.directRounds, b.directRounds), std::max(a.linkRounds, b.linkRounds)};
 }
 
 bool isBusy(const ScheduleState& state) {
@@ -49,39 +54,111 @@ bool LayerSchedule::isHasty(LayerLevel target) const {
     return target == firstLevel() && target != lastLevel();
 }
 
-// Returns the next level, whether or not links are there already: it must not depend on what was done before.
-LayerLevel LayerSchedule::nextLevel(const Layer& layer) const {
-    const LayerLevel now = layer.level, last = lastLevel();
-    if (rules_.error <= 0) return last;
+SampledPart LayerSchedule::directPart(const Layer& layer, double variance) const {
+    return {.rounds = layer.level.directRounds,
+            .most = lastLevel().directRounds,
+            .variance = variance,
+            .costOfRound = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare(),
+            .doubles = true};
+}
+
+// So many layers share what it costs to trace links.
+SampledPart LayerSchedule::linkPart(const Layer& layer, double variance, size_t sharers) const {
+    const double cost = kGatherShare + (1.0 - kGatherShare) / static_cast<double>(sharers);
+    return {.rounds = layer.level.linkRounds,
+            .most = lastLevel().linkRounds,
+            .variance = variance,
+            .costOfRound = cost * rules_.linksOfRound};
+}
+
+bool LayerSchedule::isGoodEnough(const Layer& layer) const {
+    return rules_.layerError <= 0 || layer.error <= rules_.layerError;
+}
+
+// Returns the level by which the layer has the error that is asked for each.
+LayerLevel LayerSchedule::levelByItself(const Layer& layer) const {
+    const double error = rules_.layerError;
     const double sampled = layer.error * layer.error - layer.iterationError * layer.iterationError;
-    const double iteration = std::min(layer.iterationError, kIterationShare * rules_.error); // of the next
-    const double wanted = rules_.error * rules_.error - iteration * iteration;
+    const double iteration = std::min(layer.iterationError, kIterationShare * error); // of the next
+    const double wanted = error * error - iteration * iteration;
     const double variance = layer.directVariance + layer.indirectVariance;
     const Rounds rounds =
-        roundsFor({.rounds = now.directRounds,
-                   .most = last.directRounds,
-                   .variance = layer.directVariance,
-                   .costOfRound = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare()},
-                  {.rounds = now.linkRounds,
-                   .most = last.linkRounds,
-                   .variance = layer.indirectVariance,
-                   .costOfRound = static_cast<double>(rules_.linksOfRound)},
+        roundsFor(directPart(layer, layer.directVariance), linkPart(layer, layer.indirectVariance, 1),
                   sampled > 0.0 ? kAimed * variance * wanted / sampled : 0.0);
     return {rounds.first, rounds.second};
 }
 
+// Returns the levels by which the composite has its error at the least cost. Where it is later bounces that
+// it lacks, the layer that lacks most goes on: the next level's bounces converge anew.
+std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>& layers) const {
+    const Composite composite = compositeOf(layers);
+    std::vector<LayerLevel> levels;
+    for (const Layer* layer : layers)
+        levels.push_back(layer->level);
+    if (rules_.error <= 0 || composite.error <= rules_.error) return levels;
+    std::vector<SampledPart> parts;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        parts.push_back(directPart(*layers[i], composite.shares[i].direct));
+        parts.push_back(linkPart(*layers[i], composite.shares[i].indirect, layers.size()));
+    }
+    const double iteration = std::min(composite.iteration, kIterationShare * rules_.error);
+    const double allowed = kAimed * (rules_.error * rules_.error - iteration * iteration);
+    const std::vector<uint32_t> rounds = roundsFor(parts, allowed);
+    bool more = false;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const LayerLevel level{rounds[2 * i], rounds[2 * i + 1]};
+        more = more || level != levels[i];
+        levels[i] = level;
+    }
+    if (more) return levels;
+    size_t worst = 0;
+    for (size_t i = 1; i < layers.size(); ++i)
+        if (composite.shares[i].error > composite.shares[worst].error) worst = i;
+    const Layer& layer = *layers[worst];
+    const Rounds doubled = roundsFor(directPart(layer, layer.directVariance),
+                                     linkPart(layer, layer.indirectVariance, layers.size()), 0.0);
+    levels[worst] = {doubled.first, doubled.second};
+    return levels;
+}
+
+// The composite decides on the levels of all layers at once, and anew when each has its own: then they depend
+// neither on the order in which layers are made nor on who bounces along.
+void LayerSchedule::apportion(const Layers& layers, bool weighedAnew) const {
+    bool underWay = false;
+    std::vector<Layer*> there;
+    for (const std::unique_ptr<Layer>& layer : layers) {
+        const bool goesOn = layer->has() && !layer->redo;
+        const bool over = goesOn && (layer->level == lastLevel() || layer->light <= 0);
+        if (weighedAnew || !goesOn || over || !layer->shines()) layer->wanted = layer->level;
+        layer->wanted = atLeast(layer->wanted, layer->level);
+        if (goesOn && !over && takesAll()) layer->wanted = lastLevel();
+        layer->converged = goesOn && layer->wanted == layer->level;
+        if (!layer->shines()) continue;
+        underWay = underWay || !layer->converged;
+        if (goesOn && layer->light > 0) there.push_back(layer.get());
+    }
+    if (takesAll()) return;
+    if (!underWay) {
+        const std::vector<LayerLevel> together = levelsTogether(there);
+        for (size_t i = 0; i < there.size(); ++i)
+            there[i]->wanted = together[i];
+    }
+    for (Layer* layer : there) {
+        if (!isGoodEnough(*layer)) layer->wanted = atLeast(layer->wanted, levelByItself(*layer));
+        layer->converged = layer->wanted == layer->level;
+        // Direct light that was made ahead is part of whichever level comes next.
+        if (!layer->converged)
+            layer->wanted.directRounds = std::max(layer->wanted.directRounds, layer->directRounds);
+    }
+}
+
 // Where the steps of a level that was there before begin with the first level, that is seen at once.
 LayerLevel LayerSchedule::targetOf(const Layer& layer) const {
-    if (!layer.redo) return layer.has() ? nextLevel(layer) : firstLevel();
+    if (!layer.redo) return layer.has() ? layer.wanted : firstLevel();
     const uint32_t rounds = firstLevel().directRounds;
     const bool first = !layer.has() && layer.directRounds <= rounds && !layer.redoSteps.empty() &&
                        layer.redoSteps.front() == rounds;
     return first ? firstLevel() : *layer.redo;
-}
-
-bool LayerSchedule::isConverged(const Layer& layer) const {
-    return !layer.redo && (layer.level == lastLevel() || (rules_.error > 0 && layer.error <= rules_.error) ||
-                           layer.light <= 0);
 }
 
 LayerSchedule::Step LayerSchedule::next(const Layers& layers, const ScheduleState& state) const {
@@ -228,19 +305,18 @@ bool LayerSchedule::isWhole(const Layers& layers, const ScheduleState& state) co
 }
 
 LayerSchedule::Told LayerSchedule::told(const Layers& layers) const {
-    double light = 0, error = 0;
-    bool all = true, converged = true;
+    std::vector<Layer*> shining;
+    bool all = true, enough = true;
     for (const std::unique_ptr<Layer>& layer : layers) {
-        const double weight = strength(layer->source.weight);
-        if (weight <= 0) continue;
+        if (strength(layer->source.weight) <= 0) continue;
+        shining.push_back(layer.get());
         all = all && layer->has();
-        converged = converged && layer->converged;
-        light += weight * layer->light;
-        error += weight * layer->light * layer->error;
+        enough = enough && !layer->redo && (layer->light <= 0 || isGoodEnough(*layer)) &&
+                 (!takesAll() || layer->converged);
     }
     Told told;
-    told.error = !all ? 1.0 : light > 0 ? error / light : 0.0;
-    told.converged = all && converged && (rules_.error <= 0 || told.error <= rules_.error);
+    told.error = all ? compositeOf(shining).error : 1.0;
+    told.converged = all && enough && (rules_.error <= 0 || told.error <= rules_.error);
     return told;
 }
 

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "bake/gather/sample_plan.h"
 #include "bake/layers/layer.h"
 
 namespace relume {
@@ -15,9 +16,11 @@ struct ScheduleRules {
     uint32_t linksOfRound = 16; // links per patch and sample pass
     uint32_t samples = 0;       // per patch, at most; 0: as many as the error needs
     uint32_t passes = 0;        // bounces, the direct light included; 0: until they have converged
-    double error = 0.01;        // relRMSE that each layer is to have; 0: all samples are taken
-    bool live = false;          // a viewer looks
-    bool together = false;      // layers bounce side by side
+    double error = 0.01;        // relRMSE that the composite is to have; 0: it may have any
+    double layerError = 0; // relRMSE that each layer is to have by itself; 0: any. Without both, all samples
+                           // are taken
+    bool live = false;     // a viewer looks
+    bool together = false; // layers bounce side by side
 };
 
 /// Holds what is under way while the schedule is asked, besides the layers.
@@ -53,10 +56,12 @@ public:
     LayerLevel lastLevel() const;
     /// Tells whether this is the first level and others follow.
     bool isHasty(LayerLevel target) const;
+    /// Decides for each layer how far it is to go, by its share of the composite as it is weighed now: sets
+    /// `wanted` and `converged`. It is to be called whenever a level has changed and, as `weighedAnew`, when
+    /// weights have, or which layers there are; what was decided before counts no more then.
+    void apportion(const Layers& layers, bool weighedAnew = false) const;
     /// Returns the level to be made now. One that was there before is made in the steps that it was made in.
     LayerLevel targetOf(const Layer& layer) const;
-    /// Tells whether the layer needs no further level.
-    bool isConverged(const Layer& layer) const;
 
     // These decide about steps.
     struct Done {};
@@ -98,8 +103,8 @@ public:
     /// Returns a layer whose direct light is to be repaired before any layer goes on, those whose repair has
     /// not begun first; nothing where there is none or nobody looks.
     std::optional<size_t> dirtyLayer(const Layers& layers) const;
-    /// Returns how far the composite is off, as relRMSE, and whether all layers have what was asked for.
-    /// Layers share links, so that their errors may have one sign: they are added up.
+    /// Returns how far the composite is off, as relRMSE (compositeOf), and whether all that was asked for is
+    /// reached.
     struct Told {
         double error = 1;
         bool converged = false;
@@ -108,7 +113,12 @@ public:
 
 private:
     Step nextLevelStep(const Layers& layers, const ScheduleState& state) const;
-    LayerLevel nextLevel(const Layer& layer) const;
+    bool takesAll() const { return rules_.error <= 0 && rules_.layerError <= 0; }
+    bool isGoodEnough(const Layer& layer) const;
+    SampledPart directPart(const Layer& layer, double variance) const;
+    SampledPart linkPart(const Layer& layer, double variance, size_t sharers) const;
+    LayerLevel levelByItself(const Layer& layer) const;
+    std::vector<LayerLevel> levelsTogether(const std::vector<Layer*>& layers) const;
     std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
     std::optional<size_t> nextLayer(const Layers& layers) const;
     std::optional<size_t> directFirst(const Layers& layers, size_t index) const;

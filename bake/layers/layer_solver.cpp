@@ -65,6 +65,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                                                         .samples = settings.links.samples,
                                                         .passes = settings.passes,
                                                         .error = settings.error,
+                                                        .layerError = settings.layers.error,
                                                         .live = settings.live,
                                                         .together = !kit_.gatherPass.onCpu()}),
       store_(input.device, kit_.lightBytes(), settings.layers.bytes), lights_(kit_), penumbra_(kit_),
@@ -234,6 +235,7 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
     layer.count = total.z;
     layer.directVariance = total.y;
     layer.indirectVariance = smoothedVariance(sums.indirect);
+    layer.sketch = sums.sketch;
     // The light that bounces have converged to is gathered once more; of several gathers the last one is what
     // was measured.
     const double more = gathers > 1 ? 1.0 : lane.series.ratio;
@@ -244,7 +246,6 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
         layer.redo.reset();
         layer.redoSteps.clear();
     }
-    layer.converged = schedule_.isConverged(layer);
     // The counters take the level's own work, whoever bounced along and whatever was begun in vain: it is the
     // light's own history.
     progress_.passes += lane.looked + gathers;
@@ -273,7 +274,9 @@ void LayerSolver::endStandIn() {
     mixer_.endStandIn(layers().size());
 }
 
-void LayerSolver::tellError() {
+// Tells how far the composite is off, and decides anew how far each layer is to go.
+void LayerSolver::tellError(bool weighedAnew) {
+    schedule_.apportion(layers(), weighedAnew);
     const LayerSchedule::Told told = schedule_.told(layers());
     progress_.error = told.error;
     progress_.converged = told.converged;
@@ -342,6 +345,16 @@ std::vector<float> LayerSolver::errors() {
     for (const glm::vec4& v : light())
         result.push_back(v.w);
     return result;
+}
+
+double LayerSolver::shareOf(const Layer& layer) const {
+    const auto weighed = [](const Layer& one) {
+        return one.light * double{one.source.weight.r + one.source.weight.g + one.source.weight.b};
+    };
+    double all = 0;
+    for (const std::unique_ptr<Layer>& one : layers())
+        all += weighed(*one);
+    return all > 0 ? weighed(layer) / all : 0.0;
 }
 
 std::vector<glm::vec4> LayerSolver::layerLight(const Layer& layer) const {

@@ -42,6 +42,8 @@ public:
 
     /// Returns what the user sees and changes; it is valid until the next step() or edit().
     const std::vector<std::unique_ptr<Layer>>& layers() const { return store_.layers(); }
+    /// Returns the layer's share of the composite's light, as it is weighed now.
+    double shareOf(const Layer& layer) const;
     /// Returns a layer's result for a unit of its weight, vec4 per patch.
     std::vector<glm::vec4> layerLight(const Layer& layer) const;
 
@@ -80,7 +82,7 @@ private:
     LevelSums resolveLevel(const BounceJob::Lane& lane, uint32_t index);
     void showLevel(Layer& layer);
     void endStandIn();
-    void tellError();
+    void tellError(bool weighedAnew = false);
 
     // The sum of all lights
     bool canSum() const { return schedule_.canSum(layers(), mixer_.showsSum()); }

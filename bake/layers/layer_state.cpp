@@ -1,5 +1,6 @@
 #include "bake/layers/layer_state.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace relume {
@@ -10,13 +11,16 @@ struct LayerState {
     LayerLevel level;
     SmoothingWidth width;
     double light = 0, count = 0, directVariance = 0, indirectVariance = 0, iterationError = 1, error = 1;
+    LayerLevel wanted;
     bool converged = false;
 };
+
+constexpr size_t kSketchBytes = kSketchEntries * sizeof(glm::vec3);
 
 } // namespace
 
 size_t layerStateBytes(uint32_t parts) {
-    return sizeof(LayerState) + parts;
+    return sizeof(LayerState) + kSketchBytes + parts;
 }
 
 void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes) {
@@ -31,9 +35,14 @@ void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes)
     own.indirectVariance = layer.indirectVariance;
     own.iterationError = layer.iterationError;
     own.error = layer.error;
+    own.wanted = layer.wanted;
     own.converged = layer.converged;
     const auto* from = reinterpret_cast<const uint8_t*>(&own);
     bytes.insert(bytes.end(), from, from + sizeof own);
+    std::vector<glm::vec3> entries = layer.sketch.entries;
+    entries.resize(kSketchEntries, glm::vec3(0.0f)); // which is as good as none
+    const auto* sketch = reinterpret_cast<const uint8_t*>(entries.data());
+    bytes.insert(bytes.end(), sketch, sketch + kSketchBytes);
     layer.penumbra.resize(parts, 0);
     bytes.insert(bytes.end(), layer.penumbra.begin(), layer.penumbra.end());
 }
@@ -41,9 +50,15 @@ void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes)
 void takeLayerState(Layer& layer, std::span<const uint8_t> bytes) {
     LayerState from;
     std::memcpy(&from, bytes.data(), sizeof from);
-    layer.penumbra.assign(bytes.begin() + sizeof from, bytes.end());
+    const std::span<const uint8_t> sketch = bytes.subspan(sizeof from, kSketchBytes);
+    const std::span<const uint8_t> penumbra = bytes.subspan(sizeof from + kSketchBytes);
+    layer.sketch.entries.resize(kSketchEntries);
+    std::memcpy(layer.sketch.entries.data(), sketch.data(), kSketchBytes);
+    layer.penumbra.assign(penumbra.begin(), penumbra.end());
     layer.directRounds = from.directRounds;
-    layer.directSteps.assign(1, from.directRounds);
+    layer.directSteps.clear();
+    for (uint32_t made = 0; made < from.directRounds; layer.directSteps.push_back(made))
+        made = std::min(nextDirectStep(made), from.directRounds);
     layer.level = from.level;
     layer.width = from.width;
     layer.light = from.light;
@@ -52,6 +67,7 @@ void takeLayerState(Layer& layer, std::span<const uint8_t> bytes) {
     layer.indirectVariance = from.indirectVariance;
     layer.iterationError = from.iterationError;
     layer.error = from.error;
+    layer.wanted = from.wanted;
     layer.converged = from.converged;
 }
 

@@ -88,6 +88,7 @@ struct BakeDesc {
     bool deviceGather = false;
     bool live = false;
     bool layers = false;
+    double layerError = 0;              // of each layer by itself; 0: any
     uint64_t layerBytes = 0;            // at most; 0: as much as there is
     const vk::Device* device = nullptr; // nullptr: testDevice()
 };

@@ -114,10 +114,11 @@ TEST(LayerBounces, AnEditAmongThemLeavesTheOthers) {
 }
 
 // Layers go to the error that is asked for, levels and all.
+// One that is soloed goes on to the composite's error; by itself it is off as much whoever shines beside it.
 TEST(LayerBounces, ToAnErrorAreAsAlone) {
     BakeDesc desc = onDevice();
     desc.samples = 0;
-    desc.error = 0.03;
+    desc.error = desc.layerError = 0.03;
     expectAsAlone(desc);
 }
 

@@ -176,10 +176,7 @@ FakeBake::End FakeBake::directBatch() {
     auto& job = std::get<Direct>(job_);
     if (job.mended) return mendBatch(job);
     Layer& layer = *job.layer;
-    const std::vector<uint32_t>& steps = layer.redoSteps;
-    const auto next = std::upper_bound(steps.begin(), steps.end(), layer.directRounds);
-    layer.directRounds =
-        next == steps.end() ? job.target.directRounds : std::min(*next, job.target.directRounds);
+    layer.directRounds = std::min(nextDirectStep(layer.directRounds), job.target.directRounds);
     layer.directSteps.push_back(layer.directRounds);
     return layer.directRounds == job.target.directRounds ? End::Made : End::NotYet;
 }
@@ -276,16 +273,16 @@ void FakeBake::finishLevel(Layer& layer, LayerLevel target) {
     layer.light = randomOf(layer, kLight) % 10; // every tenth lights nothing
     layer.directVariance = noise(kDirect) / target.directRounds;
     layer.indirectVariance = target.linkRounds > 0 ? noise(kIndirect) / target.linkRounds : 0.0;
-    layer.iterationError = 0.1 * desc_.rules.error;
+    layer.iterationError = 0.1 * std::max(desc_.rules.error, desc_.rules.layerError);
     layer.error = std::sqrt(layer.directVariance + layer.indirectVariance +
                             layer.iterationError * layer.iterationError);
     if (layer.redo == layer.level) {
         layer.redo.reset();
         layer.redoSteps.clear();
     }
-    layer.converged = schedule_.isConverged(layer);
     levels_[layer.source.name].push_back(textOf(target));
     if (layer.before) store_->archive(std::move(layer.before));
+    schedule_.apportion(layers());
     if (!wantsSum()) sumShown_ = false;
 }
 
@@ -326,6 +323,7 @@ void FakeBake::weigh() {
         if (wants == all.end() && isRegrouped(*layer, all)) continue;
         layer->source.weight = wants != all.end() ? wants->source.weight : glm::vec3(0.0f);
     }
+    schedule_.apportion(layers(), true);
 }
 
 void FakeBake::adopt() {
@@ -340,6 +338,7 @@ void FakeBake::adopt() {
     sumDue_ = canSum();
     if (!wantsSum()) sumShown_ = false;
     done_ = false;
+    schedule_.apportion(layers(), true);
 }
 
 void FakeBake::adoptLayers() {

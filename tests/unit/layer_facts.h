@@ -12,14 +12,15 @@
 namespace relume {
 
 /// A bake that a viewer looks at, on a GPU. Sample passes have 4 points and 16 links, so that the sum of all
-/// lights takes four of the links'.
+/// lights takes four of the links'. Each layer is to have an error by itself, so that what others are does
+/// not matter.
 inline ScheduleRules viewerRules() {
-    return {.live = true, .together = true};
+    return {.error = 0, .layerError = 0.01, .live = true, .together = true};
 }
 
 /// A bake without a viewer, on a GPU.
 inline ScheduleRules offlineRules() {
-    return {.together = true};
+    return {.error = 0, .layerError = 0.01, .together = true};
 }
 
 /// Says in plain words what a schedule knows of a layer. There are no buffers behind it.
@@ -56,6 +57,10 @@ public:
     LayerFacts& noise(double direct, double indirect) {
         layer_->directVariance = direct;
         layer_->indirectVariance = indirect;
+        return *this;
+    }
+    LayerFacts& sketch(std::vector<glm::vec3> entries) {
+        layer_->sketch.entries = std::move(entries);
         return *this;
     }
     LayerFacts& shedding(double light) {
@@ -173,8 +178,19 @@ inline std::string textOf(const LayerSchedule::Step& step) {
            textOf(begin.target);
 }
 
+/// Has the schedule decide how far layers go, but leaves those alone of which a test says whether they go on.
+inline void apportion(const ScheduleRules& rules, const LayerSchedule::Layers& layers) {
+    std::vector<bool> converged;
+    for (const std::unique_ptr<Layer>& layer : layers)
+        converged.push_back(layer->converged);
+    LayerSchedule(rules).apportion(layers);
+    for (size_t i = 0; i < layers.size(); ++i)
+        layers[i]->converged = converged[i];
+}
+
 inline std::string stepOf(const ScheduleRules& rules, const LayerSchedule::Layers& layers,
                           const ScheduleState& state = Now()) {
+    apportion(rules, layers);
     return textOf(LayerSchedule(rules).next(layers, state));
 }
 

@@ -9,7 +9,9 @@ namespace relume {
 namespace {
 
 std::string targetOf(const ScheduleRules& rules, auto&& facts) {
-    return textOf(LayerSchedule(rules).targetOf(*facts.make()));
+    const LayerSchedule::Layers layers = layersOf(std::forward<decltype(facts)>(facts));
+    LayerSchedule(rules).apportion(layers);
+    return textOf(LayerSchedule(rules).targetOf(*layers.front()));
 }
 
 std::string nextOf(auto&& facts) {
@@ -17,7 +19,9 @@ std::string nextOf(auto&& facts) {
 }
 
 bool isEnough(const ScheduleRules& rules, auto&& facts) {
-    return LayerSchedule(rules).isConverged(*facts.make());
+    const LayerSchedule::Layers layers = layersOf(std::forward<decltype(facts)>(facts));
+    LayerSchedule(rules).apportion(layers);
+    return layers.front()->converged;
 }
 
 struct RangeOfLevels {
@@ -73,9 +77,10 @@ TEST(LayerLevels, WhatHasNoneAimsAtTheFirst) {
     EXPECT_EQ(targetOf({.samples = 4, .error = 0}, fresh()), "1+1");
 }
 
-// Samples' variance must fall to 0.85 / 4 of what it is: 9.4 sample passes in place of 2.
+// Samples' variance must fall to 0.85 / 4 of what it is: 9.4 sample passes in place of 2. Those of direct
+// light are a power of two.
 TEST(LayerLevels, NoiseOfDirectLightTakesPoints) {
-    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0)), "12+2");
+    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0)), "16+2");
 }
 
 TEST(LayerLevels, NoiseOfBouncesTakesLinks) {
@@ -90,13 +95,13 @@ TEST(LayerLevels, NoLevelHasMoreThanEightTimesTheLast) {
 TEST(LayerLevels, WhatIsSoughtIsTheRestOfAnError) {
     // With r times the variance that is allowed there are 2 r / 0.85 sample passes: 5.9 here.
     const double sampled = 2.5e-4;
-    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0).off(std::sqrt(sampled))), "6+2");
+    EXPECT_EQ(nextOf(at(2, 2).noise(0, 1).off(std::sqrt(sampled))), "2+6");
     // Bounces may leave a fifth of the aim, and then 6.1 are wanted.
-    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0).off(std::sqrt(sampled + 4e-6), 2e-3)), "8+2");
+    EXPECT_EQ(nextOf(at(2, 2).noise(0, 1).off(std::sqrt(sampled + 4e-6), 2e-3)), "2+8");
     // Samples are expected to take nothing away of what bounces leave beyond that.
-    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0).off(std::sqrt(sampled + 1e-4), 1e-2)), "8+2");
+    EXPECT_EQ(nextOf(at(2, 2).noise(0, 1).off(std::sqrt(sampled + 1e-4), 1e-2)), "2+8");
     // They leave less than they may.
-    EXPECT_EQ(nextOf(at(2, 2).noise(1, 0).off(std::sqrt(sampled + 1e-8), 1e-4)), "6+2");
+    EXPECT_EQ(nextOf(at(2, 2).noise(0, 1).off(std::sqrt(sampled + 1e-8), 1e-4)), "2+6");
 }
 
 TEST(LayerLevels, WhereBouncesAreAllTheErrorTheBetterPartDoubles) {
@@ -106,7 +111,7 @@ TEST(LayerLevels, WhereBouncesAreAllTheErrorTheBetterPartDoubles) {
 }
 
 TEST(LayerLevels, SixteenRaysCostAPassOfLinks) {
-    EXPECT_EQ(nextOf(at(2, 2).rays({16})), "12+12");
+    EXPECT_EQ(nextOf(at(2, 2).rays({16})), "16+12");
 }
 
 TEST(LayerLevels, CheapPointsAreTakenRatherThanLinks) {
@@ -118,7 +123,7 @@ TEST(LayerLevels, DearPointsAreTakenLessOften) {
 }
 
 TEST(LayerLevels, RaysOfAllPartsCount) {
-    EXPECT_EQ(nextOf(at(2, 2).rays({4, 0, 12})), "12+12");
+    EXPECT_EQ(nextOf(at(2, 2).rays({4, 0, 12})), "16+12");
 }
 
 TEST(LayerLevels, WhatHasNoRaysCostsAsOne) {
@@ -137,7 +142,7 @@ TEST(LayerLevels, TheNextIsNeverBeyondTheLast) {
 }
 
 TEST(LayerLevels, WithDirectLightAloneThereAreNoLinks) {
-    EXPECT_EQ(targetOf({.passes = 1}, at(2, 0).noise(1, 0)), "12+0");
+    EXPECT_EQ(targetOf({.passes = 1}, at(2, 0).noise(1, 0)), "16+0");
 }
 
 TEST(LayerLevels, WithoutAnErrorAllSamplesComeAfterTheFirst) {
@@ -148,10 +153,12 @@ TEST(LayerLevels, WithoutAnErrorAllSamplesComeAfterTheFirst) {
 
 TEST(LayerLevels, EachHasMoreThanTheOneBeforeUntilTheLast) {
     const LayerSchedule schedule({.samples = 4000, .error = 1e-6});
-    std::unique_ptr<Layer> layer = at(2, 2).off(0.1).make();
+    const LayerSchedule::Layers layers = layersOf(at(2, 2).off(0.1));
+    Layer* layer = layers.front().get();
     constexpr int kMany = 20;
     int levels = 1;
     for (; layer->level != schedule.lastLevel() && levels < kMany; ++levels) {
+        schedule.apportion(layers);
         const LayerLevel before = layer->level, next = schedule.targetOf(*layer);
         EXPECT_GE(next.directRounds, before.directRounds);
         EXPECT_GE(next.linkRounds, before.linkRounds);
@@ -164,8 +171,11 @@ TEST(LayerLevels, EachHasMoreThanTheOneBeforeUntilTheLast) {
 
 TEST(LayerLevels, AskingAgainGivesTheSame) {
     const LayerSchedule schedule(offlineRules());
-    const std::unique_ptr<Layer> layer = at(2, 2).rays({4}).make();
-    EXPECT_EQ(schedule.targetOf(*layer), schedule.targetOf(*layer));
+    const LayerSchedule::Layers layers = layersOf(at(2, 2).rays({4}));
+    schedule.apportion(layers);
+    const LayerLevel once = schedule.targetOf(*layers.front());
+    schedule.apportion(layers);
+    EXPECT_EQ(schedule.targetOf(*layers.front()), once);
 }
 
 // What was forgotten comes back in the steps that it was made in, and the first of them is seen at once.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace relume {
 namespace {
 
@@ -329,11 +331,43 @@ LayerSchedule::Told errorOf(const LayerSchedule::Layers& layers,
     return LayerSchedule(rules).told(layers);
 }
 
-TEST(ToldError, IsTheMeanByWeightAndLight) {
-    EXPECT_DOUBLE_EQ(errorOf(layersOf(at(2, 2).off(0.2), at(2, 2).off(0.4))).error, 0.3);
-    EXPECT_DOUBLE_EQ(errorOf(layersOf(at(2, 2).off(0.2).weighing(3), at(2, 2).off(0.4))).error, 0.25);
-    EXPECT_DOUBLE_EQ(errorOf(layersOf(at(2, 2).off(0.2).shedding(3), at(2, 2).off(0.4))).error, 0.25);
-    EXPECT_DOUBLE_EQ(errorOf(layersOf(at(2, 2).off(0.2).weighing({0, 1, 3}), at(2, 2).off(0.4))).error, 0.25);
+// Independent errors of .2 and .4 of as much light are off by half the root of .2^2 + .4^2.
+TEST(ToldError, OfDirectLightIsTheRootOfSquares) {
+    const auto direct = [](double error) { return std::move(at(2, 2).noise(1, 0).off(error)); };
+    EXPECT_NEAR(errorOf(layersOf(direct(0.2), direct(0.4))).error, 0.5 * std::hypot(0.2, 0.4), 1e-12);
+    EXPECT_NEAR(errorOf(layersOf(direct(0.2).weighing(3), direct(0.4))).error, 0.25 * std::hypot(0.6, 0.4),
+                1e-12);
+    EXPECT_NEAR(errorOf(layersOf(direct(0.2).shedding(3), direct(0.4))).error, 0.25 * std::hypot(0.6, 0.4),
+                1e-12);
+    // A third of all channels' light, but their squares count.
+    EXPECT_NEAR(errorOf(layersOf(direct(0.2).weighing({0, 0, 3}), direct(0.4))).error,
+                0.5 * std::hypot(0.2 * std::sqrt(3.0), 0.4), 1e-6);
+}
+
+TEST(ToldError, OfLinksAddsUpWhereNothingIsKnown) {
+    const auto indirect = [](double error) { return std::move(at(2, 2).noise(0, 1).off(error)); };
+    EXPECT_NEAR(errorOf(layersOf(indirect(0.2), indirect(0.4))).error, 0.3, 1e-12);
+    EXPECT_NEAR(errorOf(layersOf(indirect(0.2).weighing(3), indirect(0.4))).error, 0.25, 1e-12);
+}
+
+TEST(ToldError, OfLinksIsWhatSketchesHaveInCommon) {
+    const auto sketched = [](double error, const glm::vec3& a, const glm::vec3& b) {
+        return std::move(at(2, 2).noise(0, 1).off(error).sketch({a, b}));
+    };
+    const glm::vec3 some(5.0f), none(0.0f);
+    const auto both = [&](const glm::vec3& a, const glm::vec3& b) {
+        return errorOf(layersOf(sketched(0.2, some, none), sketched(0.4, a, b))).error;
+    };
+    EXPECT_NEAR(both(some, none), 0.3, 1e-6);                        // the same sign everywhere
+    EXPECT_NEAR(both(none, some), 0.5 * std::hypot(0.2, 0.4), 1e-6); // nothing in common
+    EXPECT_NEAR(both(-some, none), 0.1, 1e-6);                       // the other sign everywhere
+    const LayerSchedule::Layers beside =
+        layersOf(sketched(0.2, some, none), sketched(0.4, none, some), at(2, 2).noise(0, 1).off(0.3));
+    EXPECT_NEAR(errorOf(beside).error, (std::hypot(0.2, 0.4) + 0.3) / 3.0, 1e-6);
+}
+
+TEST(ToldError, OfBouncesAddsUp) {
+    EXPECT_NEAR(errorOf(layersOf(at(2, 2).off(0.02, 0.02), at(2, 2).off(0.04, 0.04))).error, 0.03, 1e-12);
 }
 
 TEST(ToldError, IsAllBeforeEachHasALevel) {
@@ -357,7 +391,7 @@ TEST(ToldError, OfDarknessIsNothing) {
 
 TEST(ToldError, ConvergesWithTheLastLayer) {
     EXPECT_TRUE(errorOf(layersOf(at(8, 8).off(0.005).converged(), at(8, 8).off(0.01).converged())).converged);
-    EXPECT_FALSE(errorOf(layersOf(at(8, 8).off(0.005).converged(), at(8, 8).off(0.01))).converged);
+    EXPECT_FALSE(errorOf(layersOf(at(8, 8).off(0.005).converged(), at(8, 8).off(0.011))).converged);
 }
 
 TEST(ToldError, IsNotWhatWasAskedForWhereSamplesHaveRunOut) {

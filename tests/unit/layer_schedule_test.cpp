@@ -14,6 +14,7 @@ ScheduleRules onCpu(ScheduleRules rules) {
 // Tells which layers come along as "1 3".
 std::string companionsOf(const ScheduleRules& rules, const LayerSchedule::Layers& layers, size_t index = 0) {
     const LayerSchedule schedule(rules);
+    apportion(rules, layers);
     std::string text;
     for (const size_t i : schedule.companions(layers, index, schedule.targetOf(*layers[index])))
         text += (text.empty() ? "" : " ") + std::to_string(i);
@@ -116,7 +117,7 @@ TEST(NextLayer, OneColourIsEnoughToShine) {
 
 TEST(NextLayer, WhatHasConvergedStays) {
     EXPECT_EQ(stepOf(onCpu(viewerRules()), layersOf(at(2, 2).off(0.9).converged(), at(2, 2).noise(1, 0))),
-              "layer 1 to 12+2");
+              "layer 1 to 16+2");
 }
 
 TEST(NextLayer, TheWorstComesNext) {
@@ -262,11 +263,11 @@ TEST(DirectLightFirst, AViewerIsInHasteForTheFirstLevels) {
 
 TEST(DirectLightFirst, AViewerIsNotInHasteForLaterLevels) {
     EXPECT_EQ(stepOf(viewerRules(), layersOf(at(2, 2).noise(1, 1).rays({16}), at(2, 2).rays({16}))),
-              "direct light of 0 to 12+12");
-    EXPECT_EQ(stepOf(viewerRules(), layersOf(at(2, 2).rays({16}).lit(12), at(2, 2).rays({16}))),
-              "direct light of 1 to 12+12");
-    EXPECT_EQ(stepOf(viewerRules(), layersOf(at(2, 2).rays({16}).lit(12), at(2, 2).rays({16}).lit(12))),
-              "layer 0 to 12+12");
+              "direct light of 0 to 16+12");
+    EXPECT_EQ(stepOf(viewerRules(), layersOf(at(2, 2).rays({16}).lit(16), at(2, 2).rays({16}))),
+              "direct light of 1 to 16+12");
+    EXPECT_EQ(stepOf(viewerRules(), layersOf(at(2, 2).rays({16}).lit(16), at(2, 2).rays({16}).lit(16))),
+              "layer 0 to 16+12");
 }
 
 TEST(DirectLightFirst, EightBounceTogether) {

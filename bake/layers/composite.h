@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bake/layers/layer.h"
+
+namespace relume {
+
+/// How far the weighted sum of layers is off, and what each has to do with it.
+struct Composite {
+    /// A layer's share; variances are relative to the square of the composite's mean light, and those of all
+    /// layers sum up to the square of what samples leave of its error.
+    struct Share {
+        double direct = 0, indirect = 0; // variance
+        double error = 0;                // what the layer would leave alone, later bounces included
+    };
+    double error = 0;     // relRMSE
+    double iteration = 0; // what later bounces still bring, relative to the mean light
+    std::vector<Share> shares;
+};
+
+/// Direct light's errors are independent from layer to layer. Indirect light's go together as their sketches
+/// tell, for layers see through the same links; those of a layer without a sketch count as if they had the
+/// others' sign everywhere. What later bounces bring is light, and adds up.
+Composite compositeOf(std::span<Layer* const> layers);
+
+} // namespace relume

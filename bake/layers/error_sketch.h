@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "assets/base/worker_pool.h"
+#include "bake/base/shader_types.h"
+
+namespace relume {
+
+constexpr uint32_t kSketchEntries = shader::kSketchStride * shader::kSketchParts * shader::kReplicates;
+
+/// The error of a layer's indirect light in a few numbers: how far each replicate is from their mean, summed
+/// over patches that share an entry, each with a random sign. What two layers' sketches have in common (the
+/// sum of the products of their entries) is in the mean what their errors have in common. Layers see through
+/// the same links, so that this is much, but it is seldom all.
+struct ErrorSketch {
+    std::vector<glm::vec3> entries; // [group][replicate], as SketchPush has it
+
+    bool empty() const { return entries.empty(); }
+    /// Returns the sum of squares.
+    double square() const;
+};
+
+/// Makes the sketch of sums over links on the CPU, as shaders/layer_sketch.comp does: patches has an entry
+/// per patch, padding included, and sums are [kReplicates][patches].
+ErrorSketch sketchOf(WorkerPool& pool, std::span<const shader::Patch> patches, const glm::vec4* sums);
+
+} // namespace relume
