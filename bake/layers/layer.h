@@ -50,6 +50,13 @@ struct DirectPart {
     uint32_t rays = 0; // per patch and sample pass; 0: nothing in it shines
 };
 
+/// Tells how far a layer is to go. It follows from all layers and their weights as they are now
+/// (LayerSchedule::apportion).
+struct LayerPlan {
+    LayerLevel wanted;      // the level to be made next, where it has one and goes on
+    bool converged = false; // it needs no further level
+};
+
 /// One light's share of the lightmap for a unit of its weight, or a group's share: direct light and all
 /// bounces.
 struct Layer {
@@ -83,9 +90,7 @@ struct Layer {
     double error = 1;                // relRMSE of result
     std::optional<LayerLevel> redo;  // the level it had with other surfaces, or before memory was short
     std::vector<uint32_t> redoSteps; // its directSteps then; empty: redo is made in one
-    // These follow from all layers and their weights as they are now (LayerSchedule::apportion).
-    LayerLevel wanted;             // the level to be made next, where it has one and goes on
-    bool converged = false;        // it needs no further level
+    LayerPlan plan;
     std::unique_ptr<Layer> before; // shown until there is a result
     bool covered = false;          // LayerMixer's stand-in is shown in its place
 

@@ -129,32 +129,32 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew) const {
     for (const std::unique_ptr<Layer>& layer : layers) {
         const bool goesOn = layer->has() && !layer->redo;
         const bool over = goesOn && (layer->level == lastLevel() || layer->light <= 0);
-        if (weighedAnew || !goesOn || over || !layer->shines()) layer->wanted = layer->level;
-        layer->wanted = atLeast(layer->wanted, layer->level);
-        if (goesOn && !over && takesAll()) layer->wanted = lastLevel();
-        layer->converged = goesOn && layer->wanted == layer->level;
+        if (weighedAnew || !goesOn || over || !layer->shines()) layer->plan.wanted = layer->level;
+        layer->plan.wanted = atLeast(layer->plan.wanted, layer->level);
+        if (goesOn && !over && takesAll()) layer->plan.wanted = lastLevel();
+        layer->plan.converged = goesOn && layer->plan.wanted == layer->level;
         if (!layer->shines()) continue;
-        underWay = underWay || !layer->converged;
+        underWay = underWay || !layer->plan.converged;
         if (goesOn && layer->light > 0) there.push_back(layer.get());
     }
     if (takesAll()) return;
     if (!underWay) {
         const std::vector<LayerLevel> together = levelsTogether(there);
         for (size_t i = 0; i < there.size(); ++i)
-            there[i]->wanted = together[i];
+            there[i]->plan.wanted = together[i];
     }
     for (Layer* layer : there) {
-        if (!isGoodEnough(*layer)) layer->wanted = atLeast(layer->wanted, levelByItself(*layer));
-        layer->converged = layer->wanted == layer->level;
+        if (!isGoodEnough(*layer)) layer->plan.wanted = atLeast(layer->plan.wanted, levelByItself(*layer));
+        layer->plan.converged = layer->plan.wanted == layer->level;
         // Direct light that was made ahead is part of whichever level comes next.
-        if (!layer->converged)
-            layer->wanted.directRounds = std::max(layer->wanted.directRounds, layer->directRounds);
+        if (!layer->plan.converged)
+            layer->plan.wanted.directRounds = std::max(layer->plan.wanted.directRounds, layer->directRounds);
     }
 }
 
 // Where the steps of a level that was there before begin with the first level, that is seen at once.
 LayerLevel LayerSchedule::targetOf(const Layer& layer) const {
-    if (!layer.redo) return layer.has() ? layer.wanted : firstLevel();
+    if (!layer.redo) return layer.has() ? layer.plan.wanted : firstLevel();
     const uint32_t rounds = firstLevel().directRounds;
     const bool first = !layer.has() && layer.directRounds <= rounds && !layer.redoSteps.empty() &&
                        layer.redoSteps.front() == rounds;
@@ -203,7 +203,7 @@ std::optional<size_t> LayerSchedule::nextLayer(const Layers& layers) const {
         const Layer& layer = *layers[i];
         if (strength(layer.source.weight) <= 0) continue;
         if (!layer.has()) return i;
-        if (layer.converged) continue;
+        if (layer.plan.converged) continue;
         const double weighed = strength(layer.source.weight) * layer.light * layer.error;
         if (worst && weighed <= most) continue;
         worst = i;
@@ -216,7 +216,7 @@ std::vector<size_t> LayerSchedule::companions(const Layers& layers, size_t index
     std::vector<size_t> others;
     for (size_t i = 0; rules_.together && i < layers.size(); ++i) {
         const Layer& layer = *layers[i];
-        const bool waits = !layer.converged && layer.stale.empty() && layer.shines();
+        const bool waits = !layer.plan.converged && layer.stale.empty() && layer.shines();
         if (i == index || !waits) continue;
         const LayerLevel own = targetOf(layer);
         if (own.linkRounds == target.linkRounds && isHasty(own) == isHasty(target)) others.push_back(i);
@@ -312,7 +312,7 @@ LayerSchedule::Told LayerSchedule::told(const Layers& layers) const {
         shining.push_back(layer.get());
         all = all && layer->has();
         enough = enough && !layer->redo && (layer->light <= 0 || isGoodEnough(*layer)) &&
-                 (!takesAll() || layer->converged);
+                 (!takesAll() || layer->plan.converged);
     }
     Told told;
     told.error = all ? compositeOf(shining).error : 1.0;

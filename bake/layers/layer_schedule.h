@@ -57,7 +57,7 @@ public:
     /// Tells whether this is the first level and others follow.
     bool isHasty(LayerLevel target) const;
     /// Decides for each layer how far it is to go, by its share of the composite as it is weighed now: sets
-    /// `wanted` and `converged`. It is to be called whenever a level has changed and, as `weighedAnew`, when
+    /// its plan. It is to be called whenever a level has changed and, as `weighedAnew`, when
     /// weights have, or which layers there are; what was decided before counts no more then.
     void apportion(const Layers& layers, bool weighedAnew = false) const;
     /// Returns the level to be made now. One that was there before is made in the steps that it was made in.

@@ -11,8 +11,7 @@ struct LayerState {
     LayerLevel level;
     SmoothingWidth width;
     double light = 0, count = 0, directVariance = 0, indirectVariance = 0, iterationError = 1, error = 1;
-    LayerLevel wanted;
-    bool converged = false;
+    LayerPlan plan;
 };
 
 constexpr size_t kSketchBytes = kSketchEntries * sizeof(glm::vec3);
@@ -35,8 +34,8 @@ void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes)
     own.indirectVariance = layer.indirectVariance;
     own.iterationError = layer.iterationError;
     own.error = layer.error;
-    own.wanted = layer.wanted;
-    own.converged = layer.converged;
+    own.plan.wanted = layer.plan.wanted; // by name, as the whole would bring its padding along
+    own.plan.converged = layer.plan.converged;
     const auto* from = reinterpret_cast<const uint8_t*>(&own);
     bytes.insert(bytes.end(), from, from + sizeof own);
     std::vector<glm::vec3> entries = layer.sketch.entries;
@@ -67,8 +66,7 @@ void takeLayerState(Layer& layer, std::span<const uint8_t> bytes) {
     layer.indirectVariance = from.indirectVariance;
     layer.iterationError = from.iterationError;
     layer.error = from.error;
-    layer.wanted = from.wanted;
-    layer.converged = from.converged;
+    layer.plan = from.plan;
 }
 
 } // namespace relume

@@ -249,7 +249,7 @@ TEST(Layers, ALightInsideAWallIsDark) {
     bake.finish();
     for (const glm::vec4& v : bake.layer(1))
         ASSERT_EQ(glm::vec3(v), glm::vec3(0.0f));
-    EXPECT_TRUE(bake.solver().layers()[1]->converged);
+    EXPECT_TRUE(bake.solver().layers()[1]->plan.converged);
 }
 
 // A light is dragged: each edit comes before the one before was followed to its end.

@@ -73,7 +73,7 @@ public:
         return *this;
     }
     LayerFacts& converged() {
-        layer_->converged = true;
+        layer_->plan.converged = true;
         return *this;
     }
     /// Direct light is somewhere of where objects were.
@@ -182,10 +182,10 @@ inline std::string textOf(const LayerSchedule::Step& step) {
 inline void apportion(const ScheduleRules& rules, const LayerSchedule::Layers& layers) {
     std::vector<bool> converged;
     for (const std::unique_ptr<Layer>& layer : layers)
-        converged.push_back(layer->converged);
+        converged.push_back(layer->plan.converged);
     LayerSchedule(rules).apportion(layers);
     for (size_t i = 0; i < layers.size(); ++i)
-        layers[i]->converged = converged[i];
+        layers[i]->plan.converged = converged[i];
 }
 
 inline std::string stepOf(const ScheduleRules& rules, const LayerSchedule::Layers& layers,

@@ -21,7 +21,7 @@ std::string nextOf(auto&& facts) {
 bool isEnough(const ScheduleRules& rules, auto&& facts) {
     const LayerSchedule::Layers layers = layersOf(std::forward<decltype(facts)>(facts));
     LayerSchedule(rules).apportion(layers);
-    return layers.front()->converged;
+    return layers.front()->plan.converged;
 }
 
 struct RangeOfLevels {

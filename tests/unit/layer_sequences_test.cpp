@@ -130,7 +130,7 @@ TEST_P(EditedBake, EndsWithAllLayersDone) {
         EXPECT_FALSE(bake.showsSum());
         for (const std::unique_ptr<Layer>& layer : bake.layers()) {
             if (!layer->shines()) continue;
-            EXPECT_TRUE(layer->converged) << layer->source.name;
+            EXPECT_TRUE(layer->plan.converged) << layer->source.name;
             EXPECT_TRUE(layer->stale.empty()) << layer->source.name;
             EXPECT_FALSE(layer->redo) << layer->source.name;
         }

@@ -15,7 +15,8 @@ std::string wantedOf(const LayerSchedule::Layers& layers, const ScheduleRules& r
     LayerSchedule(rules).apportion(layers, true);
     std::string text;
     for (const std::unique_ptr<Layer>& layer : layers)
-        text += (text.empty() ? "" : ", ") + textOf(layer->wanted) + (layer->converged ? " done" : "");
+        text +=
+            (text.empty() ? "" : ", ") + textOf(layer->plan.wanted) + (layer->plan.converged ? " done" : "");
     return text;
 }
 
@@ -70,10 +71,10 @@ TEST(LayerShares, LevelsOfAllAreDecidedAtOnce) {
     layers[0]->error = 0.0001;
     layers[1]->error = 0.01;
     schedule.apportion(layers);
-    EXPECT_EQ(textOf(layers[1]->wanted), "16+2");
-    EXPECT_FALSE(layers[1]->converged);
+    EXPECT_EQ(textOf(layers[1]->plan.wanted), "16+2");
+    EXPECT_FALSE(layers[1]->plan.converged);
     schedule.apportion(layers, true);
-    EXPECT_TRUE(layers[1]->converged);
+    EXPECT_TRUE(layers[1]->plan.converged);
 }
 
 TEST(LayerShares, NothingIsDecidedBeforeEachHasALevel) {
@@ -94,8 +95,8 @@ TEST(LayerShares, SomeLayerGoesOnUntilTheErrorIsReached) {
         schedule.apportion(layers);
         more = false;
         for (const std::unique_ptr<Layer>& layer : layers) {
-            const LayerLevel now = layer->level, next = layer->wanted;
-            EXPECT_EQ(layer->converged, next == now);
+            const LayerLevel now = layer->level, next = layer->plan.wanted;
+            EXPECT_EQ(layer->plan.converged, next == now);
             EXPECT_GE(next.directRounds, now.directRounds);
             EXPECT_GE(next.linkRounds, now.linkRounds);
             more = more || next != now;
