@@ -40,7 +40,7 @@ TEST(BenchQuality, TellsEveryFigure) {
         ASSERT_FALSE(mode.at("points").empty());
         double rays = 0;
         for (const auto& point : mode.at("points")) {
-            EXPECT_GT(point.at("rays"), rays);
+            EXPECT_GE(point.at("rays"), rays); // a layer may go on with links that others traced
             rays = point.at("rays");
             EXPECT_GT(point.at("processSeconds"), point.at("seconds"));
             EXPECT_LE(point.at("local50"), point.at("local95"));

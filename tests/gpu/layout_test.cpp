@@ -100,8 +100,9 @@ const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),       SIZE_OF(
                                               SIZE_OF(CoarseErrorPush), SIZE_OF(Lamp),
                                               SIZE_OF(LampPush),        SIZE_OF(LayerDirectPush),
                                               SIZE_OF(LayerResultPush), SIZE_OF(LayerWeight),
-                                              SIZE_OF(LayerMixPush),    SIZE_OF(BounceLane),
-                                              SIZE_OF(BouncePush),      SIZE_OF(ChunkSumPush)};
+                                              SIZE_OF(SketchPush),      SIZE_OF(LayerMixPush),
+                                              SIZE_OF(BounceLane),      SIZE_OF(BouncePush),
+                                              SIZE_OF(ChunkSumPush)};
 #undef SIZE_OF
 
 // Appends the byte offsets of a struct's 32-bit words by C++'s rules: addresses lie at multiples of 8, all
