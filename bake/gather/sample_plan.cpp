@@ -17,10 +17,13 @@ namespace {
 
 // There are at most so many times as many sample passes as before.
 constexpr uint32_t kMostGrowth = 8;
+// Many parts go in smaller steps: variances fall faster than one over the sample passes where these are
+// stratified, and what one part got too many of nobody takes back.
+constexpr uint32_t kMostGrowthOfMany = 4;
 
-uint32_t limited(const SampledPart& part, double rounds) {
+uint32_t limited(const SampledPart& part, double rounds, uint32_t growth = kMostGrowth) {
     if (part.rounds >= part.most) return part.rounds;
-    const double most = double{kMostGrowth} * std::max(1u, part.rounds);
+    const double most = static_cast<double>(growth) * std::max(1u, part.rounds);
     return std::min(part.most, onLadder(std::clamp(rounds, double(part.rounds), most), part.doubles));
 }
 
@@ -49,6 +52,48 @@ Rounds doubled(const SampledPart& first, const SampledPart& second) {
     if (first.rounds < first.most && (noSecond || worth(first) > worth(second)))
         return {limited(first, 2.0 * first.rounds), second.rounds};
     return {first.rounds, limited(second, 2.0 * second.rounds)};
+}
+
+// Returns the step of the ladder before the one that `above` is on, or what the part has where that is more.
+uint32_t stepBelow(const SampledPart& part, uint32_t above) {
+    const uint32_t below = part.doubles                 ? above / 2
+                           : std::has_single_bit(above) ? above / 4 * 3
+                                                        : above / 3 * 2;
+    return std::max(part.rounds, std::min(below, above));
+}
+
+// Takes each part to a step of the ladder. All begin below what they want; then the step comes next that
+// takes away most of the variance for its cost, until what is left is allowed. If all went above at once, it
+// would be half of that where steps double.
+std::vector<uint32_t> onSteps(std::span<const SampledPart> parts, std::span<const double> wanted,
+                              double allowed) {
+    std::vector<uint32_t> rounds;
+    std::vector<size_t> open; // parts that have a step to go
+    double variance = 0;
+    const auto varianceAt = [&](size_t i, uint32_t now) {
+        return varianceOfRound(parts[i]) / std::max(1u, now);
+    };
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
+        rounds.push_back(above > wanted[i] ? stepBelow(parts[i], above) : above);
+        variance += varianceAt(i, rounds[i]);
+        if (rounds[i] < above) open.push_back(i);
+    }
+    while (variance > allowed && !open.empty()) {
+        const auto worth = [&](size_t i) {
+            const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
+            return (varianceAt(i, rounds[i]) - varianceAt(i, above)) /
+                   ((above - rounds[i]) * parts[i].costOfRound);
+        };
+        const auto best = std::max_element(open.begin(), open.end(),
+                                           [&](size_t a, size_t b) { return worth(a) < worth(b); });
+        const size_t i = *best;
+        open.erase(best);
+        variance -= varianceAt(i, rounds[i]);
+        rounds[i] = limited(parts[i], wanted[i], kMostGrowthOfMany);
+        variance += varianceAt(i, rounds[i]);
+    }
+    return rounds;
 }
 
 } // namespace
@@ -82,9 +127,7 @@ std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allow
             more = more || settled[i];
         }
     }
-    for (size_t i = 0; i < parts.size(); ++i)
-        rounds[i] = limited(parts[i], wanted[i]);
-    return rounds;
+    return onSteps(parts, wanted, allowed);
 }
 
 double gainOfRound(const SampledPart& part, uint32_t now) {

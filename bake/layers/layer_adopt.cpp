@@ -39,7 +39,7 @@ void LayerSolver::weigh() {
         layer.source.weight = weight;
         mixer_.changed(i);
     }
-    tellError(true);
+    report_.tell(layers(), progress_, true);
 }
 
 // Returns the layers that are wanted under the surfaces and objects that are known.
@@ -77,7 +77,7 @@ void LayerSolver::adopt() {
     sumDue_ = canSum();
     if (!wantsSum()) mixer_.hideSum(layers().size());
     done_ = false;
-    tellError(true);
+    report_.tell(layers(), progress_, true);
 }
 
 // Renews everything that was made of the former scene; layers come after.

@@ -88,21 +88,30 @@ LayerLevel LayerSchedule::levelByItself(const Layer& layer) const {
     return {rounds.first, rounds.second};
 }
 
+// Returns the relRMSE that the composite is to have; 0: any. All local errors fall with it.
+double LayerSchedule::aimOf(double error, std::optional<double> localError) const {
+    if (rules_.localError <= 0 || !localError || *localError <= rules_.localError) return rules_.error;
+    const double aim = error * rules_.localError / *localError;
+    return rules_.error > 0 ? std::min(rules_.error, aim) : aim;
+}
+
 // Returns the levels by which the composite has its error at the least cost. Where it is later bounces that
 // it lacks, the layer that lacks most goes on: the next level's bounces converge anew.
-std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>& layers) const {
+std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>& layers,
+                                                      std::optional<double> localError) const {
     const Composite composite = compositeOf(layers);
     std::vector<LayerLevel> levels;
     for (const Layer* layer : layers)
         levels.push_back(layer->level);
-    if (rules_.error <= 0 || composite.error <= rules_.error) return levels;
+    const double aim = aimOf(composite.error, localError);
+    if (aim <= 0 || composite.error <= aim) return levels;
     std::vector<SampledPart> parts;
     for (size_t i = 0; i < layers.size(); ++i) {
         parts.push_back(directPart(*layers[i], composite.shares[i].direct));
         parts.push_back(linkPart(*layers[i], composite.shares[i].indirect, layers.size()));
     }
-    const double iteration = std::min(composite.iteration, kIterationShare * rules_.error);
-    const double allowed = kAimed * (rules_.error * rules_.error - iteration * iteration);
+    const double iteration = std::min(composite.iteration, kIterationShare * aim);
+    const double allowed = kAimed * (aim * aim - iteration * iteration);
     const std::vector<uint32_t> rounds = roundsFor(parts, allowed);
     bool more = false;
     for (size_t i = 0; i < layers.size(); ++i) {
@@ -123,12 +132,13 @@ std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>&
 
 // The composite decides on the levels of all layers at once, and anew when each has its own: then they depend
 // neither on the order in which layers are made nor on who bounces along.
-void LayerSchedule::apportion(const Layers& layers, bool weighedAnew) const {
+void LayerSchedule::apportion(const Layers& layers, bool weighedAnew,
+                              std::optional<double> localError) const {
     bool underWay = false;
     std::vector<Layer*> there;
     for (const std::unique_ptr<Layer>& layer : layers) {
         const bool goesOn = layer->has() && !layer->redo;
-        const bool over = goesOn && (layer->level == lastLevel() || layer->light <= 0);
+        const bool over = goesOn && isOver(*layer);
         if (weighedAnew || !goesOn || over || !layer->shines()) layer->plan.wanted = layer->level;
         layer->plan.wanted = atLeast(layer->plan.wanted, layer->level);
         if (goesOn && !over && takesAll()) layer->plan.wanted = lastLevel();
@@ -139,7 +149,7 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew) const {
     }
     if (takesAll()) return;
     if (!underWay) {
-        const std::vector<LayerLevel> together = levelsTogether(there);
+        const std::vector<LayerLevel> together = levelsTogether(there, localError);
         for (size_t i = 0; i < there.size(); ++i)
             there[i]->plan.wanted = together[i];
     }
@@ -150,6 +160,14 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew) const {
         if (!layer->plan.converged)
             layer->plan.wanted.directRounds = std::max(layer->plan.wanted.directRounds, layer->directRounds);
     }
+}
+
+bool LayerSchedule::areTogether(const Layers& layers) const {
+    return std::all_of(layers.begin(), layers.end(), [&](const std::unique_ptr<Layer>& layer) {
+        return !layer->shines() ||
+               (layer->has() && !layer->redo &&
+                (isOver(*layer) || atLeast(layer->plan.wanted, layer->level) == layer->level));
+    });
 }
 
 // Where the steps of a level that was there before begin with the first level, that is seen at once.
@@ -304,7 +322,7 @@ bool LayerSchedule::isWhole(const Layers& layers, const ScheduleState& state) co
     });
 }
 
-LayerSchedule::Told LayerSchedule::told(const Layers& layers) const {
+LayerSchedule::Told LayerSchedule::told(const Layers& layers, std::optional<double> localError) const {
     std::vector<Layer*> shining;
     bool all = true, enough = true;
     for (const std::unique_ptr<Layer>& layer : layers) {
@@ -316,7 +334,8 @@ LayerSchedule::Told LayerSchedule::told(const Layers& layers) const {
     }
     Told told;
     told.error = all ? compositeOf(shining).error : 1.0;
-    told.converged = all && enough && (rules_.error <= 0 || told.error <= rules_.error);
+    told.converged = all && enough && (rules_.error <= 0 || told.error <= rules_.error) &&
+                     (rules_.localError <= 0 || (localError && *localError <= rules_.localError));
     return told;
 }
 

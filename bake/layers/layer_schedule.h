@@ -17,8 +17,9 @@ struct ScheduleRules {
     uint32_t samples = 0;       // per patch, at most; 0: as many as the error needs
     uint32_t passes = 0;        // bounces, the direct light included; 0: until they have converged
     double error = 0.01;        // relRMSE that the composite is to have; 0: it may have any
-    double layerError = 0; // relRMSE that each layer is to have by itself; 0: any. Without both, all samples
-                           // are taken
+    double localError = 0;      // that the composite is to have (its 95th percentile); 0: any
+    double layerError = 0; // relRMSE that each layer is to have by itself; 0: any. Without all three, all
+                           // samples are taken
     bool live = false;     // a viewer looks
     bool together = false; // layers bounce side by side
 };
@@ -59,7 +60,11 @@ public:
     /// Decides for each layer how far it is to go, by its share of the composite as it is weighed now: sets
     /// its plan. It is to be called whenever a level has changed and, as `weighedAnew`, when
     /// weights have, or which layers there are; what was decided before counts no more then.
-    void apportion(const Layers& layers, bool weighedAnew = false) const;
+    /// `localError` is the composite's, where it is known.
+    void apportion(const Layers& layers, bool weighedAnew = false,
+                   std::optional<double> localError = {}) const;
+    /// Tells whether each layer has the level that it was to have: how far all go is decided anew then.
+    bool areTogether(const Layers& layers) const;
     /// Returns the level to be made now. One that was there before is made in the steps that it was made in.
     LayerLevel targetOf(const Layer& layer) const;
 
@@ -109,16 +114,19 @@ public:
         double error = 1;
         bool converged = false;
     };
-    Told told(const Layers& layers) const;
+    Told told(const Layers& layers, std::optional<double> localError = {}) const;
 
 private:
     Step nextLevelStep(const Layers& layers, const ScheduleState& state) const;
-    bool takesAll() const { return rules_.error <= 0 && rules_.layerError <= 0; }
+    bool takesAll() const { return rules_.error <= 0 && rules_.localError <= 0 && rules_.layerError <= 0; }
+    bool isOver(const Layer& layer) const { return layer.level == lastLevel() || layer.light <= 0; }
+    double aimOf(double error, std::optional<double> localError) const;
     bool isGoodEnough(const Layer& layer) const;
     SampledPart directPart(const Layer& layer, double variance) const;
     SampledPart linkPart(const Layer& layer, double variance, size_t sharers) const;
     LayerLevel levelByItself(const Layer& layer) const;
-    std::vector<LayerLevel> levelsTogether(const std::vector<Layer*>& layers) const;
+    std::vector<LayerLevel> levelsTogether(const std::vector<Layer*>& layers,
+                                           std::optional<double> localError) const;
     std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
     std::optional<size_t> nextLayer(const Layers& layers) const;
     std::optional<size_t> directFirst(const Layers& layers, size_t index) const;

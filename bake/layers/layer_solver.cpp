@@ -65,6 +65,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                                                         .samples = settings.links.samples,
                                                         .passes = settings.passes,
                                                         .error = settings.error,
+                                                        .localError = settings.localError,
                                                         .layerError = settings.layers.error,
                                                         .live = settings.live,
                                                         .together = !kit_.gatherPass.onCpu()}),
@@ -76,7 +77,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       directTools_{kit_, layerPass_, lights_, penumbra_, store_}, bounceTools_{kit_, *gather_, batches_,
                                                                                senders_},
-      mixer_(kit_, layerPass_), relinker_(kit_, batches_.cache()) {
+      mixer_(kit_, layerPass_), report_(kit_, schedule_, mixer_), relinker_(kit_, batches_.cache()) {
     batchMs_ = settings.batchMs;
     input.light.resizeRadiance(input.device, kit_.lightBytes()); // another solver had nodes in it
     VkCommandBuffer cmd = kit_.commands.begin();
@@ -116,7 +117,9 @@ void LayerSolver::step() {
     if (edited_ && schedule_.takesEdits(layers(), now())) adopt();
     if (done_) return;
     if (LayerSchedule::drops(now())) abortPass();
-    const LayerSchedule::Step next = schedule_.next(layers(), now());
+    LayerSchedule::Step next = schedule_.next(layers(), now());
+    if (std::holds_alternative<LayerSchedule::Done>(next) && report_.tellAtEnd(layers(), progress_))
+        next = schedule_.next(layers(), now());
     if (std::holds_alternative<LayerSchedule::Relink>(next)) {
         relinker_.batch();
     } else {
@@ -262,7 +265,7 @@ void LayerSolver::showLevel(Layer& layer) {
         if (layers()[i].get() == &layer) mixer_.changed(i);
     endStandIn();
     if (!wantsSum()) mixer_.hideSum(layers().size());
-    tellError();
+    report_.tell(layers(), progress_);
 }
 
 void LayerSolver::endStandIn() {
@@ -272,14 +275,6 @@ void LayerSolver::endStandIn() {
     for (const std::unique_ptr<Layer>& layer : layers())
         layer->covered = false;
     mixer_.endStandIn(layers().size());
-}
-
-// Tells how far the composite is off, and decides anew how far each layer is to go.
-void LayerSolver::tellError(bool weighedAnew) {
-    schedule_.apportion(layers(), weighedAnew);
-    const LayerSchedule::Told told = schedule_.told(layers());
-    progress_.error = told.error;
-    progress_.converged = told.converged;
 }
 
 // Bounces all lights in one, for what changes every layer. Direct light is known, so that their weighted sum

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/layers/bounce_job.h"
+#include "bake/layers/composite_report.h"
 #include "bake/layers/direct_job.h"
 #include "bake/layers/layer_mixer.h"
 #include "bake/layers/layer_schedule.h"
@@ -82,7 +83,6 @@ private:
     LevelSums resolveLevel(const BounceJob::Lane& lane, uint32_t index);
     void showLevel(Layer& layer);
     void endStandIn();
-    void tellError(bool weighedAnew = false);
 
     // The sum of all lights
     bool canSum() const { return schedule_.canSum(layers(), mixer_.showsSum()); }
@@ -111,6 +111,7 @@ private:
     DirectJob::Tools directTools_;
     BounceJob::Tools bounceTools_;
     LayerMixer mixer_;
+    CompositeReport report_;
     Relinker relinker_;
     std::variant<std::monostate, DirectJob, BounceJob> job_;
 

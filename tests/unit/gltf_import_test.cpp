@@ -20,7 +20,7 @@ bool warns(const Scene& scene, const std::string& part) {
                        [&](const std::string& w) { return w.find(part) != std::string::npos; });
 }
 
-void expectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
+void expectNearVector(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
     EXPECT_NEAR(a.x, b.x, tolerance);
     EXPECT_NEAR(a.y, b.y, tolerance);
     EXPECT_NEAR(a.z, b.z, tolerance);
@@ -45,9 +45,9 @@ TEST(GltfImport, NodesInheritTheirParentsTransforms) {
     EXPECT_EQ(scene.instances[1].name, "Square");
     EXPECT_EQ(scene.instances[1].mesh, 0);
     // A quarter turn about z after doubling takes (1,0,0) to (0,2,0).
-    expectNear(apply(scene.instances[0].transform, {0, 0, 0}), {1, 4, 3});
-    expectNear(apply(scene.instances[0].transform, {0, 1, 0}), {-1, 4, 3});
-    expectNear(apply(scene.instances[1].transform, {1, 0, 0}), {1, 10, 3});
+    expectNearVector(apply(scene.instances[0].transform, {0, 0, 0}), {1, 4, 3});
+    expectNearVector(apply(scene.instances[0].transform, {0, 1, 0}), {-1, 4, 3});
+    expectNearVector(apply(scene.instances[1].transform, {1, 0, 0}), {1, 10, 3});
     EXPECT_LT(glm::determinant(scene.instances[1].transform), 0.0f);
 }
 
@@ -89,8 +89,8 @@ void expectIndices(const std::string& name) {
     const Scene scene = loadGltf(b.write(name));
     const Primitive& primitive = scene.meshes[0].primitives[0];
     ASSERT_EQ(primitive.indices.size(), 6u);
-    expectNear(primitive.positions[primitive.indices[0]], {1, 1, 0});
-    expectNear(primitive.positions[primitive.indices[4]], {1, 0, 0});
+    expectNearVector(primitive.positions[primitive.indices[0]], {1, 1, 0});
+    expectNearVector(primitive.positions[primitive.indices[4]], {1, 0, 0});
 }
 
 TEST(GltfImport, AllIndexTypes) {
@@ -155,11 +155,11 @@ TEST(GltfImport, SparseAccessorsOverTheirBaseAndOverZeros) {
     b.node({{"mesh", b.mesh(square)}});
     b.node({{"mesh", b.mesh(second)}});
     const Scene scene = loadGltf(b.write("sparse.glb"));
-    expectNear(scene.meshes[0].primitives[0].positions[1], {7, 8, 9});
-    expectNear(scene.meshes[0].primitives[0].positions[2], {1, 1, 0});
-    expectNear(scene.meshes[0].primitives[0].positions[3], {4, 5, 6});
-    expectNear(scene.meshes[1].primitives[0].positions[1], {7, 8, 9});
-    expectNear(scene.meshes[1].primitives[0].positions[2], {0, 0, 0});
+    expectNearVector(scene.meshes[0].primitives[0].positions[1], {7, 8, 9});
+    expectNearVector(scene.meshes[0].primitives[0].positions[2], {1, 1, 0});
+    expectNearVector(scene.meshes[0].primitives[0].positions[3], {4, 5, 6});
+    expectNearVector(scene.meshes[1].primitives[0].positions[1], {7, 8, 9});
+    expectNearVector(scene.meshes[1].primitives[0].positions[2], {0, 0, 0});
 }
 
 TEST(GltfImport, MissingNormalsAreFlatAndSplitVertices) {
@@ -175,8 +175,8 @@ TEST(GltfImport, MissingNormalsAreFlatAndSplitVertices) {
     ASSERT_EQ(primitive.normals.size(), 6u);
     ASSERT_EQ(primitive.colors.size(), 6u);
     for (uint32_t k = 0; k < 3; ++k) {
-        expectNear(primitive.normals[primitive.indices[k]], {0, 0, 1});
-        expectNear(primitive.normals[primitive.indices[3 + k]], {1, 0, 0});
+        expectNearVector(primitive.normals[primitive.indices[k]], {0, 0, 1});
+        expectNearVector(primitive.normals[primitive.indices[3 + k]], {1, 0, 0});
     }
     EXPECT_EQ(primitive.colors[primitive.indices[5]], glm::vec4(.5f, .5f, .5f, 1.0f));
 }
@@ -189,9 +189,9 @@ TEST(GltfImport, NormalsWithoutDirectionAreMended) {
     const Scene scene = loadGltf(b.write("normals.glb"));
     const Primitive& primitive = scene.meshes[0].primitives[0];
     EXPECT_EQ(primitive.positions.size(), 4u);
-    expectNear(primitive.normals[0], {0, 0, 1});
-    expectNear(primitive.normals[1], {0, 0, 1});
-    expectNear(primitive.normals[2], {0, .6f, .8f});
+    expectNearVector(primitive.normals[0], {0, 0, 1});
+    expectNearVector(primitive.normals[1], {0, 0, 1});
+    expectNearVector(primitive.normals[2], {0, .6f, .8f});
     EXPECT_TRUE(warns(scene, "normals without a direction"));
 }
 
@@ -233,9 +233,9 @@ TEST(GltfImport, QuantizedPositionsWithStride) {
     b.node({{"mesh", b.mesh({{"attributes", {{"POSITION", positions}}}})}});
     b.node({{"mesh", b.mesh({{"attributes", {{"POSITION", integers}}}})}});
     const Scene scene = loadGltf(b.write("quantized.glb"));
-    expectNear(scene.meshes[0].primitives[0].positions[1], {1, 0, 0});
-    expectNear(scene.meshes[0].primitives[0].positions[2], {0, -1, 0});
-    expectNear(scene.meshes[1].primitives[0].positions[1], {400, 0, 0});
+    expectNearVector(scene.meshes[0].primitives[0].positions[1], {1, 0, 0});
+    expectNearVector(scene.meshes[0].primitives[0].positions[2], {0, -1, 0});
+    expectNearVector(scene.meshes[1].primitives[0].positions[1], {400, 0, 0});
     EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -322,9 +322,9 @@ TEST(GltfImport, TextureTransformAndItsTexCoord) {
     const Scene scene = loadGltf(b.write("transform.glb"));
     const TextureRef& ref = scene.materials[0].baseColorTexture;
     EXPECT_EQ(ref.texCoord, 1);
-    expectNear(ref.transform * glm::vec3(0, 0, 1), {0, 1, 1});
-    expectNear(ref.transform * glm::vec3(1, 0, 1), {0, .5f, 1});
-    expectNear(ref.transform * glm::vec3(0, 1, 1), {.5f, 1, 1});
+    expectNearVector(ref.transform * glm::vec3(0, 0, 1), {0, 1, 1});
+    expectNearVector(ref.transform * glm::vec3(1, 0, 1), {0, .5f, 1});
+    expectNearVector(ref.transform * glm::vec3(0, 1, 1), {.5f, 1, 1});
 }
 
 void expectTwoPixels(const Scene& scene) {
@@ -422,7 +422,7 @@ TEST(GltfImport, CamerasAndLights) {
     EXPECT_EQ(scene.lights[0].color, glm::vec3(1, .5f, 0));
     EXPECT_FLOAT_EQ(scene.lights[0].innerConeAngle, .2f);
     EXPECT_FLOAT_EQ(scene.lights[0].range, 9.0f);
-    expectNear(glm::vec3(scene.lights[0].transform[3]), {1, 2, 3});
+    expectNearVector(glm::vec3(scene.lights[0].transform[3]), {1, 2, 3});
     EXPECT_EQ(scene.lights[1].type, LightType::Directional);
     EXPECT_EQ(scene.lights[1].name, "Sun");
     EXPECT_FLOAT_EQ(scene.lights[1].intensity, 1000.0f);

@@ -138,11 +138,11 @@ TEST(LayerLevels, OutsideOfPenumbraeAnEighthOfTheRaysIsTaken) {
 
 TEST(LayerLevels, TheNextIsNeverBeyondTheLast) {
     EXPECT_EQ(targetOf({.samples = 12}, at(2, 1).noise(1, 0).off(0.5)), "3+1");
-    EXPECT_EQ(targetOf({.samples = 96}, at(2, 2).noise(1, 1).off(0.5)), "16+6");
+    EXPECT_EQ(targetOf({.samples = 96}, at(2, 2).noise(1, 1).off(0.5)), "8+6");
 }
 
 TEST(LayerLevels, WithDirectLightAloneThereAreNoLinks) {
-    EXPECT_EQ(targetOf({.passes = 1}, at(2, 0).noise(1, 0)), "16+0");
+    EXPECT_EQ(targetOf({.passes = 1}, at(2, 0).noise(1, 0)), "8+0");
 }
 
 TEST(LayerLevels, WithoutAnErrorAllSamplesComeAfterTheFirst) {

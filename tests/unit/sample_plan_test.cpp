@@ -57,6 +57,34 @@ TEST(LevelGrowth, AlwaysTakesMore) {
     EXPECT_EQ(roundsFor(cheap, none, 2.0), (Rounds{8, 0}));
 }
 
+// Thirty parts want 11 sample passes each; were all to take the 16 of the next step, a third less variance
+// would be left than is allowed.
+TEST(LevelGrowth, ManyPartsMeetWhatIsAllowed) {
+    std::vector<SampledPart> parts(
+        30, {.rounds = 4, .most = 100, .variance = 1, .costOfRound = 1, .doubles = true});
+    parts[3].variance = 1.1;
+    const double allowed = 30.0 * 4.0 / 11.0;
+    const std::vector<uint32_t> rounds = roundsFor(parts, allowed);
+    double left = 0, cost = 0;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        EXPECT_TRUE(rounds[i] == 8 || rounds[i] == 16);
+        left += 4.0 * parts[i].variance / rounds[i];
+        cost += rounds[i];
+    }
+    EXPECT_LE(left, allowed);
+    EXPECT_GT(left, 0.97 * allowed);
+    EXPECT_LT(cost, 30 * 13);
+    EXPECT_EQ(rounds[3], 16u) << "which brings most";
+}
+
+TEST(LevelGrowth, NoPartOfManyGoesBackOrBeyondItsLimits) {
+    const std::vector<SampledPart> parts = {{.rounds = 5, .most = 100, .variance = 0.01},
+                                            {.rounds = 5, .most = 7, .variance = 10},
+                                            {.rounds = 2, .most = 100, .variance = 10}};
+    EXPECT_EQ(roundsFor(parts, 1e-6), (std::vector<uint32_t>{24, 7, 8}));
+    EXPECT_EQ(roundsFor(parts, 30.0), (std::vector<uint32_t>{5, 5, 2}));
+}
+
 // The growth is held against all pairs within its limits: a step of the ladder is half as much again at most.
 TEST(LevelGrowth, CostsLittleMoreThanTheLeast) {
     std::mt19937 random(1);

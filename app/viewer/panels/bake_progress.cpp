@@ -50,7 +50,7 @@ void drawBakeProgress(const PanelContext& context) {
         else
             ui::row("Directions", fmt::format("{} per patch", progress.samples));
         ui::row("Error left", progress.error < 1.0 ? fmt::format("{:.3g}", progress.error) : "not known yet");
-        if (!pairs && !status.layered) // layers do not tell it
+        if (!pairs)
             ui::row("Local error left", progress.localError95 < 1.0
                                             ? fmt::format("{:.3g}; of 1 % of texels more than {:.3g}",
                                                           progress.localError95, progress.localError99)

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "assets/base/worker_pool.h"
+#include "bake/base/local_error.h"
+#include "bake/layers/layer_mixer.h"
+#include "bake/layers/layer_schedule.h"
+
+namespace relume {
+
+/// Returns the local error of the composite. `light` holds a patch's light and how large its error may be
+/// beside those of others (vec4: R, G, B, and what is proportional to the standard error), `patches` tells
+/// which ones are shown, and `error` is the relRMSE of the whole that comes from samples: it says how large
+/// all these errors are. They are taken to be normally distributed. All is 0 where nothing is off, and 1
+/// where nothing is lit.
+LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
+                        std::span<const shader::Patch> patches, double error);
+
+/// Has the schedule decide how far layers go, and tells how far the composite is off. Its local error takes a
+/// pass over all patches: it is measured where it plays a part, but not while somebody turns a light up and
+/// down.
+class CompositeReport {
+public:
+    using Layers = LayerSchedule::Layers;
+
+    CompositeReport(LinkKit& kit, const LayerSchedule& schedule, LayerMixer& mixer)
+        : kit_(kit), schedule_(schedule), mixer_(mixer) {}
+
+    /// Decides anew. It is to be called whenever a level has changed and, as `weighedAnew`, when weights
+    /// have, or which layers there are.
+    void tell(const Layers& layers, SolverProgress& progress, bool weighedAnew = false);
+    /// Measures the local error before a bake ends, where that was left out, and decides anew. Tells whether
+    /// it has.
+    bool tellAtEnd(const Layers& layers, SolverProgress& progress);
+
+private:
+    bool wantsLocalError() const { return !kit_.settings.live || kit_.settings.localError > 0; }
+    void measure(const Layers& layers);
+
+    LinkKit& kit_;
+    const LayerSchedule& schedule_;
+    LayerMixer& mixer_;
+    std::optional<LocalError> local_; // of the composite as it is now; none: not measured
+};
+
+} // namespace relume

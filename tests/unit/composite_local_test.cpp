@@ -1,0 +1,105 @@
+// How far texels of a composite are off, from how far the whole is.
+#include "bake/layers/composite_report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace relume {
+namespace {
+
+// A normal distribution has 95 % and 99 % of all within so many standard deviations.
+constexpr double kOf95 = 1.959964, kOf99 = 2.575829;
+// Deviations are counted in bins of a sixteenth of an octave.
+constexpr double kBin = 0.03;
+
+shader::Patch shown() {
+    shader::Patch patch{};
+    patch.flags = shader::kPatchSends;
+    return patch;
+}
+
+struct Texels {
+    std::vector<glm::vec4> light;
+    std::vector<shader::Patch> patches;
+    void add(size_t count, float own, float off, const shader::Patch& patch = shown()) {
+        light.insert(light.end(), count, glm::vec4(own, own, own, off));
+        patches.insert(patches.end(), count, patch);
+    }
+    LocalError at(double error, uint32_t threads = 2) const {
+        WorkerPool pool(threads);
+        return localErrorOf(pool, light, patches, error);
+    }
+};
+
+void expectWithinABin(double value, double wanted) {
+    EXPECT_NEAR(value, wanted, kBin * wanted);
+}
+
+} // namespace
+
+TEST(CompositeLocalError, IsOfANormalDistribution) {
+    Texels texels;
+    texels.add(10000, 2.0f, 0.7f); // in any unit: the whole says how much that is
+    const LocalError local = texels.at(0.02);
+    expectWithinABin(local.p50, 0.674490 * 0.02);
+    expectWithinABin(local.p95, kOf95 * 0.02);
+    expectWithinABin(local.p99, kOf99 * 0.02);
+}
+
+// Nine in ten are as good as exact, so that 95 % of all are those of which half are beyond.
+TEST(CompositeLocalError, IsThatOfTheWorstTexels) {
+    Texels texels;
+    texels.add(9000, 1.0f, 0.0f);
+    texels.add(1000, 1.0f, 1.0f);
+    const double off = 0.01 * std::sqrt(10.0); // of one in ten, where the root mean square of all is .01
+    const LocalError local = texels.at(0.01);
+    EXPECT_EQ(local.p50, 0.0);
+    expectWithinABin(local.p95, 0.674490 * off);
+    expectWithinABin(local.p99, 1.644854 * off);
+}
+
+// What is dark is off relative to itself; what is darker than a twentieth of the median, relative to that.
+TEST(CompositeLocalError, IsRelativeToTheTexelsOwnLight) {
+    const auto darkest = [](float own) {
+        Texels texels;
+        texels.add(8000, 1.0f, 0.0f);
+        texels.add(2000, own, 1.0f);
+        const double mean = 0.8 + 0.2 * own, off = 0.001 * mean * std::sqrt(5.0);
+        return texels.at(0.001).p95 / (1.150349 * off); // a quarter of these are beyond
+    };
+    expectWithinABin(darkest(0.1f), 10.0);
+    expectWithinABin(darkest(0.05f), 20.0);
+    expectWithinABin(darkest(0.001f), 20.0);
+}
+
+TEST(CompositeLocalError, LeavesOutWhatIsNotShown) {
+    Texels texels;
+    texels.add(1000, 1.0f, 1.0f);
+    const double alone = texels.at(0.01).p95;
+    shader::Patch hidden = shown();
+    hidden.flags |= shader::kPatchBackSide;
+    texels.add(5000, 0.01f, 50.0f, hidden);
+    EXPECT_EQ(texels.at(0.01).p95, alone);
+}
+
+TEST(CompositeLocalError, IsNoneWhereNothingIsLitOrOff) {
+    Texels dark, exact;
+    dark.add(100, 0.0f, 0.0f);
+    exact.add(100, 1.0f, 0.0f);
+    EXPECT_EQ(dark.at(0.0).p99, 0.0);
+    EXPECT_EQ(exact.at(0.0).p99, 0.0);
+    EXPECT_EQ(Texels().at(0.01).p95, 0.0);
+}
+
+TEST(CompositeLocalError, IsTheSameOnAnyNumberOfThreads) {
+    Texels texels;
+    for (int i = 1; i < 20000; ++i)
+        texels.add(1, 0.001f * static_cast<float>(i), 0.1f + 0.37f * static_cast<float>(i % 11));
+    const LocalError one = texels.at(0.01, 1), five = texels.at(0.01, 5);
+    EXPECT_EQ(one.p50, five.p50);
+    EXPECT_EQ(one.p95, five.p95);
+}
+
+} // namespace relume
