@@ -122,7 +122,7 @@ std::vector<uint32_t> findInside(const InsideSearch& search) {
     const uint32_t chunks = search.patches.chunkCount();
     const uint32_t most = std::min(chunks, kMostInsideChunks);
     InsideBatch batch(search, most);
-    BatchRate rate;
+    BatchRate rate(!search.device.info().software());
     std::vector<uint32_t> inside;
     for (uint32_t first = 0; first < chunks;) {
         if (search.onBatch) search.onBatch(static_cast<double>(first) / chunks);

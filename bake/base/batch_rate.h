@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-
 namespace relume {
 
 /// A segment towards a light costs about this share of a closest hit.
@@ -11,28 +8,27 @@ constexpr double kSegmentCost = 0.3;
 /// longer come along with seen ones.
 constexpr double kWorthASubmit = 0.5; // [ms]
 
-/// Estimates how many chunks make a batch of so many milliseconds.
+/// Estimates how many chunks make a batch of so many milliseconds. A GPU that a batch does not fill takes as
+/// long for half of it: there the time is seen as a latency that no smaller batch avoids and a part that
+/// grows with the chunks, and a batch takes at least twice the latency, so that half of the device works.
 class BatchRate {
 public:
-    double perMs() const { return rate_; } // [chunks/ms], 0: not measured yet
-    double wanted(double batchMs) const { return rate_ > 0 ? rate_ * batchMs : kFirstChunks; }
+    /// Tells whether the device may be wider than a batch; a CPU's time is proportional to the chunks.
+    explicit BatchRate(bool wide) : wide_(wide) {}
+
+    double perMs() const { return chunks_ > 0 ? chunks_ / (share_ * ms_) : 0; } // [chunks/ms], 0: unknown
+    double wanted(double batchMs) const;
     /// Takes note of a batch of these chunks that took `seconds`; batchMs was its aim.
-    void note(double chunks, double batchMs, double seconds) {
-        const double measured = chunks / std::max(1e-3, 1000.0 * seconds);
-        if (chunks < kShortBatch * rate_ * batchMs && measured < rate_) return;
-        rate_ = rate_ > 0 ? std::min(measured, kMaxGrowth * rate_) : measured;
-    }
+    void note(double chunks, double batchMs, double seconds);
 
 private:
-    // The first batch of each kind has so many chunks, before anything is measured: it surely takes less than
-    // 50 ms.
-    static constexpr double kFirstChunks = 16;
-    // A batch may grow this much over the one before: a first measurement may have caught shader compilation.
-    static constexpr double kMaxGrowth = 4.0;
-    // The time of a batch this much shorter than wanted says little about longer ones.
-    static constexpr double kShortBatch = 0.25;
+    void noteShare(double chunks, double ms, double batchMs);
 
-    double rate_ = 0;
+    bool wide_;
+    double chunks_ = 0, ms_ = 0; // the batch from which others are foretold; chunks 0: none yet
+    double share_ = 1;           // of its time that grows with the chunks
+    bool shareKnown_ = false;
+    double comparedChunks_ = 0, comparedMs_ = 0; // the batch with which later ones are compared
 };
 
 } // namespace relume

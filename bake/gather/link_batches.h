@@ -12,7 +12,8 @@ namespace relume {
 /// them take the time that a batch may take. The solver says what is gathered over them.
 class LinkBatches {
 public:
-    LinkBatches(LinkKit& kit, const LinkCache::Desc& cache) : kit_(kit), cache_(kit.input.device, cache) {}
+    LinkBatches(LinkKit& kit, const LinkCache::Desc& cache)
+        : kit_(kit), cache_(kit.input.device, cache), traceRate_(kit.wide()), gatherRate_(kit.wide()) {}
 
     /// Chunks whose links are in one place, all of them there or all to be traced.
     struct Portion {

@@ -40,6 +40,8 @@ public:
 
     uint32_t chunkCount() const { return input.patches.chunkCount(); }
     VkDeviceSize lightBytes() const { return LightBuffers::lightBytes(input.patches); }
+    /// Tells whether the device may be wider than a batch (BatchRate).
+    bool wide() const { return !input.device.info().software(); }
     /// Begins a pass over all chunks.
     void beginPass() { order.begin(chunkCount(), seen); }
     /// Returns the next chunks. cost is that of a chunk over that of those that the rate is of; done is the

@@ -21,7 +21,7 @@ public:
         LayerLights& lights;
         PenumbraMap& penumbra;
         LayerStore& store;
-        BatchRate rate = {};
+        BatchRate rate;
     };
     /// Tells what has come of a batch.
     enum class End : uint8_t {

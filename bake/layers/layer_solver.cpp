@@ -75,9 +75,9 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                       .links = kit_.linksOfRound,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
-      directTools_{kit_, layerPass_, lights_, penumbra_, store_}, bounceTools_{kit_, *gather_, batches_,
-                                                                               senders_},
-      mixer_(kit_, layerPass_), report_(kit_, schedule_, mixer_), relinker_(kit_, batches_.cache()) {
+      directTools_{kit_, layerPass_, lights_, penumbra_, store_, BatchRate(kit_.wide())},
+      bounceTools_{kit_, *gather_, batches_, senders_}, mixer_(kit_, layerPass_),
+      report_(kit_, schedule_, mixer_), relinker_(kit_, batches_.cache()) {
     batchMs_ = settings.batchMs;
     input.light.resizeRadiance(input.device, kit_.lightBytes()); // another solver had nodes in it
     VkCommandBuffer cmd = kit_.commands.begin();

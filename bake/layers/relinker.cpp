@@ -8,7 +8,7 @@
 namespace relume {
 
 void Relinker::follow(const ObjectMove& move) {
-    Relink relink;
+    Relink relink{.rate = BatchRate(kit_.wide())};
     // Where an object moved on, links of early sample passes have followed the moves before, or some of them.
     ObjectMove early = move, late = move;
     if (relink_) {

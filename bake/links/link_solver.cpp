@@ -76,7 +76,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
                       .oneRound = true}),
       errors_(kit_), senders_(receiversOf(input, coarse_)), schedule_(rules()), disc_(makeDisc()),
-      radiancePass_(input.device), directRounds_(kit_.chunkCount()), linkRounds_(senders_.chunks()) {
+      radiancePass_(input.device), directRounds_(kit_.chunkCount()), linkRounds_(senders_.chunks()),
+      directRate_(kit_.wide()) {
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
     LinkBuffers& buffers = kit_.buffers;
