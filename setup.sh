@@ -16,7 +16,7 @@ packages=(
     glslang-dev glslang-tools                 # GLSL to SPIR-V, at build time and at run time
     libembree-dev libtbb-dev                  # CPU ray tracing; its CMake files name TBB
     libassimp-dev                             # scenes that are no glTF files: .obj, .fbx, .dae, ...
-    libglm-dev libtinygltf-dev libopenexr-dev libstb-dev zlib1g-dev
+    libglm-dev libtinygltf-dev libopenexr-dev libstb-dev zlib1g-dev libzstd-dev
     libdraco-dev libmeshoptimizer-dev         # compressed meshes of glTF files
     libwebp-dev                               # WebP pictures of glTF files
     libeigen3-dev                             # sparse equations, by which lightmap charts are flattened

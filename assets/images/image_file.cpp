@@ -5,6 +5,7 @@
 #include "assets/base/log.h"
 #include "assets/images/exr_check.h"
 #include "assets/images/exr_part.h"
+#include "assets/images/ktx2.h"
 #include "assets/images/png_check.h"
 #include "assets/images/radiance_hdr.h"
 
@@ -38,7 +39,7 @@ namespace {
 // This bounds the pixels per byte: DEFLATE makes 1032 bytes of one at best, each of eight pixels.
 constexpr uint64_t kMostPngPacking = 8 * 1040;
 
-enum class Format { Exr, Png, Hdr };
+enum class Format { Exr, Png, Hdr, Ktx2 };
 enum class Access { Read, Write };
 
 Format formatOf(const std::string& path, Access access) {
@@ -48,8 +49,9 @@ Format formatOf(const std::string& path, Access access) {
     if (ending == ".exr") return Format::Exr;
     if (ending == ".png") return Format::Png;
     if (ending == ".hdr" && access == Access::Read) return Format::Hdr;
+    if (ending == ".ktx2" && access == Access::Read) return Format::Ktx2;
     throw Error(path + ": unknown image ending '" + ending + "': use .exr or .png" +
-                (access == Access::Read ? ", or .hdr" : ""));
+                (access == Access::Read ? ", .hdr or .ktx2" : ""));
 }
 
 FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t mostPixels) {
@@ -117,6 +119,7 @@ FloatImage readImage(const std::string& path, uint64_t mostPixels) {
     std::string bytes = exr::readBytes(path);
     try {
         if (format == Format::Hdr) return readHdr(path, bytes, mostPixels);
+        if (format == Format::Ktx2) return decodeKtx2(bytes, path, mostPixels);
         return format == Format::Exr ? readExr(path, bytes, mostPixels)
                                      : readPng(path, std::move(bytes), mostPixels);
     } catch (const Error&) {

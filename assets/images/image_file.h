@@ -8,8 +8,8 @@
 namespace relume {
 
 /// Reads an OpenEXR (all channels as float, the data window, string attributes; R, G, B, A first, then by
-/// name), PNG (R, G, B decoded from sRGB to linear) or Radiance picture (.hdr; R, G, B). Throws Error, also
-/// where the picture has more than `mostPixels`.
+/// name), PNG (R, G, B decoded from sRGB to linear), Radiance picture (.hdr; R, G, B) or KTX2 texture (R, G,
+/// B; see ktx2.h). Throws Error, also where the picture has more than `mostPixels`.
 FloatImage readImage(const std::string& path, uint64_t mostPixels = kMostImagePixels);
 
 /// Writes OpenEXR, or for a path ending in .png 8-bit sRGB of R, G, B clamped to [0,1]. The file gets a
