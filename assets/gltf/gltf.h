@@ -30,10 +30,20 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice = {});
 /// then renamed. Loading the result gives the same scene. Throws Error.
 void saveGlb(const Scene& scene, const std::string& path);
 
+/// Says what a file has for programs that show lightmaps.
+struct GlbLook {
+    int lightmap = -1;      // index into Scene::textures, -1: none; told by MOZ_lightmap, in TEXCOORD_1
+    float intensity = 1.0f; // what a 1 of its texels stands for [cd/m^2]
+    std::vector<bool> lit;  // by Scene::materials: those that it lights
+    std::vector<int> maps;  // textures in the lightmap's layout, which mipmaps would smear across charts
+    bool matte = false;     // no highlights (KHR_materials_specular), which would take from the diffuse light
+};
+
 /// Returns the bytes that saveGlb() writes for a scene whose sky has no picture. `pictures`, where it is not
 /// empty, has for each image of the scene its file (PNG or JPEG), which is taken as it is, or nothing: such
 /// an image is encoded as PNG. Throws Error.
-std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures = {});
+std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures = {},
+                              const GlbLook& look = {});
 
 /// Throws the Error of saveGlb() where the scene is such that it is sure to fail. Changes nothing.
 void checkGlb(const Scene& scene, const std::string& path);

@@ -4,6 +4,7 @@
 #include "assets/base/file_write.h"
 #include "assets/gltf/gltf_batches.h"
 #include "assets/gltf/gltf_light_json.h"
+#include "assets/gltf/gltf_material_json.h"
 #include "assets/gltf/gltf_png.h"
 #include "assets/gltf/gltf_sky_file.h"
 #include "assets/gltf/gltf_value.h"
@@ -29,7 +30,6 @@ static_assert(std::endian::native == std::endian::little,
 // These values are those of the glTF 2.0 specification.
 constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
-constexpr int kNearest = 9728, kLinear = 9729, kLinearMipmapLinear = 9987;
 constexpr uint32_t kGlbMagic = 0x46546C67, kChunkJson = 0x4E4F534A, kChunkBin = 0x004E4942;
 constexpr uint8_t kPngBegin = 0x89;
 // 0xffff is the primitive restart value and must not appear as an index.
@@ -59,8 +59,9 @@ class GlbWriter {
 public:
     /// Takes as `skyFile` the path of the sky's picture from the folder of the file to be written, and
     /// `pictures` as glbBytes() does.
-    GlbWriter(const Scene& scene, std::string skyFile, std::span<const std::vector<uint8_t>> pictures = {})
-        : scene_(scene), skyFile_(std::move(skyFile)), pictures_(pictures) {
+    GlbWriter(const Scene& scene, std::string skyFile, std::span<const std::vector<uint8_t>> pictures = {},
+              GlbLook look = {})
+        : scene_(scene), skyFile_(std::move(skyFile)), pictures_(pictures), look_(std::move(look)) {
         const int strides[kStreamCount] = {12, 12, 8, 16, 12, 16, 0, 0};
         for (int i = 0; i < kStreamCount; ++i) {
             streams_[i].stride = strides[i];
@@ -77,8 +78,6 @@ private:
     Json primitive(const Primitive& primitive);
     /// Returns the number of a material's copy whose textures read TEXCOORD_0.
     int movedMaterial(int material);
-    Json material(const Material& material);
-    Json textureInfo(const TextureRef& ref, const std::string& materialName);
     void addMeshes();
     void addTextures();
     void addNodes();
@@ -92,25 +91,14 @@ private:
     const Scene& scene_;
     std::string skyFile_;
     std::span<const std::vector<uint8_t>> pictures_;
+    GlbLook look_;
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
     std::vector<std::vector<uint8_t>> pngs_; // or JPEG, as it came
     std::vector<int> moved_;                 // materials that have such a copy behind all materials
     std::vector<int> meshIndices_;           // of the file by Scene::meshes, -1 for one without triangles
-    std::map<std::string, bool> extensions_;
+    gltf::UsedExtensions extensions_;
 };
-
-int wrapCode(Wrap wrap) {
-    switch (wrap) {
-    case Wrap::MirroredRepeat:
-        return 33648;
-    case Wrap::ClampToEdge:
-        return 33071;
-    case Wrap::Repeat:
-        break;
-    }
-    return 10497;
-}
 
 Json nodeOf(const std::string& name, const glm::mat4& transform) {
     Json node = Json::object();
@@ -203,71 +191,6 @@ int GlbWriter::movedMaterial(int material) {
     return static_cast<int>(scene_.materials.size()) + static_cast<int>(place);
 }
 
-Json GlbWriter::textureInfo(const TextureRef& ref, const std::string& materialName) {
-    Json info;
-    info["index"] = ref.texture;
-    if (ref.texCoord != 0) info["texCoord"] = ref.texCoord;
-    if (ref.transform == glm::mat3(1.0f)) return info;
-
-    // The transform is translation * rotation * scale with rotation columns (c, -s), (s, c):
-    // counter-clockwise in an image whose v points down.
-    const glm::vec2 columnU(ref.transform[0]), columnV(ref.transform[1]);
-    float scaleU = glm::length(columnU);
-    float scaleV = glm::length(columnV);
-    if (std::abs(glm::dot(columnU, columnV)) > 1e-4f * scaleU * scaleV)
-        throw Error("material '" + materialName +
-                    "': glTF cannot store a sheared texture transform: remove the shear");
-    if (columnU.x * columnV.y - columnU.y * columnV.x < 0.0f) scaleV = -scaleV;
-    const float rotation = scaleU > 0.0f ? std::atan2(-columnU.y, columnU.x) : 0.0f;
-    Json transform;
-    transform["offset"] = jsonArray(glm::vec2(ref.transform[2]));
-    if (rotation != 0.0f) transform["rotation"] = rotation;
-    transform["scale"] = jsonArray(glm::vec2(scaleU, scaleV));
-    info["extensions"]["KHR_texture_transform"] = std::move(transform);
-    use("KHR_texture_transform");
-    return info;
-}
-
-Json GlbWriter::material(const Material& m) {
-    Json out;
-    if (!m.name.empty()) out["name"] = m.name;
-    Json pbr = Json::object();
-    if (m.baseColor != glm::vec4(1.0f)) pbr["baseColorFactor"] = jsonArray(m.baseColor);
-    if (m.baseColorTexture.texture >= 0) pbr["baseColorTexture"] = textureInfo(m.baseColorTexture, m.name);
-    if (m.metallic != 1.0f) pbr["metallicFactor"] = m.metallic;
-    if (m.roughness != 1.0f) pbr["roughnessFactor"] = m.roughness;
-    if (m.metallicRoughnessTexture.texture >= 0)
-        pbr["metallicRoughnessTexture"] = textureInfo(m.metallicRoughnessTexture, m.name);
-    out["pbrMetallicRoughness"] = std::move(pbr);
-
-    const float brightest = std::max({m.emission.r, m.emission.g, m.emission.b});
-    if (brightest > 0.0f) {
-        // The strength is a power of two, so that factor times strength is the emission again, to the last
-        // bit.
-        int exponent = 0;
-        std::frexp(brightest, &exponent);
-        const float strength = brightest > 1.0f ? std::ldexp(1.0f, exponent) : 1.0f;
-        out["emissiveFactor"] = jsonArray(m.emission / strength);
-        if (strength != 1.0f) {
-            out["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
-            use("KHR_materials_emissive_strength");
-        }
-    }
-    if (m.transmission > 0.0f) {
-        out["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
-        use("KHR_materials_transmission");
-    }
-    if (m.emissionTexture.texture >= 0) out["emissiveTexture"] = textureInfo(m.emissionTexture, m.name);
-    if (m.alphaMode == AlphaMode::Mask) {
-        out["alphaMode"] = "MASK";
-        out["alphaCutoff"] = m.alphaCutoff;
-    } else if (m.alphaMode == AlphaMode::Blend) {
-        out["alphaMode"] = "BLEND";
-    }
-    if (m.doubleSided) out["doubleSided"] = true;
-    return out;
-}
-
 void GlbWriter::addTextures() {
     for (size_t i = 0; i < scene_.images.size(); ++i) {
         const Image& image = scene_.images[i];
@@ -280,11 +203,9 @@ void GlbWriter::addTextures() {
     }
     Json samplers = Json::array();
     for (const Texture& texture : scene_.textures) {
-        Json sampler;
-        sampler["magFilter"] = texture.nearest ? kNearest : kLinear;
-        sampler["minFilter"] = texture.nearest ? kNearest : kLinearMipmapLinear;
-        sampler["wrapS"] = wrapCode(texture.wrapS);
-        sampler["wrapT"] = wrapCode(texture.wrapT);
+        const auto number = static_cast<int>(&texture - scene_.textures.data());
+        const bool isMap = std::find(look_.maps.begin(), look_.maps.end(), number) != look_.maps.end();
+        Json sampler = gltf::samplerJson(texture, !isMap);
         size_t index = 0;
         while (index < samplers.size() && samplers[index] != sampler)
             ++index;
@@ -427,13 +348,17 @@ std::vector<uint8_t> GlbWriter::write() {
     addMeshes();
     addTextures();
     for (const Material& m : scene_.materials)
-        json_["materials"].push_back(material(m));
+        json_["materials"].push_back(gltf::materialJson(m, extensions_));
     for (const int original : moved_) {
         Material copy = scene_.materials[static_cast<size_t>(original)];
         copy.baseColorTexture.texCoord = copy.emissionTexture.texCoord = 0;
         copy.metallicRoughnessTexture.texCoord = 0;
-        json_["materials"].push_back(material(copy));
+        json_["materials"].push_back(gltf::materialJson(copy, extensions_));
     }
+    const size_t ownMaterials = scene_.materials.size();
+    for (size_t i = 0; i < ownMaterials + moved_.size(); ++i)
+        gltf::addLook(json_["materials"][i], look_,
+                      i < ownMaterials ? i : static_cast<size_t>(moved_[i - ownMaterials]), extensions_);
     addNodes();
     addBuffers();
     for (const auto& [extension, used] : extensions_)
@@ -480,8 +405,9 @@ void checkGlb(const Scene& scene, const std::string& path) {
         checkFileWritable((std::filesystem::path(path).parent_path() / skyFile).string(), 0);
 }
 
-std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures) {
-    return GlbWriter(scene, "", pictures).write();
+std::vector<uint8_t> glbBytes(const Scene& scene, std::span<const std::vector<uint8_t>> pictures,
+                              const GlbLook& look) {
+    return GlbWriter(scene, "", pictures, look).write();
 }
 
 void saveGlb(const Scene& scene, const std::string& path) {
