@@ -10,6 +10,7 @@ void addViewCommand(CLI::App& app);
 void addBakeCommand(CLI::App& app);
 void addShotCommand(CLI::App& app);
 void addTimelapseCommand(CLI::App& app);
+void addExportCommand(CLI::App& app);
 void addEditCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addUnwrapCommand(CLI::App& app);

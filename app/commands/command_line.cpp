@@ -66,6 +66,7 @@ void addCommands(CLI::App& app) {
     addBakeCommand(app);
     addShotCommand(app);
     addTimelapseCommand(app);
+    addExportCommand(app);
     addEditCommand(app);
     addInfoCommand(app);
     addUnwrapCommand(app);

@@ -1,6 +1,7 @@
 #include "app/commands/command.h"
 #include "app/offline/bake_checkpoints.h"
 #include "app/offline/command_files.h"
+#include "app/offline/lightmap_attributes.h"
 #include "app/offline/progress.h"
 #include "app/offline/solve.h"
 #include "app/pictures/picture_studio.h"
@@ -22,25 +23,6 @@ FloatImage bakeLightmap(const ShotOptions& o, const BakeRequest& request, Pictur
     solve(bake.baker().solver(), request.bake.solver, none);
     bake.logEnd();
     return bake.baker().lightmap(request.lightmap);
-}
-
-std::string attribute(const FloatImage& image, const std::string& name) {
-    const auto found = image.attributes.find(name);
-    return found != image.attributes.end() ? found->second : "";
-}
-
-// Reads a lightmap that the user made before. Throws Error when it does not hold lighting.
-FloatImage readLightmap(const std::string& path, const std::string& scene) {
-    FloatImage image = readImage(path);
-    if (attribute(image, "relume:quantity") == "radiance") {
-        throw Error(path +
-                    ": holds radiance, which has the albedo in it: bake it with --quantity lighting and "
-                    "without --preset");
-    }
-    const std::string from = attribute(image, "relume:scene");
-    if (!from.empty() && from != scene.substr(scene.find_last_of('/') + 1))
-        spdlog::warn("{}: is a lightmap of {}, not of {}", path, from, scene);
-    return image;
 }
 
 void shoot(ShotOptions o) {

@@ -160,6 +160,20 @@ void addSolverOptions(CLI::App& command, BakeOptions& o) {
     addMachineOptions(command, o);
 }
 
+void addSolverOptionsBeside(CLI::App& command, BakeOptions& options,
+                            const std::vector<CLI::Option*>& lightmaps) {
+    const std::vector<CLI::Option*> before = command.get_options();
+    addSolverOptions(command, options);
+    const std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
+                                           "--shaders"}; // also without a bake
+    for (CLI::Option* option : command.get_options()) {
+        const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();
+        if (!ofSolver || std::find(used.begin(), used.end(), option->get_name()) != used.end()) continue;
+        for (CLI::Option* lightmap : lightmaps)
+            option->excludes(lightmap);
+    }
+}
+
 void addMachineOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--tracer", o.machine.tracer, "What traces rays")
         ->capture_default_str()

@@ -97,6 +97,10 @@ struct BakeOptions {
 void addBakeOptions(CLI::App& command, BakeOptions& options);
 /// Adds those of them that say how a lightmap is made, for other verbs that need one.
 void addSolverOptions(CLI::App& command, BakeOptions& options);
+/// Does the same for a verb that may take a lightmap instead: `lightmaps`, the options that
+/// name one, exclude those that only a bake has.
+void addSolverOptionsBeside(CLI::App& command, BakeOptions& options,
+                            const std::vector<CLI::Option*>& lightmaps);
 /// Adds those of them that go with every method and number of samples: tracer, device, patches, what is
 /// written.
 void addMachineOptions(CLI::App& command, BakeOptions& options);

@@ -1,10 +1,21 @@
 #include "app/offline/lightmap_attributes.h"
 
 #include "app/offline/bake_settings.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/image_file.h"
 
 #include <fmt/format.h>
 
 namespace relume {
+namespace {
+
+std::string attribute(const FloatImage& image, const std::string& name) {
+    const auto found = image.attributes.find(name);
+    return found != image.attributes.end() ? found->second : "";
+}
+
+} // namespace
 
 void addLightmapAttributes(FloatImage& image, const std::string& scene, const BakeSettings& bake,
                            const LightmapDesc& lightmap, const SolverProgress& progress) {
@@ -17,6 +28,19 @@ void addLightmapAttributes(FloatImage& image, const std::string& scene, const Ba
         fmt::format(" dilate={} sew={}", lightmap.rtrad ? 1 : lightmap.dilate, lightmap.sew ? 1 : 0);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
+}
+
+FloatImage readLightmap(const std::string& path, const std::string& scene) {
+    FloatImage image = readImage(path);
+    if (attribute(image, "relume:quantity") == "radiance") {
+        throw Error(path +
+                    ": holds radiance, which has the albedo in it: bake it with --quantity lighting and "
+                    "without --preset");
+    }
+    const std::string from = attribute(image, "relume:scene");
+    if (!from.empty() && from != scene.substr(scene.find_last_of('/') + 1))
+        spdlog::warn("{}: is a lightmap of {}, not of {}", path, from, scene);
+    return image;
 }
 
 } // namespace relume

@@ -12,4 +12,8 @@ namespace relume {
 void addLightmapAttributes(FloatImage& image, const std::string& scene, const BakeSettings& bake,
                            const LightmapDesc& lightmap, const SolverProgress& progress);
 
+/// Reads a lightmap that the user made before, of layers their composite. Warns where it was baked for
+/// another scene. Throws Error where it does not hold lighting.
+FloatImage readLightmap(const std::string& path, const std::string& scene);
+
 } // namespace relume

@@ -90,16 +90,8 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
     CLI::Option* lightmap = command.get_option("--lightmap");
     addSizeOption(command, "--lightmap-size", o.bake);
-    const std::vector<CLI::Option*> before = command.get_options();
-    addSolverOptions(command, o.bake);
-    const std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
-                                           "--shaders"}; // also without a bake
+    addSolverOptionsBeside(command, o.bake, {lightmap});
     command.get_option("--lightmap-size")->excludes(lightmap);
-    for (CLI::Option* option : command.get_options()) {
-        const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();
-        if (ofSolver && std::find(used.begin(), used.end(), option->get_name()) == used.end())
-            option->excludes(lightmap);
-    }
 }
 
 ShotRequest resolveShotOptions(const ShotOptions& o) {
@@ -120,12 +112,7 @@ ShotRequest resolvePictureOptions(const ShotOptions& o) {
     request.draw.view = static_cast<View>(indexOf(viewNames(), o.view));
     request.draw.filter = static_cast<LightmapFilter>(indexOf(filterNames(), o.filter));
     request.draw.tone = static_cast<ToneMap>(indexOf(toneNames(), o.tone));
-    if (o.exposure != "auto") {
-        constexpr float kMaxExposure = 64; // EV: a factor that floats hold with room to spare
-        request.draw.exposure = typedNumber(o.exposure);
-        if (!request.draw.exposure || std::abs(*request.draw.exposure) > kMaxExposure)
-            throw UsageError("--exposure: '" + o.exposure + "' is neither auto nor a number from -64 to 64");
-    }
+    request.draw.exposure = typedExposure(o.exposure);
     return request;
 }
 

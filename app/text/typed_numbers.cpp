@@ -84,4 +84,13 @@ uint64_t typedMemory(const char* option, const std::string& text) {
     return static_cast<uint64_t>(bytes);
 }
 
+std::optional<float> typedExposure(const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    constexpr float kMaxExposure = 64; // EV: a factor that floats hold with room to spare
+    const std::optional<float> exposure = typedNumber(text);
+    if (!exposure || std::abs(*exposure) > kMaxExposure)
+        throw UsageError("--exposure: '" + text + "' is neither auto nor a number from -64 to 64");
+    return exposure;
+}
+
 } // namespace relume

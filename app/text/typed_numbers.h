@@ -25,4 +25,8 @@ std::vector<float> typedNumbers(std::string_view text, size_t count);
 /// the option.
 uint64_t typedMemory(const char* option, const std::string& text);
 
+/// Returns the exposure [EV] that --exposure gives: none for "auto". Throws UsageError for what is neither
+/// that nor a number from -64 to 64.
+std::optional<float> typedExposure(const std::string& text);
+
 } // namespace relume

@@ -40,6 +40,7 @@ const std::map<std::string, WalkWords> kVerbs = {
     {"mix", {"missing.exr", "-o", "out.exr"}},
     {"compare", {"missing.exr", "missing.exr"}},
     {"samples", {"4", "-o", "missing/out.csv"}},
+    {"export", {"missing.glb", "-o", "folder", "--for", "three"}},
     {"bench trace", {"missing.glb"}},
     {"bench frames", {"missing.glb"}},
     {"bench quality", {"missing.glb"}},

@@ -1,0 +1,110 @@
+#include "app/commands/command.h"
+#include "app/edit/choice_options.h"
+#include "app/export/export_options.h"
+#include "app/offline/bake_checkpoints.h"
+#include "app/offline/command_files.h"
+#include "app/offline/lightmap_attributes.h"
+#include "app/offline/progress.h"
+#include "app/offline/solve.h"
+#include "app/text/interrupt.h"
+#include "assets/base/clock.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/layered_exr.h"
+#include "shaders/shader_library.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace relume {
+namespace {
+
+struct ExportCommand {
+    BakeOptions bake;
+    ExportOptions out;
+    std::string lightmap, layers; // "": bake
+};
+
+FloatImage bakedLightmap(const vk::Device& device, const PreparedScene& prepared, const BakeRequest& request,
+                         const BakeOptions& options) {
+    Baker baker(device, prepared.scene, prepared.mesh, request.bake);
+    spdlog::info("{} patches", baker.patches().count);
+    warnIfDark(prepared.scene, baker.patches());
+    BakeCheckpoints none(options);
+    solve(baker.solver(), request.bake.solver, none);
+    FloatImage image = baker.lightmap(request.lightmap);
+    addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap,
+                          baker.solver().progress());
+    return image;
+}
+
+// Returns the lightmap that is given, nothing where one is to be baked.
+std::optional<FloatImage> givenLightmap(const ExportCommand& o) {
+    if (!o.layers.empty()) return readLayeredExr(o.layers).composite;
+    if (!o.lightmap.empty()) return readLightmap(o.lightmap, o.bake.files.scene);
+    return std::nullopt;
+}
+
+void exportScene(const ExportCommand& o) {
+    const auto start = Clock::now();
+    const InterruptGuard guard;
+    const ExportDesc desc = resolveExportOptions(o.out);
+    BakeRequest request = resolveBakeOptions(o.bake);
+    CommandFiles files;
+    files.readsScene("SCENE", o.bake.files.scene).reads("--lightmap", o.lightmap).reads("--layers", o.layers);
+    for (const std::string& path : exportedFiles(desc))
+        files.writes("--output", path);
+    files.check();
+    checkExport(desc);
+    if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
+    std::optional<FloatImage> lightmap = givenLightmap(o);
+    if (lightmap) request.prepare.size = lightmap->width; // the gutters of a repacked atlas depend on it
+    std::optional<PhaseProgress> phase(std::in_place, true);
+    const PreparedScene prepared = prepareScene(request.prepare);
+    stopIfInterrupted();
+    const vk::Device device({.select = o.bake.machine.device, .validation = o.bake.machine.validate});
+    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
+    phase.reset();
+    if (!lightmap) lightmap = bakedLightmap(device, prepared, request, o.bake);
+    stopIfInterrupted();
+    const ExportResult result = exportLevel(desc, device, prepared, *lightmap);
+    for (const std::string& path : result.files)
+        std::printf("%s\n", path.c_str());
+    spdlog::info("wrote {} for {}, exposure {:.2f} EV ({} in all)", desc.folder, o.out.engine,
+                 result.exposure, formatDuration(secondsSince(start)));
+    failOnValidation(device.validationMessages());
+}
+
+} // namespace
+
+void addExportCommand(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "export", "Write a scene with its lightmap as a game engine reads it: GLB, KTX2, loader");
+    const auto o = std::make_shared<ExportCommand>();
+    command->add_option("scene", o->bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+        ->required()
+        ->type_name("SCENE");
+    addChoiceOptions(*command, o->bake.files.choice);
+    addExportOptions(*command, o->out);
+    CLI::Option* lightmap = command
+                                ->add_option("--lightmap", o->lightmap,
+                                             "Take this lightmap, .exr, .ktx2 or .png, and do not bake")
+                                ->type_name("FILE");
+    CLI::Option* layers =
+        command
+            ->add_option(
+                "--layers", o->layers,
+                "Take the sum of these layers ('relume bake --layers', 'relume mix --layers-out'), and "
+                "do not bake")
+            ->type_name("LAYERS.exr")
+            ->excludes(lightmap);
+    addSizeOption(*command, "--size", o->bake);
+    addSolverOptionsBeside(*command, o->bake, {lightmap, layers});
+    for (CLI::Option* given : {lightmap, layers})
+        command->get_option("--size")->excludes(given);
+    command->callback([o] { exportScene(*o); });
+}
+
+} // namespace relume

@@ -1,0 +1,66 @@
+#include "app/export/engine_files.h"
+
+#include "app/export/engine_texts.h"
+#include "assets/base/error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace relume {
+namespace {
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+    for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+}
+
+// Keeps a name from being read as markup.
+std::string inMarkup(std::string name) {
+    replaceAll(name, "&", "&amp;");
+    replaceAll(name, "<", "&lt;");
+    return name;
+}
+
+// A camera of sensitivity S at EV100 shows light 1 / (1.2 x 2^EV100) times [Lagarde and de Rousiers 2014,
+// equation 85], which is what Bevy does.
+float ev100Of(float exposure) {
+    return -exposure - std::log2(1.2f);
+}
+
+} // namespace
+
+const std::vector<std::string>& engineNames() {
+    static const std::vector<std::string> names = {"any",  "three", "babylon", "playcanvas",
+                                                   "bevy", "godot", "unity",   "blender"};
+    return names;
+}
+
+Engine engineOf(const std::string& name) {
+    const auto& names = engineNames();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+        throw Error(fmt::format("'{}' is no engine: use one of {}", name, fmt::join(names, ", ")));
+    return static_cast<Engine>(found - names.begin());
+}
+
+std::vector<EngineFile> engineFiles(Engine engine, const EngineFacts& facts) {
+    const std::string folder = engineNames()[static_cast<size_t>(engine)] + "/";
+    std::vector<EngineFile> out;
+    for (const EngineText& text : engineTexts()) {
+        const std::string path = text.path;
+        if (!path.starts_with(folder)) continue;
+        EngineFile file{path.substr(folder.size()), text.text};
+        replaceAll(file.text, "@NAME@", file.name.ends_with(".html") ? inMarkup(facts.name) : facts.name);
+        replaceAll(file.text, "@EV@", fmt::format("{:.4f}", facts.exposure));
+        replaceAll(file.text, "@EV100@", fmt::format("{:.4f}", ev100Of(facts.exposure)));
+        replaceAll(file.text, "@FACTOR@", fmt::format("{:.6g}", std::exp2(facts.exposure)));
+        replaceAll(file.text, "@SKY@",
+                   fmt::format("[{:.6g}, {:.6g}, {:.6g}]", facts.sky.r, facts.sky.g, facts.sky.b));
+        out.push_back(std::move(file));
+    }
+    return out;
+}
+
+} // namespace relume

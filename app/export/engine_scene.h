@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/model/scene.h"
+
+namespace relume {
+
+/// A scene in the form that engines read, whose light is in a lightmap.
+struct EngineScene {
+    Scene scene;
+    std::vector<bool> lit; // by Scene::materials: those that the lightmap lights
+};
+
+/// Returns a scene as engines read it: one mesh per instance, with the instance's lightmap UVs in TEXCOORD_1;
+/// what is hidden, lights and sky are left out, since their light is in the lightmap; emission stays, and
+/// metals are an engine's (engine_metals.h). Every primitive has a material. What has no lightmap UVs gets
+/// `ambient`, the mean lighting [cd/m^2], as emission, as the viewer shows it; so do panes, which no bake
+/// lights.
+EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const glm::vec3& ambient);
+
+/// Leaves out images and textures that no material reads.
+void dropUnusedTextures(Scene& scene);
+
+} // namespace relume

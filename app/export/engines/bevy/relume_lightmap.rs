@@ -1,0 +1,82 @@
+//! Lights a level that Relume exported by its lightmap, as the file's MOZ_lightmap says.
+//!
+//! Bevy 0.16 or newer, with its features "ktx2" and "zstd". Copy the exported folder into `assets/`, then:
+//!
+//! ```ignore
+//! app.add_plugins(relume_lightmap::RelumeLightmapPlugin);
+//! // in a system of Startup:
+//! relume_lightmap::spawn_level(&mut commands, &asset_server, "level");
+//! commands.spawn((Camera3d::default(), bevy::camera::Exposure { ev100: relume_lightmap::EV100 }));
+//! ```
+use bevy::gltf::{Gltf, GltfLoaderSettings, GltfMaterialName};
+use bevy::pbr::Lightmap;
+use bevy::prelude::*;
+use std::collections::HashSet;
+
+/// The exposure at which Relume showed the level. Lightmap and emission are in cd/m^2.
+pub const EV100: f32 = @EV100@;
+
+/// A level whose lightmap is on its way or in place.
+#[derive(Resource)]
+pub struct RelumeLevel {
+    gltf: Handle<Gltf>,
+    lightmap: Handle<Image>,
+    /// Names of the materials that the lightmap lights; none as long as the file is being read.
+    lit: Option<HashSet<String>>,
+}
+
+pub struct RelumeLightmapPlugin;
+
+impl Plugin for RelumeLightmapPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Update, (begin_level, light_meshes).chain().run_if(resource_exists::<RelumeLevel>));
+    }
+}
+
+/// Loads scene.glb and lightmap.ktx2 of a folder below `assets/`, and shows them when they are read.
+pub fn spawn_level(commands: &mut Commands, asset_server: &AssetServer, folder: &str) {
+    commands.insert_resource(RelumeLevel {
+        gltf: asset_server.load_with_settings(
+            format!("{folder}/scene.glb"),
+            |settings: &mut GltfLoaderSettings| settings.include_source = true,
+        ),
+        lightmap: asset_server.load(format!("{folder}/lightmap.ktx2")),
+        lit: None,
+    });
+}
+
+fn begin_level(mut commands: Commands, files: Res<Assets<Gltf>>, mut level: ResMut<RelumeLevel>) {
+    if level.lit.is_some() {
+        return;
+    }
+    let Some(file) = files.get(&level.gltf) else { return };
+    let Some(source) = &file.source else { return };
+    let lit = source
+        .document
+        .materials()
+        .filter(|material| material.extension_value("MOZ_lightmap").is_some())
+        .filter_map(|material| material.name().map(str::to_string))
+        .collect();
+    level.lit = Some(lit);
+    if let Some(scene) = &file.default_scene {
+        commands.spawn(SceneRoot(scene.clone()));
+    }
+}
+
+fn light_meshes(
+    mut commands: Commands,
+    level: Res<RelumeLevel>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    meshes: Query<(Entity, &GltfMaterialName, &MeshMaterial3d<StandardMaterial>), Added<Mesh3d>>,
+) {
+    let Some(lit) = &level.lit else { return };
+    for (entity, name, material) in &meshes {
+        if let Some(material) = materials.get_mut(&material.0) {
+            material.lightmap_exposure = 1.0;
+            material.emissive_exposure_weight = 1.0; // emission is in cd/m^2, too
+        }
+        if lit.contains(&name.0) {
+            commands.entity(entity).insert(Lightmap { image: level.lightmap.clone(), ..default() });
+        }
+    }
+}

@@ -1,0 +1,92 @@
+# Opens a level that Relume exported, lit by its lightmap (Blender 3.4 or newer):
+#
+#     blender --python level.py
+#
+# Every lit material shows lightmap x base colour as emission; no lamp and no bake is needed. Lightmap and emission are
+# in cd/m^2; the scene's exposure (Render Properties, Color Management) brings them to the screen.
+import json
+import os
+import struct
+
+import bpy
+
+folder = os.path.dirname(os.path.abspath(__file__))
+exposure = @EV@  # [EV], at which Relume showed the level
+
+
+def lit_materials(path):
+    """Returns the names of the materials that have MOZ_lightmap."""
+    with open(path, "rb") as file:
+        length = struct.unpack("<5I", file.read(20))[3]
+        materials = json.loads(file.read(length)).get("materials", [])
+    return {m["name"] for m in materials if "MOZ_lightmap" in m.get("extensions", {})}
+
+
+def light(material, picture):
+    """Adds lightmap x base colour x (1 - metallic) to what a material of the glTF importer emits."""
+    tree = material.node_tree
+    nodes, links = tree.nodes, tree.links
+    surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+
+    def value_of(name):
+        """Returns a socket with what the surface's input of that name has."""
+        socket = surface.inputs[name]
+        if socket.is_linked:
+            return socket.links[0].from_socket
+        is_color = socket.type == "RGBA"
+        node = nodes.new("ShaderNodeRGB" if is_color else "ShaderNodeValue")
+        node.outputs[0].default_value = socket.default_value
+        return node.outputs[0]
+
+    def emission_of(color, strength):
+        node = nodes.new("ShaderNodeEmission")
+        links.new(color, node.inputs["Color"])
+        links.new(strength, node.inputs["Strength"])
+        return node.outputs[0]
+
+    uv = nodes.new("ShaderNodeUVMap")
+    uv.uv_map = "UVMap.001"  # TEXCOORD_1
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = picture
+    texture.extension = "EXTEND"
+    links.new(uv.outputs[0], texture.inputs[0])
+    product = nodes.new("ShaderNodeVectorMath")
+    product.operation = "MULTIPLY"
+    links.new(texture.outputs["Color"], product.inputs[0])
+    links.new(value_of("Base Color"), product.inputs[1])
+    diffuse = nodes.new("ShaderNodeMath")
+    diffuse.operation = "SUBTRACT"
+    diffuse.inputs[0].default_value = 1.0
+    links.new(value_of("Metallic"), diffuse.inputs[1])
+    reflected = emission_of(product.outputs[0], diffuse.outputs[0])
+    # Since Blender 4.0 the input has another name.
+    color = "Emission Color" if "Emission Color" in surface.inputs else "Emission"
+    emitted = emission_of(value_of(color), value_of("Emission Strength"))
+    both = nodes.new("ShaderNodeAddShader")
+    links.new(reflected, both.inputs[0])
+    links.new(emitted, both.inputs[1])
+    shown = both.outputs[0]
+    if surface.inputs["Alpha"].is_linked:
+        mix = nodes.new("ShaderNodeMixShader")
+        links.new(value_of("Alpha"), mix.inputs[0])
+        links.new(nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+        links.new(shown, mix.inputs[2])
+        shown = mix.outputs[0]
+    links.new(shown, output.inputs["Surface"])
+
+
+bpy.ops.wm.read_factory_settings(use_empty=True)
+level = os.path.join(folder, "scene.glb")
+bpy.ops.import_scene.gltf(filepath=level)
+lightmap = bpy.data.images.load(os.path.join(folder, "lightmap.exr"))
+lightmap.colorspace_settings.name = "Non-Color"
+lit = lit_materials(level)
+for material in bpy.data.materials:
+    if material.use_nodes and material.name in lit:
+        light(material, lightmap)
+scene = bpy.context.scene
+scene.view_settings.exposure = exposure
+cameras = [thing for thing in scene.objects if thing.type == "CAMERA"]
+if cameras:
+    scene.camera = cameras[0]

@@ -1,0 +1,185 @@
+#include "app/export/export_folder.h"
+
+#include "app/export/any_scene.h"
+#include "app/export/engine_scene.h"
+#include "app/export/surface_light.h"
+#include "assets/base/error.h"
+#include "assets/base/file_write.h"
+#include "assets/gltf/gltf.h"
+#include "assets/images/image_file.h"
+#include "renderer/good_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSceneName = "scene.glb";
+constexpr const char* kTextureName = "lightmap.ktx2";
+constexpr const char* kImageName = "lightmap.exr";
+constexpr float kUsualAspect = 16.0f / 9.0f;
+// The texture of Engine::Any has the surfaces' pictures in it, which the lightmap's texels are too coarse
+// for.
+constexpr uint32_t kFiner = 4, kMostFine = 4096; // times; edge [texels]
+
+uint32_t textureSize(const ExportDesc& desc, const Scene& scene, uint32_t lightmap) {
+    if (desc.engine != Engine::Any) return lightmap;
+    if (desc.textureSize > 0) return desc.textureSize;
+    const bool hasPictures =
+        std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
+            return m.baseColorTexture.texture >= 0 || m.emissionTexture.texture >= 0;
+        });
+    return hasPictures ? std::max(lightmap, std::min(kFiner * lightmap, kMostFine)) : lightmap;
+}
+
+// Returns the mean of the texels that belong to surfaces [cd/m^2].
+glm::vec3 meanLight(const FloatImage& lightmap) {
+    const std::vector<float>* coverage = lightmap.find("coverage");
+    glm::dvec3 sum(0.0);
+    double count = 0;
+    for (size_t i = 0; i < size_t{lightmap.width} * lightmap.height; ++i) {
+        if (coverage && (*coverage)[i] < 1.0f) continue;
+        for (int c = 0; c < 3; ++c)
+            sum[c] += (*lightmap.find(std::string(1, "RGB"[c])))[i];
+        count += 1;
+    }
+    return count > 0 ? glm::vec3(sum / count) : glm::vec3(0.0f);
+}
+
+// Returns what the sky looks like on the whole [cd/m^2]: engines show a colour behind the level.
+glm::vec3 meanOf(const Sky& sky) {
+    if (sky.pixels.empty()) return sky.radiance;
+    glm::dvec3 sum(0.0);
+    double weights = 0;
+    for (uint32_t y = 0; y < sky.height; ++y) {
+        const double weight = std::sin(std::numbers::pi * (y + 0.5) / sky.height); // of a row's solid angle
+        for (uint32_t x = 0; x < sky.width; ++x)
+            sum += weight * glm::dvec3(sky.pixels[size_t{y} * sky.width + x]);
+        weights += weight * sky.width;
+    }
+    return sky.radiance * glm::vec3(sum / weights);
+}
+
+Camera startCamera(const WorldMesh& mesh) {
+    const ViewCamera view = goodView(mesh, kUsualAspect);
+    Camera camera;
+    camera.name = "View";
+    camera.transform = glm::inverse(viewMatrix(view));
+    camera.yfov = view.yfov;
+    camera.znear = view.znear;
+    return camera;
+}
+
+// Adds the lightmap as a picture of 8 bits, as MOZ_lightmap has it, and says so in `look`.
+void addLightmap(Scene& scene, const FloatImage& lightmap, GlbLook& look) {
+    Image image{"Lightmap", lightmap.width, lightmap.height, {}};
+    const size_t count = size_t{lightmap.width} * lightmap.height;
+    image.rgba.assign(4 * count, 255);
+    float brightest = 0.0f;
+    for (const char* channel : {"R", "G", "B"})
+        for (const float value : *lightmap.find(channel))
+            brightest = std::max(brightest, value);
+    look.intensity = brightest > 0.0f ? brightest : 1.0f;
+    for (size_t c = 0; c < 3; ++c) {
+        const std::vector<float>& plane = *lightmap.find(std::string(1, "RGB"[c]));
+        for (size_t i = 0; i < count; ++i) {
+            const float share = std::clamp(plane[i] / look.intensity, 0.0f, 1.0f);
+            image.rgba[4 * i + c] = static_cast<uint8_t>(std::lround(255.0f * share));
+        }
+    }
+    look.lightmap = static_cast<int>(scene.textures.size());
+    look.maps = {look.lightmap};
+    scene.textures.push_back({.image = static_cast<int>(scene.images.size()),
+                              .wrapS = Wrap::ClampToEdge,
+                              .wrapT = Wrap::ClampToEdge});
+    scene.images.push_back(std::move(image));
+}
+
+FloatImage colorsOf(const FloatImage& lightmap) {
+    FloatImage out{lightmap.width, lightmap.height, {}, {}, lightmap.attributes};
+    for (const char* channel : {"R", "G", "B"})
+        out.add(channel) = *lightmap.find(channel);
+    return out;
+}
+
+void requireLightmap(const FloatImage& lightmap) {
+    for (const char* channel : {"R", "G", "B"})
+        if (!lightmap.find(channel)) throw Error("the lightmap has no channels R, G and B: bake one");
+    if (lightmap.width != lightmap.height)
+        throw Error(fmt::format("the lightmap has {} x {} texels, and not as many rows as columns: bake one",
+                                lightmap.width, lightmap.height));
+}
+
+} // namespace
+
+std::vector<std::string> exportedFiles(const ExportDesc& desc) {
+    const fs::path folder = desc.folder;
+    std::vector<std::string> paths;
+    for (const char* name : {kSceneName, kTextureName, kImageName})
+        paths.push_back((folder / name).string());
+    for (const EngineFile& file : engineFiles(desc.engine, {}))
+        paths.push_back((folder / file.name).string());
+    return paths;
+}
+
+void checkExport(const ExportDesc& desc) {
+    std::error_code problem;
+    const fs::path folder = desc.folder;
+    if (fs::exists(folder, problem) && !fs::is_directory(folder, problem))
+        throw Error(desc.folder + ": is a file, and an export is a folder: give another name");
+    fs::create_directories(folder, problem);
+    if (problem)
+        throw Error(desc.folder + ": cannot be made (" + problem.message() + "): choose another folder");
+    for (const std::string& path : exportedFiles(desc))
+        checkFileWritable(path, 0);
+}
+
+ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const PreparedScene& prepared,
+                         const FloatImage& lightmap) {
+    requireLightmap(lightmap);
+    const Scene& scene = prepared.scene;
+    const SurfaceLight light =
+        surfaceLight(device, prepared, lightmap, textureSize(desc, scene, lightmap.width));
+    ExportResult result;
+    result.exposure = desc.exposure.value_or(exposureOf(light));
+    EngineScene level = engineScene(scene, prepared.atlas, meanLight(lightmap));
+    if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(prepared.mesh));
+    GlbLook look;
+    look.matte = !desc.gloss;
+    if (desc.engine == Engine::Any) {
+        look.maps = lightByEmission(level, light, scene.materials, result.exposure);
+    } else {
+        addLightmap(level.scene, lightmap, look);
+        look.lit = level.lit;
+    }
+
+    const fs::path folder = desc.folder;
+    const auto write = [&](const std::string& name, std::string_view bytes) {
+        const std::string path = (folder / name).string();
+        writeFileAtomically(path, bytes);
+        result.files.push_back(path);
+    };
+    const std::vector<uint8_t> glb = glbBytes(level.scene, {}, look);
+    write(kSceneName, {reinterpret_cast<const char*>(glb.data()), glb.size()});
+    // The loaders for these two are a few lines, which unpack nothing.
+    const bool plain = desc.engine == Engine::Babylon || desc.engine == Engine::PlayCanvas;
+    write(kTextureName,
+          encodeKtx2(lightmap, {.format = plain ? Ktx2Format::Half : desc.format, .zstd = !plain},
+                     (folder / kTextureName).string()));
+    writeImage((folder / kImageName).string(), colorsOf(lightmap));
+    result.files.push_back((folder / kImageName).string());
+    const std::string name = fs::path(scene.path).stem().string();
+    for (const EngineFile& file :
+         engineFiles(desc.engine, {.name = name, .exposure = result.exposure, .sky = meanOf(scene.sky)}))
+        write(file.name, file.text);
+    return result;
+}
+
+} // namespace relume

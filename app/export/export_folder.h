@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/edit/prepare.h"
+#include "app/export/engine_files.h"
+#include "assets/images/float_image.h"
+#include "assets/images/ktx2.h"
+#include "bake/vk/device.h"
+
+namespace relume {
+
+/// Says what is exported, for whom and where.
+struct ExportDesc {
+    Engine engine = Engine::Three;
+    std::string folder;                   // is made where it is missing
+    std::optional<float> exposure = {};   // [EV]; none: what the surfaces ask for
+    Ktx2Format format = Ktx2Format::Half; // of lightmap.ktx2
+    bool gloss = false;                   // highlights stay, which take from the diffuse light
+    uint32_t textureSize = 0;             // Engine::Any: edge of the light's texture [texels]; 0: it follows
+                                          // from the lightmap's
+};
+
+/// Tells what was written.
+struct ExportResult {
+    std::vector<std::string> files; // by path
+    float exposure = 0.0f;          // [EV]
+};
+
+/// Returns the paths of the files that exportLevel() writes.
+std::vector<std::string> exportedFiles(const ExportDesc& desc);
+
+/// Throws Error where the folder cannot be written to: call before long work.
+void checkExport(const ExportDesc& desc);
+
+/// Writes a level with its lightmap (lighting, R, G and B) as an engine reads it: scene.glb, lightmap.ktx2,
+/// lightmap.exr, README.txt and what else the engine needs. Files of the same names are replaced, each whole
+/// or not at all; others in the folder stay. The scene's first camera comes first; one without a camera gets
+/// the view that the viewer begins with. Throws Error.
+ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const PreparedScene& prepared,
+                         const FloatImage& lightmap);
+
+} // namespace relume
