@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -19,12 +22,14 @@ using Texture = std::vector<glm::dvec4>;
 /// Holds RTRad's textures and does its passes over them.
 class Rtrad {
 public:
-    explicit Rtrad(const PatchSet& set)
-        : set_(set), map_(set.scene.texelToPatch), ligIn_(size_t{kRtradSize} * kRtradSize, glm::dvec4(0)) {
+    /// `seen` has what was found out about pairs of texels of these patches so far: -1 for nothing.
+    Rtrad(const PatchSet& set, std::vector<int>& seen)
+        : set_(set), seen_(seen), map_(set.scene.texelToPatch),
+          ligIn_(size_t{kRtradSize} * kRtradSize, glm::dvec4(0)) {
         for (size_t t = 0; t < map_.size(); ++t)
             if (isPatch(t)) ligIn_[t] = glm::dvec4(glm::dvec3(set.emission[map_[t]]), 1.0);
         ligOut_ = ligIn_;
-        seen_.assign(map_.size() * map_.size(), -1);
+        seen_.resize(map_.size() * map_.size(), -1);
     }
 
     void pass(Method method, const PairSettings& pairs, bool first) {
@@ -174,10 +179,10 @@ private:
     }
 
     const PatchSet& set_;
+    std::vector<int>& seen_;
     const std::vector<uint32_t>& map_;
     Texture ligIn_, ligOut_;
     std::vector<Texture> mips_;
-    std::vector<int> seen_;
     uint32_t receiver_ = 0;
     glm::dvec4 sum_{0};
 };
@@ -212,13 +217,15 @@ TEST_P(RtradMethods, FollowRtradsFormulas) {
     const RtradCase& c = GetParam();
     // The stride misses the small mesh light of the one, as RTRad's does, and finds the long ones of the
     // other.
-    const Scene scene = generateScene(c.method == Method::Static ? "cornell_layers" : "cornell_geom");
+    const std::string name = c.method == Method::Static ? "cornell_layers" : "cornell_geom";
+    const Scene scene = generateScene(name);
     const auto baker = makeBaker(
         scene, {.size = kRtradSize, .passes = kPasses, .method = c.method, .pairs = c.pairs, .rtrad = true});
     while (!baker->solver().done())
         baker->solver().step();
     const FloatImage image = baker->lightmap({.quantity = Quantity::Radiance, .sew = false});
-    Rtrad rtrad(baker->patches());
+    static std::map<std::string, std::vector<int>> seen; // cases of one scene ask for the same pairs
+    Rtrad rtrad(baker->patches(), seen[name]);
     for (uint32_t p = 0; p < kPasses; ++p)
         rtrad.pass(c.method, c.pairs, p == 0);
     double squares = 0, sum = 0, bounced = 0;
