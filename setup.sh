@@ -3,6 +3,7 @@
 #
 #   ./setup.sh        what a build and the tests need
 #   ./setup.sh --ci   the format checker and git too, which lists what it checks
+#   ./setup.sh --web  Chromium, Node.js and the npm packages of tests/web too, which open exported levels
 #
 # Debian 12: Mesa comes from bookworm-backports (the stock Mesa 22.3 has no ray tracing); the suite is added to apt's
 # sources where it is missing. RELUME_KEEP_MESA=1 leaves an installed older Mesa alone. Debian 13 and Ubuntu 24.04: the
@@ -32,7 +33,7 @@ mesa=(mesa-vulkan-drivers libgl1-mesa-dri libegl-mesa0 libglx-mesa0)
 testedMesa=25 # on Debian 12 an older one is brought up to date; elsewhere the stock one is taken
 backports=/etc/apt/sources.list.d/relume-backports.sources
 
-usage() { sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+usage() { sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 
 # "debian 12": what this machine runs.
 systemName() {
@@ -154,10 +155,27 @@ installAll() {
     fi
 }
 
+# Node.js is often there from elsewhere than Debian: its programs are looked for, not its packages.
+addWebPackages() {
+    packages+=(ca-certificates)
+    command -v chromium >/dev/null || packages+=(chromium)
+    command -v node >/dev/null || packages+=(nodejs)
+    command -v npm >/dev/null || packages+=(npm)
+}
+
+installNpmPackages() {
+    if [ "${1:-}" = --web ]; then
+        # Two of the packages name other versions of a third one, which work as well.
+        (cd "$(dirname "${BASH_SOURCE[0]}")/tests/web" &&
+            npm install --no-audit --no-fund --no-package-lock --legacy-peer-deps)
+    fi
+}
+
 setUp() {
     case "${1:-}" in
         "") ;;
         --ci) packages+=(clang-format git) ;;
+        --web) addWebPackages ;;
         *) usage; exit 2 ;;
     esac
     system=$(systemName)
@@ -165,14 +183,17 @@ setUp() {
     missing=()
     needsMesa=false
     lookForPackages
-    if [ ${#missing[@]} -eq 0 ] && [ $needsMesa = false ]; then
-        echo "setup: everything is installed"
-        return
+    if [ ${#missing[@]} -gt 0 ] || [ $needsMesa = true ]; then
+        root=()
+        becomeRoot
+        installAll
     fi
-    root=()
-    becomeRoot
-    installAll
-    echo "setup: done"
+    installNpmPackages "$@"
+    if [ ${#missing[@]} -gt 0 ] || [ $needsMesa = true ]; then
+        echo "setup: done"
+    else
+        echo "setup: everything is installed"
+    fi
 }
 
 # tests/scripts.sh takes the functions alone.

@@ -7,17 +7,22 @@
 #                                      live (any Vulkan device), ui (Xvfb), bench; with preset tsan: thread;
 #                                      with asan or fuzz: fuzz
 #   ./test.sh PRESET LABEL CTEST-ARGS  LABEL may be 'all': e.g. ./test.sh release all -R Furnace
+#   ./test.sh web                      what browsers make of exported levels: sets up Chromium, Node.js and npm packages,
+#                                      without which the tests of label web are skipped
 #
 # RELUME_WERROR=ON makes warnings errors.
 set -euo pipefail
 cd "$(dirname "$0")"
 
+if [ "${1:-}" = web ]; then
+    set -- release "$@"
+fi
 preset=${1:-release}
 label=${2:-all}
 shift $(($# < 2 ? $# : 2))
 case "$preset $label" in
     -* | *" -"*)
-        sed -n '2,11s/^# \{0,1\}//p' "$0"
+        sed -n '2,13s/^# \{0,1\}//p' "$0"
         exit 2
         ;;
 esac
@@ -32,7 +37,11 @@ if [ "$label" != all ]; then
     fi
 fi
 
-./setup.sh
+if [ "$label" = web ]; then
+    ./setup.sh --web
+else
+    ./setup.sh
+fi
 cmake --preset "$preset" -DRELUME_TESTS=ON -DRELUME_WERROR="${RELUME_WERROR:-OFF}" >/dev/null
 cmake --build --preset "$preset" --target "${target[@]}"
 ctest --preset "$preset" -j "$(nproc)" "${only[@]}" "$@"

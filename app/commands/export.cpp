@@ -60,6 +60,7 @@ void exportScene(const ExportCommand& o) {
     checkExport(desc);
     if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
     std::optional<FloatImage> lightmap = givenLightmap(o);
+    if (lightmap) checkLightmap(*lightmap, o.lightmap.empty() ? o.layers : o.lightmap);
     if (lightmap) request.prepare.size = lightmap->width; // the gutters of a repacked atlas depend on it
     std::optional<PhaseProgress> phase(std::in_place, true);
     const PreparedScene prepared = prepareScene(request.prepare);
@@ -69,7 +70,8 @@ void exportScene(const ExportCommand& o) {
     phase.reset();
     if (!lightmap) lightmap = bakedLightmap(device, prepared, request, o.bake);
     stopIfInterrupted();
-    const ExportResult result = exportLevel(desc, device, prepared, *lightmap);
+    const ExportResult result =
+        exportLevel(desc, device, {prepared.scene, prepared.atlas, prepared.mesh}, *lightmap);
     for (const std::string& path : result.files)
         std::printf("%s\n", path.c_str());
     spdlog::info("wrote {} for {}, exposure {:.2f} EV ({} in all)", desc.folder, o.out.engine,
@@ -101,7 +103,8 @@ void addExportCommand(CLI::App& app) {
             ->type_name("LAYERS.exr")
             ->excludes(lightmap);
     addSizeOption(*command, "--size", o->bake);
-    addSolverOptionsBeside(*command, o->bake, {lightmap, layers});
+    // The surfaces are drawn on the device, whoever bakes.
+    addSolverOptionsBeside(*command, o->bake, {lightmap, layers}, {"--device", "--validate"});
     for (CLI::Option* given : {lightmap, layers})
         command->get_option("--size")->excludes(given);
     command->callback([o] { exportScene(*o); });

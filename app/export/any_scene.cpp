@@ -78,7 +78,10 @@ std::vector<int> lightByEmission(EngineScene& level, const SurfaceLight& light,
     const float factor = std::exp2(exposure);
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         Material& material = scene.materials[i];
-        if (material.pane) continue;
+        if (material.pane) { // it stays what it is and shows light through it
+            material.emission *= factor;
+            continue;
+        }
         if (level.lit[i]) {
             const bool own = shines(material) && brightTexture >= 0;
             material.emission = glm::vec3((own ? bright.brightest : dim.brightest) * factor);

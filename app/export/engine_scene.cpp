@@ -2,6 +2,7 @@
 
 #include "app/export/engine_metals.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -23,6 +24,14 @@ struct MaterialUse {
 
 std::array<TextureRef*, 3> usesOf(Material& material) {
     return {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture};
+}
+
+// Tells whether a texture of the material reads TEXCOORD_1 of the primitive.
+bool readsSecondSet(const Primitive& primitive, Material material) {
+    if (primitive.uvsMoved) return false;
+    const auto uses = usesOf(material);
+    return std::any_of(uses.begin(), uses.end(),
+                       [](const TextureRef* use) { return use->texture >= 0 && use->texCoord == 1; });
 }
 
 class MaterialSplit {
@@ -89,7 +98,12 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
         if (!instance.name.empty()) mesh.name = instance.name;
         for (Primitive& primitive : mesh.primitives) {
             const bool mapped = atlas.instances[i].texCoord >= 0 && !primitive.texCoord1.empty();
-            primitive.material = split.numberOf(primitive, mapped);
+            const int number = split.numberOf(primitive, mapped);
+            // Some engines light whatever has a second set of UVs.
+            if (!split.lit()[static_cast<size_t>(number)] &&
+                !readsSecondSet(primitive, split.materials()[static_cast<size_t>(number)]))
+                primitive.texCoord1.clear();
+            primitive.material = number;
             primitive.uvsMoved = false;
         }
         instance.mesh = static_cast<int>(out.scene.meshes.size());

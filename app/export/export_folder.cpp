@@ -2,7 +2,6 @@
 
 #include "app/export/any_scene.h"
 #include "app/export/engine_scene.h"
-#include "app/export/surface_light.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/gltf/gltf.h"
@@ -39,13 +38,16 @@ uint32_t textureSize(const ExportDesc& desc, const Scene& scene, uint32_t lightm
     return hasPictures ? std::max(lightmap, std::min(kFiner * lightmap, kMostFine)) : lightmap;
 }
 
-// Returns the mean of the texels that belong to surfaces [cd/m^2].
-glm::vec3 meanLight(const FloatImage& lightmap) {
+// Returns the mean of the texels that belong to surfaces [cd/m^2]. Where the lightmap does not say which do,
+// `light` does.
+glm::vec3 meanLight(const FloatImage& lightmap, const SurfaceLight& light) {
     const std::vector<float>* coverage = lightmap.find("coverage");
+    const bool bySurfaces = coverage == nullptr && light.size == lightmap.width;
     glm::dvec3 sum(0.0);
     double count = 0;
     for (size_t i = 0; i < size_t{lightmap.width} * lightmap.height; ++i) {
         if (coverage && (*coverage)[i] < 1.0f) continue;
+        if (bySurfaces && light.material[i] == 0) continue;
         for (int c = 0; c < 3; ++c)
             sum[c] += (*lightmap.find(std::string(1, "RGB"[c])))[i];
         count += 1;
@@ -65,6 +67,14 @@ glm::vec3 meanOf(const Sky& sky) {
         weights += weight * sky.width;
     }
     return sky.radiance * glm::vec3(sum / weights);
+}
+
+// Brings emission to the screen, for an importer that knows none above 1.
+void exposeEmission(Scene& scene, float exposure) {
+    for (Material& material : scene.materials) {
+        material.emission *= std::exp2(exposure);
+        material.emission /= std::max({1.0f, material.emission.r, material.emission.g, material.emission.b});
+    }
 }
 
 Camera startCamera(const WorldMesh& mesh) {
@@ -109,14 +119,6 @@ FloatImage colorsOf(const FloatImage& lightmap) {
     return out;
 }
 
-void requireLightmap(const FloatImage& lightmap) {
-    for (const char* channel : {"R", "G", "B"})
-        if (!lightmap.find(channel)) throw Error("the lightmap has no channels R, G and B: bake one");
-    if (lightmap.width != lightmap.height)
-        throw Error(fmt::format("the lightmap has {} x {} texels, and not as many rows as columns: bake one",
-                                lightmap.width, lightmap.height));
-}
-
 } // namespace
 
 std::vector<std::string> exportedFiles(const ExportDesc& desc) {
@@ -130,27 +132,29 @@ std::vector<std::string> exportedFiles(const ExportDesc& desc) {
 }
 
 void checkExport(const ExportDesc& desc) {
-    std::error_code problem;
-    const fs::path folder = desc.folder;
-    if (fs::exists(folder, problem) && !fs::is_directory(folder, problem))
-        throw Error(desc.folder + ": is a file, and an export is a folder: give another name");
-    fs::create_directories(folder, problem);
-    if (problem)
-        throw Error(desc.folder + ": cannot be made (" + problem.message() + "): choose another folder");
+    if (!checkFolderWritable(desc.folder)) return;
     for (const std::string& path : exportedFiles(desc))
         checkFileWritable(path, 0);
 }
 
-ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const PreparedScene& prepared,
+void checkLightmap(const FloatImage& lightmap, const std::string& name) {
+    for (const char* channel : {"R", "G", "B"})
+        if (!lightmap.find(channel)) throw Error(name + ": has no channels R, G and B: bake a lightmap");
+    if (lightmap.width != lightmap.height)
+        throw Error(fmt::format("{}: has {} x {} texels, and a lightmap is a square: bake one", name,
+                                lightmap.width, lightmap.height));
+}
+
+ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const AtlasLevel& source,
                          const FloatImage& lightmap) {
-    requireLightmap(lightmap);
-    const Scene& scene = prepared.scene;
+    checkLightmap(lightmap, "the lightmap");
+    const Scene& scene = source.scene;
     const SurfaceLight light =
-        surfaceLight(device, prepared, lightmap, textureSize(desc, scene, lightmap.width));
+        surfaceLight(device, source, lightmap, textureSize(desc, scene, lightmap.width));
     ExportResult result;
     result.exposure = desc.exposure.value_or(exposureOf(light));
-    EngineScene level = engineScene(scene, prepared.atlas, meanLight(lightmap));
-    if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(prepared.mesh));
+    EngineScene level = engineScene(scene, source.atlas, meanLight(lightmap, light));
+    if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
     GlbLook look;
     look.matte = !desc.gloss;
     if (desc.engine == Engine::Any) {
@@ -158,9 +162,11 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     } else {
         addLightmap(level.scene, lightmap, look);
         look.lit = level.lit;
+        if (desc.engine == Engine::Unity) exposeEmission(level.scene, result.exposure);
     }
 
     const fs::path folder = desc.folder;
+    makeFolder(desc.folder);
     const auto write = [&](const std::string& name, std::string_view bytes) {
         const std::string path = (folder / name).string();
         writeFileAtomically(path, bytes);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/edit/prepare.h"
 #include "app/export/engine_files.h"
+#include "app/export/surface_light.h"
 #include "assets/images/float_image.h"
 #include "assets/images/ktx2.h"
 #include "bake/vk/device.h"
@@ -35,11 +35,14 @@ std::vector<std::string> exportedFiles(const ExportDesc& desc);
 /// Throws Error where the folder cannot be written to: call before long work.
 void checkExport(const ExportDesc& desc);
 
+/// Throws Error where an image called `name` is no lightmap: it lacks a channel, or is no square.
+void checkLightmap(const FloatImage& lightmap, const std::string& name);
+
 /// Writes a level with its lightmap (lighting, R, G and B) as an engine reads it: scene.glb, lightmap.ktx2,
 /// lightmap.exr, README.txt and what else the engine needs. Files of the same names are replaced, each whole
 /// or not at all; others in the folder stay. The scene's first camera comes first; one without a camera gets
 /// the view that the viewer begins with. Throws Error.
-ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const PreparedScene& prepared,
+ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const AtlasLevel& level,
                          const FloatImage& lightmap);
 
 } // namespace relume

@@ -39,6 +39,8 @@ ExportDesc resolveExportOptions(const ExportOptions& options) {
     ExportDesc desc;
     desc.engine = engineOf(options.engine);
     desc.folder = options.folder;
+    while (desc.folder.size() > 1 && desc.folder.ends_with('/'))
+        desc.folder.pop_back();
     desc.gloss = options.gloss;
     desc.textureSize = options.textureSize;
     desc.format = options.format == "shared" ? Ktx2Format::SharedExponent : Ktx2Format::Half;

@@ -109,10 +109,10 @@ FillLevel coarser(const FillLevel& fine) {
 
 } // namespace
 
-SurfaceLight surfaceLight(const vk::Device& device, const PreparedScene& prepared, const FloatImage& lightmap,
+SurfaceLight surfaceLight(const vk::Device& device, const AtlasLevel& level, const FloatImage& lightmap,
                           uint32_t size) {
-    const TextureGroup group = rasterizeTextureGroup(device, prepared.scene, prepared.mesh, {.size = size});
-    std::vector<Material> materials = prepared.scene.materials;
+    const TextureGroup group = rasterizeTextureGroup(device, level.scene, level.mesh, {.size = size});
+    std::vector<Material> materials = level.scene.materials;
     materials.emplace_back(); // glTF's default material
     const LightmapSampler sampler(lightmap);
     const float scale = static_cast<float>(lightmap.width) / static_cast<float>(size);
@@ -125,7 +125,7 @@ SurfaceLight surfaceLight(const vk::Device& device, const PreparedScene& prepare
     out.material.assign(count, 0);
     for (size_t i = 0; i < count; ++i) {
         if (group.triangle[i] == 0) continue;
-        const uint32_t number = prepared.mesh.material[group.triangle[i] - 1];
+        const uint32_t number = level.mesh.material[group.triangle[i] - 1];
         const Material& material = materials[number];
         const glm::vec2 place(static_cast<float>(i % size) + 0.5f, static_cast<float>(i / size) + 0.5f);
         out.material[i] = 1 + number;

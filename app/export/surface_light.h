@@ -5,11 +5,20 @@
 
 #include <glm/glm.hpp>
 
-#include "app/edit/prepare.h"
+#include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/world_mesh.h"
 #include "assets/images/float_image.h"
+#include "assets/model/scene.h"
 #include "bake/vk/device.h"
 
 namespace relume {
+
+/// A level with the atlas that its lightmap is in. What it names must outlive it.
+struct AtlasLevel {
+    const Scene& scene;
+    const LightmapAtlas& atlas;
+    const WorldMesh& mesh; // of the scene, flattened by the atlas
+};
 
 /// What leaves a level's surfaces, in the lightmap's layout: [size * size] texels, row 0 = v 0.
 struct SurfaceLight {
@@ -22,7 +31,7 @@ struct SurfaceLight {
 
 /// Draws the surfaces into textures of an edge of `size` texels and multiplies them with the lightmap, which
 /// may be smaller and is then filtered linearly. Throws Error.
-SurfaceLight surfaceLight(const vk::Device& device, const PreparedScene& prepared, const FloatImage& lightmap,
+SurfaceLight surfaceLight(const vk::Device& device, const AtlasLevel& level, const FloatImage& lightmap,
                           uint32_t size);
 
 /// Gives texels without a surface the mean of what is near, so that no filter meets a black one: `rings` of

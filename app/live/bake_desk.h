@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/edit/prepare.h"
+#include "app/export/export_folder.h"
 #include "app/live/lightmap_exchange.h"
 #include "assets/model/scene_edits.h"
 #include "bake/baker/baker.h"
@@ -113,6 +114,13 @@ struct BakeOrders {
         LightmapDesc lightmap;
         std::string scene; // the file that it names as its scene's
     };
+    struct EngineExport {
+        ExportDesc desc;
+        std::string scene;                 // the file that it names as its scene's
+        const PreparedScene* of = nullptr; // only its address counts
+        std::vector<Material> materials;   // of the scene, as it is shown
+        glm::vec3 sky{0.0f};               // its radiance, or the factor of its picture, as it is shown
+    };
     std::optional<Start> start;
     bool reset = false, abort = false, reload = false;
     Run run = Run::Keep;
@@ -122,6 +130,7 @@ struct BakeOrders {
     std::optional<ProbeRequest> probes;
     std::optional<uint32_t> voxels; // resolution
     std::vector<Export> exports;
+    std::vector<EngineExport> engineExports;
     bool quit = false;
 };
 

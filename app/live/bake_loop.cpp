@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -53,10 +54,11 @@ void BakeLoop::run() {
         try {
             obey(orders);
             if (waiting_) prepare(*std::exchange(waiting_, {}));
+            exportAll();
             if (status_.phase == Phase::Baking) stepSolver();
             publish();
         } catch (const Cancelled&) {
-            continue; // the newer command is there
+            continue; // the newer command is there, and exports wait for what it makes
         } catch (const std::bad_alloc&) {
             fail("out of memory: use a smaller lightmap or close other programs");
         } catch (const std::exception& error) {
@@ -88,7 +90,8 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
     const auto something = [&] {
         const BakeOrders& o = desk_.orders;
         return o.quit || o.start || o.reset || o.abort || o.reload || o.run != BakeOrders::Run::Keep ||
-               o.batchMs || o.seenTiles || o.inspect || o.probes || o.voxels || !o.exports.empty();
+               o.batchMs || o.seenTiles || o.inspect || o.probes || o.voxels || !o.exports.empty() ||
+               !o.engineExports.empty();
     };
     if (status_.phase != Phase::Baking) {
         if (maps_ && maps_->owes())
@@ -102,6 +105,8 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
 }
 
 void BakeLoop::obey(BakeOrders& orders) {
+    std::move(orders.exports.begin(), orders.exports.end(), std::back_inserter(exports_));
+    std::move(orders.engineExports.begin(), orders.engineExports.end(), std::back_inserter(engineExports_));
     if (!maps_) return; // the phase is Failed and stays so
     if (orders.batchMs) desc_.batchMs = *orders.batchMs;
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
@@ -115,7 +120,6 @@ void BakeLoop::obey(BakeOrders& orders) {
     if (orders.seenTiles) applySeen();
     if (orders.batchMs) bake_.baker()->solver().setBatchMs(desc_.batchMs);
     inspectMore(orders);
-    exportAll(orders);
 }
 
 // Follows a start. Light of the same scene stays until there is better, that of another one is of no use.
@@ -287,9 +291,21 @@ void BakeLoop::inspectMore(const BakeOrders& orders) {
     if (voxels) desk_.voxels = std::move(voxels);
 }
 
-void BakeLoop::exportAll(const BakeOrders& orders) {
-    for (const BakeOrders::Export& wanted : orders.exports)
+// Writes what was asked for, once the bake follows the edits before it.
+void BakeLoop::exportAll() {
+    if (waiting_) return;
+    if (!bake_.baker()) return refuseExports();
+    for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
         exportLightmap(wanted, *bake_.baker(), bake_.settings(), [this] { return maps_->lightNow(); });
+    for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
+        exportForEngine(wanted, *device_, bake_, [this] { return maps_->lightNow(); });
+}
+
+void BakeLoop::refuseExports() {
+    for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
+        spdlog::error("{}: not written, as there is no bake: begin one", wanted.path);
+    for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
+        spdlog::error("{}: not written, as there is no bake: begin one", wanted.desc.folder);
 }
 
 void BakeLoop::publish() {
@@ -305,6 +321,7 @@ void BakeLoop::fail(const std::string& message) {
     status_.doing = message;
     giveUp();
     letGo();
+    refuseExports();
 }
 
 void BakeLoop::giveUp() {

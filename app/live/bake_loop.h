@@ -44,7 +44,8 @@ private:
     void logEnd();
     void applySeen();
     void inspectMore(const BakeOrders& orders);
-    void exportAll(const BakeOrders& orders);
+    void exportAll();
+    void refuseExports();
     void publish();
     void fail(const std::string& message);
     void giveUp();
@@ -57,7 +58,9 @@ private:
     std::unique_ptr<MapPublisher> maps_;
     SceneBake bake_;
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
-    BakeStatus status_;                        // report() copies it to the desk
+    std::vector<BakeOrders::Export> exports_;  // not written yet, as those of the next line
+    std::vector<BakeOrders::EngineExport> engineExports_;
+    BakeStatus status_; // report() copies it to the desk
     BakeOrders::Run run_ = BakeOrders::Run::Resume;
     std::vector<uint32_t> seenTiles_;
     InspectRequest inspect_;

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "app/live/bake_desk.h"
+#include "app/live/scene_bake.h"
 
 namespace relume {
 
@@ -10,5 +11,10 @@ namespace relume {
 /// of a bake without a window. Before, it has what is on screen, which lightNow() returns for each patch.
 void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSettings& settings,
                     const std::function<std::vector<glm::vec4>()>& lightNow);
+
+/// Writes the level of a bake with such a lightmap as an engine reads it (app/export); the log tells how it
+/// went.
+void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& device, const SceneBake& bake,
+                     const std::function<std::vector<glm::vec4>()>& lightNow);
 
 } // namespace relume

@@ -90,6 +90,10 @@ void LiveBake::exportLightmap(BakeOrders::Export wanted) {
     order([&](BakeOrders& orders) { orders.exports.push_back(std::move(wanted)); });
 }
 
+void LiveBake::exportForEngine(BakeOrders::EngineExport wanted) {
+    order([&](BakeOrders& orders) { orders.engineExports.push_back(std::move(wanted)); });
+}
+
 BakeStatus LiveBake::status() const {
     const std::lock_guard lock(desk_->mutex);
     return desk_->status;

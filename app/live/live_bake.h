@@ -50,6 +50,8 @@ public:
     void askProbes(ProbeRequest request);
     /// Writes the lightmap as it stands; the log tells how it went.
     void exportLightmap(BakeOrders::Export wanted);
+    /// Writes the level with its lightmap as it stands, as an engine reads it; the log tells how it went.
+    void exportForEngine(BakeOrders::EngineExport wanted);
 
     BakeStatus status() const;
     LightmapExchange& exchange() { return desk_->exchange; }

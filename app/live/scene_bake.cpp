@@ -38,6 +38,7 @@ void SceneBake::make(const vk::Device& device, const Start& start) {
     const bool moved = differenceBetween(scene_, start.edits).objects;
     applyEdits(scene_, start.edits);
     readEditedPicture(scene_.sky);
+    atlas_ = start.scene->atlas;
     recipe_.scene = start.scene;
     makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/export/surface_light.h"
 #include "app/live/bake_desk.h"
 #include "app/live/bake_recipe.h"
 
@@ -18,6 +19,10 @@ public:
     Baker* baker() const { return baker_.get(); }
     /// Returns its layers, or nullptr.
     const LayerSolver* layers() const { return baker_ ? baker_->layers() : nullptr; }
+    /// Returns the scene with the edits that the bake follows; there is a baker.
+    AtlasLevel level() const { return {scene_, atlas_, baker_->patches().scene.mesh}; }
+    /// Tells whether this is the scene that is baked.
+    bool isOf(const PreparedScene* scene) const { return scene != nullptr && recipe_.scene == scene; }
     const BakeSettings& settings() const { return recipe_.settings; }
     uint32_t rings() const { return recipe_.rings; }
     /// Tells why there are no layers though they were asked for, with the remedy; "" where nothing is
@@ -47,6 +52,7 @@ private:
     void makeBaker(const vk::Device& device, WorldMesh mesh);
 
     Scene scene_;                  // with the edits; the baker changes it
+    LightmapAtlas atlas_;          // of the scene
     BakeRecipe recipe_;            // scene: nullptr where there is none, or it was given up
     bool due_ = false;             // the recipe was taken up, and nothing was made by it yet
     bool wantsLayers_ = true;      // they are asked for, even if the settings cannot have them

@@ -161,11 +161,13 @@ void addSolverOptions(CLI::App& command, BakeOptions& o) {
 }
 
 void addSolverOptionsBeside(CLI::App& command, BakeOptions& options,
-                            const std::vector<CLI::Option*>& lightmaps) {
+                            const std::vector<CLI::Option*>& lightmaps,
+                            const std::vector<std::string>& alsoUsed) {
     const std::vector<CLI::Option*> before = command.get_options();
     addSolverOptions(command, options);
-    const std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
-                                           "--shaders"}; // also without a bake
+    std::vector<std::string> used = {"--unwrap", "--density", "--daylight", "--strict",
+                                     "--shaders"}; // also without a bake
+    used.insert(used.end(), alsoUsed.begin(), alsoUsed.end());
     for (CLI::Option* option : command.get_options()) {
         const bool ofSolver = std::find(before.begin(), before.end(), option) == before.end();
         if (!ofSolver || std::find(used.begin(), used.end(), option->get_name()) != used.end()) continue;

@@ -98,9 +98,10 @@ void addBakeOptions(CLI::App& command, BakeOptions& options);
 /// Adds those of them that say how a lightmap is made, for other verbs that need one.
 void addSolverOptions(CLI::App& command, BakeOptions& options);
 /// Does the same for a verb that may take a lightmap instead: `lightmaps`, the options that
-/// name one, exclude those that only a bake has.
+/// name one, exclude those that only a bake has. `alsoUsed` names what the verb itself needs without a bake.
 void addSolverOptionsBeside(CLI::App& command, BakeOptions& options,
-                            const std::vector<CLI::Option*>& lightmaps);
+                            const std::vector<CLI::Option*>& lightmaps,
+                            const std::vector<std::string>& alsoUsed = {});
 /// Adds those of them that go with every method and number of samples: tracer, device, patches, what is
 /// written.
 void addMachineOptions(CLI::App& command, BakeOptions& options);

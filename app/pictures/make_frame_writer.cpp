@@ -24,16 +24,7 @@ public:
     explicit FolderWriter(const Desc& desc) : folder_(desc.path) {
         while (folder_.size() > 1 && folder_.ends_with('/'))
             folder_.pop_back();
-        std::error_code code;
-        if (!fs::exists(folder_, code)) {
-            if (fs::is_symlink(folder_, code))
-                throw Error(folder_ +
-                            ": is a link to a folder that does not exist: create that or name another");
-            checkFileWritable(folder_, 0);
-            return;
-        }
-        if (!fs::is_directory(folder_, code))
-            throw Error(folder_ + ": is a file: name a folder for the frames, or FILE.mp4");
+        if (!checkFolderWritable(folder_)) return;
         old_ = oldFrames();
         if (!old_.empty() && !desc.overwrite) {
             throw Error(folder_ + ": holds frames (" + old_.front().filename().string() +
@@ -41,7 +32,6 @@ public:
         }
         for (const fs::path& frame : old_)
             checkFileWritable(frame.string(), 0);
-        checkFileWritable(folder_ + "/frame_0001.png", 0);
     }
 
     void write(const FloatImage& frame, uint32_t times) override {
@@ -65,9 +55,8 @@ private:
     }
     // A shorter series than the one before it must not end in that one's frames.
     void begin() {
+        makeFolder(folder_);
         std::error_code code;
-        fs::create_directory(folder_, code);
-        if (code) throw Error(folder_ + ": cannot be made: " + code.message() + ": name another folder");
         for (const fs::path& frame : old_)
             fs::remove(frame, code); // what cannot be removed cannot be replaced either, which is told then
     }

@@ -236,6 +236,25 @@ void checkFileWritable(const std::string& path, uint64_t bytes) {
                     ": free some space or choose another folder");
 }
 
+bool checkFolderWritable(const std::string& folder) {
+    std::error_code code;
+    if (fs::is_directory(folder, code)) {
+        checkFileWritable((fs::path(folder) / ".relume").string(), 0);
+        return true;
+    }
+    if (fs::exists(folder, code)) throw Error(folder + ": is a file: name a folder");
+    if (fs::is_symlink(folder, code))
+        throw Error(folder + ": is a link to a folder that does not exist: create that or name another");
+    checkFileWritable(folder, 0);
+    return false;
+}
+
+void makeFolder(const std::string& folder) {
+    std::error_code code;
+    fs::create_directory(folder, code);
+    if (code) throw Error(folder + ": cannot be made: " + code.message() + ": name another folder");
+}
+
 std::string savedName(const std::string& folder, const std::string& path, uint32_t number) {
     constexpr size_t kMostLetters = 100; // a name that was too long may be why
     const fs::path name = fs::path(path).filename();

@@ -63,6 +63,13 @@ void writeFileAtomically(const std::string& path, std::string_view bytes,
 /// `bytes`. Changes nothing.
 void checkFileWritable(const std::string& path, uint64_t bytes);
 
+/// Throws Error where no files can be written into a folder, or it is missing and cannot be made, its parent
+/// being there. Returns whether it is there. Changes nothing.
+bool checkFolderWritable(const std::string& folder);
+
+/// Makes a folder where it is missing; its parent is there. Throws Error.
+void makeFolder(const std::string& folder);
+
 /// Returns the name under which a result that cannot be written to `path` is kept in `folder`: "o.saved.exr",
 /// from number 2 on "o.saved-2.exr".
 std::string savedName(const std::string& folder, const std::string& path, uint32_t number);

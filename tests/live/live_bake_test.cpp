@@ -3,6 +3,7 @@
 #include "app/live/layer_remark.h"
 #include "app/offline/lightmap_attributes.h"
 #include "assets/generate/generate.h"
+#include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
 #include "tests/gpu/gpu_environment.h"
@@ -12,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -123,6 +125,7 @@ TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
         BakeSettings settings = quickSettings();
         settings.solver.method = method;
         settings.solver.layers.on = layers;
+        if (method == Method::Directional) settings.solver.error = 0.1; // it takes longest to become clean
         if (isPairMethod(method)) {
             settings.solver.pairs.window = 2;
             settings.solver.passes = 3;
@@ -216,6 +219,50 @@ TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
         EXPECT_EQ(got.planes[c], expected.planes[c]);
 }
 
+// An export comes with the edits that were made before it, and goes on where a newer edit comes between.
+TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
+    const TemporaryFolder folder;
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    edits_.placements[0].transform[3] += glm::vec4(0.05f, 0.0f, 0.0f, 0.0f);
+    edits_.materials[0].baseColor = {0.25f, 0.5f, 0.75f, 1.0f};
+    Scene edited = scene_.scene;
+    applyEdits(edited, edits_);
+    start(settings);
+    bake_.exportForEngine(
+        {.desc = {.engine = Engine::Godot, .folder = folder.path("level"), .exposure = 1.0f},
+         .scene = "scene.glb",
+         .of = &scene_,
+         .materials = edited.materials,
+         .sky = {}});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("level/level.tscn")); }));
+    const Scene level = loadGltf(folder.path("level/scene.glb"));
+    ASSERT_EQ(level.instances.size(), scene_.scene.instances.size());
+    EXPECT_NEAR(level.instances[0].transform[3].x, edited.instances[0].transform[3].x, 1e-6f);
+    EXPECT_TRUE(std::any_of(level.materials.begin(), level.materials.end(), [](const Material& material) {
+        return material.baseColor == glm::vec4(0.25f, 0.5f, 0.75f, 1.0f);
+    }));
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
+
+    // That of another scene is refused. Exports come one after another.
+    const PreparedScene other = cornell();
+    bake_.exportForEngine({.desc = {.folder = folder.path("other")},
+                           .scene = "other.glb",
+                           .of = &other,
+                           .materials = other.scene.materials,
+                           .sky = {}});
+    const BakeOrders::EngineExport same{.desc = {.folder = folder.path("same")},
+                                        .scene = "scene.glb",
+                                        .of = &scene_,
+                                        .materials = edited.materials,
+                                        .sky = {}};
+    bake_.exportForEngine(same);
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("same/loader.js")); }));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("other")));
+}
+
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     BakeSettings settings = quickSettings();
     settings.solver.layers.on = true;
@@ -266,6 +313,7 @@ TEST_F(LiveBakeTest, SaysWhyThereAreNoLayers) {
     BakeSettings settings = quickSettings();
     settings.solver.layers.on = true;
     settings.solver.layers.bytes = 1;
+    settings.solver.error = 0.2; // directional light takes long to become clean
     start(settings, false);
     ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
     EXPECT_FALSE(bake_.status().layered);

@@ -133,6 +133,25 @@ TEST_F(ViewerStart, AMenuChoosesAmongTheScenesOfAFile) {
     quit(*viewer);
 }
 
+TEST_F(ViewerStart, AMenuExportsTheLevelForAnEngine) {
+    const std::string path = home_.path("room.glb"), folder = home_.path("room_three");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", path);
+    auto viewer = open({path});
+    ASSERT_TRUE(viewer->shows("bake: done", 240)) << viewer->output();
+    for (const char* name : {"Menu/File", "File/Export for", "File/Export for/three"}) {
+        const Place place = placeOf(*viewer, name);
+        viewer->click(place.first, place.second);
+        viewer->settle();
+    }
+    viewer->mark();
+    viewer->keys({"Return"}); // the folder that it offers, beside the scene
+    EXPECT_TRUE(viewer->says("export: " + folder)) << viewer->output();
+    ASSERT_TRUE(viewer->says("wrote " + folder, 60)) << viewer->output();
+    for (const char* file : {"scene.glb", "lightmap.ktx2", "lightmap.exr", "index.html", "loader.js"})
+        EXPECT_TRUE(std::filesystem::exists(folder + "/" + file)) << file;
+    quit(*viewer);
+}
+
 TEST_F(ViewerStart, AloneItOpensWhereThereIsADisplay) {
     ViewerProcess viewer({.display = display_->name(), .home = home_.path(""), .arguments = {}});
     ASSERT_TRUE(viewer.window()) << viewer.output();

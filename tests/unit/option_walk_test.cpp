@@ -65,13 +65,13 @@ const std::map<std::string, WalkWords> kWith = {
 /// These options take a text of any kind: names, and files that may be called so. What they mean by it
 /// decides whether it is a mistake.
 const OptionNames kTexts = {
-    "--scene",     "--variant",  "in",       "scene",        "name",        "a",
-    "b",           "layers",     "--output", "--picture",    "--json",      "--html",
-    "--plot",      "--diff",     "--mask",   "--error-map",  "--scene-out", "--camera",
-    "--device",    "--resume",   "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
-    "--set",       "--move",     "--rotate", "--aim",        "--add",       "--duplicate",
-    "--delete",    "--hide",     "--show",   "--mute",       "--solo",      "--pictures",
-    "--plot-rays", "--reference"};
+    "--scene",     "--variant",   "in",       "scene",        "name",        "a",
+    "b",           "layers",      "--output", "--picture",    "--json",      "--html",
+    "--plot",      "--diff",      "--mask",   "--error-map",  "--scene-out", "--camera",
+    "--device",    "--resume",    "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
+    "--set",       "--move",      "--rotate", "--aim",        "--add",       "--duplicate",
+    "--delete",    "--hide",      "--show",   "--mute",       "--solo",      "--pictures",
+    "--plot-rays", "--reference", "--layers"};
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {

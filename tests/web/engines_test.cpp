@@ -167,6 +167,7 @@ protected:
         const std::string folder = folder_.path(engine);
         relume({"export", level().scene(), "--lightmap", level().lightmap(), "--for", engine, "-o", folder,
                 "--exposure", GetParam().exposure});
+        EXPECT_EQ(complaintsAbout({folder + "/scene.glb"}), "");
         return folder;
     }
     FloatImage shown(const std::string& engine) {

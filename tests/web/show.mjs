@@ -2,9 +2,9 @@
 //
 //     node show.mjs FOLDER PAGE PICTURE.png WIDTHxHEIGHT
 //
-// PAGE is a file of the folder, with #options behind it, or one of this folder: @tests/NAME. The page says by data-ready on its body that it has drawn. What
-// it would load from a public server comes from node_modules: nothing is asked from the network. Whatever the page
-// logs as an error, and a page that never gets ready, ends this with status 1.
+// PAGE is a file of the folder, with #options behind it, or one of this folder: @tests/NAME. The page says by data-ready
+// on its body that it has drawn. What it would load from a public server comes from node_modules: nothing is asked from
+// the network. Whatever the page logs as an error, and a page that never gets ready, ends this with status 1.
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
 import { extname, join, normalize } from 'node:path';

@@ -32,6 +32,7 @@ ProcessResult runNode(std::vector<std::string> arguments) {
 std::string whyNoPages() {
     if (!fs::exists(kFolder + "node_modules/three"))
         return "the npm packages of tests/web are not installed: run ./test.sh web";
+    if (runNode({"--version"}).status != 0) return "Node.js is not there: run ./test.sh web";
     if (!fs::exists(chromium())) return chromium() + " is not there: run ./test.sh web";
     return "";
 }

@@ -19,6 +19,12 @@ bool isFolder(const std::string& path) {
     return fs::is_directory(path, code);
 }
 
+std::string withoutSlash(std::string path) {
+    while (path.size() > 1 && path.ends_with('/'))
+        path.pop_back();
+    return path;
+}
+
 // Completes the text when Tab is pressed in the field, as far as it can only go on one way.
 int onCompletion(ImGuiInputTextCallbackData* data) {
     const PathCompletion& completion = *static_cast<const PathCompletion*>(data->UserData);
@@ -62,8 +68,9 @@ void FileDialog::list(const std::vector<std::string>& paths, const char* id) {
 void FileDialog::finish() {
     const std::string path = expandHome(typed_);
     if (path.empty()) return;
-    if (isFolder(path)) { // goes on inside
-        typed_ = path.ends_with('/') ? path : path + "/";
+    const bool inside = path.ends_with('/');
+    if (isFolder(path) && !(desc_.folder && inside)) { // goes on inside
+        typed_ = inside ? path : path + "/";
         focus_ = true;
         return;
     }
@@ -72,7 +79,7 @@ void FileDialog::finish() {
         return;
     }
     open_ = false;
-    if (desc_.done) desc_.done(path);
+    if (desc_.done) desc_.done(withoutSlash(path));
 }
 
 void FileDialog::draw() {
@@ -97,11 +104,12 @@ void FileDialog::draw() {
     }
     ImGui::TextDisabled("Tab completes, Enter takes it, Esc closes.");
     if (asks_) {
-        ImGui::TextWrapped("This file exists.");
-        if (ui::button("Replace it")) finish();
+        ImGui::TextWrapped(desc_.folder ? "This folder exists. Files of these names are replaced."
+                                        : "This file exists.");
+        if (ui::button(desc_.folder ? "Write into it" : "Replace it")) finish();
         ImGui::SameLine();
         if (ui::button("Take a free name")) {
-            typed_ = freePath(expandHome(typed_));
+            typed_ = freePath(withoutSlash(expandHome(typed_)));
             asks_ = false;
             finish();
         }

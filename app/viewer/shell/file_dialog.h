@@ -16,6 +16,7 @@ public:
         std::vector<std::string> endings; // of files that are listed
         std::vector<std::string> recent;  // paths to choose from
         bool saves = false;               // a file that exists is taken only after a question
+        bool folder = false;              // a folder is asked for
         std::function<void(const std::string& path)> done;
     };
     void open(Desc desc);

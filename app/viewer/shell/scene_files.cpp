@@ -1,6 +1,7 @@
 #include "app/viewer/shell/scene_files.h"
 
 #include "app/offline/command_files.h"
+#include "app/viewer/edits/light_actions.h"
 #include "assets/base/warnings.h"
 #include "assets/foreign/foreign_files.h"
 
@@ -45,7 +46,7 @@ std::string SceneFiles::folder() const {
     return scene.empty() ? "" : fs::path(scene).parent_path().string() + "/";
 }
 
-void SceneFiles::perform(Action action) {
+void SceneFiles::perform(Action action, int argument) {
     switch (action) {
     case Action::StartPage:
         return opening_.wantStart();
@@ -66,6 +67,7 @@ void SceneFiles::perform(Action action) {
     if (action == Action::Save && !isForeign(path())) return save("");
     if (action == Action::Save) return askToSaveAs(); // a file that was converted is not written
     if (action == Action::SaveAs) return askToSaveAs();
+    if (action == Action::ExportFor) return askToExportFor(static_cast<Engine>(argument));
     askToExport();
 }
 
@@ -91,6 +93,21 @@ void SceneFiles::askToExport() {
                        .recent = {},
                        .saves = true,
                        .done = [this](const std::string& chosen) { exportLightmap(chosen); }});
+}
+
+void SceneFiles::askToExportFor(Engine engine) {
+    const fs::path scene(path());
+    const std::string name = engineNames()[static_cast<size_t>(engine)];
+    desc_.dialog.open({.title = "Export for " + name + " into a folder",
+                       .path = freePath((scene.parent_path() / scene.stem()).string() + "_" + name),
+                       .endings = {},
+                       .recent = {},
+                       .saves = true,
+                       .folder = true,
+                       .done = [this, engine](const std::string& chosen) {
+                           exportForEngine(
+                               {.engine = engine, .folder = chosen, .exposure = desc_.exposure()});
+                       }});
 }
 
 void SceneFiles::open(const std::string& path) {
@@ -121,6 +138,26 @@ void SceneFiles::exportLightmap(const std::string& path) {
     session.bake().exportLightmap(
         {.path = path, .lightmap = session.document().lightmap, .scene = session.path()});
     desc_.feedback.note("writing " + path);
+}
+
+void SceneFiles::exportForEngine(const ExportDesc& desc) {
+    Session& session = desc_.session;
+    desc_.feedback.tell("export", desc.folder);
+    CommandFiles files;
+    files.readsScene("the scene", session.path());
+    for (const std::string& path : exportedFiles(desc))
+        files.writes("the export", path);
+    if (const std::string problem = files.clash(); !problem.empty())
+        return desc_.feedback.note(problem, true);
+    LightList lights;
+    lights.update(session.scene(), session);
+    ShiningScene shown = shiningScene(session.document(), lights.sources(), {}, {});
+    session.bake().exportForEngine({.desc = desc,
+                                    .scene = session.path(),
+                                    .of = &session.scene()->prepared,
+                                    .materials = std::move(shown.materials),
+                                    .sky = shown.sky.radiance});
+    desc_.feedback.note("writing " + desc.folder);
 }
 
 void SceneFiles::save(const std::string& path) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "app/export/export_folder.h"
 #include "app/live/session.h"
 #include "app/viewer/shell/editing.h"
 #include "app/viewer/shell/file_dialog.h"
@@ -27,6 +29,7 @@ public:
         Question& question;
         Preferences& preferences;
         Feedback& feedback;
+        std::function<float()> exposure; // of the picture [EV]
     };
     explicit SceneFiles(const Desc& desc) : desc_(desc) {}
 
@@ -35,7 +38,7 @@ public:
     /// Returns the scene's folder with a slash behind it, where dialogs begin; "" without a scene.
     std::string folder() const;
     /// Does an action from Open to Quit.
-    void perform(Action action);
+    void perform(Action action, int argument);
     void open(const std::string& path);
     /// Reads the scene's file anew, by another choice of what it offers.
     void choose(const GltfChoice& choice);
@@ -55,8 +58,10 @@ public:
 private:
     void askToSaveAs();
     void askToExport();
+    void askToExportFor(Engine engine);
     void save(const std::string& path);
     void exportLightmap(const std::string& path);
+    void exportForEngine(const ExportDesc& desc);
     void leave(const Departure::Goal& goal);
     void go(const std::optional<Departure::Goal>& goal);
     void followOpening();

@@ -1,5 +1,6 @@
 #include "app/viewer/shell/ui.h"
 
+#include "app/export/engine_files.h"
 #include "app/viewer/panels/log_panel.h"
 #include "app/viewer/panels/profiler_panel.h"
 #include "app/viewer/panels/view_panel.h"
@@ -86,17 +87,6 @@ void drawChoices(const PanelContext& context, const char* name, const std::vecto
     ImGui::EndMenu();
 }
 
-void drawFileMenus(const PanelContext& context, FileDialog& files) {
-    drawRecent(context, files);
-    const LoadedScene* loaded = context.session.scene();
-    if (loaded == nullptr) return;
-    const Scene& scene = loaded->prepared.scene;
-    const ui::ItemLog::Scope scope(context.items, "File");
-    drawChoices(context, "Scene",
-                sceneChoices(scene.sceneNames, scene.sceneNumber, context.session.choice()));
-    drawChoices(context, "Variant", variantChoices(scene.variantNames, context.session.choice()));
-}
-
 void drawMenu(const PanelContext& context, const std::string& group) {
     const Shortcut* before = nullptr;
     for (const Shortcut& shortcut : shortcuts()) {
@@ -110,6 +100,31 @@ void drawMenu(const PanelContext& context, const std::string& group) {
         if (ImGui::MenuItem(title.c_str(), keyText(shortcut).c_str(), isChecked(context, shortcut), enabled))
             context.perform(shortcut.action, shortcut.argument);
     }
+}
+
+void drawEngines(const PanelContext& context) {
+    const bool open = ImGui::BeginMenu("Export for");
+    ui::mark("Export for", false);
+    if (!open) return;
+    const ui::ItemLog::Scope scope(context.items, "Export for");
+    const std::vector<std::string>& engines = engineNames();
+    for (size_t i = 0; i < engines.size(); ++i) {
+        if (ImGui::MenuItem(engines[i].c_str())) context.perform(Action::ExportFor, static_cast<int>(i));
+        ui::mark(engines[i].c_str(), false);
+    }
+    ImGui::EndMenu();
+}
+
+void drawFileMenus(const PanelContext& context, FileDialog& files) {
+    drawRecent(context, files);
+    const LoadedScene* loaded = context.session.scene();
+    if (loaded == nullptr) return;
+    const Scene& scene = loaded->prepared.scene;
+    const ui::ItemLog::Scope scope(context.items, "File");
+    drawEngines(context);
+    drawChoices(context, "Scene",
+                sceneChoices(scene.sceneNames, scene.sceneNumber, context.session.choice()));
+    drawChoices(context, "Variant", variantChoices(scene.variantNames, context.session.choice()));
 }
 
 void drawMessages(const Messages& messages, const PictureArea& area) {

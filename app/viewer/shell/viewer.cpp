@@ -52,13 +52,15 @@ Viewer::Viewer(const ViewerDesc& desc)
       shots_(picture_, preferences_, feedback_, [this] { return captionLines(); }), ui_(desc.logActions),
       lightKeys_(session_, picture_, lights_, editing_, feedback_),
       skyKeys_(session_, picture_, lights_, editing_, feedback_),
-      mover_(session_, picture_, lights_, editing_, feedback_), files_({.session = session_,
-                                                                        .editing = editing_,
-                                                                        .window = window_,
-                                                                        .dialog = ui_.files(),
-                                                                        .question = ui_.question(),
-                                                                        .preferences = preferences_,
-                                                                        .feedback = feedback_}),
+      mover_(session_, picture_, lights_, editing_, feedback_),
+      files_({.session = session_,
+              .editing = editing_,
+              .window = window_,
+              .dialog = ui_.files(),
+              .question = ui_.question(),
+              .preferences = preferences_,
+              .feedback = feedback_,
+              .exposure = [this] { return picture_.pane().exposure(); }}),
       screenLog_(feedback_) {
     ViewState& view = picture_.state();
     view.filter = preferences_.filter;

@@ -136,7 +136,7 @@ void Viewer::onClick(const WindowEvent& event) {
 void Viewer::perform(Action action, int argument) {
     feedback_.tell("action", shortcutOf(action, argument).name);
     feedback_.pacer().input();
-    if (within(action, Action::Open, Action::Quit)) return files_.perform(action);
+    if (within(action, Action::Open, Action::Quit)) return files_.perform(action, argument);
     if (within(action, Action::MakePass, Action::Reset)) return baking_.perform(action);
     if (within(action, Action::AddLight, Action::LightStrength)) return lightKeys_.perform(action, argument);
     if (within(action, Action::Wipe, Action::StoreReference)) return comparison_.perform(action);

@@ -1,5 +1,6 @@
 #include "app/viewer/state/shortcuts.h"
 
+#include "app/export/engine_files.h"
 #include "app/viewer/state/views.h"
 #include "assets/base/error.h"
 #include "renderer/gizmo.h"
@@ -88,6 +89,10 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::HideUi, 0, GLFW_KEY_F2, 0, "Help", "Hide panels"},
         {Action::ReloadShaders, 0, GLFW_KEY_F5, 0, "Help", "Reload shaders"},
     };
+    const std::vector<std::string>& engines = engineNames();
+    for (size_t i = 0; i < engines.size(); ++i)
+        all.push_back({Action::ExportFor, static_cast<int>(i), 0, 0, "Export for",
+                       std::string("Export for ") + engines[i]});
     addEditShortcuts(all);
     const std::vector<ViewEntry>& views = viewEntries();
     for (size_t i = 0; i < views.size(); ++i)

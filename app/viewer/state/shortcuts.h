@@ -13,6 +13,7 @@ enum class Action : uint8_t {
     Save,
     SaveAs,
     Export,
+    ExportFor, // argument: an Engine
     Watch,
     Quit,
     Undo,

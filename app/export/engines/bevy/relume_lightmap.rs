@@ -1,16 +1,21 @@
 //! Lights a level that Relume exported by its lightmap, as the file's MOZ_lightmap says.
 //!
-//! Bevy 0.16 or newer, with its features "ktx2" and "zstd". Copy the exported folder into `assets/`, then:
+//! Bevy 0.17 or newer, with its features "ktx2" and "zstd". Copy the exported folder into `assets/`, then:
 //!
 //! ```ignore
 //! app.add_plugins(relume_lightmap::RelumeLightmapPlugin);
 //! // in a system of Startup:
 //! relume_lightmap::spawn_level(&mut commands, &asset_server, "level");
-//! commands.spawn((Camera3d::default(), bevy::camera::Exposure { ev100: relume_lightmap::EV100 }));
+//! commands.spawn((
+//!     Camera3d::default(),
+//!     bevy::camera::Exposure { ev100: relume_lightmap::EV100 },
+//!     AmbientLight { brightness: 0.0, ..default() }, // the lightmap has all light
+//! ));
 //! ```
 use bevy::gltf::{Gltf, GltfLoaderSettings, GltfMaterialName};
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
+use bevy::prelude::WorldAssetRoot as LevelRoot; // before Bevy 0.19: SceneRoot
 use std::collections::HashSet;
 
 /// The exposure at which Relume showed the level. Lightmap and emission are in cd/m^2.
@@ -59,7 +64,7 @@ fn begin_level(mut commands: Commands, files: Res<Assets<Gltf>>, mut level: ResM
         .collect();
     level.lit = Some(lit);
     if let Some(scene) = &file.default_scene {
-        commands.spawn(SceneRoot(scene.clone()));
+        commands.spawn(LevelRoot(scene.clone()));
     }
 }
 
@@ -71,7 +76,8 @@ fn light_meshes(
 ) {
     let Some(lit) = &level.lit else { return };
     for (entity, name, material) in &meshes {
-        if let Some(material) = materials.get_mut(&material.0) {
+        #[allow(unused_mut)] // before Bevy 0.19 it is a plain reference
+        if let Some(mut material) = materials.get_mut(&material.0) {
             material.lightmap_exposure = 1.0;
             material.emissive_exposure_weight = 1.0; // emission is in cd/m^2, too
         }

@@ -12,6 +12,7 @@ import bpy
 
 folder = os.path.dirname(os.path.abspath(__file__))
 exposure = @EV@  # [EV], at which Relume showed the level
+LONGEST_NAME = 60  # [bytes]; Blender before 5.0 cuts names at 63, at a whole letter
 
 
 def lit_materials(path):
@@ -76,6 +77,11 @@ def light(material, picture):
     links.new(shown, output.inputs["Surface"])
 
 
+def is_lit(name, lit):
+    """Tells whether a material's name is one of `lit`, which Blender may have cut."""
+    return name in lit or any(whole.startswith(name) for whole in lit if len(name.encode()) >= LONGEST_NAME)
+
+
 bpy.ops.wm.read_factory_settings(use_empty=True)
 level = os.path.join(folder, "scene.glb")
 bpy.ops.import_scene.gltf(filepath=level)
@@ -83,7 +89,7 @@ lightmap = bpy.data.images.load(os.path.join(folder, "lightmap.exr"))
 lightmap.colorspace_settings.name = "Non-Color"
 lit = lit_materials(level)
 for material in bpy.data.materials:
-    if material.use_nodes and material.name in lit:
+    if material.use_nodes and is_lit(material.name, lit):
         light(material, lightmap)
 scene = bpy.context.scene
 scene.view_settings.exposure = exposure

@@ -2,9 +2,12 @@
 //
 // 1. Copy the exported folder into Assets. scene.glb needs an importer of glTF files: package com.unity.cloud.gltfast.
 // 2. Set lightmap.exr to texture type Default, sRGB off, compression None or BC6H, wrap mode Clamp, mipmaps off.
-// 3. Put scene.glb into a scene, this component on its root, and lightmap.exr into the component's field.
+// 3. Project Settings: Player > Lightmap Encoding "High Quality"; Graphics > Lightmap Modes "Custom" with "Baked
+//    Non-Directional". Lighting window: no ambient light, and no reflections of the environment.
+// 4. Put scene.glb into a scene, this component on its root, and lightmap.exr into the component's field.
 //
-// The lightmap has lighting in cd/m^2, and so has the level's emission; Exposure brings both to the screen.
+// The lightmap has lighting in cd/m^2; Exposure brings it to the screen. The level's emission is there already, and
+// ends at white, as glTFast knows no brighter one.
 using System.Collections.Generic;
 using UnityEngine;
 
@@ -47,9 +50,16 @@ public class RelumeLightmap : MonoBehaviour
         }
     }
 
+    // The lightmap may be put in after the component.
+    void Update()
+    {
+        if (lightmap != null && scaled == null) OnEnable();
+    }
+
     void OnDisable()
     {
         LightmapSettings.lightmaps = new LightmapData[0];
         if (scaled != null) DestroyImmediate(scaled);
+        scaled = null;
     }
 }
