@@ -108,6 +108,8 @@ struct BakeOrders {
         bool keepLight = false; // what is shown stays until this bake has a solution with all bounces
         uint32_t rings = 4;     // of texels filled around charts, on screen
         uint64_t number = 0;    // counts the bakes that were asked for
+        // Scenes with the same number have the same patches where their edits are the same. It is above 0.
+        uint64_t surfaces = 1;
     };
     struct Export {
         std::string path; // .exr or .png
@@ -116,10 +118,10 @@ struct BakeOrders {
     };
     struct EngineExport {
         ExportDesc desc;
-        std::string scene;                 // the file that it names as its scene's
-        const PreparedScene* of = nullptr; // only its address counts
-        std::vector<Material> materials;   // of the scene, as it is shown
-        glm::vec3 sky{0.0f};               // its radiance, or the factor of its picture, as it is shown
+        std::string scene;               // the file that it names as its scene's
+        uint64_t surfaces = 1;           // of the scene, as in Start
+        std::vector<Material> materials; // of the scene, as it is shown
+        glm::vec3 sky{0.0f};             // its radiance, or the factor of its picture, as it is shown
     };
     std::optional<Start> start;
     bool reset = false, abort = false, reload = false;

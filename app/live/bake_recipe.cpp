@@ -34,7 +34,8 @@ bool differOnlyInEdits(const BakeRecipe& baked, const BakeRecipe& wanted) {
     BakeSettings settings = wanted.settings;
     settings.solver.layers = baked.settings.solver.layers;
     const CacheSettings &cache = settings.solver.cache, &before = baked.settings.solver.cache;
-    return wanted.scene == baked.scene && describeSettings(settings) == describeSettings(baked.settings) &&
+    return wanted.surfaces == baked.surfaces &&
+           describeSettings(settings) == describeSettings(baked.settings) &&
            settings.tracer == baked.settings.tracer && cache.kind == before.kind &&
            cache.bytes == before.bytes && wanted.rings == baked.rings;
 }

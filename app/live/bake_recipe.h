@@ -7,9 +7,9 @@ namespace relume {
 
 /// The things that a bake in the viewer is made of, beside edits of its scene.
 struct BakeRecipe {
-    const PreparedScene* scene = nullptr; // only its address counts
-    BakeSettings settings;                // as bakeable() has them
-    uint32_t rings = 4;                   // of texels filled around charts, on screen
+    uint64_t surfaces = 0; // as BakeOrders::Start has them; 0: none
+    BakeSettings settings; // as bakeable() has them
+    uint32_t rings = 4;    // of texels filled around charts, on screen
 };
 
 /// Returns settings as a viewer's bake has them: steps of so many milliseconds, light that is asked for all

@@ -43,7 +43,8 @@ void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& d
     try {
         if (bake.settings().solver.transport.rtrad)
             throw Error("RTRad's units are no light that an engine shows: bake without that preset");
-        if (!bake.isOf(wanted.of)) throw Error(wanted.scene + ": another scene was opened: export again");
+        if (!bake.isOf(wanted.surfaces))
+            throw Error(wanted.scene + ": another scene was opened: export again");
         const AtlasLevel level = bake.level();
         Scene scene = level.scene;
         scene.materials = wanted.materials;

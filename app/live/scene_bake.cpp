@@ -15,13 +15,13 @@ std::string SceneBake::remark() const {
 }
 
 Applied SceneBake::edit(const Start& start) {
-    const BakeRecipe wanted{.scene = start.scene, .settings = start.settings, .rings = start.rings};
+    const BakeRecipe wanted{.surfaces = start.surfaces, .settings = start.settings, .rings = start.rings};
     if (due_ || !layers() || !differOnlyInEdits(recipe_, wanted)) return Applied::NeedsNewBake;
     return baker_->apply({.scene = start.edits, .mix = start.mix, .atlas = &start.scene->atlas});
 }
 
 bool SceneBake::keepsPatches(const Start& start) const {
-    return baker_ && start.scene == recipe_.scene && !differenceBetween(scene_, start.edits).any() &&
+    return baker_ && start.surfaces == recipe_.surfaces && !differenceBetween(scene_, start.edits).any() &&
            samePatches(start.settings, settings());
 }
 
@@ -39,7 +39,7 @@ void SceneBake::make(const vk::Device& device, const Start& start) {
     applyEdits(scene_, start.edits);
     readEditedPicture(scene_.sky);
     atlas_ = start.scene->atlas;
-    recipe_.scene = start.scene;
+    recipe_.surfaces = start.surfaces;
     makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
 }
 
@@ -69,7 +69,7 @@ void SceneBake::mix(const LightMix& mix) {
 
 void SceneBake::end() {
     baker_.reset();
-    recipe_.scene = nullptr;
+    recipe_.surfaces = 0;
 }
 
 } // namespace relume

@@ -21,8 +21,8 @@ public:
     const LayerSolver* layers() const { return baker_ ? baker_->layers() : nullptr; }
     /// Returns the scene with the edits that the bake follows; there is a baker.
     AtlasLevel level() const { return {scene_, atlas_, baker_->patches().scene.mesh}; }
-    /// Tells whether this is the scene that is baked.
-    bool isOf(const PreparedScene* scene) const { return scene != nullptr && recipe_.scene == scene; }
+    /// Tells whether these surfaces are baked.
+    bool isOf(uint64_t surfaces) const { return recipe_.surfaces == surfaces; }
     const BakeSettings& settings() const { return recipe_.settings; }
     uint32_t rings() const { return recipe_.rings; }
     /// Tells why there are no layers though they were asked for, with the remedy; "" where nothing is
@@ -53,7 +53,7 @@ private:
 
     Scene scene_;                  // with the edits; the baker changes it
     LightmapAtlas atlas_;          // of the scene
-    BakeRecipe recipe_;            // scene: nullptr where there is none, or it was given up
+    BakeRecipe recipe_;            // surfaces: 0 where there is no bake, or it was given up
     bool due_ = false;             // the recipe was taken up, and nothing was made by it yet
     bool wantsLayers_ = true;      // they are asked for, even if the settings cannot have them
     std::unique_ptr<Baker> baker_; // of scene_

@@ -1,5 +1,6 @@
 #include "app/live/session.h"
 
+#include "app/live/reload.h"
 #include "assets/base/log.h"
 #include "assets/model/scene_limits.h"
 #include "bake/trace/make_tracer.h"
@@ -9,12 +10,6 @@
 
 namespace relume {
 namespace {
-
-template<typename Named>
-bool haveSameNames(const std::vector<Named>& a, const std::vector<Named>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const Named& x, const Named& y) { return x.name == y.name; });
-}
 
 // Tells whether both scenes have the same objects in the same order. Placements go by that order, which a
 // save may change where an object left its node.
@@ -114,24 +109,24 @@ void Session::fail(const std::string& message, const std::string& opened) {
         openFailure_ = OpenFailure{opened, message};
 }
 
-// Carries edits over to a file that was written anew; the rest is as the file has it now. Where the file's
-// lights changed, all of them are the file's.
-void Session::keepEdits(SceneEdits& edits, const std::vector<Instance>& instances) {
-    const Scene& file = file_.scene();
-    const SceneEdits own = editsOf(file);
-    const bool sameNames = haveSameNames(edits.materials, file.materials);
-    const bool sameInstances = haveSameNames(instances, file.instances) && edits.placements == own.placements;
-    const bool sameLights = edits.lights == own.lights && edits.sky == own.sky;
-    keepMaterials(edits.materials, sameNames);
-    if (sameInstances) edits.placements = document_.edits.placements;
-    if (sameInstances && edits.densities == own.densities) edits.densities = document_.edits.densities;
-    if (sameLights) {
-        edits.lights = document_.edits.lights;
-        edits.sky = document_.edits.sky;
+// Follows a file that was written anew: returns the edits as they stand on it, and notes what changed.
+SceneEdits Session::reloaded(const PreparedScene& now) {
+    const SceneChanges changes = changesBetween(scene_->prepared, now);
+    Scene before = file_.scene();
+    before.materials =
+        scene_->prepared.scene.materials; // a colour that was saved stays, whoever writes the file
+    CarriedEdits carried = carryEdits(before, document_.edits, now.scene);
+    file_.loaded(now.scene);
+    if (!carried.sameFile) history_.forget(); // it refers to what the file had
+    if (!carried.sameNumbers) document_.mix = {};
+    reloadNotes_ = {
+        fmt::format("reloaded: {}{}", describe(changes), changes.surfaces ? " (the bake begins anew)" : "")};
+    spdlog::info("{}", reloadNotes_[0]);
+    for (const std::string& conflict : carried.conflicts) {
+        spdlog::warn("{}", conflict);
+        reloadNotes_.push_back(conflict);
     }
-    if (sameNames && sameInstances && sameLights) return;
-    history_.forget(); // they refer to materials, instances and lights by number
-    document_.mix = {};
+    return std::move(carried.edits);
 }
 
 void Session::save(const std::string& path) {
@@ -171,34 +166,19 @@ void Session::finishSaving() {
     takeSaved();
 }
 
-void Session::keepMaterials(std::vector<Material>& materials, bool sameNames) const {
-    const std::vector<Material>& before = scene_->prepared.scene.materials;
-    for (size_t i = 0; i < before.size(); ++i) {
-        const Material& edited = document_.edits.materials[i];
-        if (edited.baseColor == before[i].baseColor && edited.emission == before[i].emission) continue;
-        const auto same = sameNames ? materials.begin() + static_cast<std::ptrdiff_t>(i)
-                                    : std::find_if(materials.begin(), materials.end(),
-                                                   [&](const Material& m) { return m.name == edited.name; });
-        if (same == materials.end()) continue;
-        same->baseColor = edited.baseColor;
-        same->emission = edited.emission;
-    }
-}
-
 void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) {
     kept_ = loading_.keep && scene_ != nullptr;
     const Scene& file = scene->prepared.scene;
-    SceneEdits edits = editsOf(file);
-    if (kept_ && loading_.sameFile && sameObjects(scene_->prepared.scene, file)) {
-        edits = document_.edits;
-    } else if (kept_) {
-        keepEdits(edits, file.instances);
-        file_.loaded(file);
-    } else {
+    SceneEdits edits = document_.edits;
+    if (!kept_) {
         file_.loaded(file);
         history_.forget();
         document_.mix = {};
+        edits = editsOf(file);
+    } else if (!loading_.sameFile || !sameObjects(scene_->prepared.scene, file)) {
+        edits = reloaded(scene->prepared);
     }
+    if (!kept_ || changesBetween(scene_->prepared, scene->prepared).surfaces) ++surfaces_;
     document_.edits = std::move(edits);
     if (loading_.fits) document_.bake.size = scene->size;
     ++changes_;
@@ -221,7 +201,8 @@ void Session::startBake(bool keepLight) {
                                        .mix = document_.mix,
                                        .settings = document_.bake,
                                        .keepLight = keepLight,
-                                       .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0});
+                                       .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0,
+                                       .surfaces = surfaces_});
     if (!keepLight) firstBake_ = bake;
     newestBake_ = bake;
 }

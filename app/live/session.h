@@ -30,9 +30,9 @@ public:
 
     /// Loads a scene beside the main thread. The present one stays until the new one is there, or for good
     /// when that cannot be read: then takeOpenFailure() says why, or with `keep` lastError(). With `keep`
-    /// (the file changed) the camera and settings stay, and so do edits of materials, by name, and of objects
-    /// and lights where the file's are what they were. Where the file is still as it was loaded or saved, all
-    /// edits stay. Another file is read by its own defaults.
+    /// (the file changed) the camera, settings and edits that are not saved stay (carryEdits()), and where
+    /// the surfaces are what they were, the bake goes on as after an edit. Another file is read by its own
+    /// defaults.
     void open(const std::string& path, bool keep = false);
     /// Loads the present scene's file by another choice of what it offers, as open() does without `keep`.
     void choose(const GltfChoice& choice);
@@ -52,6 +52,11 @@ public:
     /// Returns the number of the scene's first bake: maps of earlier ones show another scene.
     uint64_t firstBake() const { return firstBake_; }
     bool sceneWasKept() const { return kept_; } // the newest scene came with `keep`
+    /// Returns the number of the scene's surfaces, as BakeOrders::Start has it.
+    uint64_t surfaces() const { return surfaces_; }
+    /// Returns once what a file that was written anew has changed, one line each; empty where there is
+    /// nothing to tell.
+    std::vector<std::string> takeReloadNotes() { return std::exchange(reloadNotes_, {}); }
     /// Returns the newest message of something that could not be done, "" for none. Call clearError() once it
     /// was shown.
     const std::string& lastError() const { return lastError_; }
@@ -113,8 +118,7 @@ private:
     void startBake(bool keepLight);
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene, const std::string& path);
-    void keepEdits(SceneEdits& edits, const std::vector<Instance>& instances);
-    void keepMaterials(std::vector<Material>& materials, bool sameNames) const;
+    SceneEdits reloaded(const PreparedScene& now);
     void takeSaved();
     void finishSaving();
     void fail(const std::string& message, const std::string& opened = "");
@@ -130,13 +134,14 @@ private:
     Loading loading_;
     std::optional<Next> next_; // the newest scene that was asked for while one was loading
     bool kept_ = false;
+    std::vector<std::string> reloadNotes_;
     std::string lastError_;
     std::optional<OpenFailure> openFailure_;
     SceneFile file_;
     std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
     EditHistory history_;
     FileWatch watch_; // of the scene's file
-    uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0;
+    uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0, surfaces_ = 0;
 };
 
 } // namespace relume

@@ -6,6 +6,7 @@
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
+#include "assets/images/metrics.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/live/quick_bake.h"
@@ -219,6 +220,41 @@ TEST_F(LiveBakeTest, AStormOfEditsEndsWithTheLastOne) {
         EXPECT_EQ(got.planes[c], expected.planes[c]);
 }
 
+// A file that another program wrote anew, with a light moved: the bake goes on with that light alone.
+TEST_F(LiveBakeTest, ASceneOfTheSameSurfacesIsAnEdit) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    edits_.lights.push_back({.name = "Bulb"});
+    edits_.lights.back().transform[3] = glm::vec4(0.0f, 1.5f, 0.5f, 1.0f);
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const uint64_t beginnings = bake_.status().beginnings, rays = bake_.status().progress.rays;
+    const PreparedScene saved = cornell();
+    edits_.lights.back().transform[3].x = 0.25f;
+    newest_ = bake_.start({.scene = &saved, .edits = edits_, .settings = settings, .keepLight = true});
+    ASSERT_TRUE(untilShown());
+    EXPECT_EQ(bake_.status().beginnings, beginnings);
+    EXPECT_GT(bake_.status().progress.rays, rays);
+    EXPECT_FALSE(bake_.holds(saved)) << "it may go";
+
+    const TemporaryFolder folder;
+    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
+    Scene scene = scene_.scene;
+    applyEdits(scene, edits_);
+    Baker baker(testDevice(), scene, scene_.mesh, settings);
+    while (!baker.solver().done())
+        baker.solver().step();
+    const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
+    EXPECT_LE(compareImages(got, "got", expected, "expected").relRmse, 2 * settings.solver.error);
+
+    // Other surfaces need another bake.
+    newest_ = bake_.start(
+        {.scene = &saved, .edits = edits_, .settings = settings, .keepLight = true, .surfaces = 2});
+    ASSERT_TRUE(untilShown());
+    EXPECT_GT(bake_.status().beginnings, beginnings);
+}
+
 // An export comes with the edits that were made before it, and goes on where a newer edit comes between.
 TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
     const TemporaryFolder folder;
@@ -234,7 +270,6 @@ TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
     bake_.exportForEngine(
         {.desc = {.engine = Engine::Godot, .folder = folder.path("level"), .exposure = 1.0f},
          .scene = "scene.glb",
-         .of = &scene_,
          .materials = edited.materials,
          .sky = {}});
     ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("level/level.tscn")); }));
@@ -250,12 +285,11 @@ TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
     const PreparedScene other = cornell();
     bake_.exportForEngine({.desc = {.folder = folder.path("other")},
                            .scene = "other.glb",
-                           .of = &other,
+                           .surfaces = 2,
                            .materials = other.scene.materials,
                            .sky = {}});
     const BakeOrders::EngineExport same{.desc = {.folder = folder.path("same")},
                                         .scene = "scene.glb",
-                                        .of = &scene_,
                                         .materials = edited.materials,
                                         .sky = {}};
     bake_.exportForEngine(same);

@@ -38,8 +38,7 @@ TEST(BakeRecipe, ABakeableOneHasLayersWhereItsMethodCan) {
 }
 
 TEST(BakeRecipe, WhatDoesNotChangeABakesLightIsAnEditAtMost) {
-    const PreparedScene scene;
-    const BakeRecipe baked{.scene = &scene, .settings = bakeable(layeredSettings(), 1.0)};
+    const BakeRecipe baked{.surfaces = 3, .settings = bakeable(layeredSettings(), 1.0)};
     for (const ChangeRecipe change :
          {+[](BakeRecipe&) {}, +[](BakeRecipe& r) { r.settings.solver.batchMs = 9.0; },
           +[](BakeRecipe& r) { r.settings.solver.layers.on = false; }}) {
@@ -50,10 +49,9 @@ TEST(BakeRecipe, WhatDoesNotChangeABakesLightIsAnEditAtMost) {
 }
 
 TEST(BakeRecipe, WhatDoesIsMore) {
-    const PreparedScene scene;
-    const BakeRecipe baked{.scene = &scene, .settings = bakeable(layeredSettings(), 1.0)};
+    const BakeRecipe baked{.surfaces = 3, .settings = bakeable(layeredSettings(), 1.0)};
     for (const ChangeRecipe change :
-         {+[](BakeRecipe& r) { r.scene = nullptr; }, +[](BakeRecipe& r) { r.rings = 2; },
+         {+[](BakeRecipe& r) { r.surfaces = 4; }, +[](BakeRecipe& r) { r.rings = 2; },
           +[](BakeRecipe& r) { r.settings.size = 64; },
           +[](BakeRecipe& r) { r.settings.tracer = TracerKind::Bvh; },
           +[](BakeRecipe& r) { r.settings.solver.error = 0.5; },

@@ -154,7 +154,7 @@ void SceneFiles::exportForEngine(const ExportDesc& desc) {
     ShiningScene shown = shiningScene(session.document(), lights.sources(), {}, {});
     session.bake().exportForEngine({.desc = desc,
                                     .scene = session.path(),
-                                    .of = &session.scene()->prepared,
+                                    .surfaces = session.surfaces(),
                                     .materials = std::move(shown.materials),
                                     .sky = shown.sky.radiance});
     desc_.feedback.note("writing " + desc.folder);

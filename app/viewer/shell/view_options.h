@@ -13,7 +13,7 @@ struct ViewOptions {
     std::string display = "auto", window, camera;
     double budget = 8;      // [ms]
     bool sizeTyped = false; // else a size is chosen that fits the level
-    bool watch = false, logActions = false, noLayers = false;
+    bool watch = true, logActions = false, noLayers = false;
 };
 
 void addViewOptions(CLI::App& command, ViewOptions& options);

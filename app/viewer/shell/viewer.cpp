@@ -202,6 +202,8 @@ void Viewer::takeScene() {
     files_.sceneCame();
     inspection_.sceneCame();
     feedback_.tell("scene", scene.prepared.scene.path);
+    for (const std::string& note : session_.takeReloadNotes())
+        feedback_.note(note);
     if (const std::string furnished = furnishedLine(); !furnished.empty())
         feedback_.tell("furnished", furnished);
     feedback_.sceneChanged();

@@ -32,8 +32,8 @@ struct ViewerDesc {
     std::string device; // the same as vk::Device::Desc::select
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
-    double budgetMs = 8; // how long a batch should take while the camera is still
-    bool watch = false;
+    double budgetMs = 8;            // how long a batch should take while the camera is still
+    bool watch = true;              // the scene is read again when its file changes
     uint32_t width = 0, height = 0; // of the window [screen coordinates], 0: as last time
     std::string camera;             // of the scene's, "": its first one
     bool logActions = false;        // on stderr, each when it is done

@@ -1,0 +1,283 @@
+// These files are written anew while they are open: what that changes, and what becomes of edits.
+#include "app/live/reload.h"
+
+#include "assets/base/error.h"
+#include "tests/text.h"
+#include "tests/ui/glb_json.h"
+#include "tests/unit/session_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace relume {
+namespace {
+
+/// Makes a level of two objects of one mesh, two materials and two lights.
+PreparedScene twoOfEach() {
+    PreparedScene out;
+    Scene& scene = out.scene;
+    for (const char* name : {"Red", "Blue"}) {
+        scene.materials.emplace_back().name = name;
+        scene.lights.emplace_back().name = std::string(name) + " lamp";
+        scene.lights.back().node = static_cast<int>(scene.lights.size());
+        scene.instances.push_back({.name = std::string(name) + " box", .mesh = 0});
+    }
+    Primitive triangle;
+    triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.indices = {0, 1, 2};
+    scene.meshes.push_back({.name = "Box", .primitives = {triangle}});
+    out.atlas.instances.resize(2);
+    out.size = 64;
+    return out;
+}
+
+TEST(SceneChanges, NothingIsNothing) {
+    const SceneChanges none = changesBetween(twoOfEach(), twoOfEach());
+    EXPECT_FALSE(none.any());
+    EXPECT_EQ(describe(none), "nothing");
+}
+
+TEST(SceneChanges, WhatABakeFollowsIsCounted) {
+    PreparedScene after = twoOfEach();
+    after.scene.lights[0].transform[3].x += 1.0f;
+    after.scene.lights[0].node = 9; // in the file, which says nothing
+    after.scene.lights.emplace_back().name = "New lamp";
+    after.scene.instances[1].transform[3].y += 1.0f;
+    after.scene.instances[0].hidden = true;
+    after.scene.materials[0].baseColor.r = 0.5f;
+    after.scene.sky.radiance = glm::vec3(1.0f);
+    const SceneChanges changes = changesBetween(twoOfEach(), after);
+    EXPECT_FALSE(changes.surfaces);
+    EXPECT_EQ(describe(changes), "2 lights, the sky, 2 objects, 1 material");
+}
+
+TEST(SceneChanges, WhatPatchesAreMadeWithIsMore) {
+    using Change = void (*)(PreparedScene&);
+    for (const Change change :
+         {+[](PreparedScene& p) { p.scene.meshes[0].primitives[0].positions[1].x = 2; },
+          +[](PreparedScene& p) { p.scene.meshes[0].primitives[0].material = 1; },
+          +[](PreparedScene& p) { p.scene.materials[0].roughness = 0.5f; },
+          +[](PreparedScene& p) { p.scene.materials[0].doubleSided = true; },
+          +[](PreparedScene& p) { p.scene.images.emplace_back(); },
+          +[](PreparedScene& p) { p.scene.instances.pop_back(); },
+          +[](PreparedScene& p) { std::swap(p.scene.instances[0], p.scene.instances[1]); },
+          +[](PreparedScene& p) { p.scene.sky.pixels.emplace_back(1.0f); },
+          +[](PreparedScene& p) { p.atlas.instances[1].offset.x = 0.5f; },
+          +[](PreparedScene& p) { p.size = 128; }}) {
+        PreparedScene after = twoOfEach();
+        change(after);
+        EXPECT_TRUE(changesBetween(twoOfEach(), after).surfaces);
+    }
+}
+
+/// Holds what a file had, what it has now, and what the user made of it meanwhile.
+struct ThreeWays {
+    Scene before = twoOfEach().scene, after = before;
+    SceneEdits own = editsOf(before);
+
+    CarriedEdits carried() const { return carryEdits(before, own, after); }
+};
+
+TEST(CarriedEdits, WhereOnlyOneSideEditedBothStand) {
+    ThreeWays all;
+    all.own.lights[0].intensity = 5.0f;
+    all.own.materials[1].baseColor.r = 0.25f;
+    all.own.placements[0].transform[3].x = 3.0f;
+    all.own.sky.radiance = glm::vec3(2.0f);
+    all.after.lights[1].intensity = 7.0f;
+    all.after.materials[1].emission = glm::vec3(4.0f);
+    all.after.instances[1].hidden = true;
+    const CarriedEdits out = all.carried();
+    EXPECT_TRUE(out.conflicts.empty());
+    EXPECT_EQ(out.edits.lights[0].intensity, 5.0f);
+    EXPECT_EQ(out.edits.lights[1].intensity, 7.0f);
+    EXPECT_EQ(out.edits.materials[1].baseColor.r, 0.25f);
+    EXPECT_EQ(out.edits.materials[1].emission, glm::vec3(4.0f));
+    EXPECT_EQ(out.edits.placements[0].transform[3].x, 3.0f);
+    EXPECT_TRUE(out.edits.placements[1].hidden);
+    EXPECT_EQ(out.edits.sky.radiance, glm::vec3(2.0f));
+    EXPECT_TRUE(out.sameNumbers);
+    EXPECT_FALSE(out.sameFile);
+}
+
+TEST(CarriedEdits, WhereBothSidesEditedTheUsersStaysAndIsTold) {
+    ThreeWays all;
+    all.own.lights[0].intensity = 5.0f;
+    all.after.lights[0].intensity = 7.0f;
+    all.after.lights[0].node = 12;
+    all.own.placements[1].hidden = true;
+    all.after.instances[1].transform[3].x = 1.0f;
+    const CarriedEdits out = all.carried();
+    EXPECT_EQ(out.edits.lights[0].intensity, 5.0f);
+    EXPECT_EQ(out.edits.lights[0].node, 12) << "where a save finds it";
+    EXPECT_TRUE(out.edits.placements[1].hidden);
+    ASSERT_EQ(out.conflicts.size(), 2u);
+    EXPECT_TRUE(contains(out.conflicts[0], "Blue box"));
+    EXPECT_TRUE(contains(out.conflicts[1], "Red lamp"));
+    // The same edit on both sides is none.
+    all.after.lights[0].intensity = 5.0f;
+    all.after.instances[1] = all.before.instances[1];
+    EXPECT_TRUE(all.carried().conflicts.empty());
+}
+
+TEST(CarriedEdits, LightsThatCameAndWentOnEitherSide) {
+    ThreeWays all;
+    all.own.lights.erase(all.own.lights.begin()); // the red one
+    Light& added = all.own.lights.emplace_back();
+    added.name = "Mine";
+    added.node = -2;
+    all.after.lights.insert(all.after.lights.begin(), Light{.name = "Theirs", .node = 30});
+    CarriedEdits out = all.carried();
+    ASSERT_EQ(out.edits.lights.size(), 3u);
+    EXPECT_EQ(out.edits.lights[0].name, "Theirs");
+    EXPECT_EQ(out.edits.lights[1].name, "Blue lamp");
+    EXPECT_EQ(out.edits.lights[2].name, "Mine");
+    EXPECT_FALSE(out.sameNumbers);
+    EXPECT_TRUE(out.conflicts.empty());
+    all.after.lights[1].intensity = 9.0f; // of the red one, which the user deleted
+    all.own.lights[0].intensity = 3.0f;   // of the blue one, which the file has no more
+    all.after.lights.pop_back();
+    out = all.carried();
+    ASSERT_EQ(out.edits.lights.size(), 2u);
+    EXPECT_EQ(out.edits.lights[0].name, "Theirs");
+    EXPECT_EQ(out.edits.lights[1].name, "Mine");
+    ASSERT_EQ(out.conflicts.size(), 2u);
+    EXPECT_TRUE(contains(out.conflicts[0], "Red lamp: was deleted here"));
+    EXPECT_TRUE(contains(out.conflicts[1], "Blue lamp: was edited here and deleted"));
+}
+
+TEST(CarriedEdits, ALightThatTheUserRenamedIsStillTheFiles) {
+    ThreeWays all;
+    all.own.lights[0].name = "Key light";
+    all.after.lights[0].intensity = 7.0f;
+    all.after.lights.push_back(Light{.name = "Third", .node = 8});
+    const CarriedEdits out = all.carried();
+    ASSERT_EQ(out.edits.lights.size(), 3u);
+    EXPECT_EQ(out.edits.lights[0].name, "Key light");
+    EXPECT_EQ(out.edits.lights[2].name, "Third");
+    EXPECT_EQ(out.conflicts.size(), 1u);
+}
+
+TEST(CarriedEdits, LightsOfOneNameGoByTheirNumbers) {
+    ThreeWays all;
+    for (std::vector<Light>* lights : {&all.before.lights, &all.own.lights, &all.after.lights})
+        (*lights)[0].name = (*lights)[1].name = "Lamp";
+    all.own.lights[1].intensity = 4.0f;
+    all.after.lights[0].intensity = 2.0f;
+    CarriedEdits out = all.carried();
+    EXPECT_EQ(out.edits.lights[0].intensity, 2.0f);
+    EXPECT_EQ(out.edits.lights[1].intensity, 4.0f);
+    // Where their number changed nobody knows which is which: the file's count, and none comes twice.
+    all.after.lights.push_back(Light{.name = "Lamp", .node = 8});
+    all.own = editsOf(all.before);
+    out = all.carried();
+    EXPECT_EQ(out.edits.lights.size(), 3u);
+}
+
+TEST(CarriedEdits, ObjectsGoByNameInAnotherOrder) {
+    ThreeWays all;
+    all.own.placements[0].hidden = true; // the red box
+    std::swap(all.after.instances[0], all.after.instances[1]);
+    const CarriedEdits out = all.carried();
+    EXPECT_FALSE(out.edits.placements[0].hidden);
+    EXPECT_TRUE(out.edits.placements[1].hidden);
+    EXPECT_FALSE(out.sameNumbers);
+}
+
+/// Opens a session whose file another program writes.
+class Reload : public SessionTest {
+protected:
+    void SetUp() override {
+        open();
+        session_.watchFile(true);
+    }
+    void writeChanged(const std::function<void(nlohmann::json&)>& change) {
+        std::ifstream in(kScenes + "cornell_small.glb", std::ios::binary);
+        const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+        std::ofstream(file(), std::ios::binary) << withJson(bytes, change);
+        std::filesystem::last_write_time(file(), time_ += std::chrono::seconds(2));
+        ASSERT_TRUE(until([&, loads = loads_] { return loads_ > loads; }));
+    }
+    static nlohmann::json& nodeOf(nlohmann::json& document, const std::string& name) {
+        for (nlohmann::json& node : document["nodes"])
+            if (node.value("name", "") == name) return node;
+        throw Error("no node " + name);
+    }
+    static void move(nlohmann::json& document, const std::string& name, float x) {
+        nlohmann::json& node = nodeOf(document, name);
+        if (node.contains("matrix"))
+            node["matrix"][12] = float(node["matrix"][12]) + x;
+        else
+            node["translation"] = {x, 0.0f, 0.0f};
+    }
+};
+
+TEST_F(Reload, AMovedObjectIsAnEditOfTheSameSurfaces) {
+    const uint64_t surfaces = session_.surfaces();
+    const glm::mat4 before = session_.document().edits.placements.at(0).transform;
+    const std::string name = session_.scene()->prepared.scene.instances.at(0).name;
+    writeChanged([&](nlohmann::json& document) { move(document, name, 0.125f); });
+    EXPECT_EQ(session_.surfaces(), surfaces);
+    EXPECT_NE(session_.document().edits.placements.at(0).transform, before);
+    EXPECT_FALSE(session_.dirty());
+    const std::vector<std::string> notes = session_.takeReloadNotes();
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0], "reloaded: 1 object");
+    EXPECT_TRUE(session_.takeReloadNotes().empty()) << "told once";
+}
+
+TEST_F(Reload, AnotherMeshBeginsTheBakeAnew) {
+    const uint64_t surfaces = session_.surfaces();
+    writeFile(kScenes + "cornell_geom.glb");
+    ASSERT_TRUE(until([&] { return loads_ == 2; }));
+    EXPECT_GT(session_.surfaces(), surfaces);
+    const std::vector<std::string> notes = session_.takeReloadNotes();
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_TRUE(contains(notes[0], "begins anew")) << notes[0];
+}
+
+TEST_F(Reload, EditsThatAreNotSavedStayAndConflictsAreTold) {
+    Document next = session_.document();
+    next.edits.placements.at(0).hidden = true;
+    session_.edit("Hide", next);
+    session_.endEdit();
+    const std::vector<Instance> instances = session_.scene()->prepared.scene.instances;
+    writeChanged([&](nlohmann::json& document) { move(document, instances.at(1).name, 0.125f); });
+    EXPECT_TRUE(session_.document().edits.placements.at(0).hidden);
+    EXPECT_TRUE(session_.dirty());
+    EXPECT_EQ(session_.takeReloadNotes().size(), 1u);
+    writeChanged([&](nlohmann::json& document) { move(document, instances.at(0).name, 0.25f); });
+    EXPECT_TRUE(session_.document().edits.placements.at(0).hidden);
+    const std::vector<std::string> notes = session_.takeReloadNotes();
+    ASSERT_EQ(notes.size(), 2u);
+    EXPECT_TRUE(contains(notes[1], instances.at(0).name + ": was edited here and in the file")) << notes[1];
+}
+
+// A program that saves all the time: the last save counts, and none is read half.
+TEST_F(Reload, OfManySavesTheLastOneStays) {
+    const std::string name = session_.scene()->prepared.scene.instances.at(0).name;
+    std::ifstream in(kScenes + "cornell_small.glb", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    constexpr int kSaves = 100;
+    const float start = session_.document().edits.placements.at(0).transform[3].x;
+    for (int i = 1; i <= kSaves; ++i) {
+        const std::string saved = withJson(
+            bytes, [&](nlohmann::json& document) { move(document, name, 0.001f * static_cast<float>(i)); });
+        std::ofstream(file(), std::ios::binary) << saved.substr(0, saved.size() / 2);
+        loads_ += session_.update();
+        std::ofstream(file(), std::ios::binary) << saved;
+        loads_ += session_.update();
+    }
+    std::filesystem::last_write_time(file(), time_ += std::chrono::seconds(2));
+    ASSERT_TRUE(until([&] {
+        return std::abs(session_.document().edits.placements.at(0).transform[3].x - start - 0.001f * kSaves) <
+               1e-5f;
+    }));
+    EXPECT_EQ(session_.lastError(), "");
+}
+
+} // namespace
+} // namespace relume
