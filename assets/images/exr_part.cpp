@@ -6,12 +6,15 @@
 
 #include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <stdexcept>
+#include <thread>
 
 namespace relume::exr {
 
@@ -72,6 +75,28 @@ FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t 
             image.attributes[name] = text->value();
     }
     return image;
+}
+
+namespace {
+
+std::mutex threadsMutex;
+int threadUsers = 0;
+
+} // namespace
+
+ExrThreads::ExrThreads() {
+    const std::lock_guard lock(threadsMutex);
+    if (threadUsers++ == 0) Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+}
+
+ExrThreads::~ExrThreads() {
+    const std::lock_guard lock(threadsMutex);
+    if (--threadUsers == 0) Imf::setGlobalThreadCount(0);
+}
+
+int ExrThreads::rows() {
+    constexpr int kRowsAtATime = 16, kLeast = 4; // rows, and how many times that
+    return kRowsAtATime * std::max(kLeast, 2 * Imf::globalThreadCount());
 }
 
 Imf::Header headerOf(const FloatImage& image, ExrType type) {

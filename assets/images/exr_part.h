@@ -81,6 +81,19 @@ FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
 /// Rounds to half and cuts what is beyond its range; `cut` counts that.
 std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
 
+/// As long as it lives, OpenEXR files that are made compress on all cores. There are no threads afterwards:
+/// they would rest all the time, and a process that forks would wait for them. The bytes of a file are the
+/// same.
+class ExrThreads {
+public:
+    ExrThreads();
+    ~ExrThreads();
+    ExrThreads(const ExrThreads&) = delete;
+    ExrThreads& operator=(const ExrThreads&) = delete;
+    /// Returns how many rows keep all cores busy: OpenEXR's ZIP compresses 16 at a time.
+    static int rows();
+};
+
 /// Writes the pixels of an Imf::OutputFile or Imf::OutputPart.
 template<class Part>
 void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
@@ -95,10 +108,10 @@ void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
     part.setFrameBuffer(frame);
     // The rows are written in portions, between which the watch can be told how far the job is, and can end
     // it.
-    constexpr int kRows = 64;
-    for (int left = int(image.height); left > 0; left -= kRows) {
+    const int rows = ExrThreads::rows();
+    for (int left = int(image.height); left > 0; left -= rows) {
         tellWatch("writing", 1.0 - double(left) / image.height);
-        part.writePixels(std::min(left, kRows));
+        part.writePixels(std::min(left, rows));
     }
 }
 

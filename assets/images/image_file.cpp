@@ -65,6 +65,7 @@ std::string encodeExr(const std::string& path, const FloatImage& image, ExrType 
     exr::MemoryOutput stream(path.c_str());
     size_t cut = 0;
     {
+        const exr::ExrThreads threads;
         Imf::OutputFile file(stream, exr::headerOf(image, type));
         exr::writePart(file, image, type, cut);
     } // its destructor writes the table of lines

@@ -63,6 +63,7 @@ std::string encode(const std::string& path, const LayeredImage& image, ExrType t
     exr::MemoryOutput stream(path.c_str());
     size_t cut = 0;
     {
+        const exr::ExrThreads threads;
         Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()));
         for (size_t p = 0; p < headers.size(); ++p) {
             Imf::OutputPart part(file, int(p));

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -20,6 +21,8 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <thread>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -227,6 +230,28 @@ TEST_F(FloatImageTest, LeavesTheOldFileWhenTheDiskIsFull) {
     EXPECT_EQ(WEXITSTATUS(status), 0);
     EXPECT_EQ(bytesOf(path), before);
     EXPECT_EQ(fileCount(), 1u); // no temporary file stays
+}
+
+// They compress on all cores, in portions whose size depends on how many there are.
+TEST_F(FloatImageTest, FilesWrittenAtOnceAreThoseWrittenAlone) {
+    const std::array<FloatImage, 2> images = {ramp(300, 301), ramp(70, 500)};
+    std::array<std::string, 2> alone;
+    for (size_t i = 0; i < 2; ++i) {
+        writeImage(at("alone.exr"), images[i]);
+        alone[i] = bytesOf(at("alone.exr"));
+    }
+    std::vector<std::thread> writers;
+    for (size_t i = 0; i < 2; ++i)
+        writers.emplace_back([&, i] {
+            for (int time = 0; time < 20; ++time)
+                writeImage(at(std::to_string(i) + ".exr"), images[i]);
+        });
+    for (std::thread& writer : writers)
+        writer.join();
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(bytesOf(at(std::to_string(i) + ".exr")), alone[i]);
+        EXPECT_EQ(readImage(at(std::to_string(i) + ".exr")).planes, images[i].planes);
+    }
 }
 
 TEST_F(FloatImageTest, ReplacesFilesAndFollowsLinks) {
