@@ -1,0 +1,86 @@
+// These tests run the add-on of assets/blender in Blender without a window, and read what it writes.
+#include "app/edit/prepare.h"
+#include "app/live/reload.h"
+#include "assets/images/image_file.h"
+#include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
+#include "tests/text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace relume {
+namespace {
+
+const std::string kFolder = std::string(RELUME_SOURCE_DIR) + "/tests/blender/";
+const std::string kAddOn = std::string(RELUME_SOURCE_DIR) + "/assets/blender/relume_link.py";
+constexpr double kLumensPerWatt = 683;
+
+class RelumeLink : public testing::Test {
+protected:
+    void SetUp() override {
+        if (runProgram("/usr/bin/env", {"blender", "--version"}).status != 0)
+            GTEST_SKIP() << "Blender is not there: install Debian's package blender";
+        blender({"-b", "-P", kFolder + "make_room.py", "--", room_});
+        blender({"-b", room_, "-P", kAddOn, "--", level_});
+    }
+    static std::string blender(std::vector<std::string> arguments) {
+        constexpr double kLimit = 120; // [s]
+        arguments.insert(arguments.begin(), {"blender", "--python-exit-code", "1"});
+        const ProcessResult run = runProgram("/usr/bin/env", arguments, nullptr, kLimit);
+        EXPECT_EQ(run.status, 0) << run.out << run.err;
+        return run.out;
+    }
+    PreparedScene prepared() const { return prepareScene({.path = level_, .size = 64}); }
+
+    TemporaryFolder folder_;
+    const std::string room_ = folder_.path("room.blend"), level_ = folder_.path("room.relume.glb");
+};
+
+TEST_F(RelumeLink, LightsAndSkyAreThoseOfBlender) {
+    const Scene scene = loadGltf(level_);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    const bool panelFirst = scene.lights[0].type == LightType::Rectangle;
+    const Light &panel = scene.lights[panelFirst ? 0 : 1], &bulb = scene.lights[panelFirst ? 1 : 0];
+    ASSERT_EQ(panel.type, LightType::Rectangle);
+    EXPECT_EQ(panel.name, "Panel");
+    EXPECT_NEAR(double(panel.size.x), 1.0, 1e-6);
+    EXPECT_NEAR(double(panel.size.y), 0.5, 1e-6);
+    // 100 W over half a square metre, sent out by Lambert's law.
+    EXPECT_NEAR(double(panel.intensity), 100 * kLumensPerWatt / (std::numbers::pi * 0.5), 1.0);
+    // Blender's Z is up and its light shines down, tilted by 0.3 about X.
+    EXPECT_LT(glm::distance(glm::vec3(panel.transform[3]), glm::vec3(0, 3, 0)), 1e-5f);
+    EXPECT_LT(glm::distance(-glm::normalize(glm::vec3(panel.transform[2])),
+                            glm::vec3(0, -std::cos(0.3f), -std::sin(0.3f))),
+              1e-5f);
+    EXPECT_LT(glm::distance(glm::normalize(glm::vec3(panel.transform[0])), glm::vec3(1, 0, 0)), 1e-5f);
+    ASSERT_EQ(bulb.type, LightType::Point);
+    EXPECT_NEAR(double(bulb.intensity), 50 * kLumensPerWatt / (4 * std::numbers::pi), 0.1);
+    EXPECT_NEAR(double(bulb.radius), 0.1, 1e-6);
+    EXPECT_LT(glm::distance(glm::vec3(bulb.transform[3]), glm::vec3(-1, 2, -1)), 1e-5f);
+    EXPECT_NEAR(double(scene.sky.radiance.b), 0.4 * 0.5 * kLumensPerWatt, 0.01);
+    EXPECT_EQ(scene.instances.size(), 2u) << "what carries an area light is no object";
+}
+
+TEST_F(RelumeLink, ASavedLampIsAnEditOfTheBakeAndTheLightmapComesBack) {
+    const PreparedScene before = prepared();
+    FloatImage lightmap{8, 8, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B"})
+        lightmap.add(channel).assign(64, 0.5f);
+    writeImage(folder_.path("lightmap.exr"), lightmap);
+    const std::string said =
+        blender({"-b", room_, "-P", kFolder + "work_on_room.py", "--", kAddOn, folder_.path("lightmap.exr")});
+    EXPECT_TRUE(contains(said, "took the lightmap")) << said;
+    const SceneChanges changes = changesBetween(before, prepared());
+    EXPECT_EQ(describe(changes), "1 light");
+    EXPECT_FALSE(changes.surfaces) << "the bake would begin anew";
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path("")))
+        EXPECT_FALSE(contains(entry.path().string(), ".part")) << entry.path();
+}
+
+} // namespace
+} // namespace relume
