@@ -8,6 +8,7 @@ Edit > Preferences > Add-ons > Install... takes this file. Its panel stands in t
 - Take lightmap reads the lightmap that Relume exported and shows it on all meshes.
 
 Without a window: blender -b room.blend -P relume_link.py -- OUT.glb
+With --mean-sky behind it the level is one file: a picture of the sky becomes its mean colour.
 """
 import math
 import os
@@ -57,8 +58,25 @@ def linked_node(socket, kind):
     return None
 
 
+def mean_color(image):
+    """Returns the mean of an equirectangular picture over the sphere, linear."""
+    width, height, channels = *image.size, image.channels
+    pixels = list(image.pixels)
+    total, weights = [0.0, 0.0, 0.0], 0.0
+    for row in range(height):
+        weight = math.sin(math.pi * (row + 0.5) / height)  # of a row's solid angle
+        line = pixels[row * width * channels:(row + 1) * width * channels]
+        for c in range(3):
+            total[c] += weight * sum(line[min(c, channels - 1)::channels])
+        weights += weight * width
+    return [one / weights for one in total] if weights else total
+
+
 def sky(world, folder):
-    """Returns the sky of a world as Relume's extras have it, or None for a dark one. A picture is copied to `folder`."""
+    """Returns the sky of a world as Relume's extras have it, or None for a dark one.
+
+    A picture is copied to `folder`; without one the sky has its mean colour.
+    """
     if world is None:
         return None
     if not world.use_nodes:
@@ -71,6 +89,8 @@ def sky(world, folder):
     if picture is None or picture.image is None:
         color = list(background.inputs["Color"].default_value)[:3]
         return {"color": color, "intensity": strength} if strength > 0 and any(color) else None
+    if folder is None:
+        return {"color": mean_color(picture.image), "intensity": strength}
     source = bpy.path.abspath(picture.image.filepath)
     if not source.lower().endswith((".exr", ".hdr")) or not os.path.isfile(source):
         print(f"relume: the sky's picture '{source}' is no .exr or .hdr file: the sky is left out", file=sys.stderr)
@@ -135,7 +155,7 @@ def restore(thing, former):
         del thing["relume"]
 
 
-def write_level(path):
+def write_level(path, mean_sky=False):
     """Writes the scene as Relume reads it, whole or not at all."""
     whole, part = os.path.abspath(path), os.path.abspath(path)[: -len(".glb")] + ".part.glb"
     options = {
@@ -150,7 +170,7 @@ def write_level(path):
         "export_import_convert_lighting_mode": "SPEC",
     }
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
-    with Dressed(os.path.dirname(whole)):
+    with Dressed(None if mean_sky else os.path.dirname(whole)):
         bpy.ops.export_scene.gltf(**{name: value for name, value in options.items() if name in known})
     os.replace(part, whole)
 
@@ -308,9 +328,11 @@ def unregister():
 
 if __name__ == "__main__":
     given = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    if bpy.app.background and len(given) == 1 and given[0].endswith(".glb"):
-        write_level(given[0])
+    if bpy.app.background and not bpy.data.filepath:  # Blender goes on with an empty scene
+        sys.exit("relume: the .blend file cannot be read")
+    if bpy.app.background and given and given[1:] in ([], ["--mean-sky"]) and given[0].endswith(".glb"):
+        write_level(given[0], mean_sky=len(given) == 2)
     elif bpy.app.background:
-        sys.exit("usage: blender -b FILE.blend -P relume_link.py -- OUT.glb")
+        sys.exit("usage: blender -b FILE.blend -P relume_link.py -- OUT.glb [--mean-sky]")
     else:
         register()

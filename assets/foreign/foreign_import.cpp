@@ -70,7 +70,7 @@ public:
     Converter(const ImportDesc& desc, const Spool& output) : desc_(desc) { start(output); }
     ~Converter() {
         if (child_ <= 0) return;
-        kill(child_, SIGKILL);
+        kill(-child_, SIGKILL); // with the Blender that it may have started
         reap(0);
     }
     Converter(const Converter&) = delete;

@@ -2,6 +2,8 @@
 
 #include "assets/base/error.h"
 #include "assets/base/spool.h"
+#include "assets/foreign/blender_export.h"
+#include "assets/foreign/foreign_files.h"
 #include "assets/foreign/foreign_scene.h"
 #include "assets/foreign/import_limits.h"
 #include "assets/foreign/import_messages.h"
@@ -107,7 +109,19 @@ private:
     int descriptor_;
 };
 
+void keep(const ChildTask& task, const std::vector<uint8_t>& bytes) {
+    const int error = writeAll(task.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (error != 0)
+        throw Error(task.path + ": cannot be kept while it is read (" + std::strerror(error) +
+                    "): make room in the system's temporary folder");
+}
+
 void convert(const ChildTask& task, const Teller& teller) {
+    if (const auto blender = lowerEnding(task.path) == ".blend" ? findBlender() : std::nullopt) {
+        keep(task, exportByBlender(*blender, task.path));
+        teller.tell(ImportWord::Done);
+        return;
+    }
     const ForeignScene made = convertForeign(
         task.path, task.choice, [&](float done) { teller.tell(ImportWord::Progress, std::to_string(done)); });
     std::vector<uint8_t> bytes;
@@ -116,10 +130,7 @@ void convert(const ChildTask& task, const Teller& teller) {
     } catch (const Error& error) {
         throw Error(task.path + ": " + error.what());
     }
-    const int error = writeAll(task.output, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    if (error != 0)
-        throw Error(task.path + ": cannot be kept while it is read (" + std::strerror(error) +
-                    "): make room in the system's temporary folder");
+    keep(task, bytes);
     for (const std::string& warning : made.scene.warnings)
         teller.tell(ImportWord::Warning, warning);
     teller.tell(ImportWord::Done);

@@ -1,6 +1,8 @@
 // These tests run the add-on of assets/blender in Blender without a window, and read what it writes.
 #include "app/edit/prepare.h"
 #include "app/live/reload.h"
+#include "assets/base/error.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/images/image_file.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 namespace relume {
@@ -34,6 +37,12 @@ protected:
         const ProcessResult run = runProgram("/usr/bin/env", arguments, nullptr, kLimit);
         EXPECT_EQ(run.status, 0) << run.out << run.err;
         return run.out;
+    }
+    static Scene loaded(const std::string& path) {
+        ImportDesc desc;
+        desc.path = path;
+        desc.program = RELUME_BINARY;
+        return loadImported(path, importForeign(desc));
     }
     PreparedScene prepared() const { return prepareScene({.path = level_, .size = 64}); }
 
@@ -64,6 +73,25 @@ TEST_F(RelumeLink, LightsAndSkyAreThoseOfBlender) {
     EXPECT_LT(glm::distance(glm::vec3(bulb.transform[3]), glm::vec3(-1, 2, -1)), 1e-5f);
     EXPECT_NEAR(double(scene.sky.radiance.b), 0.4 * 0.5 * kLumensPerWatt, 0.01);
     EXPECT_EQ(scene.instances.size(), 2u) << "what carries an area light is no object";
+}
+
+TEST_F(RelumeLink, ABlendFileOpensByBlender) {
+    const Scene exported = loadGltf(level_), opened = loaded(room_);
+    EXPECT_EQ(opened.path, room_);
+    ASSERT_EQ(opened.lights.size(), exported.lights.size());
+    for (size_t i = 0; i < opened.lights.size(); ++i) {
+        EXPECT_EQ(opened.lights[i].name, exported.lights[i].name);
+        EXPECT_EQ(opened.lights[i].intensity, exported.lights[i].intensity);
+        EXPECT_EQ(opened.lights[i].transform, exported.lights[i].transform);
+    }
+    EXPECT_EQ(opened.sky.radiance, exported.sky.radiance);
+    std::ofstream(folder_.path("bad.blend")) << "BLENDER-v304 and no more";
+    try {
+        loaded(folder_.path("bad.blend"));
+        FAIL() << "Blender has opened something else";
+    } catch (const Error& error) {
+        EXPECT_TRUE(contains(error.what(), "bad.blend: Blender cannot read it")) << error.what();
+    }
 }
 
 TEST_F(RelumeLink, ASavedLampIsAnEditOfTheBakeAndTheLightmapComesBack) {
