@@ -86,6 +86,17 @@ ViewCamera look(const ViewCamera& camera, float yaw, float pitch) {
     return moved;
 }
 
+std::vector<ViewCamera> turntable(const ViewCamera& camera, const Box& box, uint32_t count) {
+    const bool inside = glm::all(glm::greaterThanEqual(camera.eye, box.low)) &&
+                        glm::all(glm::lessThanEqual(camera.eye, box.high));
+    std::vector<ViewCamera> out;
+    for (uint32_t i = 0; i < count; ++i) {
+        const float yaw = glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(count);
+        out.push_back(i == 0 ? camera : inside ? look(camera, yaw, 0.0f) : orbit(camera, yaw, 0.0f));
+    }
+    return out;
+}
+
 ViewCamera pan(const ViewCamera& camera, float dx, float dy) {
     const float height = camera.halfHeight > 0.0f
                              ? 2.0f * camera.halfHeight

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include <glm/glm.hpp>
 
 #include "assets/model/scene.h"
@@ -32,6 +35,9 @@ glm::mat4 projectionMatrix(const ViewCamera& camera, float aspect);
 ViewCamera orbit(const ViewCamera& camera, float yaw, float pitch);
 /// Turns the target about the eye [rad]; it stops short of the poles.
 ViewCamera look(const ViewCamera& camera, float yaw, float pitch);
+/// Returns the cameras of a turn in so many pictures, counter-clockwise, the given one first: about the
+/// target, or where the eye is within the box, in its place.
+std::vector<ViewCamera> turntable(const ViewCamera& camera, const Box& box, uint32_t count);
 /// Moves by shares of the picture's height at the target: right and up.
 ViewCamera pan(const ViewCamera& camera, float dx, float dy);
 /// Scales the distance to the target (orthographic: the picture's height) by a factor > 0; one below 1 comes

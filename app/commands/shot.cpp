@@ -4,12 +4,15 @@
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/progress.h"
 #include "app/offline/solve.h"
+#include "app/pictures/make_frame_writer.h"
 #include "app/pictures/picture_studio.h"
+#include "app/text/frame_names.h"
 #include "app/text/interrupt.h"
 #include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/images/image_file.h"
+#include "renderer/scene_geometry.h"
 #include "shaders/shader_library.h"
 
 #include <memory>
@@ -25,17 +28,40 @@ FloatImage bakeLightmap(const ShotOptions& o, const BakeRequest& request, Pictur
     return bake.baker().lightmap(request.lightmap);
 }
 
+// Takes the pictures of a turn, all with the exposure of the first.
+void takeTurn(PictureStudio& studio, const LightmapTexture& lightmap, DrawSettings draw, const Box& bounds,
+              uint32_t count, FrameWriter& writer) {
+    for (const ViewCamera& camera : turntable(studio.camera(), bounds, count)) {
+        stopIfInterrupted();
+        studio.setCamera(camera);
+        writer.write(studio.take(lightmap, draw), 1);
+        if (showsLight(draw.view)) draw.exposure = studio.exposure();
+    }
+    writer.finish();
+}
+
 void shoot(ShotOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
     const ShotRequest shot = resolveShotOptions(o);
     BakeRequest request = resolveBakeOptions(o.bake);
-    CommandFiles()
-        .readsScene("SCENE", o.bake.files.scene)
-        .reads("--lightmap", o.lightmap)
-        .writes("--output", o.bake.files.output)
-        .check();
-    checkWritable(o.bake.files.output);
+    const bool frames = o.turntable > 0 && !isVideo(o.bake.files.output);
+    CommandFiles files;
+    files.readsScene("SCENE", o.bake.files.scene).reads("--lightmap", o.lightmap);
+    if (frames)
+        files.writesFrames("--output", o.bake.files.output);
+    else
+        files.writes("--output", o.bake.files.output);
+    files.check();
+    std::unique_ptr<FrameWriter> writer;
+    if (o.turntable > 0)
+        writer = makeFrameWriter({.path = o.bake.files.output,
+                                  .width = shot.width,
+                                  .height = shot.height,
+                                  .rate = o.rate,
+                                  .overwrite = o.overwrite});
+    else
+        checkWritable(o.bake.files.output);
     if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
     std::unique_ptr<FloatImage> image;
     if (!o.lightmap.empty()) {
@@ -59,7 +85,10 @@ void shoot(ShotOptions o) {
 
     const LightmapTexture texture =
         lightmap ? lightmap->texture() : LightmapTexture{.size = request.prepare.size};
-    writeImage(o.bake.files.output, studio.take(texture, shot.draw));
+    if (writer)
+        takeTurn(studio, texture, shot.draw, boundsOf(prepared.mesh), o.turntable, *writer);
+    else
+        writeImage(o.bake.files.output, studio.take(texture, shot.draw));
     if (showsLight(shot.draw.view)) spdlog::info("exposure {:.2f} EV", studio.exposure());
     spdlog::info("wrote {} ({} in all)", o.bake.files.output, formatDuration(secondsSince(start)));
 }

@@ -13,10 +13,12 @@ public:
     struct Desc {
         std::string path;               // FILE.mp4, else a folder
         uint32_t width = 0, height = 0; // of all frames [pixels]
-        double rate = 2;                // of a video [frames/s]
+        double rate = 2;                // of a video [frames/s], within the next two
         double hold = 0;                // how long a video stays on its last frame [s]
         bool overwrite = false;         // old frames in the folder go when the first new one comes
     };
+
+    static constexpr double kLeastRate = 0.1, kMostRate = 120.0;
 
     virtual ~FrameWriter() = default;
     /// Writes the next frame so many times. Throws Error.

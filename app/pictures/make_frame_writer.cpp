@@ -7,6 +7,7 @@
 #include "assets/images/image_file.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -66,6 +67,21 @@ private:
 };
 
 } // namespace
+
+void checkSeries(const FrameWriter::Desc& desc) {
+    const std::string& path = desc.path;
+    // A folder's name may have a dot, but hardly one of these endings.
+    constexpr std::array kEndings = {".avi", ".mkv", ".mov", ".webm", ".gif", ".png", ".jpg", ".exr"};
+    for (const char* ending : kEndings)
+        if (path.ends_with(ending))
+            throw UsageError("--output: '" + path + "': name a folder for the frames, or FILE.mp4");
+    if (path.empty()) throw UsageError("--output: is empty: name a folder for the frames, or FILE.mp4");
+    if (!isVideo(path)) return;
+    if (desc.width % 2 != 0 || desc.height % 2 != 0)
+        throw UsageError(
+            fmt::format("--size: '{}x{}': a video's width and height are even", desc.width, desc.height));
+    if (desc.overwrite) throw UsageError("--overwrite: only for a folder, a video is replaced as it is");
+}
 
 std::unique_ptr<FrameWriter> makeFrameWriter(const FrameWriter::Desc& desc) {
     if (isVideo(desc.path)) return std::make_unique<VideoWriter>(desc);

@@ -19,6 +19,9 @@ public:
     void open(const ShotOptions& options, const ShotRequest& request, const PreparedScene& prepared);
     /// Takes a picture in the size asked for. Throws Error.
     FloatImage take(const LightmapTexture& lightmap, const DrawSettings& settings);
+    /// Returns where the picture is taken from, and moves it.
+    const ViewCamera& camera() const { return camera_; }
+    void setCamera(const ViewCamera& camera) { camera_ = camera; }
     float exposure() const { return renderer_.exposure(); } // of the last picture of light [EV]
 
 private:

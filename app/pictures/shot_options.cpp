@@ -1,6 +1,7 @@
 #include "app/pictures/shot_options.h"
 
 #include "app/edit/choice_options.h"
+#include "app/pictures/make_frame_writer.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -18,6 +19,7 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kMinEdge = 16, kMaxEdge = 16384; // of a picture [pixels]
+constexpr uint32_t kMostFrames = 100000;            // more than an hour of a video
 constexpr float kMostMetres = 1e9f; // squares and products of such places are far from what floats can hold
 
 glm::vec3 parsePoint(const std::string& option, const std::string& text) {
@@ -85,7 +87,23 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("scene", o.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")->required();
     addChoiceOptions(command, o.bake.files.choice);
-    command.add_option("-o,--output", o.bake.files.output, "Picture to write, .png")->required();
+    command
+        .add_option(
+            "-o,--output", o.bake.files.output,
+            "Picture to write, .png; with --turntable a folder for its frames, or FILE.mp4 (by ffmpeg)")
+        ->required();
+    CLI::Option* turn =
+        command
+            .add_option(
+                "--turntable", o.turntable,
+                "Make so many pictures of a turn: about the scene, or in place where the camera is inside")
+            ->check(wholeFrom(2, kMostFrames));
+    command.add_option("--fps", o.rate, "With --turntable: rate of the video")
+        ->capture_default_str()
+        ->check(numberFrom(FrameWriter::kLeastRate, FrameWriter::kMostRate))
+        ->needs(turn);
+    command.add_flag("--overwrite", o.overwrite, "With --turntable: remove the frames that the folder holds")
+        ->needs(turn);
     addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
     CLI::Option* lightmap = command.get_option("--lightmap");
@@ -95,9 +113,14 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
 }
 
 ShotRequest resolveShotOptions(const ShotOptions& o) {
-    if (!o.bake.files.output.ends_with(".png"))
-        throw UsageError("--output: '" + o.bake.files.output + "' does not end in .png");
-    return resolvePictureOptions(o);
+    const std::string& output = o.bake.files.output;
+    if (o.turntable == 0 && !output.ends_with(".png"))
+        throw UsageError("--output: '" + output + "' does not end in .png");
+    const ShotRequest request = resolvePictureOptions(o);
+    if (o.turntable > 0)
+        checkSeries(
+            {.path = output, .width = request.width, .height = request.height, .overwrite = o.overwrite});
+    return request;
 }
 
 ShotRequest resolvePictureOptions(const ShotOptions& o) {

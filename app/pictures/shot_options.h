@@ -16,6 +16,9 @@ struct ShotOptions {
     double fov = 0; // [degrees], 0: not given
     std::string size = "1440x810", exposure = "auto";
     std::string view = "lit", filter = "bilinear", tone = "agx";
+    uint32_t turntable = 0; // pictures of a turn, 0: one picture
+    double rate = 25;       // of a video [frames/s]
+    bool overwrite = false; // the frames that the folder holds
 };
 
 void addShotOptions(CLI::App& command, ShotOptions& options);

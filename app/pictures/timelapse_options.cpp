@@ -1,21 +1,18 @@
 #include "app/pictures/timelapse_options.h"
 
 #include "app/edit/choice_options.h"
-#include "app/pictures/frame_writer.h"
+#include "app/pictures/make_frame_writer.h"
 #include "app/text/frame_names.h"
 #include "app/text/option_checks.h"
 #include "assets/base/error.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include <CLI/CLI.hpp>
 
 namespace relume {
 namespace {
-
-constexpr double kLeastRate = 0.1, kMostRate = 120.0; // [frames/s]
 
 std::vector<uint32_t> parseCounts(const std::string& text) {
     std::vector<uint32_t> counts;
@@ -35,15 +32,6 @@ std::vector<uint32_t> parseCounts(const std::string& text) {
         if (more) rest.remove_prefix(comma + 1);
     }
     return counts;
-}
-
-// A folder's name may have a dot, but hardly one of these endings.
-void checkOutput(const std::string& path) {
-    constexpr std::array kEndings = {".avi", ".mkv", ".mov", ".webm", ".gif", ".png", ".jpg", ".exr"};
-    for (const char* ending : kEndings)
-        if (path.ends_with(ending))
-            throw UsageError("--output: '" + path + "': name a folder for the frames, or FILE.mp4");
-    if (path.empty()) throw UsageError("--output: is empty: name a folder for the frames, or FILE.mp4");
 }
 
 } // namespace
@@ -70,7 +58,7 @@ void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
             "--fps", o.fps,
             "Without --at: a frame every 1/N second of the solver's time, from the first light on. Also "
             "the rate of a video (default with --at: 2)")
-        ->check(numberFrom(kLeastRate, kMostRate))
+        ->check(numberFrom(FrameWriter::kLeastRate, FrameWriter::kMostRate))
         ->type_name("N");
     command.add_flag("--no-caption", o.noCaption,
                      "Leave out scene, method, passes or directions, error and solver time");
@@ -81,7 +69,6 @@ void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
 }
 
 TimelapseRequest resolveTimelapseOptions(const TimelapseOptions& o) {
-    checkOutput(o.shot.bake.files.output);
     const bool video = isVideo(o.shot.bake.files.output);
     TimelapseRequest request;
     request.shot = resolvePictureOptions(o.shot);
@@ -89,10 +76,10 @@ TimelapseRequest resolveTimelapseOptions(const TimelapseOptions& o) {
         throw UsageError("--view " + o.shot.view +
                          ": does not change while light converges: use lit or lighting, or 'relume shot'");
     }
-    if (video && (request.shot.width % 2 != 0 || request.shot.height % 2 != 0))
-        throw UsageError("--size: '" + o.shot.size + "': a video's width and height are even");
-    if (video && o.overwrite)
-        throw UsageError("--overwrite: only for a folder, a video is replaced as it is");
+    checkSeries({.path = o.shot.bake.files.output,
+                 .width = request.shot.width,
+                 .height = request.shot.height,
+                 .overwrite = o.overwrite});
     if (!o.at.empty() && o.fps > 0 && !video)
         throw UsageError("--fps: with --at it is the rate of a video, a folder of frames has none");
     if (!o.at.empty()) request.at = parseCounts(o.at);

@@ -183,5 +183,34 @@ TEST_F(ShotCommand, SaysWhatIsMissingWithAnOldOpenGl) {
     expectNoPicture();
 }
 
+TEST(ShotTurntable, IsASeriesOfPicturesThatBeginsWithTheShot) {
+    const TemporaryFolder folder;
+    const std::string scene = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb";
+    const Strings look = {scene, "--size", "64x48", "--lightmap-size", "32", "--samples", "8"};
+    const auto with = [&](Strings more) {
+        more.insert(more.begin(), look.begin(), look.end());
+        return shot(more);
+    };
+    ProcessResult run = with({"-o", folder.path("turn"), "--turntable", "3"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    run = with({"-o", folder.path("one.png")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const FloatImage one = readImage(folder.path("one.png"));
+    EXPECT_EQ(readImage(folder.path("turn/frame_0001.png")).planes, one.planes);
+    for (const char* other : {"turn/frame_0002.png", "turn/frame_0003.png"})
+        EXPECT_NE(readImage(folder.path(other)).planes, one.planes);
+    EXPECT_FALSE(std::filesystem::exists(folder.path("turn/frame_0004.png")));
+    run = with({"-o", folder.path("turn"), "--turntable", "2"});
+    EXPECT_EQ(run.status, 1) << "frames are there";
+    run = with({"-o", folder.path("turn"), "--turntable", "2", "--overwrite"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path("turn/frame_0003.png")));
+    for (const Strings& wrong : std::vector<Strings>{{"-o", folder.path("a.png"), "--turntable", "3"},
+                                                     {"-o", folder.path("a.png"), "--fps", "3"},
+                                                     {"-o", folder.path("turn")},
+                                                     {"-o", folder.path("t"), "--turntable", "1"}})
+        EXPECT_EQ(with(wrong).status, 2) << wrong[1];
+}
+
 } // namespace
 } // namespace relume

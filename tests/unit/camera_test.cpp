@@ -164,5 +164,22 @@ TEST(Frustum, SeesWhatIsInThePictureOnly) {
     EXPECT_TRUE(frustum.sees(at(0, 0, -1e6f)));
 }
 
+TEST(Turntable, TurnsAboutTheTargetOutsideAndInPlaceInside) {
+    const Box box{glm::vec3(-1), glm::vec3(1)};
+    const ViewCamera outside = along({0, 0, 5}, {0, 0, 0});
+    const std::vector<ViewCamera> around = turntable(outside, box, 4);
+    ASSERT_EQ(around.size(), 4u);
+    EXPECT_EQ(around[0], outside);
+    expectNear(around[1].eye, {5, 0, 0}); // counter-clockwise seen from above
+    expectNear(around[2].eye, {0, 0, -5});
+    for (const ViewCamera& camera : around)
+        expectNear(camera.target, {0, 0, 0});
+    const ViewCamera inside = along({0, 0, 0.5f}, {0, 0, 0});
+    for (const ViewCamera& camera : turntable(inside, box, 3)) {
+        EXPECT_EQ(camera.eye, inside.eye);
+        EXPECT_NEAR(glm::distance(camera.eye, camera.target), 0.5f, 1e-6f);
+    }
+}
+
 } // namespace
 } // namespace relume
