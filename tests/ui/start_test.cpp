@@ -152,6 +152,18 @@ TEST_F(ViewerStart, AMenuExportsTheLevelForAnEngine) {
     quit(*viewer);
 }
 
+TEST_F(ViewerStart, AViewerThatIsKilledKeepsItsRecentFiles) {
+    const std::string level = home_.path("level.glb");
+    fs::copy_file(kScenes + "cornell_small.glb", level);
+    auto viewer = open({level});
+    ASSERT_TRUE(viewer->says("scene: " + level, 60)) << viewer->output();
+    viewer.reset(); // it still runs, and is ended by force
+    viewer = open({"view"});
+    ASSERT_TRUE(viewer->shows("recent: 1 files, 0 gone")) << viewer->output();
+    EXPECT_TRUE(item(*viewer, "Start/Recent/level.glb")) << viewer->output();
+    quit(*viewer);
+}
+
 TEST_F(ViewerStart, AloneItOpensWhereThereIsADisplay) {
     ViewerProcess viewer({.display = display_->name(), .home = home_.path(""), .arguments = {}});
     ASSERT_TRUE(viewer.window()) << viewer.output();

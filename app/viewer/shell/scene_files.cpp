@@ -58,7 +58,7 @@ void SceneFiles::perform(Action action, int argument) {
         return desc_.dialog.open({.title = "Open scene",
                                   .path = folder(),
                                   .endings = sceneEndings(),
-                                  .recent = desc_.preferences.recent,
+                                  .recent = desc_.preferences.values().recent,
                                   .done = [this](const std::string& chosen) { open(chosen); }});
     default:
         break;
@@ -122,7 +122,8 @@ void SceneFiles::choose(const GltfChoice& choice) {
 }
 
 void SceneFiles::forget(const std::string& path) {
-    std::erase(desc_.preferences.recent, path);
+    std::erase(desc_.preferences.values().recent, path);
+    desc_.preferences.save();
     desc_.feedback.tell("forgot", path);
     desc_.feedback.pacer().input();
 }
@@ -219,7 +220,13 @@ void SceneFiles::sceneCame() {
     path_ = path();
     if (desc_.session.sceneWasKept()) return;
     opening_.sceneCame();
-    desc_.preferences.addRecent(desc_.session.scene()->prepared.scene.path);
+    remember(desc_.session.scene()->prepared.scene.path);
+}
+
+// Puts a scene at the head of the recent ones, at once: a viewer that is killed later has told of it.
+void SceneFiles::remember(const std::string& path) {
+    desc_.preferences.values().addRecent(path);
+    desc_.preferences.save();
 }
 
 void SceneFiles::followSaves() {
@@ -228,13 +235,14 @@ void SceneFiles::followSaves() {
     saves_ = session.saves();
     // The file that the scene was saved as gets the bookmarks.
     const std::string saved = path();
-    const auto known = desc_.preferences.bookmarks.find(path_);
-    if (saved != path_ && known != desc_.preferences.bookmarks.end()) {
+    auto& bookmarks = desc_.preferences.values().bookmarks;
+    const auto known = bookmarks.find(path_);
+    if (saved != path_ && known != bookmarks.end()) {
         const std::vector<Bookmark> marks = known->second;
-        desc_.preferences.bookmarks.try_emplace(saved, marks);
+        bookmarks.try_emplace(saved, marks);
     }
     path_ = saved;
-    desc_.preferences.addRecent(session.path());
+    remember(session.path());
     desc_.feedback.tell("saved", session.path());
     desc_.feedback.note("saved " + session.path());
 }

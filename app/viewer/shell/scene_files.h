@@ -9,8 +9,8 @@
 #include "app/viewer/shell/file_dialog.h"
 #include "app/viewer/shell/question.h"
 #include "app/viewer/state/departure.h"
+#include "app/viewer/state/kept_preferences.h"
 #include "app/viewer/state/middle.h"
-#include "app/viewer/state/preferences.h"
 #include "app/viewer/state/shortcuts.h"
 #include "app/viewer/window/window.h"
 
@@ -27,7 +27,7 @@ public:
         Window& window;
         FileDialog& dialog;
         Question& question;
-        Preferences& preferences;
+        KeptPreferences& preferences;
         Feedback& feedback;
         std::function<float()> exposure; // of the picture [EV]
     };
@@ -67,6 +67,7 @@ private:
     void followOpening();
     void followSaves();
     void followTitle();
+    void remember(const std::string& path);
 
     Desc desc_;
     Departure departure_;

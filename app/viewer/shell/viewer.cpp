@@ -3,7 +3,6 @@
 #include "app/offline/progress.h"
 #include "app/viewer/picture/picture_labels.h"
 #include "app/viewer/state/views.h"
-#include "assets/base/error.h"
 #include "renderer/gl/debug.h"
 
 #include <algorithm>
@@ -18,11 +17,6 @@ constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleWatch
 // Frames are drawn hardly faster than the monitor shows them: just so much that vsync decides, where it
 // works.
 constexpr double kLimiterSlack = 1.05;
-
-Preferences keptPreferences() {
-    const std::string path = preferencesPath();
-    return path.empty() ? Preferences{} : readPreferences(path);
-}
 
 Window::Desc windowDesc(const ViewerDesc& desc, const Preferences& preferences) {
     return {.width = desc.width > 0 ? desc.width : preferences.width,
@@ -42,15 +36,15 @@ void clearWindow(Window& window) {
 } // namespace
 
 Viewer::Viewer(const ViewerDesc& desc)
-    : desc_(desc), feedback_(desc.logActions), preferences_(keptPreferences()),
-      window_(windowDesc(desc, preferences_)), gui_(window_), session_(startBake(), desc.request),
+    : desc_(desc), feedback_(desc.logActions), preferences_(preferencesPath()),
+      window_(windowDesc(desc, preferences_.values())), gui_(window_), session_(startBake(), desc.request),
       picture_(session_, bake_->exchange(), feedback_, gl::isSoftware()),
       baking_(session_, *bake_, feedback_, desc.budgetMs),
       lights_(session_, baking_.status(), picture_, feedback_), comparison_(picture_, feedback_),
       editing_(session_, comparison_, progress_, feedback_), inspection_(*bake_, picture_),
       previews_(session_, *bake_, picture_),
-      shots_(picture_, preferences_, feedback_, [this] { return captionLines(); }), ui_(desc.logActions),
-      lightKeys_(session_, picture_, lights_, editing_, feedback_),
+      shots_(picture_, preferences_.values(), feedback_, [this] { return captionLines(); }),
+      ui_(desc.logActions), lightKeys_(session_, picture_, lights_, editing_, feedback_),
       skyKeys_(session_, picture_, lights_, editing_, feedback_),
       mover_(session_, picture_, lights_, editing_, feedback_),
       files_({.session = session_,
@@ -63,11 +57,11 @@ Viewer::Viewer(const ViewerDesc& desc)
               .exposure = [this] { return picture_.pane().exposure(); }}),
       screenLog_(feedback_) {
     ViewState& view = picture_.state();
-    view.filter = preferences_.filter;
-    view.tone = preferences_.tone;
+    view.filter = preferences_.values().filter;
+    view.tone = preferences_.values().tone;
     // Four samples per pixel would cost a CPU most of a frame.
     constexpr uint32_t kSamples = 4;
-    view.samples = preferences_.samples.value_or(picture_.pane().software() ? 0 : kSamples);
+    view.samples = preferences_.values().samples.value_or(picture_.pane().software() ? 0 : kSamples);
     if (!desc_.scene.empty()) files_.open(desc_.scene);
     session_.watchFile(desc_.watch);
 }
@@ -76,7 +70,7 @@ Viewer::Viewer(const ViewerDesc& desc)
 LiveBake& Viewer::startBake() {
     clearWindow(window_);
     spdlog::info("window: {}", gl::describeContext());
-    window_.setVsync(preferences_.vsync);
+    window_.setVsync(preferences_.values().vsync);
     const gl::GlSharing sharing = gl::querySharing();
     bake_ = std::make_unique<LiveBake>(
         LiveBake::Desc{.device = desc_.device,
@@ -93,20 +87,16 @@ Viewer::~Viewer() {
     bake_->stop(); // before what it reads and writes goes
     const glm::uvec2 extent = window_.extent();
     if (extent.x > 0 && extent.y > 0 && desc_.width == 0) {
-        preferences_.width = extent.x;
-        preferences_.height = extent.y;
+        preferences_.values().width = extent.x;
+        preferences_.values().height = extent.y;
     }
     savePreferences();
 }
 
 void Viewer::savePreferences() {
-    preferences_.filter = picture_.state().filter;
-    preferences_.tone = picture_.state().tone;
-    try {
-        if (const std::string path = preferencesPath(); !path.empty()) writePreferences(path, preferences_);
-    } catch (const Error& error) {
-        spdlog::warn("{}", error.what());
-    }
+    preferences_.values().filter = picture_.state().filter;
+    preferences_.values().tone = picture_.state().tone;
+    preferences_.save();
 }
 
 float Viewer::pixelsPerPoint() const {
@@ -162,7 +152,7 @@ void Viewer::follow(double time) {
     const std::optional<PictureNotice> said = notice();
     feedback_.followLog(log_, failure ? failure->message : said ? said->text : "");
     feedback_.expireMessages(time);
-    window_.setVsync(preferences_.vsync);
+    window_.setVsync(preferences_.values().vsync);
     if (feedback_.sceneIsChanged()) feedback_.pacer().sceneChanged();
     screenLog_.tellWindow(window_.size(), window_.minimised());
 }
@@ -273,11 +263,11 @@ MiddleView Viewer::middleView() {
 // Follows what stands in the middle of the window.
 void Viewer::followMiddle() {
     const Middle middle = files_.opening().middle(openingFacts());
-    ui_.start().show(middle.startPage, preferences_);
+    ui_.start().show(middle.startPage, preferences_.values());
     const bool looked = ui_.start().looking();
     if (const std::optional<size_t> gone = ui_.start().follow())
-        feedback_.tell("recent",
-                       fmt::format("{} files, {} gone", preferences_.recent.size(), gone.value_or(0)));
+        feedback_.tell("recent", fmt::format("{} files, {} gone", preferences_.values().recent.size(),
+                                             gone.value_or(0)));
     const bool found = looked && !ui_.start().looking();
     if (screenLog_.tellMiddle(middleName(middle)) || found) feedback_.pacer().input();
     gui_.navigate(ui_.takesKeys(middle));
@@ -297,7 +287,7 @@ PanelContext Viewer::context() {
             .status = baking_.status(),
             .view = picture_.state(),
             .camera = picture_.camera(),
-            .preferences = preferences_,
+            .preferences = preferences_.values(),
             .figures = figures_,
             .log = log_,
             .messages = feedback_.messages(),
@@ -350,7 +340,7 @@ void Viewer::frame(const Redraw& redraw) {
     const double begin = feedback_.now();
     const float pixels = pixelsPerPoint();
     const float scale =
-        gui_.animates() ? picture_.scale() : window_.contentScale() / pixels * preferences_.uiScale;
+        gui_.animates() ? picture_.scale() : window_.contentScale() / pixels * preferences_.values().uiScale;
     gui_.begin(scale);
     previews_.previews().wanted = false; // the panel says
     picture_.place(ui_.draw(context(), middleView(), scale), scale, pixels);

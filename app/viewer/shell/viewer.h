@@ -19,6 +19,7 @@
 #include "app/viewer/shell/sky_keys.h"
 #include "app/viewer/shell/ui.h"
 #include "app/viewer/state/held_input.h"
+#include "app/viewer/state/kept_preferences.h"
 #include "app/viewer/state/light_progress.h"
 #include "app/viewer/state/screen_log.h"
 #include "app/viewer/window/gui.h"
@@ -90,7 +91,7 @@ private:
 
     ViewerDesc desc_;
     Feedback feedback_;
-    Preferences preferences_;
+    KeptPreferences preferences_;
     LogBuffer log_;
     std::unique_ptr<LiveBake> bake_; // outlives OpenGL (live_bake.h)
     Window window_;

@@ -207,7 +207,7 @@ void Viewer::performCamera(Action action) {
 }
 
 void Viewer::storeBookmark() {
-    const std::string name = preferences_.addBookmark(files_.path(), picture_.camera().camera());
+    const std::string name = preferences_.values().addBookmark(files_.path(), picture_.camera().camera());
     savePreferences();
     feedback_.note("stored " + name);
 }

@@ -180,7 +180,11 @@ std::string Preferences::addBookmark(const std::string& scene, const ViewCamera&
 void Preferences::addRecent(const std::string& path) {
     std::error_code code;
     const fs::path whole = fs::absolute(path, code);
-    const std::string name = code ? path : whole.lexically_normal().string();
+    pushRecent(code ? path : whole.lexically_normal().string());
+}
+
+void Preferences::pushRecent(const std::string& path) {
+    const std::string name = path; // which may be one of the list's
     std::erase(recent, name);
     recent.insert(recent.begin(), name);
     if (recent.size() > kMostRecent) recent.resize(kMostRecent);
@@ -203,20 +207,23 @@ std::string defaultCaptureFolder() {
     return ".";
 }
 
-Preferences readPreferences(const std::string& path) {
-    Preferences preferences;
+std::optional<Preferences> findPreferences(const std::string& path) {
     if (const std::string kind = oddKindOf(path); !kind.empty()) { // reading a pipe would wait
         spdlog::warn("{}: {}: all settings keep their defaults", path, kind);
-        return preferences;
+        return std::nullopt;
     }
     std::ifstream file(path, std::ios::binary);
-    if (!file) return preferences;
+    if (!file) return std::nullopt;
     std::ostringstream bytes;
     bytes << file.rdbuf();
     const Json json = Json::parse(bytes.str(), nullptr, false);
+    if (!json.is_object()) {
+        spdlog::warn("{}: is no JSON object: all settings keep their defaults", path);
+        return std::nullopt;
+    }
+    Preferences preferences;
     int wrong = 0;
     const Reader reader(json, wrong);
-    if (!json.is_object()) ++wrong;
     if (const Json* window = reader.find("window")) {
         const Reader edges(*window, wrong);
         edges.number("width", preferences.width, kLeastWindowEdge, kMostWindowEdge);
@@ -245,6 +252,10 @@ Preferences readPreferences(const std::string& path) {
         readBookmarks(*bookmarks, preferences, wrong);
     if (wrong > 0) spdlog::warn("{}: {} entries cannot be read and keep their defaults", path, wrong);
     return preferences;
+}
+
+Preferences readPreferences(const std::string& path) {
+    return findPreferences(path).value_or(Preferences{});
 }
 
 void writePreferences(const std::string& path, const Preferences& preferences) {

@@ -35,6 +35,8 @@ struct Preferences {
     std::string captureFolder; // "": defaultCaptureFolder()
 
     void addRecent(const std::string& path);
+    /// Does the same with a path that is absolute.
+    void pushRecent(const std::string& path);
     /// Keeps a camera for a scene, and returns its name, which no other of that scene has.
     std::string addBookmark(const std::string& scene, const ViewCamera& camera);
 };
@@ -47,6 +49,8 @@ std::string defaultCaptureFolder();
 /// Reads the file. What is missing or wrong in it keeps its default, with one warning; where there is no
 /// file, everything does, without a warning.
 Preferences readPreferences(const std::string& path);
+/// Returns the same; nothing where there is no file, or one that is no JSON object, which is warned about.
+std::optional<Preferences> findPreferences(const std::string& path);
 /// Writes the file, and makes its folder. Throws Error.
 void writePreferences(const std::string& path, const Preferences& preferences);
 
