@@ -1,6 +1,7 @@
 #include "renderer/good_view.h"
 
 #include "assets/survey/level_rooms.h"
+#include "assets/survey/street_view.h"
 #include "renderer/scene_geometry.h"
 
 #include <algorithm>
@@ -160,7 +161,14 @@ ViewCamera goodView(const WorldMesh& mesh, float aspect) {
     const LevelRays rays(mesh);
     BestView best = viewFromCorners(rays, bounds, aspect);
     if (best.score <= 0.0f) best = viewFromRooms(rays, bounds, aspect);
-    return best.score > 0.0f ? best.camera : comeCloser(viewFromOutside(rays, bounds, aspect), aspect, mesh);
+    if (best.score > 0.0f) return best.camera;
+    const std::optional<StandingView> view = standingView(rays, bounds.low, bounds.high, aspect);
+    if (view) {
+        ViewCamera camera = cameraAt(view->eye, view->target, bounds);
+        camera.yfov = kStandingFov;
+        return camera;
+    }
+    return comeCloser(viewFromOutside(rays, bounds, aspect), aspect, mesh);
 }
 
 } // namespace relume

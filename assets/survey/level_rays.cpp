@@ -120,7 +120,7 @@ LevelHit LevelRays::trace(const glm::vec3& origin, const glm::vec3& direction) c
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const glm::vec3* corners = impl_->positions + size_t{ray.hit.primID} * 3;
     const glm::vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    return {ray.ray.tfar, glm::dot(normal, direction) < 0.0f};
+    return {ray.ray.tfar, glm::dot(normal, direction) < 0.0f, glm::normalize(normal)};
 }
 
 float LevelRays::clearance(const glm::vec3& point) const {

@@ -11,6 +11,7 @@ namespace relume {
 struct LevelHit {
     float distance = std::numeric_limits<float>::infinity(); // in lengths of the direction; infinite: nothing
     bool front = false;                                      // of the triangle, else its back
+    glm::vec3 normal{0.0f};                                  // unit, of the triangle's front
 };
 
 /// The triangles of a level, for some thousand rays that look around in it. Triangles with an alpha mask

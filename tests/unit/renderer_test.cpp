@@ -3,6 +3,7 @@
 #include "app/pictures/shot_options.h"
 #include "assets/base/error.h"
 #include "assets/generate/generate.h"
+#include "assets/survey/level_rays.h"
 #include "renderer/gl/glsl_source.h"
 #include "renderer/good_view.h"
 #include "renderer/scene_geometry.h"
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace relume {
 namespace {
@@ -78,6 +80,21 @@ TEST(GoodView, StandsOutsideAnObject) {
     }
     EXPECT_GT(most, 0.9f);
     EXPECT_LE(most, 0.96f);
+}
+
+TEST(GoodView, StandsInTheStreetsOfATown) {
+    for (const char* name : {"town", "raw"}) {
+        const Scene scene = generateScene(name);
+        LightmapAtlas none;
+        none.instances.resize(scene.instances.size());
+        const WorldMesh mesh = flatten(scene, none);
+        const ViewCamera camera = goodView(mesh, 16.0f / 9.0f);
+        const LevelRays rays(mesh);
+        EXPECT_NEAR(rays.trace(camera.eye, {0, -1, 0}).distance, 1.7f, 0.01f) << name << ": it stands";
+        EXPECT_TRUE(std::isinf(rays.trace(camera.eye, {0, 1, 0}).distance)) << name << ": outdoors";
+        EXPECT_GT(rays.clearance(camera.eye), 0.5f) << name;
+        EXPECT_GT(rays.trace(camera.eye, forward(camera)).distance, 5.0f) << name << ": no wall in its face";
+    }
 }
 
 TEST(GlslSource, ReplacesIncludesOnceAndNumbersFiles) {
