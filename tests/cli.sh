@@ -282,6 +282,10 @@ printf '{"asset":{"version":"2.0"},"images":[{"uri":"wall.png"}],"scenes":[{"ext
 : >wall.png
 expectOneFile --picture SCENE bake own.gltf -o o.exr --picture wall.png
 expectOneFile --output SCENE bake own.gltf -o sky.exr
+printf 'mtllib own.mtl\nv 0 0 0\n' >own.obj
+printf 'newmtl Wall\nmap_Kd wall.png\n' >own.mtl
+expectOneFile --picture SCENE bake own.obj -o o.exr --picture wall.png
+expectOneFile --json SCENE bench trace own.obj --json own.mtl
 mkdir frames
 printf '{"asset":{"version":"2.0"},"images":[{"uri":"frames/frame_0002.png"}]}' >framed.gltf
 : >frames/frame_0002.png

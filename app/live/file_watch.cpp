@@ -1,7 +1,11 @@
 #include "app/live/file_watch.h"
 
+#include "assets/foreign/foreign_files.h"
+#include "assets/foreign/load_scene.h"
+
 #include <chrono>
 #include <system_error>
+#include <utility>
 
 namespace relume {
 
@@ -11,15 +15,47 @@ FileTime fileTime(const std::string& path) {
     return error ? FileTime() : FileTime(time);
 }
 
+FileSet FileSet::of(const std::string& scene) {
+    FileSet files;
+    files.paths = filesOfScene(scene);
+    files.paths.insert(files.paths.begin(), scene);
+    files.times = files.timesNow();
+    return files;
+}
+
+std::vector<FileTime> FileSet::timesNow() const {
+    std::vector<FileTime> now;
+    for (const std::string& path : paths)
+        now.push_back(fileTime(path));
+    return now;
+}
+
 bool FileWatch::isDue(Clock::time_point now) const {
     return on_ && std::chrono::duration<double>(now - looked_).count() >= kPeriod;
 }
 
-bool FileWatch::look(FileTime time, Clock::time_point now) {
+bool FileWatch::look(const std::vector<FileTime>& times, Clock::time_point now) {
     looked_ = now;
-    const bool still = time == seen_;
-    seen_ = time;
-    return time && still && time != known_;
+    const bool still = times == seen_;
+    seen_ = times;
+    return still && !times.empty() && times.front() && times != known_.times;
+}
+
+void FileWatch::know(FileSet files) {
+    known_ = std::move(files);
+}
+
+void FileWatch::knowSaved(const std::string& path, FileTime time) {
+    // A file that was converted is saved as one that has its pictures within.
+    if (known_.paths.empty() || isForeign(known_.paths.front()) || known_.times.empty())
+        known_ = {{path}, {time}};
+    known_.paths.front() = path;
+    known_.times.front() = time;
+}
+
+bool FileWatch::isKnown(const FileSet& files) const {
+    return !files.times.empty() && files.times.front() && files.paths == known_.paths &&
+           files.times == known_.times;
 }
 
 } // namespace relume

@@ -66,6 +66,7 @@ std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t
         const std::lock_guard lock(mutex_);
         progress_ = {phase, done};
     });
+    files_ = FileSet::of(desc.path); // before they are read: what is written meanwhile is seen later
     auto scene = std::make_unique<LoadedScene>();
     std::optional<ViewCamera> view;
     const auto whenRead = [&](const Scene& file) {
@@ -106,6 +107,7 @@ void SceneLoader::start(const PrepareDesc& desc, bool early) {
     if (path_ != unwrapped_) memory_ = {}; // another file has other charts
     unwrapped_ = path_;
     progress_ = {}; // nobody else has it now
+    files_ = {};
     loading_ = std::async(std::launch::async,
                           [this, desc, early, number = ++loads_] { return load(desc, number, early); });
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/edit/prepare.h"
+#include "app/live/file_watch.h"
 #include "renderer/camera.h"
 #include "renderer/scene_geometry.h"
 
@@ -48,6 +49,8 @@ public:
     std::unique_ptr<LoadedScene> takeEarly();
     /// Lets the load under way end early: nobody wants its scene any more.
     void drop() { unwanted_ = true; }
+    /// Returns the files of the scene as they were when the load began. It must be ready.
+    const FileSet& files() const { return files_; }
     /// Tells whether finish() would not wait.
     bool ready() const;
     /// Returns the scene, nullptr where the load was dropped. Throws what went wrong. Afterwards nothing is
@@ -64,6 +67,7 @@ private:
     std::unique_ptr<LoadedScene> early_;
     LoadProgress progress_;
     std::string path_;
+    FileSet files_;         // for the thread that loads, until it is ready
     std::string unwrapped_; // the path whose unwrap is remembered
     UnwrapMemory memory_;   // for the thread that loads
     uint64_t loads_ = 0;

@@ -50,12 +50,7 @@ void Session::load(const Next& next) {
     if (keep) desc.leastDensity = 0; // its size stays
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
-    const FileTime time = fileTime(path);
-    loading_ = {.keep = keep,
-                .time = time,
-                .sameFile = keep && path == prepare_.path && watch_.isKnown(time),
-                .fits = desc.leastDensity > 0,
-                .choice = choice};
+    loading_ = {.keep = keep, .fits = desc.leastDensity > 0, .choice = choice};
     // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
     loader_.start(desc, !keep);
 }
@@ -76,10 +71,13 @@ bool Session::finishLoading() {
     bool changed = false;
     const std::string path = loader_.path();
     // A file that cannot be read is not tried again until it is another one.
-    if (path == prepare_.path) watch_.know(loading_.time);
+    const FileSet files = loader_.files();
+    loading_.sameFile = loading_.keep && path == prepare_.path && watch_.isKnown(files);
+    if (path == prepare_.path && !files.paths.empty()) watch_.know(files);
     try {
         if (std::unique_ptr<LoadedScene> scene = loader_.finish()) {
             take(std::move(scene), path);
+            watch_.know(files);
             changed = true;
         } // else another scene is opened below
     } catch (const std::bad_alloc&) {
@@ -148,7 +146,7 @@ void Session::takeSaved() {
         if (!saved) return;
         spdlog::info("saved {}", saved->path);
         prepare_.path = saved->path;
-        watch_.know(saved->time); // what we wrote need not be read
+        watch_.knowSaved(saved->path, saved->time); // what we wrote need not be read
         ++saves_;
     } catch (const std::bad_alloc&) {
         fail(prepare_.path + ": cannot be saved: it does not fit in memory");
@@ -186,7 +184,6 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
     scene_ = std::move(scene);
     prepare_.path = path;
     prepare_.choice = loading_.choice;
-    watch_.know(loading_.time);
     startBake(kept_);
 }
 
@@ -268,11 +265,11 @@ bool Session::redo() {
     return after.has_value();
 }
 
-// Reads the scene's file again once its new time stamp stays as it is: its writer may take a while.
+// Reads the scene's files again once their new time stamps stay as they are: their writer may take a while.
 void Session::pollFile() {
     const Clock::time_point now = Clock::now();
     if (!scene_ || loader_.loading() || !watch_.isDue(now)) return;
-    if (watch_.look(fileTime(prepare_.path), now)) open(prepare_.path, true);
+    if (watch_.look(watch_.files().timesNow(), now)) open(prepare_.path, true);
 }
 
 } // namespace relume

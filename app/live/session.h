@@ -94,7 +94,8 @@ public:
     static std::string problem(const BakeSettings& settings);
 
     LiveBake& bake() { return bake_; }
-    /// Switches watching on or off. While on, update() loads the scene anew whenever its file was written.
+    /// Switches watching on or off. While on, update() loads the scene anew whenever its file was written, or
+    /// one that belongs to it.
     void watchFile(bool on) { watch_.setOn(on); }
     bool watchesFile() const { return watch_.on(); }
 
@@ -102,8 +103,7 @@ private:
     /// Holds what was said when the load under way began.
     struct Loading {
         bool keep = false;
-        FileTime time;         // of its file
-        bool sameFile = false; // the file is as it was read or saved before
+        bool sameFile = false; // its files are as they were read or saved before
         bool fits = false;     // its size is chosen for it
         GltfChoice choice;
     };
@@ -140,7 +140,7 @@ private:
     SceneFile file_;
     std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
     EditHistory history_;
-    FileWatch watch_; // of the scene's file
+    FileWatch watch_; // of the scene's files
     uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0, surfaces_ = 0;
 };
 

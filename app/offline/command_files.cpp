@@ -3,7 +3,7 @@
 #include "app/text/frame_names.h"
 #include "assets/base/error.h"
 #include "assets/base/write_plan.h"
-#include "assets/gltf/gltf_links.h"
+#include "assets/foreign/load_scene.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -44,7 +44,7 @@ CommandFiles& CommandFiles::reads(const std::string& option, const std::string& 
 
 CommandFiles& CommandFiles::readsScene(const std::string& option, const std::string& path) {
     add(Use::Read, option, path);
-    for (const std::string& linked : linkedFiles(path))
+    for (const std::string& linked : filesOfScene(path))
         add(Use::Linked, option, linked);
     return *this;
 }

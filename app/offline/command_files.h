@@ -25,7 +25,7 @@ public:
     /// Adds a file that is read. `option` is as users type it, or what the help calls an argument: "--json",
     /// "SCENE". A path that is "" or "-" is no file.
     CommandFiles& reads(const std::string& option, const std::string& path);
-    /// Adds a scene that is read, with the files that belong to it.
+    /// Adds a scene that is read, with the files that belong to it (filesOfScene()).
     CommandFiles& readsScene(const std::string& option, const std::string& path);
     CommandFiles& writes(const std::string& option, const std::string& path);
     /// Adds a folder in which frames are replaced.

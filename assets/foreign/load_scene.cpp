@@ -2,6 +2,8 @@
 
 #include "assets/base/error.h"
 #include "assets/foreign/foreign_files.h"
+#include "assets/foreign/named_files.h"
+#include "assets/gltf/gltf_links.h"
 
 #include <fmt/format.h>
 
@@ -30,6 +32,10 @@ Scene loadImported(const std::string& path, const ImportedFile& file, const Gltf
     } catch (const Error& error) {
         throw Error(renamed(error.what(), file.path(), path));
     }
+}
+
+std::vector<std::string> filesOfScene(const std::string& path) {
+    return isForeign(path) ? namedFiles(path) : linkedFiles(path);
 }
 
 void requireSavable(const std::string& source, const std::string& target) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "assets/foreign/foreign_import.h"
 #include "assets/gltf/gltf.h"
@@ -14,6 +15,10 @@ Scene loadScene(const std::string& path, const GltfChoice& choice = {});
 
 /// Reads the scene of a file that importForeign() has converted, as loadScene() does.
 Scene loadImported(const std::string& path, const ImportedFile& file, const GltfChoice& choice = {});
+
+/// Returns the files beside a scene of any kind that belong to it: of a glTF file what linkedFiles() returns,
+/// of others what namedFiles() does. There are none where it cannot be read.
+std::vector<std::string> filesOfScene(const std::string& path);
 
 /// Saves edits as saveEditedGltf() does, into a .glb where the source is no glTF file. Such a source is
 /// converted anew, and never written.

@@ -63,5 +63,22 @@ TEST_F(ViewerWatch, SurvivesWhateverItsFileBecomes) {
     quit(*viewer);
 }
 
+TEST_F(ViewerWatch, ReadsAModelAnewWhoseLibraryOrPictureChanged) {
+    const std::string model = home_.path("floor.obj"), library = home_.path("floor.mtl");
+    std::ofstream(model) << "mtllib floor.mtl\nv 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nusemtl Paint\nf 4 3 2 1\n";
+    std::ofstream(library) << "newmtl Paint\nKd 0.1 0.1 0.1\n";
+    auto viewer = open({"view", model, "--watch"});
+    ASSERT_TRUE(viewer->says("bake: done", 240)) << viewer->output();
+    viewer->keys({"bracketleft", "3"}); // exposure by hand; the view of the albedo
+    viewer->settle();
+    const FloatImage dark = screenshot(*viewer);
+    viewer->mark();
+    std::ofstream(library) << "newmtl Paint\nKd 0.9 0.1 0.1\n";
+    ASSERT_TRUE(viewer->says("scene: " + model, 60)) << viewer->output();
+    ASSERT_TRUE(viewer->shows("bake: done", 240)) << viewer->output();
+    EXPECT_GT(difference(dark, screenshot(*viewer)), 0.01) << "the new colour is seen";
+    quit(*viewer);
+}
+
 } // namespace
 } // namespace relume

@@ -107,6 +107,22 @@ TEST_F(CommandFilesTest, KnowsWhatBelongsToAScene) {
     EXPECT_NE(edit.clash(), "");
 }
 
+TEST_F(CommandFilesTest, KnowsWhatAModelNames) {
+    const std::string model = make("house.obj", "mtllib paints.mtl\nv 0 0 0\n");
+    make("paints.mtl", "newmtl Wall\nmap_Kd textures\\Red Wall.png\n");
+    make("textures/red wall.png");
+    make("textures/other.png");
+    const auto clash = [&](const std::string& written) {
+        return CommandFiles().readsScene("SCENE", model).writes("--output", path(written)).clash();
+    };
+    EXPECT_EQ(clash("paints.mtl"), "--output would replace '" + path("paints.mtl") +
+                                       "', a file of SCENE: give --output another name");
+    EXPECT_NE(clash("textures/red wall.png"), "");
+    EXPECT_EQ(clash("textures/other.png"), "");
+    EXPECT_THROW(CommandFiles().readsScene("SCENE", model).writes("--output", path("paints.mtl")).check(),
+                 UsageError);
+}
+
 TEST_F(CommandFilesTest, ReadsTheSceneOfABinaryFile) {
     const std::string json = R"({"images": [{"uri": "a.png"}]} )";
     const auto word = [](uint32_t value) { return std::string(reinterpret_cast<const char*>(&value), 4); };

@@ -68,7 +68,8 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
                      "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
     addLayerMemory(command, o.bake);
     command.add_flag("--watch,!--no-watch", o.watch,
-                     "Follow the scene's file when another program writes it (default: on)");
+                     "Follow the scene's file, and those that belong to it, when another program writes them "
+                     "(default: on)");
     command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
         ->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
