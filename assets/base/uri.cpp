@@ -108,4 +108,19 @@ std::optional<std::vector<uint8_t>> bytesOfDataUri(std::string_view uri) {
     return bytes;
 }
 
+std::string dataUriOf(std::string_view bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string uri = "data:application/octet-stream;base64,";
+    uri.reserve(uri.size() + (bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const size_t given = std::min<size_t>(bytes.size() - i, 3);
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; ++k)
+            word = word << 8 | (k < given ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k)
+            uri += k <= given ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return uri;
+}
+
 } // namespace relume

@@ -18,6 +18,9 @@ std::string decodedUri(std::string_view uri);
 std::string encodedUri(std::string_view path);
 /// Tells whether a URI is relative to the file that has it: not data, a web address or a path from the root.
 bool isRelativeUri(std::string_view uri);
+/// Returns a URI that holds these bytes itself ("data:application/octet-stream;base64,...").
+std::string dataUriOf(std::string_view bytes);
+
 /// Returns the bytes that a URI holds itself ("data:image/png;base64,...", RFC 2397), up to the first
 /// character that is none of base64. Returns nothing for another URI and for data in another form.
 std::optional<std::vector<uint8_t>> bytesOfDataUri(std::string_view uri);

@@ -17,6 +17,7 @@
 namespace relume::gltf {
 
 class NodePlaces;
+struct File;
 
 /// Holds what the builders share: the parsed file, already checked, and the scene made from it.
 struct Build {
@@ -36,6 +37,9 @@ struct Build {
     Scene scene;
     Warnings warnings;
 };
+
+/// Fills the model of a build from a checked file, and the arrays that stand beside it. Throws Error.
+void parse(File file, Build& build);
 
 /// Reads all elements of an accessor as floats, `components` per element. Normalized integers become [0,1] or
 /// [-1,1], and sparse parts are applied. The accessor must have exactly that many components.

@@ -127,7 +127,8 @@ void warnPadded(Build& build, const std::string& what) {
     build.warnings.add(what, "ends a few bytes too early, which are taken as padding: export it again");
 }
 
-/// Hands the parser all but what the checked JSON tells already.
+} // namespace
+
 void parse(File file, Build& build) {
     build.nodes = takeArray(file.json, "nodes");
     build.scenes = takeArray(file.json, "scenes");
@@ -173,6 +174,8 @@ void parse(File file, Build& build) {
         warnPadded(build, "file " + inQuotes(path));
     decodeViews(build, compressed);
 }
+
+namespace {
 
 /// Chooses the scene that is read, and tells which there are.
 void chooseScene(const File& file, Build& build) {

@@ -2,6 +2,8 @@
 
 #include "assets/base/error.h"
 #include "assets/gltf/gltf_check_extensions.h"
+#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/gltf_value.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>
@@ -42,36 +44,72 @@ glm::dvec3 vectorAt(const std::vector<float>& values, size_t i) {
 
 } // namespace
 
-std::vector<glm::dmat4> copiesOf(Build& build, const json& node, const std::string& where) {
+size_t CopyNumbers::most() const {
+    return std::max({translations.size() / 3, rotations.size() / 4, scales.size() / 3});
+}
+
+size_t CopyNumbers::count() const {
+    size_t least = most();
+    for (const size_t count : {translations.size() / 3, rotations.size() / 4, scales.size() / 3})
+        if (count > 0) least = std::min(least, count);
+    return least;
+}
+
+CopyNumbers copyNumbersOf(Build& build, const json& node, const std::string& where) {
     const json* use = extensionOf(node, kInstancing);
     if (!use || !use->contains("attributes")) return {};
     const json& attributes = (*use)["attributes"];
-    const std::vector<float> translations = readAttribute(build, attributes, "TRANSLATION", 3, where),
-                             rotations = readAttribute(build, attributes, "ROTATION", 4, where),
-                             scales = readAttribute(build, attributes, "SCALE", 3, where);
-    size_t most = 0, least = SIZE_MAX;
-    for (const size_t count : {translations.size() / 3, rotations.size() / 4, scales.size() / 3}) {
-        most = std::max(most, count);
-        if (count > 0) least = std::min(least, count);
+    return {readAttribute(build, attributes, "TRANSLATION", 3, where),
+            readAttribute(build, attributes, "ROTATION", 4, where),
+            readAttribute(build, attributes, "SCALE", 3, where)};
+}
+
+std::map<size_t, glm::vec3> hiddenCopiesOf(const json& node, const CopyNumbers& numbers) {
+    std::map<size_t, glm::vec3> hidden;
+    const json* list = ownExtra(node, "hiddenCopies");
+    if (!list || !list->is_array()) return hidden;
+    for (const json& entry : *list) {
+        const int copy = indexBelow(entry, "copy", numbers.scales.size() / 3);
+        const json* scale = memberOf(entry, "scale");
+        if (copy < 0 || !scale || !scale->is_array() || scale->size() != 3) continue;
+        const auto k = static_cast<size_t>(copy);
+        if (vectorAt(numbers.scales, k) != glm::dvec3(0.0)) continue;
+        glm::vec3 value(0.0f);
+        for (int i = 0; i < 3; ++i) {
+            const json& number = (*scale)[static_cast<size_t>(i)];
+            if (number.is_number()) value[i] = number.get<float>();
+        }
+        hidden[k] = value;
     }
-    if (most == 0) return {};
-    if (least != most)
+    return hidden;
+}
+
+std::vector<NodeCopy> copiesOf(Build& build, const json& node, const std::string& where) {
+    const CopyNumbers numbers = copyNumbersOf(build, node, where);
+    if (numbers.most() == 0) return {};
+    if (numbers.count() != numbers.most())
         build.warnings.add(where,
                            fmt::format("has {} instances with all they need, and {} without, which are left "
                                        "out",
-                                       least, most - least));
-    std::vector<glm::dmat4> copies(least, glm::dmat4(1.0));
-    for (size_t i = 0; i < least; ++i) {
-        glm::dmat4& copy = copies[i];
-        if (!rotations.empty()) {
-            const float* r = &rotations[4 * i];
+                                       numbers.count(), numbers.most() - numbers.count()));
+    std::vector<NodeCopy> copies(numbers.count());
+    const std::map<size_t, glm::vec3> hidden = hiddenCopiesOf(node, numbers);
+    for (size_t i = 0; i < copies.size(); ++i) {
+        glm::dmat4& copy = copies[i].transform;
+        if (!numbers.rotations.empty()) {
+            const float* r = &numbers.rotations[4 * i];
             const glm::dquat q(r[3], r[0], r[1], r[2]);
             if (const double length = glm::length(q); length > 0.0) copy = glm::mat4_cast(q / length);
         }
-        if (!scales.empty())
+        const auto found = hidden.find(i);
+        copies[i].hidden = found != hidden.end();
+        if (!numbers.scales.empty()) {
+            const glm::dvec3 scale =
+                copies[i].hidden ? glm::dvec3(found->second) : vectorAt(numbers.scales, i);
             for (int c = 0; c < 3; ++c)
-                copy[c] *= vectorAt(scales, i)[c];
-        if (!translations.empty()) copy[3] = glm::dvec4(vectorAt(translations, i), 1.0);
+                copy[c] *= scale[c];
+        }
+        if (!numbers.translations.empty()) copy[3] = glm::dvec4(vectorAt(numbers.translations, i), 1.0);
     }
     return copies;
 }

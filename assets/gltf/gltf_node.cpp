@@ -110,7 +110,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visi
     instance.density = densityOf(build, index);
     instance.bent = build.skinnedNodes.contains(index);
     instance.transform = instance.bent ? glm::mat4(1.0f) : glm::mat4(world);
-    const std::vector<glm::dmat4> copies = copiesOf(build, node, labelOf(node, index));
+    const std::vector<NodeCopy> copies = copiesOf(build, node, labelOf(node, index));
     if (copies.empty() || instance.bent) {
         if (instance.bent)
             build.warnings.add(labelOf(node, index),
@@ -121,7 +121,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visi
     }
     const std::string name = instance.name;
     for (size_t i = 0; i < copies.size(); ++i) {
-        instance.transform = glm::mat4(world * copies[i]);
+        instance.transform = glm::mat4(world * copies[i].transform);
         if (!finite(instance.transform)) {
             build.warnings.add(labelOf(node, index),
                                "has instances whose places are not finite, which are left out");
@@ -129,6 +129,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visi
         }
         instance.name = fmt::format("{} #{}", name, i + 1);
         instance.copy = static_cast<int>(i);
+        instance.hidden = !visible || copies[i].hidden;
         build.scene.instances.push_back(instance);
     }
 }

@@ -1,5 +1,4 @@
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/edit/gltf_edit.h"
 
 #include "assets/base/error.h"
 #include "tests/unit/glb_builder.h"
@@ -120,24 +119,6 @@ TEST(GltfInstancing, MoreCopiesThanAFileMayHaveAreRefused) {
         FAIL();
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("of names out of"), std::string::npos) << error.what();
-    }
-}
-
-TEST(GltfInstancing, ASaveTellsThatACopyCannotMove) {
-    const std::string path = instancedScene([](GlbBuilder& b) -> json {
-                                 return {{"TRANSLATION", b.accessor<float>(kPlaces, "VEC3")}};
-                             }).write("moved.glb");
-    const Scene before = loadGltf(path);
-    Scene after = before;
-    saveEditedGltf(path, before, after, test::tempPath("same.glb"));
-    EXPECT_EQ(loadGltf(test::tempPath("same.glb")).instances.size(), 3u);
-    after.instances[0].transform[3].x += 1.0f;
-    try {
-        saveEditedGltf(path, before, after, test::tempPath("never.glb"));
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("object 'Floor #1' is one of several of its node"),
-                  std::string::npos);
     }
 }
 

@@ -47,8 +47,11 @@ TEST(Uri, HoldsItsOwnBytes) {
                                                           {"Zm9v", "foo"},
                                                           {"Zm9vYg==", "foob"},
                                                           {"Zm9vYmE=", "fooba"},
-                                                          {"Zm9vYmFy", "foobar"}})
+                                                          {"Zm9vYmFy", "foobar"}}) {
         EXPECT_EQ(text(base64), plain);
+        EXPECT_EQ(dataUriOf(plain), "data:application/octet-stream;base64," + base64);
+    }
+    EXPECT_EQ(dataUriOf("\xfb\xff\xbf"), "data:application/octet-stream;base64,+/+/");
     EXPECT_EQ(text("+/+/"), "\xfb\xff\xbf");
     EXPECT_EQ(text("Zm9v!Zm9v"), "foo") << "up to what is no base64";
     for (const char* other : {"a.png", "data:,x", "data:text/plain,Zm9v", "data:image/png;base64"})

@@ -5,6 +5,7 @@
 #include "assets/base/json_text.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_check.h"
+#include "assets/gltf/edit/gltf_edit_copies.h"
 #include "assets/gltf/edit/gltf_edit_light.h"
 #include "assets/gltf/edit/gltf_edit_node.h"
 #include "assets/gltf/edit/gltf_edit_parts.h"
@@ -52,10 +53,8 @@ int editedSceneOf(const File& file, const Scene& before) {
 
 /// Throws Error for an object that stands somewhere else than its node's transform says.
 void requireMovable(const Scene& before, const Instance& instance, const std::string& target) {
-    const char* why = instance.copy >= 0
-                          ? "is one of several of its node (EXT_mesh_gpu_instancing), whose places "
-                            "are not edited: put it back"
-                      : instance.bent ? "stands where the joints of its skin are: put it back and move these"
+    const char* why = instance.bent ? "has a skin, so that it stands where its joints are, wherever its node "
+                                      "is: put it back, and move its joints in the program that made it"
                       : before.posed ? "stands as an animation has it: put it back, or read the file without "
                                        "--time"
                                      : nullptr;
@@ -84,7 +83,7 @@ std::vector<int> moveInstances(const NodeTree& tree, const Scene& before, const 
             if (!std::isfinite(to[i / 4][i % 4]))
                 throw Error(fmt::format("{}: object {} has a position that is not finite: place it again",
                                         target, inQuotes(instance.name)));
-        moves[instance.node][Carried::Instance] = {instance.name, from, to};
+        if (instance.copy < 0) moves[instance.node][Carried::Instance] = {instance.name, from, to};
     }
     return nodes;
 }
@@ -137,8 +136,9 @@ EditedNodes apply(FileEdit& edit, const Scene& before, const Scene& after, const
     nodes.lights = lights.apply(before.lights, after.lights, moves);
     if (before.posed) requireStill(before, after, target);
     nodes.instances = moveInstances(tree, before, after, target, moves);
+    editCopies(edit, tree, before, after, target);
     VisibilityEdit visibility(edit, tree);
-    visibility.apply(before, after, target, moves);
+    visibility.apply(before, after, moves);
     const auto children = moveCarried(edit, tree, moves);
     for (size_t i = 0; i < nodes.lights.size(); ++i) {
         const bool area = isAreaLight(after.lights[i].type);

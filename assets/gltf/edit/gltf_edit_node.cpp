@@ -26,7 +26,8 @@ std::vector<JsonPath> membersOf(Carried carried) {
                 {"skin"},
                 {"weights"},
                 {"extensions", "EXT_mesh_gpu_instancing"},
-                {"extras", "relume", "density"}};
+                {"extras", "relume", "density"},
+                {"extras", "relume", "hiddenCopies"}};
     case Carried::Light:
         return {{"extensions", kPunctualLights}};
     case Carried::AreaLight:

@@ -90,27 +90,6 @@ glm::dvec3 scaleOf(const nlohmann::json& was) {
     return scale;
 }
 
-/// Splits `linear` into a rotation and a scale whose product it is, with the signs of `scale`. Returns false
-/// for a shear.
-bool split(const glm::dmat3& linear, glm::dmat3& rotation, glm::dvec3& scale) {
-    glm::dvec3 lengths;
-    for (int i = 0; i < 3; ++i) {
-        lengths[i] = glm::length(linear[i]);
-        if (!(lengths[i] > 0.0)) return false;
-        if (scale[i] < 0.0) lengths[i] = -lengths[i];
-        rotation[i] = linear[i] / lengths[i];
-    }
-    for (int i = 0; i < 3; ++i)
-        if (std::abs(glm::dot(rotation[i], rotation[(i + 1) % 3])) > kShear) return false;
-    if (glm::determinant(rotation) < 0.0) {
-        rotation[0] = -rotation[0];
-        lengths[0] = -lengths[0];
-    }
-    for (int i = 0; i < 3; ++i) // a rotation alone leaves the scale as it is
-        if (std::abs(lengths[i] - scale[i]) > 1e-6 * std::abs(lengths[i])) scale[i] = lengths[i];
-    return true;
-}
-
 void setScale(EditedJson& node, const glm::dvec3& value, const glm::dvec3& was) {
     if (value == was) return;
     if (value == glm::dvec3(1.0)) {
@@ -131,6 +110,25 @@ void writeMatrix(EditedJson& node, const glm::dmat4& local) {
 }
 
 } // namespace
+
+bool splitLinear(const glm::dmat3& linear, glm::dmat3& rotation, glm::dvec3& scale) {
+    glm::dvec3 lengths;
+    for (int i = 0; i < 3; ++i) {
+        lengths[i] = glm::length(linear[i]);
+        if (!(lengths[i] > 0.0)) return false;
+        if (scale[i] < 0.0) lengths[i] = -lengths[i];
+        rotation[i] = linear[i] / lengths[i];
+    }
+    for (int i = 0; i < 3; ++i)
+        if (std::abs(glm::dot(rotation[i], rotation[(i + 1) % 3])) > kShear) return false;
+    if (glm::determinant(rotation) < 0.0) {
+        rotation[0] = -rotation[0];
+        lengths[0] = -lengths[0];
+    }
+    for (int i = 0; i < 3; ++i) // a rotation alone leaves the scale as it is
+        if (std::abs(lengths[i] - scale[i]) > 1e-6 * std::abs(lengths[i])) scale[i] = lengths[i];
+    return true;
+}
 
 bool invertible(const glm::dmat4& transform) {
     const glm::dmat3 linear(transform);
@@ -181,7 +179,7 @@ bool editTransform(EditedJson& node, const nlohmann::json& was, const TransformE
         if (edit.rigid) {
             for (int i = 0; i < 3; ++i)
                 if (scale[i] < 0.0) rotation[i] = -rotation[i];
-        } else if (!split(linear, rotation, scale)) {
+        } else if (!splitLinear(linear, rotation, scale)) {
             if (edit.mayBeMatrix) writeMatrix(node, local);
             return edit.mayBeMatrix;
         }

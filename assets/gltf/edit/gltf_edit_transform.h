@@ -25,6 +25,10 @@ bool invertible(const glm::dmat4& transform);
 /// there is no Z axis.
 glm::dmat3 frame(const glm::dmat3& axes);
 
+/// Splits `linear` into a rotation and a scale whose product it is, with the signs of `scale`. Returns false
+/// for a shear, and where an axis has no length.
+[[nodiscard]] bool splitLinear(const glm::dmat3& linear, glm::dmat3& rotation, glm::dvec3& scale);
+
 /// Writes translation and rotation, leaving out those that change nothing.
 void writeRigid(EditedJson& node, const glm::mat4& transform);
 

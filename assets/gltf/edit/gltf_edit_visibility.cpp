@@ -1,7 +1,5 @@
 #include "assets/gltf/edit/gltf_edit_visibility.h"
 
-#include "assets/base/error.h"
-#include "assets/base/warnings.h"
 #include "assets/gltf/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -11,6 +9,16 @@
 namespace relume::gltf {
 
 namespace {
+
+/// Returns for each node with objects whether all of them are hidden.
+std::map<int, bool> hiddenNodes(const Scene& scene) {
+    std::map<int, bool> hidden;
+    for (const Instance& instance : scene.instances) {
+        const auto [place, isNew] = hidden.emplace(instance.node, instance.hidden);
+        place->second = place->second && instance.hidden;
+    }
+    return hidden;
+}
 
 /// Tells whether hiding a node would hide more than its object.
 bool hidesMore(EditedJson& node) {
@@ -30,20 +38,15 @@ void VisibilityEdit::setVisible(int index, bool visible) {
     changed_ = true;
 }
 
-void VisibilityEdit::apply(const Scene& before, const Scene& after, const std::string& target, Moves& moves) {
-    std::map<int, bool> known;
-    for (const Instance& instance : before.instances)
-        known[instance.node] = instance.hidden;
-    std::vector<int> changed;
-    for (const Instance& instance : after.instances) {
-        const auto [place, isNew] = hidden_.emplace(instance.node, instance.hidden);
-        if (place->second != instance.hidden)
-            throw Error(
-                fmt::format("{}: object {} shares its node with others that are not hidden alike: hide "
-                            "all of them or none",
-                            target, inQuotes(instance.name)));
-        if (isNew && known[instance.node] != instance.hidden) changed.push_back(instance.node);
-    }
+void VisibilityEdit::apply(const Scene& before, const Scene& after, Moves& moves) {
+    std::map<int, bool> known = hiddenNodes(before);
+    hidden_ = hiddenNodes(after);
+    std::vector<int> changed; // in the order of the scene
+    for (const Instance& instance : after.instances)
+        if (bool& was = known[instance.node]; was != hidden_[instance.node]) {
+            changed.push_back(instance.node);
+            was = !was;
+        }
     for (const int index : changed)
         if (!hidden_[index]) show(index, moves);
     for (const int index : changed)

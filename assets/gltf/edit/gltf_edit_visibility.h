@@ -18,9 +18,9 @@ public:
     VisibilityEdit(FileEdit& edit, const NodeTree& tree) : edit_(edit), tree_(tree) {}
 
     /// Shows what is no longer hidden and finds what is to be hidden; what has to leave its node is added to
-    /// `moves`. Call it once lights are edited. Throws Error naming `target` where one of several objects of
-    /// a node is hidden.
-    void apply(const Scene& before, const Scene& after, const std::string& target, Moves& moves);
+    /// `moves`. Call it once lights are edited. The copies that a node makes of its mesh are hidden by it
+    /// where all are; one alone is for editCopies().
+    void apply(const Scene& before, const Scene& after, Moves& moves);
 
     /// Hides what is to be hidden, once all has moved to these children.
     void finish(const std::map<std::pair<int, Carried>, int>& children);
@@ -33,7 +33,7 @@ private:
 
     FileEdit& edit_;
     const NodeTree& tree_;
-    std::map<int, bool> hidden_; // of the nodes of instances: whether they are to be
+    std::map<int, bool> hidden_; // of the nodes of instances: whether all is to be
     std::vector<std::pair<int, Carried>> pending_;
     bool changed_ = false;
 };
