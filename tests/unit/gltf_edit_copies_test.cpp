@@ -42,7 +42,8 @@ protected:
         ASSERT_EQ(a.instances.size(), b.instances.size());
         for (size_t i = 0; i < a.instances.size(); ++i) {
             EXPECT_EQ(a.instances[i].name, b.instances[i].name);
-            if (i != changed) EXPECT_EQ(a.instances[i].transform, b.instances[i].transform) << "to the bit";
+            if (i == changed) continue;
+            EXPECT_EQ(a.instances[i].transform, b.instances[i].transform) << "to the bit";
         }
     }
 };

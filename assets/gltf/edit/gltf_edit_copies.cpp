@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -65,7 +66,8 @@ bool isNamedOnce(EditedJson& root, const char* section, const char* key, size_t 
 }
 
 bool isOwn(const EditedJson& entry) {
-    return entry.value("name", "") == kOwnName;
+    const auto name = entry.find("name");
+    return name != entry.end() && *name == kOwnName;
 }
 
 /// Holds the index of an accessor with its view and its buffer.
@@ -201,6 +203,9 @@ private:
         if (!invertible(world_))
             fail(is, "cannot be moved, as its node or one above it has a scale of 0: give that node a scale");
         const glm::dmat4 local = glm::inverse(world_) * glm::dmat4(is.transform);
+        for (int i = 0; i < 16; ++i)
+            if (!std::isfinite(static_cast<float>(local[i / 4][i % 4])))
+                fail(is, "stands too far away for its node: place it again");
         if (was.transform[3] != is.transform[3]) lists.setTranslation(copy, glm::vec3(local[3]));
         if (glm::mat3(was.transform) == glm::mat3(is.transform)) return;
         glm::dmat3 rotation(1.0);
