@@ -27,6 +27,7 @@ Scene edited(const Scene& scene) {
     Scene after = scene;
     for (Instance& instance : after.instances)
         instance.transform[3].x += 1.0f;
+    if (after.instances.size() > 1) after.instances.front().hidden = !after.instances.front().hidden;
     for (Material& material : after.materials) {
         material.baseColor = {0.25f, 0.5f, 0.75f, 1.0f};
         material.emission = {3.0f, 2.0f, 1.0f};
