@@ -53,15 +53,23 @@ void runUnwrap(const UnwrapOptions& options) {
     if (!options.json) {
         std::printf("%s: %u meshes unwrapped into %u charts at %.4g texels/m", options.output.c_str(),
                     result.meshes, result.charts, result.density);
+        if (result.shortened > 0)
+            std::printf(", %u longer than the lightmap with %.4g along themselves", result.shortened,
+                        result.leastDensity);
         if (result.charts > 0)
             std::printf("; they cover %.1f %% of %u x %u texels", 100.0 * result.covered, result.size,
                         result.size);
         std::printf("\n");
         return;
     }
-    nlohmann::ordered_json out = {{"meshes", result.meshes},   {"objects", result.objects},
-                                  {"charts", result.charts},   {"size", result.size},
-                                  {"density", result.density}, {"seconds", seconds}};
+    nlohmann::ordered_json out = {{"meshes", result.meshes},
+                                  {"objects", result.objects},
+                                  {"charts", result.charts},
+                                  {"size", result.size},
+                                  {"density", result.density},
+                                  {"shortened", result.shortened},
+                                  {"leastDensity", result.leastDensity},
+                                  {"seconds", seconds}};
     if (result.charts > 0) {
         const AtlasStatistics statistics =
             measureAtlas(scene, buildAtlas(scene, result.size, true), result.size);

@@ -50,6 +50,9 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
     if (made.meshes == 0) return; // they are nothing but triangles without area
     prepared.madeUvs = fmt::format("lightmap UVs were made for {} of {} meshes: {} charts at {:.3g} texels/m",
                                    made.meshes, scene.meshes.size(), made.charts, made.density);
+    if (made.shortened > 0)
+        prepared.madeUvs += fmt::format(", {} longer than the lightmap with {:.3g} along themselves",
+                                        made.shortened, made.leastDensity);
     spdlog::warn("{}: {}", desc.path, prepared.madeUvs);
 }
 

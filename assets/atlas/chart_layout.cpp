@@ -105,6 +105,26 @@ std::optional<Fitted> fitMask(const LayoutChart& chart, const Trial& trial, bool
     return fitted;
 }
 
+/// Counts the charts that would be longer than the atlas, and tells what share of its length one keeps at the
+/// least.
+void countShortened(std::span<const LayoutChart> charts, const Trial& trial, ChartLayout& layout) {
+    layout.shortened = 0;
+    layout.leastShare = 1.0;
+    for (size_t i = 0; i < charts.size(); ++i) {
+        const ChartPlace& place = layout.places[i];
+        double share = 1.0;
+        for (int c = 0; c < 2; ++c) {
+            // The axis lies along the atlas' rows or columns, whose texels may be wider than high.
+            const bool row = (c == 0) == (place.turns % 2 == 0);
+            const double aspect = row ? trial.aspect : 1.0 / trial.aspect;
+            const double wanted = charts[i].chart->extent[c] * trial.density * charts[i].scale * aspect;
+            if (std::round(wanted) > double(trial.size)) share = std::min(share, trial.size / wanted);
+        }
+        layout.shortened += share < 1.0 ? 1 : 0;
+        layout.leastShare = std::min(layout.leastShare, share);
+    }
+}
+
 /// Places charts one after the other, each as low as it can lie. Where charts of about the same size found
 /// nothing lower, none is looked for again.
 class Packer {
@@ -377,6 +397,7 @@ ChartLayout layOutCharts(std::span<const LayoutChart> charts, const LayoutDesc& 
                                 charts.size(), desc.size, desc.size));
     const double most = desc.density > 0.0 ? desc.density / texel : HUGE_VAL;
     ChartLayout layout = charts.empty() ? ChartLayout() : Search(charts, cells, most, pool).run();
+    countShortened(charts, {layout.density, layout.aspect, Order::Perimeter, cells, cells}, layout);
     layout.density *= texel;
     layout.texel = texel;
     return layout;
@@ -401,6 +422,7 @@ std::optional<ChartLayout> extendLayout(std::span<const LayoutChart> charts, con
     for (uint32_t i : sorted(charts, trial))
         if (!places[i] && !packer.pack(i)) return std::nullopt;
     ChartLayout result = std::move(packer.layout());
+    countShortened(charts, trial, result);
     result.density = layout.density;
     result.texel = layout.texel;
     return result;

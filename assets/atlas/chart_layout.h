@@ -45,6 +45,8 @@ struct ChartLayout {
     uint32_t texel = 1;             // [texels] to a cell
     uint64_t touched = 0;           // cells that charts touch
     uint64_t reserved = 0;          // these and the gutters that are theirs
+    uint32_t shortened = 0;         // charts that are longer than the atlas, and as long as it here
+    double leastShare = 1.0;        // of the density, which one of these has along itself
     std::vector<ChartPlace> places; // one for each chart
 };
 

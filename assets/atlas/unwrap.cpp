@@ -329,6 +329,8 @@ UnwrapResult Unwrapper::run() {
     result_.charts = static_cast<uint32_t>(layout_.places.size());
     result_.size = size_;
     result_.density = layout_.density;
+    result_.shortened = layout_.shortened;
+    result_.leastDensity = layout_.density * layout_.leastShare;
     const double cells = double(size_) * size_ / (double(layout_.texel) * layout_.texel);
     result_.covered = static_cast<double>(layout_.touched) / cells;
     result_.reserved = static_cast<double>(layout_.reserved) / cells;

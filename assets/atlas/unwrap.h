@@ -16,14 +16,16 @@ struct UnwrapDesc {
 };
 
 struct UnwrapResult {
-    uint32_t meshes = 0;   // that got new charts
-    uint32_t objects = 0;  // instances in the atlas, those of kept UVs included
-    uint32_t charts = 0;   // of all objects
-    uint32_t stayed = 0;   // objects that lie where the unwrap before put them
-    uint32_t size = 0;     // of the atlas [texels]
-    double density = 0.0;  // [texels/m] used, for objects whose own factor is 1; 0: for none
-    double covered = 0.0;  // share of the atlas' texels that charts touch
-    double reserved = 0.0; // share of these and of the gutters around them
+    uint32_t meshes = 0;       // that got new charts
+    uint32_t objects = 0;      // instances in the atlas, those of kept UVs included
+    uint32_t charts = 0;       // of all objects
+    uint32_t stayed = 0;       // objects that lie where the unwrap before put them
+    uint32_t size = 0;         // of the atlas [texels]
+    double density = 0.0;      // [texels/m] used, for objects whose own factor is 1; 0: for none
+    uint32_t shortened = 0;    // charts that are longer than the atlas, and so are shortened to it
+    double leastDensity = 0.0; // [texels/m] that one of these has along itself; density where there are none
+    double covered = 0.0;      // share of the atlas' texels that charts touch
+    double reserved = 0.0;     // share of these and of the gutters around them
 };
 
 /// Writes lightmap UVs into TEXCOORD_1, so that all instances form one atlas at one density, times the factor

@@ -266,18 +266,28 @@ TEST(ChartLayout, AChartLongerThanTheAtlas) {
     expectSound(charts, wire, 128);
     EXPECT_GT(wire.density, 30.0);
     EXPECT_EQ(std::max(wire.places[0].box.x, wire.places[0].box.y), 128u);
+    EXPECT_EQ(wire.shortened, 1u);
+    EXPECT_NEAR(wire.leastShare * wire.density, 128 / 1e6, 0.03 * 128 / 1e6);
     // A road lowers the density, but not until it fits as it is: it is shortened where it is but 8 texels
     // wide.
     charts[0] = rectangle(1e4, 8);
     const ChartLayout road = layOutCharts(layoutOf(charts), {128}, pool);
     expectSound(charts, road, 128);
     EXPECT_NEAR(road.density, 1.0, 0.15);
+    EXPECT_EQ(road.shortened, 1u);
+    EXPECT_NEAR(road.leastShare * road.density, 128 / 1e4, 0.03 * 128 / 1e4);
     // A plain is shortened by 15 % at most.
     charts[0] = rectangle(1e4, 5e3);
     const ChartLayout plain = layOutCharts(layoutOf(charts), {128}, pool);
     expectSound(charts, plain, 128);
     EXPECT_GE(plain.density, 0.99 * 128 / 1e4);
     EXPECT_LE(plain.density, 1.16 * 128 / 1e4);
+    EXPECT_GE(plain.leastShare, 1 / 1.16);
+    // What fits is not shortened.
+    charts[0] = rectangle(1, 1);
+    const ChartLayout squares = layOutCharts(layoutOf(charts), {128}, pool);
+    EXPECT_EQ(squares.shortened, 0u);
+    EXPECT_EQ(squares.leastShare, 1.0);
 }
 
 TEST(ChartLayout, NoChartsAndTooMany) {

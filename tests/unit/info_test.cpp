@@ -188,6 +188,8 @@ TEST(UnwrapCommand, WritesASceneThatCanBeBaked) {
     // A square of 1 m gets 100 texels; a chart that is longer than the atlas is shortened by up to 15 %.
     EXPECT_GE(made["density"].get<double>(), 100.0);
     EXPECT_LE(made["density"].get<double>(), 115.0);
+    EXPECT_NEAR(made["leastDensity"].get<double>(), 100.0, 1e-6);
+    EXPECT_EQ(made["shortened"], made["density"].get<double>() > 100.5 ? 1 : 0);
     EXPECT_EQ(made["covered"], 1.0);
     EXPECT_NEAR(made["stretch"].get<double>(), 1.0, 1e-5);
     EXPECT_GE(made["seconds"].get<double>(), 0.0);

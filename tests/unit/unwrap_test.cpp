@@ -124,6 +124,37 @@ TEST(Unwrap, ANeedleIsShortened) {
         EXPECT_EQ(lightmapSet(mesh), 1);
 }
 
+// A strip of 100 x 1 m is longer than the atlas at the density that fills it: what is told of it must be what
+// its UVs have.
+TEST(Unwrap, ALongStripTellsTheDensityThatItHas) {
+    Primitive strip = test::square();
+    strip.texCoord1.clear();
+    for (glm::vec3& p : strip.positions)
+        p *= glm::vec3(100.0f, 1.0f, 1.0f);
+    for (const uint32_t size : {128u, 512u}) {
+        Scene scene = test::sceneOf(strip);
+        const UnwrapResult result = unwrap(scene, {.size = size});
+        const std::vector<glm::vec2>& uv = scene.meshes[0].primitives[0].texCoord1;
+        const std::vector<glm::vec3>& positions = scene.meshes[0].primitives[0].positions;
+        double along = 0.0, across = 0.0; // [texels/m]
+        for (size_t i = 0; i < uv.size(); ++i)
+            for (size_t k = 0; k < i; ++k) {
+                const double texels = size * glm::distance(uv[i], uv[k]);
+                const double metres = glm::distance(positions[i], positions[k]);
+                if (metres == 100.0) along = texels / metres;
+                if (metres == 1.0) across = texels / metres;
+            }
+        EXPECT_NEAR(result.leastDensity, along, 0.02 * along) << size;
+        EXPECT_NEAR(result.leastDensity, size / 100.0, 0.02 * size / 100.0) << size;
+        EXPECT_EQ(result.shortened, result.leastDensity < result.density ? 1u : 0u) << size;
+        EXPECT_LE(result.density, across + 1.0) << "but for the rounding to whole texels";
+    }
+    Scene square = test::sceneOf(test::cube());
+    const UnwrapResult result = unwrap(square, {.size = 128});
+    EXPECT_EQ(result.shortened, 0u);
+    EXPECT_EQ(result.leastDensity, result.density);
+}
+
 TEST(Unwrap, WithoutAnAreaNoUnwrapIsAdvised) {
     Primitive line = test::square();
     line.texCoord1.clear();
