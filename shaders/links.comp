@@ -9,7 +9,8 @@ layout(push_constant, scalar) uniform Push { LinkPush push; };
 layout(local_size_x = 64) in;
 
 vec3 sent(uint link) {
-    return link < kLinkFirstSpecial ? unpackLight(UVec2s(push.packed).items[link]) : vec3(0.0);
+    if (link >= kLinkFirstSpecial) return link == kLinkSky ? push.sky : vec3(0.0);
+    return unpackLight(UVec2s(push.packed).items[link]);
 }
 
 void main() {

@@ -43,6 +43,9 @@ CONST uint kLinkSky = 0xffffffffu;  // hit nothing
 CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
 CONST uint kLinkDark =
     0xfffffffdu; // hit geometry that is no receiver (no lightmap UV), or the back of a double-sided one
+// Hit nothing, in a direction that was mirrored up from below the geometric horizon, where no sky shines.
+CONST uint kLinkSkyBelow = 0xfffffffcu;
+FUNCTION bool linkIsSky(uint link) { return link == kLinkSky || link == kLinkSkyBelow; }
 CONST uint kNoPatch = 0xffffffffu; // texel -> patch map: empty
 CONST uint kNoTexel = 0xffffffffu; // patch -> texel: not shown
 

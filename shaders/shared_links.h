@@ -62,6 +62,7 @@ struct LinkPush {
     uint chunkCount;
     uint sampleCount; // a multiple of kReplicates
     uint patchCount;
+    vec3 sky; // radiance that kLinkSky brings [cd/m^2]
 };
 struct PackPush {
     ADDRESS radiance; // vec4[count]

@@ -82,7 +82,7 @@ private:
                     for (uint32_t i = 0; i < kChunk; ++i, ++link) {
                         Met& met = met_[size_t{chunk} * kChunk + i];
                         met.backs = static_cast<uint16_t>(met.backs + (*link == shader::kLinkBack));
-                        met.sky = static_cast<uint16_t>(met.sky + (*link == shader::kLinkSky));
+                        met.sky = static_cast<uint16_t>(met.sky + shader::linkIsSky(*link));
                     }
     }
 

@@ -129,7 +129,7 @@ void ObjectMover::noteInside(uint32_t firstChunk, std::span<const uint32_t> link
         for (uint32_t k = 0; k < kInsideSamples; ++k) {
             const uint32_t link = links[base + size_t{k} * kChunk];
             bits.x |= uint32_t{link == shader::kLinkBack} << k;
-            bits.y |= uint32_t{link == shader::kLinkSky} << k;
+            bits.y |= uint32_t{shader::linkIsSky(link)} << k;
         }
         invalid_ += patches[first + i].area > 0.0f && liesInside(bits);
     }
@@ -307,7 +307,7 @@ void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::
     const glm::uvec2 before = inside_[patch];
     glm::uvec2& bits = inside_[patch];
     bits.x = (bits.x & ~(1u << sample)) | uint32_t{link == shader::kLinkBack} << sample;
-    bits.y = (bits.y & ~(1u << sample)) | uint32_t{link == shader::kLinkSky} << sample;
+    bits.y = (bits.y & ~(1u << sample)) | uint32_t{shader::linkIsSky(link)} << sample;
     if (bits != before) others.push_back(patch);
 }
 

@@ -30,7 +30,8 @@ uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
 
 LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      set_(buildLamps(scene, patches.scene.mesh, {.samples = desc.samples, .unit = desc.chosen})),
+      set_(buildLamps(scene, patches.scene.mesh,
+                      {.samples = desc.samples, .sky = desc.sky, .unit = desc.chosen})),
       skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
       skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
     if (!desc.chosen) group(std::vector<uint32_t>(set_.lamps.size(), 0));

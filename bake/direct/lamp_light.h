@@ -25,6 +25,7 @@ class LampLight {
 public:
     struct Desc {
         uint32_t samples = 16; // as LampDesc has it
+        bool sky = true;       // the sky is among them
         bool chosen = false;   // none until update() says which
     };
     LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc);

@@ -20,7 +20,8 @@ glm::vec4 withAlpha(const Float4& rgb, float alpha) {
 }
 
 void gatherChunkLinks(const HostLinks& work, uint32_t chunk) {
-    static const glm::vec4 kNothing(0.0f); // what a link without a patch at its end brings
+    static const glm::vec4 kNothing(0.0f); // what other links without a patch at their end bring
+    const glm::vec4 sky(work.sky, 0.0f);
     const uint32_t* links = work.links + size_t{chunk} * work.samples * kChunk;
     const float samples = static_cast<float>(work.samples);
     for (uint32_t lane = 0; lane < kChunk; ++lane) {
@@ -30,7 +31,9 @@ void gatherChunkLinks(const HostLinks& work, uint32_t chunk) {
             for (uint32_t q = 0; q < kReplicates; ++q) {
                 const uint32_t link = links[(k + q) * kChunk + lane];
                 Float4 light;
-                load(light, link < shader::kLinkFirstSpecial ? work.radiance[link] : kNothing);
+                load(light, link < shader::kLinkFirstSpecial ? work.radiance[link]
+                            : link == shader::kLinkSky       ? sky
+                                                             : kNothing);
                 sum[q] += light;
             }
         }

@@ -16,6 +16,7 @@ namespace relume {
 struct HostLinks {
     const uint32_t* links = nullptr;     // [chunk - firstChunk][samples][64]
     const glm::vec4* radiance = nullptr; // of what links may end at [cd/m^2]
+    glm::vec3 sky{0.0f};                 // radiance of what kLinkSky ends at [cd/m^2]
     const glm::vec4* direct = nullptr;   // added to ligOut where there is one
     glm::vec4* ligOut = nullptr;         // direct + the mean over the samples; may be none
     glm::vec4* sums = nullptr;           // [kReplicates][patchCount], added to; may be none

@@ -135,6 +135,7 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
                                         : nullptr;
     gatherLinks(*pool_, {.links = work.links->as<uint32_t>() + work.linksOffset,
                          .radiance = light.radiance.as<glm::vec4>(),
+                         .sky = work.sky,
                          .direct = work.direct && !coarse ? work.direct->as<glm::vec4>() : nullptr,
                          .ligOut = coarse || !work.output ? nullptr : light.ligOut.as<glm::vec4>(),
                          .sums = sums,
@@ -194,7 +195,8 @@ void LinkGatherPass::record(VkCommandBuffer cmd, const LightBuffers& light, cons
                                 .firstChunk = work.range.first,
                                 .chunkCount = work.range.count,
                                 .sampleCount = work.samples,
-                                .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk};
+                                .patchCount = coarse ? buffers.receiverCount : light.chunkCount * kChunk,
+                                .sky = work.sky};
     dispatchChunks(gather_, cmd, push, work.range.count);
 }
 

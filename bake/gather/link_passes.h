@@ -75,6 +75,7 @@ public:
         uint64_t linksOffset = 0;           // of range.first [links]
         VkDeviceAddress nodes = 0;          // PyramidNode[], for recordDistances: links may be nodes
         uint32_t samples = 0;               // per patch
+        glm::vec3 sky{0.0f};                // radiance that kLinkSky brings [cd/m^2]
         const vk::Buffer* direct = nullptr; // vec4 per patch, added to ligOut
         bool output = true;                 // to ligOut
         bool accumulate = false;            // add to linkSums

@@ -118,7 +118,7 @@ LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& de
     LampSet set;
     set.reach = reachOf(mesh);
     const bool picture = !scene.sky.pixels.empty();
-    const bool skyShines = scene.sky.shines() && (!picture || addPicture(set, scene.sky));
+    const bool skyShines = desc.sky && scene.sky.shines() && (!picture || addPicture(set, scene.sky));
     set.lamps = lampsOf(scene, skyShines, desc);
     return set;
 }

@@ -24,6 +24,7 @@ struct LampSet {
 struct LampDesc {
     uint32_t samples = 16; // rays to each light that has an extent, per patch and sample pass; a multiple of
                            // 2 * shader::kReplicates
+    bool sky = true;       // the sky is among them
     bool unit = false;     // every light shines with colour 1, those of no intensity too
 };
 LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc);

@@ -32,16 +32,26 @@ LinkErrors::Local LinkErrors::local() const {
     const auto bins = vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local,
                                                shader::kLightBins + shader::kErrorBins);
     const std::span<const uint32_t> all = bins;
-    return {medianLight(all.first(shader::kLightBins)), localErrorOf(all.subspan(shader::kLightBins))};
+    Local local{.median = medianLight(all.first(shader::kLightBins)),
+                .error = localErrorOf(all.subspan(shader::kLightBins))};
+    for (const shader::LocalSums& sums : localSums()) {
+        local.direct += sums.direct;
+        local.links += double(sums.indirect) + std::max(0.0f, sums.bias);
+    }
+    return local;
+}
+
+std::vector<shader::LocalSums> LinkErrors::localSums() const {
+    std::vector<shader::LocalSums> sums(kit_.chunkCount());
+    vk::download(kit_.input.device, kit_.buffers.local, sums.data(), sums.size() * sizeof(shader::LocalSums),
+                 (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t));
+    return sums;
 }
 
 std::vector<ChunkVariance> LinkErrors::chunks() const {
-    const vk::Device& device = kit_.input.device;
     const size_t count = kit_.chunkCount();
-    const size_t bins = (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t);
-    const auto sums = vk::readBuffer<shader::ResolveSums>(device, kit_.buffers.chunkSums, count);
-    std::vector<shader::LocalSums> local(count);
-    vk::download(device, kit_.buffers.local, local.data(), count * sizeof(shader::LocalSums), bins);
+    const auto sums = vk::readBuffer<shader::ResolveSums>(kit_.input.device, kit_.buffers.chunkSums, count);
+    const std::vector<shader::LocalSums> local = localSums();
     std::vector<ChunkVariance> chunks;
     for (size_t i = 0; i < count; ++i)
         chunks.push_back({.patches = sums[i].count,

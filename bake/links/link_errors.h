@@ -19,6 +19,8 @@ public:
     struct Local {
         double median = 0; // light of all texels [cd/m^2]
         LocalError error;
+        double direct = 0,
+               links = 0; // variances, relative to what local error is relative to: all texels' sum
     };
     Local local() const;
     /// Returns what the last resolve() says of each chunk.
@@ -31,6 +33,8 @@ public:
     glm::dvec4 change() const;
 
 private:
+    std::vector<shader::LocalSums> localSums() const; // per chunk
+
     LinkKit& kit_;
     ResolvePass pass_;
 };

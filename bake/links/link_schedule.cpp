@@ -13,6 +13,9 @@ namespace {
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 // 95 % of normally distributed errors are within so many standard deviations.
 constexpr double kDeviationsOf95 = 1.96;
+// There are at most so many sample passes of links for one of direct light: links read direct light, and what
+// few of its samples leave in there is no error that replicates tell.
+constexpr uint32_t kMostLinksOfDirect = 32;
 // Samples are planned for at least this share of the variance that is allowed, whatever else is left.
 constexpr double kLeastOfVariance = 0.25;
 
@@ -62,13 +65,14 @@ bool LinkSchedule::wantsDirect(const LinkState& state) const {
     if (state.directRounds == 0 || linksDone(state)) return true;
     if (state.linkRounds == 0) return false;
     if (rules_.samples > 0) return state.directRounds <= state.linkRounds;
+    if (state.directRounds < state.linkRounds / kMostLinksOfDirect) return true;
     return gainOfRound({.rounds = state.directAtCheck,
-                        .variance = state.directVariance,
+                        .variance = state.directChoice,
                         .costOfRound = rules_.directCost},
-                       state.directRounds) > gainOfRound({.rounds = state.linksAtCheck,
-                                                          .variance = state.indirectVariance,
-                                                          .costOfRound = rules_.linkCost},
-                                                         state.linkRounds);
+                       state.directRounds) >
+           gainOfRound(
+               {.rounds = state.linksAtCheck, .variance = state.linkChoice, .costOfRound = rules_.linkCost},
+               state.linkRounds);
 }
 
 bool LinkSchedule::isLastBounce(const LinkState& state) const {

@@ -23,6 +23,7 @@ struct LinkState {
     double light = 0, patches = 0; // likewise, of those that are shown
     double bias = 0;               // likewise, squares of what is left however many samples there are
     SmoothingWidth width;
+    double directChoice = 0, linkChoice = 0; // variances, of any one unit, that the next sample pass goes by
     uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
     Settling settling;                            // of the first sample pass, then of the result
     bool scaled = false;                          // chunks have sample passes of their own, of both kinds
@@ -66,6 +67,11 @@ public:
     bool wantsError() const { return rules_.error > 0 || rules_.localError > 0; }
     /// Returns what was told over what is asked for, of the error that is farther off: 1 or less is enough.
     double excess(double error, double localError) const;
+    /// Tells whether it is local error that is farther off.
+    bool choosesLocally(double error, double localError) const {
+        if (rules_.error <= 0 || rules_.localError <= 0) return rules_.localError > 0;
+        return localError / rules_.localError >= error / rules_.error;
+    }
     /// Returns the sample passes before the check after one that has told this excess.
     uint32_t nextCheck(const LinkState& state, double excess) const;
     /// Tells whether chunks get sample passes of their own from the first check on.
@@ -77,8 +83,8 @@ public:
     static uint32_t roundsAtOnce(uint32_t rounds) { return rounds / 16 + 1; }
     /// Tells whether all sample passes are made.
     bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
-    /// Tells whether direct light comes next: at first, then where it takes more of the variance away for its
-    /// cost.
+    /// Tells whether direct light comes next: at first, then where it takes more away, for its cost, of the
+    /// variance that is farther off what is asked for, and now and then in any case.
     bool wantsDirect(const LinkState& state) const;
     /// Tells whether there are sums of a sample pass in which every patch has its bounces.
     bool hasSolution(const LinkState& state) const {

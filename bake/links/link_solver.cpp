@@ -55,7 +55,9 @@ SolverSettings withTransport(SolverSettings settings) {
 
 LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     : emitters_(makeEmitters(input, settings)),
-      lamps_(input.device, input.scene, input.patches, {.samples = linksOf(input, settings)}),
+      sky_(linksSeeSky(input.scene.sky, settings) ? input.scene.sky.radiance : glm::vec3(0.0f)),
+      lamps_(input.device, input.scene, input.patches,
+             {.samples = linksOf(input, settings), .sky = sky_ == glm::vec3(0.0f)}),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
@@ -317,6 +319,7 @@ void LinkSolver::linkBatch() {
     portion.closest.disc = disc_.points ? &disc_.points : nullptr;
     portion.closest.discCount = disc_.count;
     portion.gather.nodes = footprints_ ? footprints_->nodes() : 0;
+    portion.gather.sky = sky_;
     portion.gather.direct = direct();
     portion.gather.accumulate = state_.last;
     portion.gather.output = !state_.scaled; // what goes on comes of the sums then
@@ -446,9 +449,9 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
     state_.light = sums.light;
     state_.patches = sums.count;
     state_.bias = std::max(0.0f, sums.bias);
-    const LocalError local = errors_.local().error;
-    progress_.localError95 = local.p95;
-    progress_.localError99 = local.p99;
+    const LinkErrors::Local local = errors_.local();
+    progress_.localError95 = local.error.p95;
+    progress_.localError99 = local.error.p99;
     state_.directAtCheck = state_.directRounds;
     state_.linksAtCheck = state_.linkRounds;
     progress_.error = 0;
@@ -459,6 +462,9 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
         const double iteration = schedule_.directAlone() ? 0.0 : state_.series.error;
         progress_.error = relativeError({sums.light, sums.count, variance}, iteration);
     }
+    const bool locally = schedule_.choosesLocally(progress_.error, progress_.localError95);
+    state_.directChoice = locally ? local.direct : state_.directVariance;
+    state_.linkChoice = locally ? local.links : state_.indirectVariance;
     if (!schedule_.hasSolution(state_)) {
         live_.all = true; // this result is without what has arrived since
         return;

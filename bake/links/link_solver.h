@@ -88,6 +88,7 @@ private:
     void undo();
 
     EmitterLight emitters_; // one group; hybrid's
+    glm::vec3 sky_;         // radiance that links bring [cd/m^2]; 0: none, or lamps_ has it
     LampLight lamps_;
     CoarsePatches coarse_; // empty: links start at all patches
     LinkKit kit_;          // seen: chunks of patches that come first

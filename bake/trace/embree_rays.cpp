@@ -62,6 +62,7 @@ template<typename Lanes>
     float* __restrict x = out[0];
     float* __restrict y = out[1];
     float* __restrict z = out[2];
+    float* __restrict mirrored = out[3];
     // When inlined, __restrict is forgotten; run-time checks of all these pairs would be more than compilers
     // take.
 #pragma GCC ivdep
@@ -74,6 +75,7 @@ template<typename Lanes>
         x[i] = d.x - mirror * nx[i];
         y[i] = d.y - mirror * ny[i];
         z[i] = d.z - mirror * nz[i];
+        mirrored[i] = mirror;
         // Cells are in Morton order: neighbours in the list are mostly neighbours in the square.
         uint32_t column = uint32_t(int(u.x * float(1u << kCellBits))),
                  row = uint32_t(int(u.y * float(1u << kCellBits)));
@@ -115,7 +117,7 @@ void ChunkRays::fillDirections(uint32_t sample, uint32_t slot) {
     const Frames& f = frames_;
     const float* const frames[] = {f.sx.data(), f.sy.data(), f.sz.data(),
                                    f.nx.data(), f.ny.data(), f.nz.data()};
-    float* const out[] = {&x[slot], &y[slot], &z[slot]};
+    float* const out[] = {&x[slot], &y[slot], &z[slot], &mirror[slot]};
     const uint32_t* seed = f.seed[sample % shader::kReplicates].data();
     if (disc_)
         fillDisc(frames, seed, {disc_, discCount_, sample}, out, &cell_[slot]);

@@ -8,7 +8,7 @@
 namespace relume {
 
 /// The cosine-distributed rays of one chunk's patches for some consecutive samples, by component. Sample k of
-/// patch i is number k * 64 + i. It takes 30 KiB, and is made to be reused.
+/// patch i is number k * 64 + i. It takes 34 KiB, and is made to be reused.
 class ChunkRays {
 public:
     static constexpr uint32_t kSamplesMax = 16;
@@ -28,6 +28,7 @@ public:
     const Rays<uint16_t>& order() const { return order_; }
 
     alignas(64) Rays<float> x, y, z; // directions, unit
+    alignas(64) Rays<float> mirror;  // below 0: the direction was mirrored up (shader::mirroredUp)
 
 private:
     using Lane = std::array<float, shader::kChunk>;

@@ -370,8 +370,12 @@ void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
             rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
         embreeIntersect(valid.data(), embree.get(), query, rays);
-        for (uint32_t lane = 0; lane < count; ++lane)
-            out[order[first + lane]] = valid[lane] ? link(rays, lane) : shader::kLinkDark;
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            uint32_t& found = out[order[first + lane]];
+            found = valid[lane] ? link(rays, lane) : shader::kLinkDark;
+            if (found == shader::kLinkSky && directions.mirror[order[first + lane]] < 0.0f)
+                found = shader::kLinkSkyBelow;
+        }
     }
 }
 

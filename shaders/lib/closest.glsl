@@ -7,15 +7,15 @@ vec3 discSample(uint key, uint index) {
     return discDirection(point, push.discCount, seed);
 }
 
-vec3 directionOf(Patch p, uint key, uint index) {
-    return push.discCount == 0u ? patchDirection(p, key, index) : aroundPatch(p, discSample(key, index));
+vec3 directionOf(uint key, uint index) {
+    return push.discCount == 0u ? localDirection(key, index) : discSample(key, index);
 }
 
 const uint kSamplesPerInvocation = 8u;
 
 uint linkOfSample(Patch p, uint key, uint index) {
     if ((p.flags & kPatchSends) == 0u) return kLinkDark;
-    return closestLink(p, directionOf(p, key, index));
+    return linkAround(p, directionOf(key, index));
 }
 
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {

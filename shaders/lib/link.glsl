@@ -20,3 +20,9 @@ uint closestLink(Patch p, vec3 direction) {
     return linkOf(closestHit(p.position + p.offset * p.normal, direction), direction);
 }
 #endif
+
+// Returns the link of a direction that is given around +z.
+uint linkAround(Patch p, vec3 local) {
+    uint link = closestLink(p, aroundPatch(p, local));
+    return link == kLinkSky && mirroredUp(p, local) ? kLinkSkyBelow : link;
+}

@@ -8,7 +8,7 @@ void retraceLinks(uint first, uint step) {
         Patch p = loadPatch(push.patches, chunk * kChunk + lane);
         uint key = rotationKey(p, loadPatch(push.patches, chunk * kChunk), push.rotation, push.size);
         uint link = kLinkDark;
-        if (asksAgain(p, push.silent)) link = closestLink(p, patchDirection(p, key, push.firstSample + local));
+        if (asksAgain(p, push.silent)) link = linkAround(p, localDirection(key, push.firstSample + local));
         Words(push.links).items[at] = link;
     }
 }

@@ -100,11 +100,15 @@ FUNCTION vec3 aroundPatch(Patch p, vec3 local) {
     return c < 0.0f ? d - 2.0f * c * p.normal : d;
 }
 
+// Tells whether it was mirrored.
+FUNCTION bool mirroredUp(Patch p, vec3 local) { return dot(aroundNormal(p.shading, local), p.normal) < 0.0f; }
+
 // Returns the direction of sample `index` for patch p: density cos / pi around the shading normal. `key`
 // seeds the scrambling: rotationKey.
-FUNCTION vec3 patchDirection(Patch p, uint key, uint index) {
-    return aroundPatch(p, cosineDirection(sobolPoint(replicateIndex(index), replicateSeed(key, index))));
+FUNCTION vec3 localDirection(uint key, uint index) {
+    return cosineDirection(sobolPoint(replicateIndex(index), replicateSeed(key, index)));
 }
+FUNCTION vec3 patchDirection(Patch p, uint key, uint index) { return aroundPatch(p, localDirection(key, index)); }
 
 // Returns cosine and sine of bits / 2^32 of a full turn, by the same series as above.
 FUNCTION vec2 turnBy(uint bits) {

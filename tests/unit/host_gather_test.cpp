@@ -181,14 +181,18 @@ TEST(HostGather, linksAreMeansOfWhatTheyEndAt) {
     const World world;
     WorkerPool pool(2);
     constexpr uint32_t kSamples = 8, kFirst = 5, kChunks = 3;
+    constexpr std::array kSpecial = {shader::kLinkSky, shader::kLinkSkyBelow, shader::kLinkDark,
+                                     shader::kLinkBack};
+    const glm::vec3 sky(0.5f, 0.75f, 1.25f); // only what meets it above the horizon brings it
     std::mt19937 random(3);
     std::vector<uint32_t> links(size_t{kChunks} * kSamples * kChunk);
     for (uint32_t& link : links)
-        link = random() % 5 == 0 ? shader::kLinkSky : random() % World::kCount;
+        link = random() % 5 == 0 ? kSpecial[random() % kSpecial.size()] : random() % World::kCount;
     std::vector<glm::vec4> direct(World::kCount, glm::vec4(0.25f)), out(World::kCount, glm::vec4(7.0f));
     std::vector<glm::vec4> sums(size_t{shader::kReplicates} * World::kCount, glm::vec4(1.0f));
     HostLinks work{.links = links.data(),
                    .radiance = world.radiance.data(),
+                   .sky = sky,
                    .direct = direct.data(),
                    .ligOut = out.data(),
                    .sums = sums.data(),
@@ -208,9 +212,10 @@ TEST(HostGather, linksAreMeansOfWhatTheyEndAt) {
         std::vector<glm::dvec3> replicate(shader::kReplicates, glm::dvec3(0.0));
         for (uint32_t k = 0; k < kSamples; ++k) {
             const uint32_t link = links[(i / kChunk * kSamples + k) * kChunk + i % kChunk];
-            if (link == shader::kLinkSky) continue;
-            mean += glm::dvec3(glm::vec3(world.radiance[link])) / double{kSamples};
-            replicate[k % shader::kReplicates] += glm::dvec3(glm::vec3(world.radiance[link]));
+            if (link >= shader::kLinkFirstSpecial && link != shader::kLinkSky) continue;
+            const glm::dvec3 light(link == shader::kLinkSky ? sky : glm::vec3(world.radiance[link]));
+            mean += light / double{kSamples};
+            replicate[k % shader::kReplicates] += light;
         }
         const uint32_t index = kFirst * kChunk + i;
         for (int c = 0; c < 3; ++c) {

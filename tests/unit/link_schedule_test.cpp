@@ -41,16 +41,42 @@ TEST(LinkSchedule, WhereNothingShinesDirectlyThereAreLinksAlone) {
 TEST(LinkSchedule, ThenComesWhatLowersTheVarianceMoreForItsCost) {
     const LinkSchedule schedule(kRules);
     LinkState state = after(4, 4);
-    state.directVariance = 4;
-    state.indirectVariance = 8;
+    state.directChoice = 4;
+    state.linkChoice = 8;
     EXPECT_TRUE(schedule.wantsDirect(state)); // 4 / (4 * 4) > 8 / (4 * 16)
-    state.directVariance = 1.9;
+    state.directChoice = 1.9;
     EXPECT_FALSE(schedule.wantsDirect(state)); // 1.9 / 16 < 8 / 64
-    state.directVariance = 4;
+    state.directChoice = 4;
     state.directRounds = 6;
     EXPECT_FALSE(schedule.wantsDirect(state)); // 4 * 4 / (36 * 4) < 8 / 64
     state.linkRounds = 8;
     EXPECT_TRUE(schedule.wantsDirect(state)); // 8 * 4 / (64 * 16)
+}
+
+// The variances are of the error that is farther off what is asked for, each relative to that.
+TEST(LinkSchedule, GoesByTheErrorThatIsFartherOff) {
+    const LinkSchedule both(with([](LinkRules& r) { r.localError = 0.05; }));
+    EXPECT_TRUE(both.choosesLocally(0.02, 0.2));
+    EXPECT_FALSE(both.choosesLocally(0.02, 0.09));
+    EXPECT_FALSE(LinkSchedule(kRules).choosesLocally(0.02, 0.2)) << "any local error will do";
+    const LinkSchedule local(with([](LinkRules& r) {
+        r.error = 0;
+        r.localError = 0.05;
+    }));
+    EXPECT_TRUE(local.choosesLocally(0.02, 0.01));
+}
+
+// Links read direct light, and what is wrong with that no replicate tells: it gets better now and then even
+// where its own error is nothing.
+TEST(LinkSchedule, LinksNeverReadTheDirectLightOfFewSamplesForLong) {
+    const LinkSchedule schedule(kRules);
+    LinkState state = after(1, 63);
+    state.linkChoice = 8;
+    EXPECT_FALSE(schedule.wantsDirect(state));
+    state.linkRounds = 64;
+    EXPECT_TRUE(schedule.wantsDirect(state));
+    state.directRounds = 2;
+    EXPECT_FALSE(schedule.wantsDirect(state));
 }
 
 TEST(LinkSchedule, WithANumberOfSamplesBothTakeTurns) {

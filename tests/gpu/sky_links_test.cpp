@@ -1,0 +1,97 @@
+// Where links bring a sky's light, it must be the light that rays to the sky would bring.
+#include "bake/links/link_memory.h"
+#include "tests/gpu/bake_comparison.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/gpu/gpu_environment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kSize = 48;
+constexpr float kRadiance = 3.0f; // [cd/m^2]
+
+// A court, an arcade beside it and a deep room behind that: from open to the sky to hardly any of it.
+Scene court() {
+    SceneMaker maker(kSize);
+    const int grey = maker.material(0.6f);
+    maker.quad({0, 0, 0}, 8.0f * kX, 4.0f * kY, grey, {16, 8});
+    maker.quad({0, 0, 0}, 4.0f * kY, 3.0f * kZ, grey, {8, 6});
+    maker.quad({0, 4, 0}, 8.0f * kX, 3.0f * kZ, grey, {16, 6});
+    maker.quad({8, 0, 0}, 3.0f * kZ, 4.0f * kY, grey, {6, 8});
+    maker.quad({0, 0, 0}, 3.0f * kZ, 8.0f * kX, grey, {6, 16});
+    maker.quad({3, 0, 3}, 4.0f * kY, 5.0f * kX, grey, {8, 10});
+    maker.quad({5, 0, 0}, 2.6f * kY, 3.0f * kZ, grey, {6, 6});
+    maker.quad({5, 0, 0}, 3.0f * kZ, 2.6f * kY, grey, {6, 6});
+    Scene scene = maker.scene();
+    scene.sky.radiance = glm::vec3(kRadiance);
+    return scene;
+}
+
+BakeDesc precise(Method method, uint32_t samples) {
+    return {.size = kSize, .passes = 0, .method = method, .samples = samples};
+}
+
+} // namespace
+
+// The horizon is the geometric normal's, the cosine the shading normal's.
+TEST(SkyLinks, ATiltedShadingNormalGetsTheSkyAboveTheHorizonAlone) {
+    constexpr double kTilt = 0.9; // [rad]
+    SceneMaker maker(32);
+    const TexelRect rect = maker.quad({0, 0, 0}, kX, kY, maker.material(0.0f), {8, 8});
+    Scene scene = maker.scene();
+    for (glm::vec3& normal : scene.meshes.front().primitives.front().normals)
+        normal = {static_cast<float>(std::sin(kTilt)), 0, static_cast<float>(std::cos(kTilt))};
+    scene.sky.radiance = glm::vec3(kRadiance);
+    const double lune = 0.5 * (1 + std::cos(kTilt));
+    for (const TracerKind tracer : tracersOfTestDevice()) {
+        BakeDesc desc = precise(Method::Hybrid, 4096);
+        desc.size = 32;
+        desc.tracer = tracer;
+        const TexelStatistics all = statistics(bakeScene(scene, desc).lighting, rect);
+        EXPECT_NEAR(all.mean / (kRadiance * lune), 1.0, 1e-3) << tracerName(tracer);
+        EXPECT_NEAR(all.min / (kRadiance * lune), 1.0, 1e-2) << tracerName(tracer);
+    }
+}
+
+// Rays are sent to a picture, and be it of one pixel.
+TEST(SkyLinks, BringWhatRaysToTheSkyDo) {
+    const Scene scene = court();
+    Scene picture = scene;
+    picture.sky.width = picture.sky.height = 1;
+    picture.sky.pixels = {glm::vec3(1.0f)};
+    for (const Method method : {Method::Directional, Method::Hybrid}) {
+        const BakeDesc desc = precise(method, 2048);
+        ASSERT_TRUE(linksSeeSky(scene.sky, settingsOf(desc).solver));
+        ASSERT_FALSE(linksSeeSky(picture.sky, settingsOf(desc).solver));
+        const Baked links = bakeScene(scene, desc), rays = bakeScene(picture, desc);
+        EXPECT_LT(relativeError(links.lighting, rays.lighting), 0.02) << methodName(method);
+        const TexelRect all{0, 0, kSize, kSize};
+        EXPECT_NEAR(statistics(links.lighting, all).mean / statistics(rays.lighting, all).mean, 1.0, 1e-3);
+        EXPECT_LT(links.progress.rays, 0.75 * static_cast<double>(rays.progress.rays));
+    }
+}
+
+TEST(SkyLinks, DeviceGathersWhatTheHostDoes) {
+    if (!testDevice().info().software()) GTEST_SKIP() << "the device gathers anyway";
+    const Scene scene = court();
+    BakeDesc desc = precise(Method::Hybrid, 64);
+    const Baked host = bakeScene(scene, desc);
+    desc.deviceGather = true;
+    EXPECT_LT(relativeError(host.lighting, bakeScene(scene, desc).lighting), 2e-5);
+}
+
+TEST(SkyLinks, BatchesAndTheCacheChangeNoByte) {
+    const Scene scene = court();
+    BakeDesc desc = precise(Method::Hybrid, 96);
+    desc.smooth = true;
+    const Baked baked = bakeScene(scene, desc);
+    desc.batchMs = 0.3;
+    desc.cache.kind = CacheSettings::Kind::None;
+    EXPECT_TRUE(sameBytes(bakeScene(scene, desc).lighting, baked.lighting));
+}
+
+} // namespace relume
