@@ -128,6 +128,13 @@ struct ComposePush {
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };
+struct CarryPush {
+    ADDRESS carried; // vec4[], of links alone
+    ADDRESS direct;  // 0: nothing
+    ADDRESS light;   // vec4[]: with a share what a sample pass has brought, else written
+    float share;     // of the sample pass in what is carried from now on; 0: light is made
+    uint patchCount;
+};
 struct ChangePush {
     ADDRESS patches;
     ADDRESS ligIn;

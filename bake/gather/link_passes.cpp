@@ -66,6 +66,7 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
     direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
+    if (desc.carries) carried = vk::Buffer(device, {.size = vec4s(count), .name = "carried light"});
     if (desc.notes)
         notes = vk::Buffer(device, {.size = chunks * sizeof(glm::uvec2), .name = "notes of lights"});
     if (desc.smooth) {
@@ -92,11 +93,12 @@ uint64_t LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64
         (receivers > 0 ? count * sizeof(shader::CoarseTaps) : 0);
     const uint64_t direct = desc.direct ? vec4s(kReplicates) : 0;
     const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(float) : 0;
+    const uint64_t carried = desc.carries ? vec4s(1) : 0;
     const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(float) : 0;
     const uint64_t notes = desc.notes ? extent.chunkCount * sizeof(glm::uvec2) : 0;
     const uint64_t localError =
         desc.local ? localBytes(extent.chunkCount) + extent.chunkCount * sizeof(glm::vec2) : 0;
-    return count * (sizeof(uint32_t) + vec4s(kReplicates + 2) + direct + smooth) +
+    return count * (sizeof(uint32_t) + vec4s(kReplicates + 2) + direct + smooth + carried) +
            extent.texels * sizeof(uint32_t) + coarse + coarseDistances + localError + notes +
            (uint64_t{extent.chunkCount} + 1) * kSumBytes + shader::kRayCounters * sizeof(uint32_t);
 }
@@ -107,6 +109,11 @@ uint32_t smoothingReach(float sigma) {
     constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
     if (sigma < kLeastSigma) return 0;
     return std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
+}
+
+float carriedShare(uint32_t rounds) {
+    constexpr float kFading = 3.0f; // the power becomes 3 (1 - q); carried noise has 1.8 times the variance
+    return std::min(1.0f, kFading / static_cast<float>(rounds));
 }
 
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks) {
@@ -244,6 +251,16 @@ void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& ligh
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
     dispatchChunks(compose_, cmd, push, light.chunkCount);
+}
+
+void LinkGatherPass::recordCarry(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                                 const vk::Buffer* direct, float share) const {
+    const shader::CarryPush push{.carried = buffers.carried.address(),
+                                 .direct = direct ? direct->address() : 0,
+                                 .light = (share > 0 ? light.ligOut : light.ligIn).address(),
+                                 .share = share,
+                                 .patchCount = light.chunkCount * kChunk};
+    dispatchChunks(carry_, cmd, push, light.chunkCount);
 }
 
 void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,

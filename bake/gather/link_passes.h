@@ -26,6 +26,7 @@ struct LinkBuffers {
     vk::Buffer packed; // uvec2 per entry of the light's radiance, made by whoever owns both: what links read
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
+    vk::Buffer carried;       // vec4 per patch: light of links that later ones read (carriedShare)
     vk::Buffer notes;         // uvec2 per chunk, of lights (lib/light_notes.glsl)
     vk::Buffer distances;     // float per patch [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
@@ -46,6 +47,7 @@ struct LinkBuffers {
         bool smooth = false;
         bool local = false;                    // local error is told
         bool notes = false;                    // chunks take notes of lights
+        bool carries = false;                  // sample passes start from those before
         const CoarsePatches* coarse = nullptr; // bytes() takes their number instead
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
@@ -55,6 +57,11 @@ struct LinkBuffers {
 
 /// Returns how far smoothing looks [texels], 0 for not at all. sigma is its width [texels].
 uint32_t smoothingReach(float sigma);
+/// Returns the share of a sample pass's light in what later ones read, it being number `rounds` from 1. The
+/// first one goes over its few links again and again, which leaves an error of its own in their light: a
+/// share of 1 / rounds would let it fade with the power 1 - q of the number of passes only, q being how much
+/// of the light bounces on.
+float carriedShare(uint32_t rounds);
 /// Returns the sum over all chunks.
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks);
 glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
@@ -69,7 +76,7 @@ public:
           pack_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "pack")),
           gather_(pool_ ? vk::ComputeProgram() : vk::ComputeProgram(device, "links")),
           distance_(device, "link_distance"), interpolate_(device, "interpolate"),
-          compose_(device, "compose") {}
+          compose_(device, "compose"), carry_(device, "carry") {}
     struct Work {
         const vk::Buffer* links = nullptr;
         uint64_t linksOffset = 0;           // of range.first [links]
@@ -109,6 +116,10 @@ public:
     /// `scales` each chunk has as many as these say.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                        const vk::Buffer* direct, uint32_t samples, const vk::Buffer* scales = nullptr) const;
+    /// Mixes this share of what a sample pass has brought to ligOut, less direct light, into what is carried;
+    /// with 0 makes ligIn of direct light and what is carried.
+    void recordCarry(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                     const vk::Buffer* direct, float share) const;
     /// Makes direct what it was after so many sample passes, or those that `scales` say.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds, const vk::Buffer* scales = nullptr) const;
@@ -117,7 +128,7 @@ private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
 
     WorkerPool* pool_; // the device's; nullptr: shaders gather
-    vk::ComputeProgram pack_, gather_, distance_, interpolate_, compose_;
+    vk::ComputeProgram pack_, gather_, distance_, interpolate_, compose_, carry_;
 };
 
 /// Makes sums over chunks: of what a bounce changed, and of the result with its errors.

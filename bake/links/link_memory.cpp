@@ -56,7 +56,8 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const LinkBuffers::Desc desc{.direct = direct.any,
                                  .smooth = hybrid && settings.links.smooth,
                                  .local = true,
-                                 .notes = direct.lamps && samplesPerChunk(settings, extent.software)};
+                                 .notes = direct.lamps && samplesPerChunk(settings, extent.software),
+                                 .carries = settings.passes == 0};
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint32_t scale = settings.links.indirectScale;
     const uint64_t receivers = scale > 1 ? extent.receivers.value_or(count / scale) : 0;

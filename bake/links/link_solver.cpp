@@ -68,6 +68,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                         .smooth = settings.method == Method::Hybrid && settings.links.smooth,
                         .local = true,
                         .notes = !lamps_.empty() && samplesPerChunk(settings, input.device.info().software()),
+                        .carries = settings.passes == 0,
                         .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
             .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
             .progress = progress_,
@@ -90,8 +91,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
             input.device, {.size = input.light.radiance.size() / sizeof(glm::vec4) * sizeof(glm::uvec2),
                            .name = "packed radiance"});
     VkCommandBuffer cmd = kit_.commands.begin();
-    for (const vk::Buffer* buffer : {&buffers.linkSums, &buffers.directSums, &buffers.direct, &buffers.rays,
-                                     &buffers.result, &input.light.ligIn, &input.light.ligOut}) {
+    for (const vk::Buffer* buffer :
+         {&buffers.linkSums, &buffers.directSums, &buffers.direct, &buffers.carried, &buffers.rays,
+          &buffers.result, &input.light.ligIn, &input.light.ligOut}) {
         if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     }
     kit_.run(cmd);
@@ -296,7 +298,10 @@ void LinkSolver::beginBounce() {
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
-        kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales());
+        if (buffers.carried && samples > 0 && !state_.scaled)
+            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f);
+        else
+            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales());
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
@@ -383,6 +388,16 @@ void LinkSolver::interpolate() {
     }
 }
 
+// Lets the next sample pass start from this one's light, too. Where chunks have sample passes of their own,
+// the next one starts from the mean of all.
+void LinkSolver::carry() {
+    if (!kit_.buffers.carried || state_.scaled) return;
+    VkCommandBuffer cmd = kit_.commands.begin();
+    kit_.gatherPass.recordCarry(cmd, kit_.input.light, kit_.buffers, direct(),
+                                carriedShare(state_.linkRounds + 1));
+    kit_.run(cmd);
+}
+
 void LinkSolver::endBounce() {
     if (coarse_.count > 0) interpolate();
     ++progress_.passes;
@@ -393,6 +408,7 @@ void LinkSolver::endBounce() {
         if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
         state_.settling.add(mean);
     }
+    if (state_.last) carry();
     kit_.input.light.turn();
     ++state_.bounce;
     if (!state_.last) {
@@ -505,7 +521,8 @@ std::vector<StatePart> LinkSolver::stateParts() {
     std::vector<StatePart> parts;
     for (const vk::Buffer* buffer :
          {&std::as_const(light.ligIn), &std::as_const(light.ligOut), &buffers.linkSums, &buffers.directSums,
-          &buffers.direct, &buffers.notes, &buffers.distances, &buffers.coarseSums, &buffers.rays}) {
+          &buffers.direct, &buffers.carried, &buffers.notes, &buffers.distances, &buffers.coarseSums,
+          &buffers.rays}) {
         if (*buffer) parts.push_back(part(kit_.input.device, *buffer));
     }
     parts.push_back(part(kit_.order));

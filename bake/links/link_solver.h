@@ -73,6 +73,7 @@ private:
     void recordRadiance(VkCommandBuffer cmd);
     void beginBounce();
     void interpolate();
+    void carry();
     void endBounce();
     uint32_t chunksOfStage() const;
     const std::vector<uint8_t>& seenOfStage() const;

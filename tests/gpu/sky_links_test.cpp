@@ -1,4 +1,5 @@
 // Where links bring a sky's light, it must be the light that rays to the sky would bring.
+#include "assets/images/metrics.h"
 #include "bake/links/link_memory.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
@@ -92,6 +93,23 @@ TEST(SkyLinks, BatchesAndTheCacheChangeNoByte) {
     desc.batchMs = 0.3;
     desc.cache.kind = CacheSettings::Kind::None;
     EXPECT_TRUE(sameBytes(bakeScene(scene, desc).lighting, baked.lighting));
+}
+
+// What is told is what is left, in the deep room, too. The first sample pass has 16 directions of each of few
+// patches, and goes over them again and again: what is wrong with that must not stay.
+TEST(SkyLinks, TellTheLocalErrorThatIsThere) {
+    const Scene scene = court();
+    BakeDesc desc = precise(Method::Hybrid, 8192);
+    desc.passes = 16; // sample passes that know nothing of each other
+    const Baked truth = bakeScene(scene, desc);
+    desc = precise(Method::Hybrid, 0);
+    desc.localError = 0.05;
+    const Baked baked = bakeScene(scene, desc);
+    const ImagePair pair({baked.lighting, "map"}, {truth.lighting, "truth"});
+    const LocalPercentiles truly = pair.percentiles(pair.localErrors());
+    EXPECT_NEAR(baked.progress.localError95 / truly.p95, 1.0, 0.2);
+    const TexelRect all{0, 0, kSize, kSize};
+    EXPECT_NEAR(statistics(baked.lighting, all).mean / statistics(truth.lighting, all).mean, 1.0, 3e-3);
 }
 
 } // namespace relume
