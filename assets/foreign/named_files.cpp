@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 22> kNamedEndings = {
     ".mtl", ".png",  ".jpg", ".jpeg", ".tga", ".bmp", ".gif",  ".psd", ".pnm", ".ppm", ".pgm",
     ".pic", ".webp", ".tif", ".tiff", ".dds", ".hdr", ".ktx2", ".ktx", ".exr", ".lwo", ".material"};
-constexpr size_t kLongestEnding = 9;  // [bytes]
-constexpr size_t kLongestName = 1024; // [bytes], with its folders
-constexpr size_t kMostNames = 4000;   // in one file, each of which is looked for on the disk
-constexpr size_t kMostWords = 12;     // of a name, as spaces may be a part of it or stand before it
-constexpr size_t kPiece = 1 << 20;    // [bytes], read at once
+constexpr size_t kLongestEnding = 9;      // [bytes]
+constexpr size_t kLongestName = 1024;     // [bytes], with its folders
+constexpr size_t kMostNamesInFile = 4000; // in one file, each of which is looked for on the disk
+constexpr size_t kMostWords = 12;         // of a name, as spaces may be a part of it or stand before it
+constexpr size_t kPiece = 1 << 20;        // [bytes], read at once
 
 bool endsName(char c) {
     return static_cast<unsigned char>(c) < 0x20 || c == '"' || c == '<' || c == '>' || c == '|' || c == '*';
@@ -92,7 +92,7 @@ public:
 
     // Takes the longest part of a text that names a file: from its beginning, or from one of its words on.
     void take(std::string_view text, std::vector<std::string>& found) {
-        if (texts_.size() >= kMostNames || !texts_.emplace(text).second) return;
+        if (texts_.size() >= kMostNamesInFile || !texts_.emplace(text).second) return;
         size_t first = 0;
         for (size_t words = 0; words < kMostWords && first < text.size(); ++words) {
             if (const std::string file = near_.find(std::string(text.substr(first))); !file.empty()) {
