@@ -45,11 +45,11 @@ void main() {
     uint firstPatch = (push.firstChunk + chunk) * kChunk, firstLocal = gl_WorkGroupID.y * kSamplesPerInvocation;
     // Directions are not shared by tile here: the first patch has no say.
     Patch own = loadPatch(push.patches, firstPatch + lane);
-    uint key = rotationKey(own, own, push.rotation, push.size);
+    uint ownKey = rotationKey(own, own, push.rotation, push.size);
     // This is a counting sort. The order within a cell is open, but every link has a place of its own.
     for (uint c = lane; c < kCells; c += kChunk) cellEnd[c] = 0u;
     barrier();
-    for (uint k = 0u; k < kSamplesPerInvocation; ++k) atomicAdd(cellEnd[cellOf(key, push.firstSample + firstLocal + k)], 1u);
+    for (uint k = 0u; k < kSamplesPerInvocation; ++k) atomicAdd(cellEnd[cellOf(ownKey, push.firstSample + firstLocal + k)], 1u);
     barrier();
     if (lane == 0u) {
         uint sum = 0u;
@@ -61,14 +61,15 @@ void main() {
     }
     barrier();
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
-        uint slot = atomicAdd(cellEnd[cellOf(key, push.firstSample + firstLocal + k)], 1u);
+        uint slot = atomicAdd(cellEnd[cellOf(ownKey, push.firstSample + firstLocal + k)], 1u);
         order[slot] = k * kChunk + lane;
     }
     barrier();
     for (uint t = 0u; t < kSamplesPerInvocation; ++t) {
         uint which = order[t * kChunk + lane], local = firstLocal + which / kChunk, other = which % kChunk;
         Patch p = loadPatch(push.patches, firstPatch + other);
-        uint link = linkOfSample(p, rotationKey(p, p, push.rotation, push.size), push.firstSample + local);
+        uint key = rotationKey(p, p, push.rotation, push.size);
+        uint link = linkOfSample(p, coverOf(firstPatch + other), key, push.firstSample + local);
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + other] = link;
     }
 }

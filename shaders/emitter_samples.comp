@@ -11,12 +11,20 @@ layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
 #include "lib/pick_emitter.glsl"
 #include "lib/penumbra_rounds.glsl"
+#include "lib/starts.glsl"
 
 layout(local_size_x = 64) in;
 
 // The salts keep the numbers of picks and of points apart from those of directions, which start from the same
 // seeds.
 const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
+
+// Tells whether the polygon is so near that the texel is no point for it.
+bool isClose(Patch p, EmitterPolygon e) {
+    vec3 centre = 0.25 * (e.c0 + e.c1 + e.c2 + e.c3);
+    float reach = max(length(e.c0 - centre), length(e.c2 - centre));
+    return length(centre - p.position) - reach < kClosePair * sqrt(p.area);
+}
 
 void main() {
     uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
@@ -40,22 +48,32 @@ void main() {
         e = loadEmitterPolygon(push.polygons, emitter);
         light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
     }
+    // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
+    bool near = push.covers != 0ul && light != vec3(0.0) && isClose(p, e);
+    float factors = 0.0;
+    PatchCover cover = coverOf(index);
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
     vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
     for (uint s = 0u; s < push.pointCount; ++s) {
-        vec4 target = vec4(0.0);
+        vec4 point = vec4(0.0);
         if (shines) {
             // If all polygons are sampled, a patch's points take turns among the replicates; if they are
             // picked, a pick's points belong to one.
             uint number = all ? push.round * push.pointCount + s : pick;
             uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
-            EmitterSample y = emitterSample(p.position, p.shading, e, sobolPoint(turn, seed));
+            uint target = pick * push.pointCount + s;
+            uint start = startNumber(target, push.round, all ? push.pointCount : push.pickCount * push.pointCount,
+                                     all ? 1u : push.pointCount);
+            Patch from = startingPatch(p, cover, start);
+            if (near) factors += emitterFormFactor(from.position, from.shading, e);
+            EmitterSample y = emitterSample(from.position, from.shading, e, sobolPoint(turn, seed));
             // Below the geometric horizon the point is hidden, and not asked for.
-            bool above = dot(y.point - p.position, p.normal) > p.offset;
-            target = vec4(y.point + off, above ? y.factor : -y.factor);
+            bool above = dot(y.point - from.position, from.normal) > from.offset;
+            point = vec4(y.point + off, above ? y.factor : -y.factor);
         }
-        Vec4s(push.targets).items[(base + s) * kChunk + lane] = target;
+        Vec4s(push.targets).items[(base + s) * kChunk + lane] = point;
     }
+    if (near) light = e.radiance * (factors / (float(push.pointCount) * probability));
     Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane] = vec4(light, 0.0);
 }

@@ -12,14 +12,14 @@ const uint kTargetsPerWord = 32u; // lib/segments.glsl
 uint chunk, lane;
 
 // Returns what was sampled; the sky's light, of three colours, is made again.
-LampRay sampled(Lamp l, Patch p, uint s) {
-    if (l.type == kLampSky) return lampRay(l, p, s);
-    float light = Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane].w;
+LampRay sampled(Lamp l, Patch p, PatchCover cover, uint s) {
+    if (l.type == kLampSky) return lampRay(l, p, cover, s);
+    float light = Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane].w;
     return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
 }
 
 bool seen(uint target) {
-    uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
+    uint words = (targetCount() + kTargetsPerWord - 1u) / kTargetsPerWord;
     uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
     return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
 }
@@ -30,10 +30,11 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     if (roundLeftOut(index)) return;
     Patch p = loadPatch(push.patches, index);
+    PatchCover cover = coverOf(index); // the sky's samples are made again
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     uint reachedLamps = 0u, hiddenLamps = 0u;
-    for (uint k = 0u; k < push.lampCount; ++k) {
+    for (uint k = 0u; k < lampCount(); ++k) {
         Lamp l = loadLamp(k);
         uint bit = lampBit(k);
         LightNote note = lampNote(l, p, index, k);
@@ -46,7 +47,7 @@ void main() {
         for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
         float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
         for (uint s = 0u; s < l.samples; ++s) {
-            LampRay ray = sampled(l, p, s);
+            LampRay ray = sampled(l, p, cover, s);
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
             all += ray.light.r;

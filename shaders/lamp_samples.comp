@@ -12,13 +12,14 @@ void main() {
     Patch p = loadPatch(push.patches, index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
     bool leftOut = roundLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
+    PatchCover cover = coverOf(index);
     for (uint s = 0u; s < l.samples; ++s) {
         vec4 target = vec4(0.0);
         if (!leftOut) {
-            LampRay ray = lampRay(l, p, s);
+            LampRay ray = lampRay(l, p, cover, s);
             float light = l.type == kLampSky ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
             target = vec4(ray.target, ray.traced ? light : -light);
         }
-        Vec4s(push.targets).items[(chunk * push.targetCount + l.firstTarget + s) * kChunk + lane] = target;
+        Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane] = target;
     }
 }

@@ -9,6 +9,8 @@
 layout(push_constant, scalar) uniform Push { RetraceMarkPush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Boxes { TraceBox items[]; };
 
+#include "lib/starts.glsl"
+
 layout(local_size_x = 64) in;
 
 const uint kSamplesPerInvocation = 8u;
@@ -32,11 +34,13 @@ void main() {
         marks = (1u << kSamplesPerInvocation) - 1u;
     } else if (asks) {
         uint key = rotationKey(p, loadPatch(push.patches, first), push.rotation, push.size);
-        vec3 origin = p.position + p.offset * p.normal;
+        PatchCover cover = coverOf(first + lane);
         bool above = false;
         for (uint b = 0u; b < push.boxCount; ++b) above = above || boxAbove(p.position, p.normal, Boxes(push.boxes).items[b]);
         for (uint k = 0u; above && k < kSamplesPerInvocation; ++k) {
-            vec3 direction = patchDirection(p, key, push.firstSample + firstLocal + k);
+            uint number = push.firstSample + firstLocal + k;
+            vec3 origin = startingPatch(p, cover, number).position + p.offset * p.normal;
+            vec3 direction = patchDirection(p, key, number);
             bool meets = false;
             for (uint b = 0u; b < push.boxCount; ++b)
                 meets = meets || rayMeetsBox(origin, direction, Boxes(push.boxes).items[b]);

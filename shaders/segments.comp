@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 #include "lib/pairs.glsl"
+#include "lib/sampling.glsl"
 layout(push_constant, scalar) uniform Push { SegmentPush push; };
 #define geometry push.geometry
 #include "lib/trace.glsl"

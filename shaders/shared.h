@@ -66,6 +66,21 @@ struct PatchEdges {
     vec3 dv; // [m], along one texel of v
 };
 
+// PatchCover::cells: bit row * kCoverEdge + column is set where a point may lie in the middle of this cell of
+// the texel; with kCoverWhole it may lie anywhere in it. 0: it stays at the patch's own point.
+CONST uint kCoverEdge = 5u;
+CONST uint kCoverCells = 0x01ffffffu; // kCoverEdge * kCoverEdge bits
+CONST uint kCoverWhole = 0x80000000u;
+
+// The part of a texel that its patch's surface covers, for samples that start all over it.
+struct PatchCover {
+    vec3 du;    // [m], world-space edge along the texel's u, a little shortened so that no point lies on the edge
+    uint cells; // kCover...
+    vec3 dv;    // [m], likewise
+    uint place; // where the patch's own point lies in the texel, from 0 to kCoverPlaces: u | v << 16
+};
+CONST uint kCoverPlaces = 65534u; // its half is the texel's middle
+
 // Bounds of a chunk's patches, to tell whether two chunks have close pairs.
 struct ChunkBounds {
     vec3 lo;    // [m]
@@ -267,13 +282,13 @@ struct ClosestPush {
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
     ADDRESS patchChart;   // uint[]
+    ADDRESS covers;       // PatchCover[]; 0: rays start at the patches' own points
+    ADDRESS disc;         // vec2[discCount], even points of the unit disc
     uint firstChunk;
-    uint chunkCount;
     uint firstSample;
     uint sampleCount;
     uint size;      // lightmap edge [texels]
     uint rotation;  // kRotate...
-    ADDRESS disc;   // vec2[discCount], even points of the unit disc
     uint discCount; // 0: Sobol points
 };
 struct SegmentPush {
@@ -282,9 +297,10 @@ struct SegmentPush {
     ADDRESS targets; // vec4[chunkCount][targetCount][64]
     ADDRESS bits;    // uint[chunkCount][ceil(targetCount / 32)][64]
     ADDRESS rays;    // uint[kRayCounters], rays traced are added
+    ADDRESS covers;  // as of ClosestPush
     uint firstChunk;
-    uint chunkCount;
     uint targetCount;
+    uint round, turn, run; // which sample a target is: startNumber (lib/start_point.glsl)
 };
 struct TransposePush {
     ADDRESS supers;

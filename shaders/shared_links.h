@@ -8,6 +8,7 @@ struct EmitterSamplesPush {
     ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
     ADDRESS parts;    // lib/penumbra.glsl, as penumbra
     ADDRESS penumbra; // 0: every patch takes every sample pass
+    ADDRESS covers;   // as of ClosestPush
     uint firstChunk;
     uint round;
     uint pickCount;
@@ -41,13 +42,13 @@ struct LampPush {
     ADDRESS skyRows;   // float[height]
     ADDRESS parts;
     ADDRESS penumbra;  // as of EmitterSamplesPush
-    uvec2 skySize;     // 0: one radiance
+    ADDRESS covers;    // as of ClosestPush
+    uint skySize;      // [pixels], width | height << 16; 0: one radiance
     float skyRotation; // [rad]
     float reach;       // [m], out of the scene from anywhere in it
     uint firstChunk;
     uint firstLamp;
-    uint lampCount;   // of the group
-    uint targetCount; // of the group, per patch
+    uint counts; // of the group: lights | targets per patch << 16
     uint round;
     uint patchCount;
     float scale; // from the sum of all sums to the mean

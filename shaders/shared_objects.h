@@ -14,6 +14,7 @@ struct RetraceMarkPush {
     ADDRESS list;    // uint[]: how many, then which, as (chunk * sampleCount + sample) * 64 + patch, counted
                      // from firstChunk and firstSample on
     ADDRESS rays;    // uint[kRayCounters], to which the listed ones are added
+    ADDRESS covers;  // as of ClosestPush
     uint boxCount;
     uint firstChunk;
     uint firstSample;
@@ -30,6 +31,7 @@ struct RetracePush {
     ADDRESS texelToPatch; // uint[]
     ADDRESS patchChart;   // uint[]
     ADDRESS list;         // as above
+    ADDRESS covers;       // as of ClosestPush
     uint firstChunk;
     uint firstSample;
     uint sampleCount;

@@ -184,7 +184,8 @@ private:
                                .firstSample = 0,
                                .sampleCount = kLinkSamples,
                                .rotation = rotation,
-                               .links = &links});
+                               .links = &links,
+                               .covers = light_.coversIf(true)});
         const double cpu = secondsSince(start);
         timestamps_.mark(cmd, 1);
         vk::hostBarrier(cmd);

@@ -35,6 +35,12 @@ void addLinkOptions(CLI::App& command, LinkOptions& o) {
             "patches, or from tile to tile")
         ->check(oneOf({"patch", "interleaved", "tile"}));
     command
+        .add_option(
+            "--points", o.points,
+            "directional, hybrid: samples start all over the texel (texel, default), so that edges of "
+            "shadows are averaged, or in its middle (centre)")
+        ->check(oneOf({"texel", "centre"}));
+    command
         .add_option("--indirect-scale", o.indirectScale,
                     "directional, hybrid: follow directions from one patch of so many by so many texels and "
                     "interpolate: 1 (default), 2 or 4")
@@ -68,6 +74,8 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
         throw UsageError("--directions: only with --method directional or hybrid, others have none");
     if (!o.links.rotate.empty() && !links)
         throw UsageError("--rotate: only with --method directional or hybrid, others have no directions");
+    if (!o.links.points.empty() && !links)
+        throw UsageError("--points: only with --method directional or hybrid, others take a texel's middle");
     if (o.links.noSmooth && solver.method != Method::Hybrid)
         throw UsageError("--no-smooth: only with --method hybrid, others are never smoothed");
     if (o.links.indirectScale > 0 && !links)
@@ -98,6 +106,7 @@ void resolveLinkOptions(const BakeOptions& o, SolverSettings& solver) {
                                                             : Rotation::Patch;
     solver.links.indirectScale = std::max(o.links.indirectScale, 1u);
     solver.links.footprint = o.links.footprint;
+    solver.links.allOver = o.links.points != "centre";
     // The passes of these methods are bounces: how many samples they need is another question.
     if (!links) return;
     solver.links.perChunk = o.links.perChunk;

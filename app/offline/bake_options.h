@@ -44,9 +44,9 @@ struct SolveOptions {
 
 /// The options of the methods that follow directions.
 struct LinkOptions {
-    uint32_t samples = 0;           // 0: not given
-    std::string directions, rotate; // "": not given
-    uint32_t indirectScale = 0;     // 0: not given
+    uint32_t samples = 0;                   // 0: not given
+    std::string directions, rotate, points; // "": not given
+    uint32_t indirectScale = 0;             // 0: not given
     bool noSmooth = false, footprint = false, perChunk = false;
 };
 

@@ -24,11 +24,12 @@ std::string describe(Method method, const PairSettings& settings) {
 }
 
 std::string describe(const LinkSettings& settings) {
-    const auto& [directions, rotation, samples, smooth, indirectScale, footprint, perChunk] = settings;
+    const auto& [directions, rotation, samples, smooth, indirectScale, footprint, allOver, perChunk] =
+        settings;
     return fmt::format(
-        " samples={} indirect-scale={} smooth={} footprint={} per-chunk={} directions={} rotate={}", samples,
-        indirectScale, smooth ? 1 : 0, footprint ? 1 : 0, perChunk ? 1 : 0,
-        directions == DirectionSet::Lec ? "lec" : "sobol",
+        " samples={} indirect-scale={} smooth={} footprint={} points={} per-chunk={} directions={} rotate={}",
+        samples, indirectScale, smooth ? 1 : 0, footprint ? 1 : 0, allOver ? "texel" : "centre",
+        perChunk ? 1 : 0, directions == DirectionSet::Lec ? "lec" : "sobol",
         rotation == Rotation::Interleaved ? "interleaved"
         : rotation == Rotation::Tile      ? "tile"
                                           : "patch");

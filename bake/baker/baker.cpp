@@ -4,6 +4,7 @@
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
+#include "bake/baker/cover_search.h"
 #include "bake/baker/inside_search.h"
 #include "bake/baker/object_mover.h"
 #include "bake/layers/layer_solver.h"
@@ -142,12 +143,25 @@ void Baker::makeTracers() {
         clock.end("tracer");
     }
     if (!settings_.solver.transport.rtrad) findInvalid();
+    makeCovers();
     clock.end("validity");
     if (!marches) return;
     onPhase("voxels");
     tracer_.reset();
     tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
     clock.end("voxels");
+}
+
+// Finds where samples may start that start all over their texels, once.
+void Baker::makeCovers() {
+    if (!startsAllOver(settings_.solver) || patches_.covers.empty() || light_->covers) return;
+    searchCovers({.device = device_,
+                  .tracer = *tracer_,
+                  .patches = patches_,
+                  .onBatch = [this](double) { onPhase("validity", 1.0); }},
+                 coveredPatches(patches_));
+    const vk::MemoryOwner owner("surface");
+    light_->covers = vk::makeBuffer(device_, patches_.covers, "covers");
 }
 
 // Finds the patches inside something, once, before the first pass.
@@ -182,6 +196,7 @@ void Baker::onPhase(const char* phase, double done) const {
 void Baker::resetSolver(const SolverSettings& settings) {
     solver_ = {}; // before the new one takes its memory
     settings_.solver = settings;
+    makeCovers();
     solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
 }
 

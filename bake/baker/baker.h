@@ -91,6 +91,7 @@ private:
           const BakeSettings& settings, PhaseHook phaseHook);
     void makeTracers();
     void findInvalid();
+    void makeCovers();
     std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
     void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bake/baker/cover_search.h"
 #include "bake/baker/inside_search.h"
 #include "bake/baker/make_solver.h"
 #include "bake/baker/object_mover.h"
@@ -52,13 +53,14 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
     const uint64_t tables = solver.texels * sizeof(uint32_t) + solver.patches() * sizeof(uint32_t);
     MemoryNeeds needs;
     needs.cit = solver.texels * kCitTexelBytes + triangles + pictures;
-    needs.surface = LightBuffers::bytes(solver.chunkCount);
+    needs.surface = LightBuffers::bytes(solver.chunkCount, startsAllOver(settings.solver));
     needs.trace = triangles;
     if (!tracesOnHost(settings, solver.software)) needs.trace += tables;
     // Its pass has the tables once more.
     if (usesVoxels(settings)) needs.trace += VoxelMap::bytes(settings.voxels.resolution) + 2 * tables;
     if (!settings.solver.transport.rtrad)
-        needs.inside = insideBytes(solver.chunkCount, ObjectMover::kInsideSamples);
+        needs.inside = std::max(insideBytes(solver.chunkCount, ObjectMover::kInsideSamples),
+                                startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount) : 0);
     needs.solver = solverBytes(solver, settings.solver);
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
     if (solver.software)

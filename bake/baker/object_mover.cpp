@@ -1,6 +1,8 @@
 #include "bake/baker/object_mover.h"
 
 #include "assets/base/error.h"
+#include "bake/baker/cover_search.h"
+#include "bake/surface/patch_cover.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -281,15 +283,23 @@ std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move
         const uint32_t slot = part.slots[i];
         put(slot, part.patches.scene.patches[i], slot);
         all.edges[slot] = part.patches.edges[i];
+        all.covers[slot] = part.patches.covers[i];
+        all.coverCells[slot] = part.patches.coverCells[i];
         repainted_ = repainted_ || all.albedoPattern[slot] != part.patches.albedoPattern[i] ||
                      all.emissionPattern[slot] != part.patches.emissionPattern[i];
         all.albedoPattern[slot] = part.patches.albedoPattern[i];
         all.emissionPattern[slot] = part.patches.emissionPattern[i];
     }
-    for (const uint32_t slot : part.goneSlots)
+    for (const uint32_t slot : part.goneSlots) {
         put(slot, {}, kNoPatch);
-    for (uint32_t chunk = 0; chunk < all.chunkCount(); ++chunk)
-        if (move.changes(chunk)) all.bounds[chunk] = chunkBounds(all, chunk);
+        all.covers[slot] = {};
+        all.coverCells[slot] = 0;
+    }
+    for (uint32_t chunk = 0; chunk < all.chunkCount(); ++chunk) {
+        if (!move.changes(chunk)) continue;
+        all.bounds[chunk] = chunkBounds(all, chunk);
+        all.reach[chunk] = chunkReach(all, chunk);
+    }
     std::sort(texels.begin(), texels.end());
     return texels;
 }
@@ -382,6 +392,28 @@ std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patch
     return others;
 }
 
+// Finds again where samples may start in texels that what has moved stands in, or stood in.
+void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
+    PatchSet& patches = on_.patches;
+    if (!on_.light.covers) return;
+    const auto near = [&](uint32_t i) {
+        const shader::Patch& p = patches.scene.patches[i];
+        const glm::vec3 reach(coverReach(patches.covers[i]) + 2.0f * p.offset);
+        return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
+            return glm::all(glm::lessThanEqual(p.position - reach, box.hi)) &&
+                   glm::all(glm::greaterThanEqual(p.position + reach, box.lo));
+        });
+    };
+    std::vector<uint32_t> which;
+    for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
+        if (patches.coverCells[i] != 0 && (move.has(i) || near(i))) which.push_back(i);
+    const std::vector<uint32_t> others =
+        searchCovers({.device = on_.device, .tracer = tracer, .patches = patches, .onBatch = {}}, which);
+    for (const uint32_t i : others)
+        change(move, i);
+    vk::uploadElements(on_.device, on_.light.covers, patches.covers, merged(slots, others));
+}
+
 std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {
     repainted_ = false;
     ObjectMove move;
@@ -406,6 +438,7 @@ std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer
     tracer.update({.triangles = merged(part->triangles, part->goneTriangles), .texels = texels});
     const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
+    findCovers(tracer, slots, move);
     ObjectMove result;
     result.add(move); // many boxes become one
     return result;

@@ -68,6 +68,7 @@ private:
     std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
     void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
     std::vector<uint32_t> findInside(const std::vector<uint32_t>& patches, ObjectMove& move);
+    void findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;
 
     On on_;

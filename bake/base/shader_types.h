@@ -14,6 +14,7 @@ using glm::uint;
 #include "shaders/lib/pairs.glsl"
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
+#include "shaders/lib/start_point.glsl"
 #include "shaders/lib/polygon_sample.glsl"
 #include "shaders/lib/emitters.glsl"
 #include "shaders/lib/lamps.glsl"
@@ -25,6 +26,7 @@ using glm::uint;
 #include "shaders/lib/sketch.glsl"
 
 static_assert(sizeof(Patch) == 48 && sizeof(PatchEdges) == 24 && sizeof(ChunkBounds) == 28);
+static_assert(sizeof(PatchCover) == 32 && sizeof(ClosestPush) <= 128 && sizeof(SegmentPush) <= 128);
 static_assert(sizeof(SuperBlock) == 56 && sizeof(Sender) == 12);
 static_assert(sizeof(OcclusionPush) <= 128 && sizeof(GatherPush) <= 128); // what every device takes
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);

@@ -22,8 +22,8 @@ uint32_t wordsOfPoints(uint32_t targets) {
 
 } // namespace
 
-EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links)
-    : device_(device), links_(links),
+EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links, bool allOver)
+    : device_(device), links_(links), allOver_(allOver),
       batchChunks_(mostChunks(patches.chunkCount(), device.info().software())),
       samples_(device, "emitter_samples"), gather_(device, "direct") {}
 
@@ -67,6 +67,7 @@ uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, uint32_t links,
 
 void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
+    const vk::Buffer* covers = light.coversIf(allOver_);
     const shader::EmitterSamplesPush push{.patches = light.patches.address(),
                                           .polygons = group.polygons.address(),
                                           .nodes = group.nodes.address(),
@@ -74,6 +75,7 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .picks = picks_.address(),
                                           .parts = work.penumbra ? work.penumbra->parts.address() : 0,
                                           .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+                                          .covers = covers ? covers->address() : 0,
                                           .firstChunk = work.range.first,
                                           .round = work.round,
                                           .pickCount = group.picks,
@@ -82,13 +84,20 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
     samples_.dispatch(cmd, push, work.range.count, group.picks);
 }
 
-SegmentWork EmitterLight::segments(const Work& work, const vk::Buffer& rays) const {
+SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
+                                   const vk::Buffer& rays) const {
+    const Group& group = groups_[work.group];
+    // The points of a pick belong to one replicate, those of a light that is always sampled to all in turn.
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
-            .targetCount = groups_[work.group].targets(),
+            .targetCount = group.targets(),
             .targets = &targets_,
             .bits = &bits_,
-            .rays = &rays};
+            .rays = &rays,
+            .covers = light.coversIf(allOver_),
+            .round = work.round,
+            .turn = group.all ? group.points : group.targets(),
+            .run = group.all ? 1 : group.points};
 }
 
 void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,

@@ -16,8 +16,8 @@ namespace relume {
 class EmitterLight {
 public:
     /// Takes the directions per sample pass: mesh lights get about as many points, but at least those of one
-    /// pick for each replicate.
-    EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links);
+    /// pick for each replicate. With allOver samples start all over their texels (LightBuffers::covers).
+    EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links, bool allOver);
 
     /// Sets the groups in place of those before. No batch may be under way.
     void setGroups(const std::vector<EmitterSet>& groups);
@@ -36,7 +36,7 @@ public:
     /// Records the samples. The caller writes the barriers, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
-    SegmentWork segments(const Work& work, const vk::Buffer& rays) const;
+    SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after round +
     /// 1 sample passes.
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
@@ -63,7 +63,9 @@ private:
     };
 
     const vk::Device& device_;
-    uint32_t links_, batchChunks_;
+    uint32_t links_;
+    bool allOver_;
+    uint32_t batchChunks_;
     std::vector<Group> groups_;
     uint32_t picksRoom_ = 0, targetsRoom_ = 0; // per patch, what there is memory for
     vk::Buffer targets_, picks_, bits_;        // of one batch

@@ -1,5 +1,7 @@
 #include "bake/direct/host_lamps.h"
 
+#include "bake/trace/chunk_starts.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -30,8 +32,9 @@ void addBits(uint32_t& to, uint32_t bits) {
 
 // A chunk by component.
 struct PatchLanes {
-    using Lane = std::array<float, kChunk>;
-    Lane px, py, pz, nx, ny, nz, sx, sy, sz, offset;
+    using Lane = ChunkStarts::Lane;
+    ChunkStarts::Points at; // where the sample starts
+    Lane nx, ny, nz, sx, sy, sz, offset;
     std::array<uint32_t, kChunk> key, sends;
 };
 
@@ -57,7 +60,7 @@ template<uint32_t kType>
 #pragma GCC ivdep
     for (uint32_t i = 0; i < kChunk; ++i) {
         Patch p;
-        p.position = {lanes.px[i], lanes.py[i], lanes.pz[i]};
+        p.position = {lanes.at.x[i], lanes.at.y[i], lanes.at.z[i]};
         p.normal = {lanes.nx[i], lanes.ny[i], lanes.nz[i]};
         p.shading = {lanes.sx[i], lanes.sy[i], lanes.sz[i]};
         const uint32_t seed = shader::lampSeed(lamp, lanes.key[i], desc.number);
@@ -110,7 +113,6 @@ bool load(const HostLamps& work, size_t first, PatchLanes& lanes) {
     bool any = false;
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
-        lanes.px[i] = p.position.x, lanes.py[i] = p.position.y, lanes.pz[i] = p.position.z;
         lanes.nx[i] = p.normal.x, lanes.ny[i] = p.normal.y, lanes.nz[i] = p.normal.z;
         lanes.sx[i] = p.shading.x, lanes.sy[i] = p.shading.y, lanes.sz[i] = p.shading.z;
         lanes.offset[i] = p.offset;
@@ -130,10 +132,14 @@ void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
         std::fill_n(targets, size_t{work.targetCount} * kChunk, glm::vec4(0.0f));
         return;
     }
+    ChunkStarts starts;
+    starts.setPatches(work.patches + first, work.covers ? work.covers + first : nullptr);
     TargetLanes out;
     for (const Lamp& lamp : work.lamps) {
         for (uint32_t s = 0; s < lamp.samples; ++s) {
-            sample(lanes, {lamp, work.round * lamp.samples + s, work.reach}, out);
+            const uint32_t number = work.round * lamp.samples + s;
+            starts.make(number, lanes.at);
+            sample(lanes, {lamp, number, work.reach}, out);
             glm::vec4* to = targets + size_t{lamp.firstTarget + s} * kChunk;
             for (uint32_t i = 0; i < kChunk; ++i)
                 to[i] = {out.x[i], out.y[i], out.z[i], out.w[i]};

@@ -13,6 +13,8 @@ namespace relume {
 /// number of threads.
 struct HostLamps {
     const shader::Patch* patches = nullptr;
+    const shader::PatchCover* covers =
+        nullptr;                         // of all patches, where samples start; nullptr: at their points
     std::span<const shader::Lamp> lamps; // of one group
     glm::vec4* targets = nullptr;        // [chunk - firstChunk][targetCount][64], as in LampPush
     const uint32_t* bits = nullptr;      // which of them are seen, as in SegmentPush

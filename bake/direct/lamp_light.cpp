@@ -17,6 +17,11 @@ constexpr uint32_t kGroupRays = LampLight::kMostGroupRays;
 constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
 constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
 
+// Returns the rays to a light without extent: a shadow's edge in a texel has to be sampled, too.
+uint32_t pointRays(bool allOver) {
+    return allOver ? kReplicates : 1;
+}
+
 uint32_t wordsOf(uint32_t targets) {
     return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
 }
@@ -30,19 +35,24 @@ uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
 
 LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      set_(buildLamps(scene, patches.scene.mesh,
-                      {.samples = desc.samples, .sky = desc.sky, .unit = desc.chosen})),
+      set_(buildLamps(scene, patches.scene.mesh, lampDesc())),
       skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
       skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
     if (!desc.chosen) group(std::vector<uint32_t>(set_.lamps.size(), 0));
+}
+
+LampDesc LampLight::lampDesc() const {
+    return {.samples = desc_.samples,
+            .pointSamples = pointRays(desc_.allOver),
+            .sky = desc_.sky,
+            .unit = desc_.chosen};
 }
 
 void LampLight::update(const Scene& scene, std::span<const LampChoice> choices) {
     ASSERT(desc_.chosen);
     const bool skyShines = scene.sky.shines() && (set_.skyRows.empty() || set_.skyRows.back() > 0.0f);
     set_.skyRotation = scene.sky.rotation;
-    const std::vector<shader::Lamp> lamps =
-        lampsOf(scene, skyShines, {.samples = desc_.samples, .unit = true});
+    const std::vector<shader::Lamp> lamps = lampsOf(scene, skyShines, lampDesc());
     set_.lamps.clear();
     std::vector<uint32_t> sets;
     for (const LampChoice& choice : choices) {
@@ -74,7 +84,8 @@ void LampLight::group(const std::vector<uint32_t>& sets) {
     for (uint32_t i = 0; i < set_.lamps.size(); ++i) {
         shader::Lamp& lamp = set_.lamps[i];
         if (groups_.empty() || groups_.back().set != sets[i] ||
-            groups_.back().targets + lamp.samples > kGroupRays)
+            groups_.back().targets + lamp.samples > kGroupRays ||
+            (desc_.allOver && set_.lamps[i - 1].samples != lamp.samples)) // which the tracer counts by
             groups_.push_back({.first = i, .set = sets[i]});
         Group& group = groups_.back();
         lamp.firstTarget = group.targets;
@@ -101,8 +112,8 @@ void LampLight::group(const std::vector<uint32_t>& sets) {
     bits_ = vk::Buffer(device_, {.size = places * wordsOf(most) * sizeof(uint32_t), .name = "seen lamps"});
 }
 
-uint32_t LampLight::groupRays(const Count& lights, uint32_t samples) {
-    const uint64_t all = uint64_t{lights.extended} * samples + lights.points;
+uint32_t LampLight::groupRays(const Count& lights, uint32_t samples, bool allOver) {
+    const uint64_t all = uint64_t{lights.extended} * samples + uint64_t{lights.points} * pointRays(allOver);
     const uint64_t most = std::max(kGroupRays, lights.extended > 0 ? samples : 1u);
     return static_cast<uint32_t>(std::min(all, most));
 }
@@ -123,6 +134,7 @@ uint64_t LampLight::bytes(uint32_t chunkCount, bool software, uint32_t rays) {
 
 shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
+    const vk::Buffer* covers = light.coversIf(desc_.allOver);
     return {.patches = light.patches.address(),
             .lamps = lamps_.address(),
             .targets = targets_.address(),
@@ -131,13 +143,13 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .skyRows = skyRows_.address(),
             .parts = work.penumbra ? work.penumbra->parts.address() : 0,
             .penumbra = penumbraOf(work.penumbra, work.notes),
-            .skySize = set_.skySize,
+            .covers = covers ? covers->address() : 0,
+            .skySize = set_.skySize.x | set_.skySize.y << 16,
             .skyRotation = set_.skyRotation,
             .reach = set_.reach,
             .firstChunk = work.range.first,
             .firstLamp = group.first,
-            .lampCount = group.count,
-            .targetCount = group.targets,
+            .counts = group.count | group.targets << 16,
             .round = work.round,
             .patchCount = light.chunkCount * kChunk,
             .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
@@ -151,7 +163,9 @@ bool LampLight::onCpu(uint32_t group) const {
 
 HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
+    const vk::Buffer* covers = light.coversIf(desc_.allOver);
     return {.patches = light.patches.as<shader::Patch>(),
+            .covers = covers ? covers->as<shader::PatchCover>() : nullptr,
             .lamps = std::span(set_.lamps).subspan(group.first, group.count),
             .targets = targets_.as<glm::vec4>(),
             .bits = bits_.as<uint32_t>(),
@@ -185,13 +199,17 @@ void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, co
     samples_.dispatch(cmd, p, work.range.count, groups_[work.group].count);
 }
 
-SegmentWork LampLight::segments(const Work& work, const vk::Buffer& rays) const {
+SegmentWork LampLight::segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const {
+    const Group& group = groups_[work.group];
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
-            .targetCount = groups_[work.group].targets,
+            .targetCount = group.targets,
             .targets = &targets_,
             .bits = &bits_,
-            .rays = &rays};
+            .rays = &rays,
+            .covers = light.coversIf(desc_.allOver),
+            .round = work.round,
+            .turn = set_.lamps[group.first].samples};
 }
 
 void LampLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,

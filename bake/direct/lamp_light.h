@@ -27,6 +27,7 @@ public:
         uint32_t samples = 16; // as LampDesc has it
         bool sky = true;       // the sky is among them
         bool chosen = false;   // none until update() says which
+        bool allOver = false;  // samples start all over their texels (LightBuffers::covers)
     };
     LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc);
 
@@ -67,18 +68,19 @@ public:
     void gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
                      const vk::Buffer& sums, const vk::Buffer& direct) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
-    SegmentWork segments(const Work& work, const vk::Buffer& rays) const;
+    SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after round +
     /// 1 sample passes.
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 
-    /// The lights that share groups: those with an extent take Desc::samples rays each, the others one.
+    /// The lights that share groups: those with an extent take Desc::samples rays each, the others one, or
+    /// with Desc::allOver one for each replicate.
     struct Count {
         uint32_t extended = 0, points = 0;
     };
     /// Returns the most rays per patch of a group; many lights take no more than kMostGroupRays.
-    static uint32_t groupRays(const Count& lights, uint32_t samples);
+    static uint32_t groupRays(const Count& lights, uint32_t samples, bool allOver);
     static constexpr uint32_t kMostGroupRays =
         64; // two words of bits; a light with more is a group by itself
     /// Returns the bytes of a batch, where the largest group has so many rays; 0 for none.
@@ -87,6 +89,7 @@ public:
     static uint64_t tableBytes(const Count& lights, uint64_t skyPixels, uint64_t skyRows);
 
 private:
+    LampDesc lampDesc() const;
     struct Group {
         uint32_t first = 0, count = 0; // lights
         uint32_t targets = 0;          // per patch

@@ -50,7 +50,8 @@ ClosestWork LinkBatches::closestWork(uint32_t round, uint32_t rounds, const Link
             .sampleCount = rounds * kit_.linksOfRound,
             .rotation = kit_.settings.links.rotation,
             .links = place.links,
-            .linksOffset = place.offset};
+            .linksOffset = place.offset,
+            .covers = kit_.covers()};
 }
 
 void LinkBatches::finish(uint32_t round, const Portion& portion) {

@@ -39,6 +39,8 @@ public:
     const double& batchMs; // aim of one submit
 
     uint32_t chunkCount() const { return input.patches.chunkCount(); }
+    /// Returns where samples start (ClosestWork::covers).
+    const vk::Buffer* covers() const { return input.light.coversIf(settings.links.allOver); }
     VkDeviceSize lightBytes() const { return LightBuffers::lightBytes(input.patches); }
     /// Tells whether the device may be wider than a batch (BatchRate).
     bool wide() const { return !input.device.info().software(); }

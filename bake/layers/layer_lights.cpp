@@ -13,8 +13,9 @@ using Kind = LightKey::Kind;
 } // namespace
 
 LayerLights::LayerLights(LinkKit& kit)
-    : kit_(kit), emitters_(kit.input.device, kit.input.patches, kPoints),
-      lamps_(kit.input.device, kit.input.scene, kit.input.patches, {.samples = kPoints, .chosen = true}) {}
+    : kit_(kit), emitters_(kit.input.device, kit.input.patches, kPoints, kit.settings.links.allOver),
+      lamps_(kit.input.device, kit.input.scene, kit.input.patches,
+             {.samples = kPoints, .chosen = true, .allOver = kit.settings.links.allOver}) {}
 
 bool LayerLights::follow() {
     emitterGroups_.clear();
@@ -98,7 +99,7 @@ void LayerLights::traceOnCpu(const Portion& portion) {
     WorkerPool& pool = kit_.gatherPass.pool();
     lamps_.sampleOnCpu(pool, kit_.input.light, work);
     const auto start = Clock::now();
-    kit_.input.tracer.segments(VK_NULL_HANDLE, lamps_.segments(work, kit_.buffers.rays));
+    kit_.input.tracer.segments(VK_NULL_HANDLE, lamps_.segments(kit_.input.light, work, kit_.buffers.rays));
     const auto traced = Clock::now();
     kit_.progress.traceSeconds += secondsSince(start);
     lamps_.gatherOnCpu(pool, kit_.input.light, work, portion.newSums, kit_.buffers.directSums,
@@ -121,7 +122,7 @@ void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Por
                                      .penumbra = portion.penumbra};
     const LightBuffers& light = kit_.input.light;
     const PointTracer on{kit_.commands, kit_.timestamps, kit_.input.tracer};
-    const SegmentWork segments = lights.segments(work, kit_.buffers.rays);
+    const SegmentWork segments = lights.segments(light, work, kit_.buffers.rays);
     const auto samples = [&](VkCommandBuffer to) {
         before(to);
         lights.recordSamples(to, light, work);

@@ -23,7 +23,9 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
     const uint32_t polygons = extent.lights ? extent.lights->polygonsOfOne : EmitterLight::kAllEmitters;
     const LightExtent lights = extent.lights.value_or(LightExtent{});
     // Analytic lights have a group each while there is room for layers of all of them.
-    const uint32_t one = lights.extended > 0 ? kPoints : std::min(lights.points, 1u);
+    const uint32_t one = lights.extended > 0 || (lights.points > 0 && settings.links.allOver)
+                             ? kPoints
+                             : std::min(lights.points, 1u);
     const uint32_t rays = extent.lights ? one : LampLight::kMostGroupRays;
     const uint64_t direct =
         EmitterLight::bytes(extent.chunkCount, extent.software, kPoints, polygons) +

@@ -62,17 +62,23 @@ std::vector<uint8_t> chunksReached(WorkerPool& pool, const PatchSet& patches, co
     const auto meets = [&](const shader::TraceBox& start, const shader::TraceBox& box) {
         return light.kind == LightPlace::Kind::Everywhere || shaftMeets(start, endOf(start, light), box);
     };
+    const shader::Patch* const all = patches.scene.patches.data();
     const auto patchReached = [&](const shader::Patch& p, const shader::TraceBox& box) {
         if ((p.flags & shader::kPatchSends) == 0 || !shader::boxAbove(p.position, p.normal, box))
             return false;
         const glm::vec3 origin = p.position + p.offset * p.normal;
-        return meets({origin, origin}, box);
+        const shader::PatchCover* cover =
+            patches.covers.empty() ? nullptr : &patches.covers[size_t(&p - all)];
+        const glm::vec3 reach =
+            cover && cover->cells != 0 ? glm::abs(cover->du) + glm::abs(cover->dv) : glm::vec3(0.0f);
+        return meets({origin - reach, origin + reach}, box);
     };
     const auto chunkReached = [&](uint32_t chunk) {
         if (move.changes(chunk)) return true;
         const auto first = patches.scene.patches.begin() + size_t{chunk} * kChunk;
         const shader::ChunkBounds& bounds = patches.bounds[chunk];
-        const glm::vec3 grown(0.01f * bounds.size); // more than a patch's offset
+        const float starts = patches.reach.empty() ? 0.0f : patches.reach[chunk];
+        const glm::vec3 grown(0.01f * bounds.size + starts); // more than a patch's offset
         return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
             return meets({bounds.lo - grown, bounds.hi + grown}, box) &&
                    std::any_of(first, first + kChunk,

@@ -18,6 +18,10 @@ struct ObjectMove {
     /// Adds a later move, as if both had been one.
     void add(const ObjectMove& later);
     bool changes(uint32_t chunk) const { return (changed[chunk].x | changed[chunk].y) != 0; }
+    bool has(uint32_t patch) const {
+        const glm::uvec2& bits = changed[patch / shader::kChunk];
+        return ((patch % shader::kChunk < 32 ? bits.x : bits.y) >> patch % 32 & 1) != 0;
+    }
 };
 
 /// The place that a light shines from, to tell which segments may meet a box.

@@ -106,7 +106,7 @@ std::vector<shader::Lamp> lampsOf(const Scene& scene, bool skyShines, const Lamp
         lamps.push_back(lamp);
     }
     for (shader::Lamp& lamp : lamps) {
-        lamp.samples = hasExtent(lamp) ? desc.samples : 1;
+        lamp.samples = hasExtent(lamp) ? desc.samples : desc.pointSamples;
         // Kinds have numbers of their own. Lights of a kind share them: one's light must not depend on what
         // other lights there are.
         lamp.seed = lamp.type + 1;

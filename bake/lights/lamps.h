@@ -24,8 +24,9 @@ struct LampSet {
 struct LampDesc {
     uint32_t samples = 16; // rays to each light that has an extent, per patch and sample pass; a multiple of
                            // 2 * shader::kReplicates
-    bool sky = true;       // the sky is among them
-    bool unit = false;     // every light shines with colour 1, those of no intensity too
+    uint32_t pointSamples = 1; // to each of the others: 1, or a multiple of shader::kReplicates
+    bool sky = true;           // the sky is among them
+    bool unit = false;         // every light shines with colour 1, those of no intensity too
 };
 LampSet buildLamps(const Scene& scene, const WorldMesh& mesh, const LampDesc& desc);
 /// Returns LampSet::reach for these triangles.

@@ -22,11 +22,11 @@ uint64_t lampTableBytes(const SolverExtent& extent) {
     return LampLight::tableBytes({lights.extended, lights.points}, extent.skyPixels, extent.skyRows);
 }
 
-DirectNeeds directNeeds(const SolverExtent& extent, bool meshLights, uint32_t links) {
+DirectNeeds directNeeds(const SolverExtent& extent, bool meshLights, uint32_t links, bool allOver) {
     const uint32_t polygons = extent.lights ? extent.lights->polygons : EmitterLight::kAllEmitters;
-    const uint32_t rays = extent.lights
-                              ? LampLight::groupRays({extent.lights->extended, extent.lights->points}, links)
-                              : LampLight::kMostGroupRays;
+    const uint32_t rays =
+        extent.lights ? LampLight::groupRays({extent.lights->extended, extent.lights->points}, links, allOver)
+                      : LampLight::kMostGroupRays;
     const uint64_t emitters =
         EmitterLight::bytes(extent.chunkCount, extent.software, links, meshLights ? polygons : 0);
     const uint64_t lamps = LampLight::bytes(extent.chunkCount, extent.software, rays);
@@ -52,7 +52,7 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     // The last chunk may be padding but for one patch.
     const auto least = static_cast<uint32_t>(count - std::min<uint64_t>(count, shader::kChunk - 1));
     const uint32_t links = linksOfRound(least, settings.links.samples, extent.software);
-    const DirectNeeds direct = directNeeds(extent, hybrid, links);
+    const DirectNeeds direct = directNeeds(extent, hybrid, links, settings.links.allOver);
     const LinkBuffers::Desc desc{.direct = direct.any,
                                  .smooth = hybrid && settings.links.smooth,
                                  .local = true,

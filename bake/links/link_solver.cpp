@@ -33,7 +33,7 @@ uint32_t linksOf(const SolverInput& input, const SolverSettings& settings) {
 
 EmitterLight makeEmitters(const SolverInput& input, const SolverSettings& settings) {
     const PatchSet& patches = input.patches;
-    EmitterLight light(input.device, patches, linksOf(input, settings));
+    EmitterLight light(input.device, patches, linksOf(input, settings), settings.links.allOver);
     const bool hybrid = settings.method == Method::Hybrid;
     light.setGroups({hybrid ? buildEmitters(input.scene, patches.scene.mesh, {.size = patches.scene.size})
                             : EmitterSet{}});
@@ -57,7 +57,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     : emitters_(makeEmitters(input, settings)),
       sky_(linksSeeSky(input.scene.sky, settings) ? input.scene.sky.radiance : glm::vec3(0.0f)),
       lamps_(input.device, input.scene, input.patches,
-             {.samples = linksOf(input, settings), .sky = sky_ == glm::vec3(0.0f)}),
+             {.samples = linksOf(input, settings),
+              .sky = sky_ == glm::vec3(0.0f),
+              .allOver = settings.links.allOver}),
       coarse_(settings.links.indirectScale > 1
                   ? buildCoarsePatches(input.patches, settings.links.indirectScale)
                   : CoarsePatches{}),
@@ -249,7 +251,7 @@ void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange ra
         work.soFar = &buffers.direct;
     }
     const PointTimes times = tracePoints(
-        {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(work, buffers.rays),
+        {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(light, work, buffers.rays),
         [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },
         [&](VkCommandBuffer cmd) {
             lights.recordGather(cmd, light, work, buffers.directSums, buffers.direct);

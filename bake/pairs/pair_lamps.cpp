@@ -51,7 +51,7 @@ PointTimes PairLamps::batch(const Batch& batch) {
     for (uint32_t group = 0; group < lamps_.groups(); ++group) {
         const LampLight::Work work{.group = group, .round = place_.rounds, .range = {place_.chunk, count}};
         const PointTimes times = tracePoints(
-            batch.on, lamps_.segments(work, batch.rays),
+            batch.on, lamps_.segments(batch.light, work, batch.rays),
             [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, batch.light, work); },
             [&](VkCommandBuffer cmd) { lamps_.recordGather(cmd, batch.light, work, sums_, direct_); });
         all.trace += times.trace;

@@ -28,8 +28,9 @@ uint64_t lampBytes(const SolverExtent& extent, const SolverSettings& settings) {
     const uint64_t tables =
         LampLight::tableBytes({lights.extended, lights.points}, extent.skyPixels, extent.skyRows);
     const uint32_t rays =
-        extent.lights ? LampLight::groupRays({extent.lights->extended, extent.lights->points}, kPairLampRays)
-                      : LampLight::kMostGroupRays;
+        extent.lights
+            ? LampLight::groupRays({extent.lights->extended, extent.lights->points}, kPairLampRays, false)
+            : LampLight::kMostGroupRays;
     if (rays == 0) return tables;
     return extent.patches() * sizeof(glm::vec4) * (shader::kReplicates + 1) +
            LampLight::bytes(extent.chunkCount, extent.software, rays) + tables;

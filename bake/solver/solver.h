@@ -59,6 +59,8 @@ struct LinkSettings {
     // Links read the mean light over the part of a chart that their direction stands for
     // (bake/links/footprint.h).
     bool footprint = false;
+    // Samples start all over the part of their texel that the surface covers; else in its middle.
+    bool allOver = true;
     // Chunks take samples where light is still off; else every patch takes as many.
     bool perChunk = false;
 };
@@ -96,6 +98,11 @@ struct SolverSettings {
     double batchMs = 20.0; // aim of one submit
     bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
 };
+
+/// Tells whether samples start all over their texels.
+inline bool startsAllOver(const SolverSettings& settings) {
+    return !isPairMethod(settings.method) && settings.links.allOver;
+}
 
 /// The state of a bake, and what it has cost.
 struct SolverCounters {

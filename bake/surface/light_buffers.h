@@ -13,6 +13,7 @@ namespace relume {
 struct LightBuffers {
     vk::Buffer patches;    // shader::Patch
     vk::Buffer edges;      // shader::PatchEdges
+    vk::Buffer covers;     // shader::PatchCover; only where samples start all over their texels
     vk::Buffer bounds;     // shader::ChunkBounds, per chunk
     vk::Buffer albedo;     // vec4
     vk::Buffer emission;   // vec4 [cd/m^2]
@@ -38,15 +39,17 @@ struct LightBuffers {
     void resizeRadiance(const vk::Device& device, VkDeviceSize bytes) {
         if (radiance.size() != bytes) radiance = vk::Buffer(device, {.size = bytes, .name = "radiance"});
     }
+    /// Returns the covers for samples that start all over their texels, nullptr for those that do not.
+    const vk::Buffer* coversIf(bool allOver) const { return allOver && covers ? &covers : nullptr; }
     /// Makes what was gathered what the next bounce starts from.
     void turn() { std::swap(ligIn, ligOut); }
 
-    /// Returns their bytes for patches in so many chunks.
-    static uint64_t bytes(uint32_t chunks) {
+    /// Returns their bytes for patches in so many chunks, with covers or without.
+    static uint64_t bytes(uint32_t chunks, bool withCovers) {
         constexpr uint64_t kLight = 5 * sizeof(glm::vec4); // albedo, emission, radiance, ligIn, ligOut
-        return uint64_t{chunks} *
-               (shader::kChunk * (sizeof(shader::Patch) + sizeof(shader::PatchEdges) + kLight) +
-                sizeof(shader::ChunkBounds) + sizeof(uint32_t));
+        return uint64_t{chunks} * (shader::kChunk * (sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
+                                                     kLight + (withCovers ? sizeof(shader::PatchCover) : 0)) +
+                                   sizeof(shader::ChunkBounds) + sizeof(uint32_t));
     }
     static VkDeviceSize lightBytes(const PatchSet& set) {
         return set.scene.patches.size() * sizeof(glm::vec4);

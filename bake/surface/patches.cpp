@@ -3,7 +3,9 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "assets/images/float_image.h"
+#include "bake/surface/patch_cover.h"
 #include "bake/surface/patch_material.h"
+#include "bake/surface/triangle_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,30 +28,6 @@ constexpr float kMaxAreaCorrection = 4.0f;
 // A watch hears of this phase, each time after so many triangles.
 constexpr const char* kPatchesPhase = "patches";
 constexpr unsigned kPatchesOften = 4096;
-
-// The affine map from the lightmap to the world that a triangle defines.
-struct TriangleFrame {
-    glm::vec3 normal{0.0f};       // geometric, unit
-    glm::vec3 du{0.0f}, dv{0.0f}; // [m] per texel; zero where the UVs are degenerate
-    float area = 0.0f;            // [m^2]
-};
-
-TriangleFrame triangleFrame(const WorldMesh& mesh, uint32_t triangle, uint32_t size) {
-    const glm::vec3* p = &mesh.positions[size_t{triangle} * 3];
-    const glm::vec2* t = &mesh.lightmapUv[size_t{triangle} * 3];
-    const glm::dvec3 e1(glm::dvec3(p[1]) - glm::dvec3(p[0])), e2(glm::dvec3(p[2]) - glm::dvec3(p[0]));
-    const glm::dvec2 f1(glm::dvec2(t[1]) - glm::dvec2(t[0])), f2(glm::dvec2(t[2]) - glm::dvec2(t[0]));
-    const glm::dvec3 n = glm::cross(e1, e2);
-    TriangleFrame frame;
-    frame.area = static_cast<float>(0.5 * glm::length(n));
-    frame.normal = glm::vec3(glm::normalize(n));
-    const double det = (f1.x * f2.y - f1.y * f2.x) * size;
-    if (std::abs(det) > 0.0) {
-        frame.du = glm::vec3((e1 * f2.y - e2 * f1.y) / det);
-        frame.dv = glm::vec3((e2 * f1.x - e1 * f2.x) / det);
-    }
-    return frame;
-}
 
 // Everything about one patch, before it is put into its place.
 struct NewPatch {
@@ -99,6 +77,7 @@ public:
         while (set_.scene.patches.size() % kChunk != 0)
             add(padding);
         tellWatch(kPatchesPhase);
+        if (!rtrad_) addCovers(set_, group_, frames_);
         applyMaterials(set_, scene_.materials);
         tellWatch(kPatchesPhase);
         addBounds();

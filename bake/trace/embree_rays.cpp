@@ -13,11 +13,14 @@ constexpr uint32_t kCells = 1u << (2 * kCellBits);
 
 } // namespace
 
-void ChunkRays::setPatches(const shader::Patch* patches, uint32_t rotation, uint32_t size) {
+void ChunkRays::setPatches(const shader::Patch* patches, const shader::PatchCover* covers, uint32_t rotation,
+                           uint32_t size) {
+    chunkStarts_.setPatches(patches, covers);
     for (uint32_t i = 0; i < kChunk; ++i) {
         const shader::Patch& patch = patches[i];
         frames_.sx[i] = patch.shading.x, frames_.sy[i] = patch.shading.y, frames_.sz[i] = patch.shading.z;
         frames_.nx[i] = patch.normal.x, frames_.ny[i] = patch.normal.y, frames_.nz[i] = patch.normal.z;
+        offsets_[i] = patch.offset * patch.normal;
         const uint32_t key = shader::rotationKey(patch, patches[0], rotation, size);
         for (uint32_t r = 0; r < shader::kReplicates; ++r)
             frames_.seed[r][i] = shader::replicateSeed(key, r);
@@ -128,8 +131,10 @@ void ChunkRays::fillDirections(uint32_t sample, uint32_t slot) {
 void ChunkRays::setSamples(uint32_t first, uint32_t count) {
     ASSERT(count <= kSamplesMax);
     count_ = count * kChunk;
-    for (uint32_t k = 0; k < count; ++k)
+    for (uint32_t k = 0; k < count; ++k) {
         fillDirections(first + k, k * kChunk);
+        chunkStarts_.make(first + k, starts_[k]);
+    }
     sort();
 }
 

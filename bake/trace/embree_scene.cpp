@@ -20,6 +20,7 @@ namespace relume {
 
 using shader::kChunk;
 using shader::Patch;
+using shader::PatchCover;
 
 namespace shader {
 namespace {
@@ -106,7 +107,7 @@ struct EmbreeScene::Impl {
                uint32_t* out, bool silent = false) const;
     uint32_t linksAgain(const RetraceArrays& work, uint32_t chunk, uint32_t piece) const;
     uint32_t link(const RTCRayHit8& rays, uint32_t lane) const;
-    uint32_t targets(const Patch* patches, const glm::vec4* ends, uint32_t count, uint32_t* bits) const;
+    uint32_t targets(const SegmentArrays& work, uint32_t chunk, uint32_t first, uint32_t* bits) const;
 
     const TraceScene& scene;
     WorkerPool& pool;
@@ -357,7 +358,7 @@ void EmbreeScene::Impl::links(const Patch* patches, const ChunkRays& directions,
             const uint32_t number = order[first + std::min(lane, count - 1)];
             const Patch& patch = patches[number % kChunk];
             valid[lane] = lane < count && shader::asksAgain(patch, silent) ? -1 : 0;
-            const glm::vec3 origin = patch.position + patch.offset * patch.normal;
+            const glm::vec3 origin = directions.origin(number);
             rays.ray.org_x[lane] = origin.x, rays.ray.org_y[lane] = origin.y, rays.ray.org_z[lane] = origin.z;
             rays.ray.dir_x[lane] = directions.x[number], rays.ray.dir_y[lane] = directions.y[number];
             rays.ray.dir_z[lane] = directions.z[number];
@@ -395,12 +396,13 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
     if ((above | changed) == 0) return 0;
     const uint32_t first = piece * ChunkRays::kSamplesMax;
     ChunkRays rays;
-    rays.setPatches(patches, static_cast<uint32_t>(c.rotation), scene.size);
+    const PatchCover* covers = c.covers ? c.covers + size_t(c.firstChunk + chunk) * kChunk : nullptr;
+    rays.setPatches(patches, covers, static_cast<uint32_t>(c.rotation), scene.size);
     rays.setSamples(c.firstSample + first, std::min(ChunkRays::kSamplesMax, c.sampleCount - first));
     const auto again = [&](uint32_t number) {
         const uint32_t i = number % kChunk;
         if ((above >> i & 1) == 0) return (changed >> i & 1) != 0;
-        const glm::vec3 origin = patches[i].position + patches[i].offset * patches[i].normal;
+        const glm::vec3 origin = rays.origin(number);
         const glm::vec3 direction(rays.x[number], rays.y[number], rays.z[number]);
         return std::any_of(work.boxes.begin(), work.boxes.end(), [&](const shader::TraceBox& box) {
             return shader::rayMeetsBox(origin, direction, box);
@@ -442,9 +444,11 @@ void EmbreeScene::closest(const ClosestArrays& work) {
     const Patch* receivers = work.receivers ? work.receivers : impl.scene.patches.data();
     impl_->pool.run(work.chunkCount * pieces, [&](uint32_t k) {
         const uint32_t chunk = k / pieces, first = k % pieces * kPiece;
-        const Patch* patches = receivers + size_t(work.firstChunk + chunk) * kChunk;
+        const size_t firstPatch = size_t(work.firstChunk + chunk) * kChunk;
+        const Patch* patches = receivers + firstPatch;
+        const PatchCover* covers = work.covers && !work.receivers ? work.covers + firstPatch : nullptr;
         ChunkRays rays;
-        rays.setPatches(patches, static_cast<uint32_t>(work.rotation), impl.scene.size);
+        rays.setPatches(patches, covers, static_cast<uint32_t>(work.rotation), impl.scene.size);
         if (work.disc) rays.setDisc(work.disc, work.discCount);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
         impl.links(patches, rays, {rays.order().data(), rays.count()},
@@ -452,21 +456,33 @@ void EmbreeScene::closest(const ClosestArrays& work) {
     });
 }
 
-// Writes a word of bits for each of a chunk's patches and returns the number of rays. Rays of neighbouring
-// patches to the same target fill a packet.
-uint32_t EmbreeScene::Impl::targets(const Patch* patches, const glm::vec4* ends, uint32_t count,
+// Writes a word of bits for each of a chunk's patches, for targets from `first` on, and returns the number of
+// rays. Rays of neighbouring patches to the same target fill a packet.
+uint32_t EmbreeScene::Impl::targets(const SegmentArrays& work, uint32_t chunk, uint32_t first,
                                     uint32_t* bits) const {
+    const size_t firstPatch = size_t(work.firstChunk + chunk) * kChunk;
+    const Patch* patches = &scene.patches[firstPatch];
+    const glm::vec4* ends = work.targets + (size_t(chunk) * work.targetCount + first) * kChunk;
+    const uint32_t count = std::min(kTargetsPerWord, work.targetCount - first);
+    ChunkStarts starts;
+    ChunkStarts::Points points;
+    starts.setPatches(patches, work.covers ? work.covers + firstPatch : nullptr);
+    starts.make(0, points);
     std::array<uint64_t, kChunk> free{}; // per target, a bit for each patch
     Blockers blockers(scene.mesh.positions.data());
     OcclusionPacket packet(embree.get(), blockers, free);
     uint32_t rays = 0;
     for (uint32_t s = 0; s < count; ++s) {
+        const glm::vec4* to = ends + size_t{s} * kChunk;
+        if (std::none_of(to, to + kChunk, [](const glm::vec4& end) { return end.w > 0.0f; })) continue;
+        if (starts.move())
+            starts.make(shader::startNumber(first + s, work.round, work.turn, work.run), points);
         for (uint32_t i = 0; i < kChunk; ++i) {
-            const glm::vec4& end = ends[size_t{s} * kChunk + i];
-            if (!(end.w > 0.0f)) continue;
-            const glm::vec3 origin = patches[i].position + patches[i].offset * patches[i].normal;
+            if (!(to[i].w > 0.0f)) continue;
+            const glm::vec3 origin =
+                glm::vec3(points.x[i], points.y[i], points.z[i]) + patches[i].offset * patches[i].normal;
             free[s] |= uint64_t{1} << i;
-            packet.add(s, i, {origin, glm::vec3(end) - origin, 0.0f, 1.0f});
+            packet.add(s, i, {origin, glm::vec3(to[i]) - origin, 0.0f, 1.0f});
             ++rays;
         }
     }
@@ -481,14 +497,10 @@ uint32_t EmbreeScene::Impl::targets(const Patch* patches, const glm::vec4* ends,
 
 void EmbreeScene::segments(const SegmentArrays& work) {
     const Impl& impl = *impl_;
-    constexpr uint32_t kPerWord = 32;
-    const uint32_t words = (work.targetCount + kPerWord - 1) / kPerWord;
+    const uint32_t words = (work.targetCount + kTargetsPerWord - 1) / kTargetsPerWord;
     impl_->pool.run(work.chunkCount * words, [&](uint32_t k) {
-        const uint32_t chunk = k / words, first = k % words * kPerWord;
-        const Patch* patches = &impl.scene.patches[size_t(work.firstChunk + chunk) * kChunk];
-        const glm::vec4* ends = work.targets + (size_t(chunk) * work.targetCount + first) * kChunk;
-        const uint32_t count = std::min(kPerWord, work.targetCount - first);
-        const uint32_t rays = impl.targets(patches, ends, count, work.bits + size_t(k) * kChunk);
+        const uint32_t chunk = k / words, first = k % words * kTargetsPerWord;
+        const uint32_t rays = impl.targets(work, chunk, first, work.bits + size_t(k) * kChunk);
         const uint32_t slot = (work.firstChunk + chunk) % shader::kRayCounters;
         if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
     });

@@ -29,6 +29,7 @@ struct ClosestArrays {
     Rotation rotation = Rotation::Patch;
     const glm::vec2* disc = nullptr;
     uint32_t discCount = 0;
+    const shader::PatchCover* covers = nullptr;
     uint32_t* links = nullptr;
 };
 
@@ -38,6 +39,8 @@ struct SegmentArrays {
     const glm::vec4* targets = nullptr;
     uint32_t* bits = nullptr;
     uint32_t* rays = nullptr; // may be left out
+    const shader::PatchCover* covers = nullptr;
+    uint32_t round = 0, turn = 1, run = 1;
 };
 
 /// RetraceWork (tracer.h) on plain memory.

@@ -56,11 +56,19 @@ public:
                          .targets = mappedAs<glm::vec4>(work.targets, uint64_t(work.chunkCount) *
                                                                           work.targetCount * shader::kChunk),
                          .bits = mappedAs<uint32_t>(work.bits, work.chunkCount * words * shader::kChunk),
-                         .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr});
+                         .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr,
+                         .covers = coversOf(work.covers),
+                         .round = work.round,
+                         .turn = work.turn,
+                         .run = work.run});
     }
 
 private:
-    static ClosestArrays arrays(const ClosestWork& work) {
+    const shader::PatchCover* coversOf(const vk::Buffer* covers) const {
+        return covers ? mappedAs<shader::PatchCover>(covers, uint64_t{chunkCount_} * shader::kChunk)
+                      : nullptr;
+    }
+    ClosestArrays arrays(const ClosestWork& work) const {
         const uint64_t links =
             work.linksOffset + uint64_t(work.chunkCount) * work.sampleCount * shader::kChunk;
         return {.receivers = work.receiversHost,
@@ -71,6 +79,7 @@ private:
                 .rotation = work.rotation,
                 .disc = work.disc ? mappedAs<glm::vec2>(work.disc, work.discCount) : nullptr,
                 .discCount = work.discCount,
+                .covers = coversOf(work.covers),
                 .links = mappedAs<uint32_t>(work.links, links) + work.linksOffset};
     }
 

@@ -19,6 +19,10 @@ uint32_t segmentWords(const SegmentWork& work) {
     return (work.targetCount + kTargetsPerWord - 1) / kTargetsPerWord;
 }
 
+VkDeviceAddress addressOf(const vk::Buffer* buffer) {
+    return buffer ? buffer->address() : 0;
+}
+
 // The tables of a TraceScene on the device, and the push constants that point to them.
 class SceneBuffers {
 public:
@@ -73,13 +77,13 @@ public:
                 .hitTriangles = hitTriangles_.address(),
                 .texelToPatch = texelToPatch_.address(),
                 .patchChart = patchChart_.address(),
+                .covers = work.receivers ? 0 : addressOf(work.covers),
+                .disc = addressOf(work.disc),
                 .firstChunk = work.firstChunk,
-                .chunkCount = work.chunkCount,
                 .firstSample = work.firstSample,
                 .sampleCount = work.sampleCount,
                 .size = size_,
                 .rotation = static_cast<uint32_t>(work.rotation),
-                .disc = work.disc ? work.disc->address() : 0,
                 .discCount = work.disc ? work.discCount : 0};
     }
 
@@ -89,9 +93,12 @@ public:
                 .targets = work.targets->address(),
                 .bits = work.bits->address(),
                 .rays = work.rays->address(),
+                .covers = addressOf(work.covers),
                 .firstChunk = work.firstChunk,
-                .chunkCount = work.chunkCount,
-                .targetCount = work.targetCount};
+                .targetCount = work.targetCount,
+                .round = work.round,
+                .turn = work.turn,
+                .run = work.run};
     }
 
     shader::RetraceMarkPush markPush(const RetraceWork& work) const {
@@ -100,6 +107,7 @@ public:
                 .changed = work.changed->address(),
                 .list = work.list->address(),
                 .rays = work.rays->address(),
+                .covers = addressOf(work.closest.covers),
                 .boxCount = work.boxCount,
                 .firstChunk = work.closest.firstChunk,
                 .firstSample = work.closest.firstSample,
@@ -117,6 +125,7 @@ public:
                 .texelToPatch = texelToPatch_.address(),
                 .patchChart = patchChart_.address(),
                 .list = work.list->address(),
+                .covers = all.covers,
                 .firstChunk = all.firstChunk,
                 .firstSample = all.firstSample,
                 .sampleCount = all.sampleCount,

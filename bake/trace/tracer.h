@@ -66,6 +66,9 @@ struct ClosestWork {
     uint32_t discCount = 0;
     const vk::Buffer* links = nullptr; // uint32_t[chunkCount * sampleCount * 64] and what lies before
     uint64_t linksOffset = 0;          // [links]
+    // shader::PatchCover per patch of the scene (mapped where the tracer runs on the CPU): sample k starts at
+    // shader::startPoint k. nullptr, or with receivers: at the patch's own point.
+    const vk::Buffer* covers = nullptr;
 };
 
 /// Segments from the patches of some chunks to points of their own. Target s of patch i of chunk c is
@@ -80,6 +83,9 @@ struct SegmentWork {
     const vk::Buffer* bits = nullptr; // uint32_t[chunkCount * words * 64], too
     const vk::Buffer* rays =
         nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
+    // As in ClosestWork: target s starts at shader::startPoint of shader::startNumber(s, round, turn, run).
+    const vk::Buffer* covers = nullptr;
+    uint32_t round = 0, turn = 1, run = 1;
 };
 
 constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/segments.glsl

@@ -21,6 +21,17 @@ Patch loadPatch(ADDRESS patches, uint index) {
     return p;
 }
 
+PatchCover loadCover(ADDRESS covers, uint index) {
+    Rows rows = Rows(covers);
+    uvec4 a = rows.items[index * 2u], b = rows.items[index * 2u + 1u];
+    PatchCover c;
+    c.du = uintBitsToFloat(a.xyz);
+    c.cells = a.w;
+    c.dv = uintBitsToFloat(b.xyz);
+    c.place = b.w;
+    return c;
+}
+
 EmitterPolygon loadEmitterPolygon(ADDRESS polygons, uint index) {
     Rows rows = Rows(polygons);
     uvec4 a = rows.items[index * 5u], b = rows.items[index * 5u + 1u], c = rows.items[index * 5u + 2u];

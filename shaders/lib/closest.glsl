@@ -1,5 +1,6 @@
 // Traces the links of one patch for eight consecutive samples.
 #include "lib/link.glsl"
+#include "lib/starts.glsl"
 
 vec3 discSample(uint key, uint index) {
     uint seed = discSeed(key, index, push.discCount);
@@ -13,9 +14,9 @@ vec3 directionOf(uint key, uint index) {
 
 const uint kSamplesPerInvocation = 8u;
 
-uint linkOfSample(Patch p, uint key, uint index) {
+uint linkOfSample(Patch p, PatchCover cover, uint key, uint index) {
     if ((p.flags & kPatchSends) == 0u) return kLinkDark;
-    return linkAround(p, directionOf(key, index));
+    return linkAround(startingPatch(p, cover, index), directionOf(key, index));
 }
 
 void traceLinks(uint chunk, uint sampleGroup, uint lane) {
@@ -25,9 +26,10 @@ void traceLinks(uint chunk, uint sampleGroup, uint lane) {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     uint key = rotationKey(p, loadPatch(push.patches, (push.firstChunk + chunk) * kChunk), push.rotation, push.size);
+    PatchCover cover = coverOf(index);
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
         Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] =
-            linkOfSample(p, key, push.firstSample + local);
+            linkOfSample(p, cover, key, push.firstSample + local);
     }
 }

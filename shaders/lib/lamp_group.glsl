@@ -6,6 +6,7 @@
 #include "lib/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
 #include "lib/penumbra_rounds.glsl"
+#include "lib/starts.glsl"
 vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
 float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
 #include "lib/sky.glsl"
@@ -13,20 +14,26 @@ float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[inde
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
 Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp + indexInGroup]; }
 
+uint lampCount() { return push.counts & 0xffffu; }
+uint targetCount() { return push.counts >> 16; }
+
 struct LampRay {
     vec3 target;
     vec3 light; // unshadowed, per unit of the light's colour; the mean over its samples counts
     bool traced;
 };
 
-LampRay lampRay(Lamp l, Patch p, uint s) {
+// Makes sample s of patch p, which starts at another point of its texel.
+LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
     uint number = push.round * l.samples + s, index = replicateIndex(number);
+    p = startingPatch(p, cover, number);
     uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
     if (l.type == kLampSky) {
         // With a picture, samples come in pairs, one by each way, that share their numbers.
-        uint turn = push.skySize.x > 0u ? index / 2u : index;
-        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, push.skySize, push.skyRotation);
+        uvec2 size = uvec2(push.skySize & 0xffffu, push.skySize >> 16);
+        uint turn = size.x > 0u ? index / 2u : index;
+        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, size, push.skyRotation);
         ray.target = p.position + push.reach * sky.direction;
         ray.light = sky.light;
     } else {
@@ -46,7 +53,7 @@ uint lampBit(uint indexInGroup) {
 
 // Returns the light of a whole one, unshadowed, per unit of its colour; negative where only samples tell.
 vec3 wholeLight(Lamp l, Patch p) {
-    if (l.type == kLampSky && push.skySize.x == 0u) return lampRay(l, p, 0u).light;
+    if (l.type == kLampSky && push.skySize == 0u) return lampRay(l, p, PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), 0u).light;
     return vec3(lampWhole(l, p));
 }
 

@@ -1,3 +1,5 @@
+#include "lib/starts.glsl"
+
 // Traces listed links again: invocation `first` takes every `step`-th one, so that nobody need know how many
 // there are.
 void retraceLinks(uint first, uint step) {
@@ -8,7 +10,9 @@ void retraceLinks(uint first, uint step) {
         Patch p = loadPatch(push.patches, chunk * kChunk + lane);
         uint key = rotationKey(p, loadPatch(push.patches, chunk * kChunk), push.rotation, push.size);
         uint link = kLinkDark;
-        if (asksAgain(p, push.silent)) link = linkAround(p, localDirection(key, push.firstSample + local));
+        uint sampleNumber = push.firstSample + local;
+        if (asksAgain(p, push.silent))
+            link = linkAround(startingPatch(p, coverOf(chunk * kChunk + lane), sampleNumber), localDirection(key, sampleNumber));
         Words(push.links).items[at] = link;
     }
 }

@@ -1,8 +1,12 @@
 // Makes one word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own.
+#include "lib/starts.glsl"
+
 const uint kTargetsPerWord = 32u;
 
 void traceTargets(uint chunk, uint word, uint lane) {
-    Patch p = loadPatch(push.patches, (push.firstChunk + chunk) * kChunk + lane);
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
+    PatchCover cover = coverOf(index);
     uint first = word * kTargetsPerWord, count = min(kTargetsPerWord, push.targetCount - first);
     uint seen = 0u, rays = 0u;
 #ifdef TRACER_VOXEL
@@ -16,7 +20,8 @@ void traceTargets(uint chunk, uint word, uint lane) {
 #endif
         if (target.w <= 0.0) continue;
         ++rays;
-        if (pointSeen(p, target.xyz)) seen |= 1u << s;
+        Patch start = startingPatch(p, cover, startNumber(first + s, push.round, push.turn, push.run));
+        if (pointSeen(start, target.xyz)) seen |= 1u << s;
     }
     if (rays != 0u) atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], rays);
     uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;

@@ -196,6 +196,7 @@ BakeSettings settingsOf(const BakeDesc& desc) {
     settings.solver.error = desc.error;
     settings.solver.localError = desc.localError;
     settings.solver.links.perChunk = desc.perChunk;
+    settings.solver.links.allOver = desc.allOver;
     settings.solver.batchMs = desc.batchMs;
     settings.solver.method = desc.method;
     settings.solver.links.samples = desc.samples;

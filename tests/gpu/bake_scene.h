@@ -72,6 +72,7 @@ struct BakeDesc {
     uint32_t passes = 1;
     double error = 0;
     double localError = 0;
+    bool allOver = true;   // samples start all over their texels
     bool perChunk = false; // samples go where light is still off
     double batchMs = 20;
     Method method = Method::Pure;

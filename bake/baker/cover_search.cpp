@@ -1,0 +1,153 @@
+#include "bake/baker/cover_search.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "assets/base/clock.h"
+#include "bake/base/batch_rate.h"
+#include "bake/base/chunk_order.h"
+#include "bake/surface/patch_cover.h"
+#include "bake/vk/commands.h"
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kCoverCells;
+using shader::kCoverWhole;
+
+// The aim of one submit [ms]; a wish to stop waits for as long.
+constexpr double kCoverBatchMs = 20.0;
+// A batch has at most so many chunks, whose targets are 6 MiB.
+constexpr uint32_t kMostCoverChunks = 256;
+constexpr uint32_t kPlaces = shader::kCoverEdge * shader::kCoverEdge;
+static_assert(kRimPlaces <= kPlaces && kPlaces <= kTargetsPerWord);
+// A place nearer to the patch's own point than this share of the texel is seen without asking.
+constexpr float kHere = 1e-3f;
+
+// Asks which places of texels the patches' own points see.
+class CoverBatches {
+public:
+    explicit CoverBatches(const CoverSearch& search)
+        : search_(search), most_(std::min(search.patches.chunkCount(), kMostCoverChunks)),
+          commands_(search.device),
+          targets_(search.device, {.size = uint64_t{most_} * kPlaces * kChunk * sizeof(glm::vec4),
+                                   .memory = vk::Memory::Host,
+                                   .name = "places in texels"}),
+          bits_(search.device, {.size = uint64_t{most_} * kChunk * sizeof(uint32_t),
+                                .memory = vk::Memory::Host,
+                                .name = "seen places"}),
+          rays_(search.device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}),
+          rate_(!search.device.info().software()) {}
+
+    // Returns a bit for each of the places that these patches (ascending) see; `placeOf` tells where they
+    // are.
+    std::vector<uint32_t> seen(std::span<const uint32_t> which, uint32_t places,
+                               const std::function<glm::vec2(uint32_t)>& placeOf) {
+        std::vector<uint32_t> result;
+        result.reserve(which.size());
+        for (size_t begin = 0; begin < which.size();) {
+            if (search_.onBatch)
+                search_.onBatch(static_cast<double>(begin) / static_cast<double>(which.size()));
+            const auto wanted = static_cast<uint32_t>(
+                std::clamp(rate_.wanted(kCoverBatchMs), 1.0, static_cast<double>(most_)));
+            const uint32_t first = which[begin] / kChunk;
+            size_t end = begin;
+            while (end < which.size() && which[end] / kChunk < first + wanted)
+                ++end;
+            const uint32_t count = which[end - 1] / kChunk - first + 1;
+            const auto start = Clock::now();
+            ask(which.subspan(begin, end - begin), {first, count}, places, placeOf);
+            for (size_t i = begin; i < end; ++i)
+                result.push_back(bits_.as<uint32_t>()[which[i] - first * kChunk]);
+            rate_.note(count, kCoverBatchMs, secondsSince(start));
+            begin = end;
+        }
+        return result;
+    }
+
+private:
+    void ask(std::span<const uint32_t> which, ChunkRange range, uint32_t places,
+             const std::function<glm::vec2(uint32_t)>& placeOf) {
+        auto* const targets = targets_.as<glm::vec4>();
+        std::fill_n(targets, size_t{range.count} * places * kChunk, glm::vec4(0.0f));
+        std::vector<uint32_t> here; // bits that need no ray, of each patch
+        here.reserve(which.size());
+        for (const uint32_t patch : which) {
+            const shader::Patch& p = search_.patches.scene.patches[patch];
+            const shader::PatchCover& cover = search_.patches.covers[patch];
+            const float near = kHere * (glm::length(cover.du) + glm::length(cover.dv));
+            const size_t chunk = patch / kChunk - range.first;
+            here.push_back(0);
+            for (uint32_t k = 0; k < places; ++k) {
+                const glm::vec3 way = shader::coverWay(cover, placeOf(k));
+                if (glm::length(way) <= near)
+                    here.back() |= 1u << k;
+                else
+                    targets[(chunk * places + k) * kChunk + patch % kChunk] =
+                        glm::vec4(p.position + way + p.offset * p.normal, 1.0f);
+            }
+        }
+        const bool records = search_.tracer.records();
+        VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
+        search_.tracer.segments(cmd, {.firstChunk = range.first,
+                                      .chunkCount = range.count,
+                                      .targetCount = places,
+                                      .targets = &targets_,
+                                      .bits = &bits_,
+                                      .rays = &rays_});
+        if (records) {
+            vk::hostBarrier(cmd);
+            commands_.run();
+        }
+        for (size_t i = 0; i < which.size(); ++i)
+            bits_.as<uint32_t>()[which[i] - range.first * kChunk] |= here[i];
+    }
+
+    const CoverSearch& search_;
+    uint32_t most_;
+    vk::Commands commands_;
+    vk::Buffer targets_, bits_, rays_;
+    BatchRate rate_;
+};
+
+} // namespace
+
+std::vector<uint32_t> coveredPatches(const PatchSet& patches) {
+    std::vector<uint32_t> which;
+    for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
+        if (patches.coverCells[i] != 0) which.push_back(i);
+    return which;
+}
+
+std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which) {
+    if (which.empty()) return {};
+    std::vector<shader::PatchCover>& covers = search.patches.covers;
+    std::vector<uint32_t> before, whole, parts;
+    for (const uint32_t patch : which) {
+        before.push_back(covers[patch].cells);
+        covers[patch].cells = search.patches.coverCells[patch];
+        ((covers[patch].cells & kCoverWhole) != 0 ? whole : parts).push_back(patch);
+    }
+    CoverBatches batches(search);
+    // Where the whole rim is seen, nothing stands in the texel, as a rule.
+    const std::vector<uint32_t> rims = batches.seen(whole, kRimPlaces, rimPlace);
+    for (size_t i = 0; i < whole.size(); ++i)
+        if (std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces}) parts.push_back(whole[i]);
+    std::sort(parts.begin(), parts.end());
+    const std::vector<uint32_t> cells = batches.seen(parts, kPlaces, cellPlace);
+    for (size_t i = 0; i < parts.size(); ++i)
+        covers[parts[i]].cells &= cells[i] & kCoverCells;
+    std::vector<uint32_t> others;
+    for (size_t i = 0; i < which.size(); ++i)
+        if (covers[which[i]].cells != before[i]) others.push_back(which[i]);
+    return others;
+}
+
+uint64_t coverSearchBytes(uint32_t chunks) {
+    return uint64_t{std::min(chunks, kMostCoverChunks)} * kChunk *
+               (kPlaces * sizeof(glm::vec4) + sizeof(uint32_t)) +
+           shader::kRayCounters * sizeof(uint32_t);
+}
+
+} // namespace relume

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "bake/surface/patch_set.h"
+#include "bake/trace/tracer.h"
+
+namespace relume {
+
+/// The things that a search for what stands in texels works with.
+struct CoverSearch {
+    const vk::Device& device;
+    Tracer& tracer;
+    PatchSet& patches;
+    std::function<void(double done)> onBatch; // before each batch; what it throws ends the search
+};
+
+/// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.
+std::vector<uint32_t> coveredPatches(const PatchSet& patches);
+
+/// Takes those cells away from the covers of these patches (ascending) that their own point does not see: a
+/// wall stands in front of them, or they lie inside something. The covers begin with what the surface has.
+/// Returns the patches whose cover is another one than before, ascending.
+std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which);
+/// Returns the device bytes that it takes.
+uint64_t coverSearchBytes(uint32_t chunks);
+
+} // namespace relume

@@ -1,0 +1,211 @@
+#include "bake/surface/patch_cover.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace relume {
+namespace {
+
+using shader::kCoverCells;
+using shader::kCoverEdge;
+using shader::kCoverWhole;
+using shader::kNoPatch;
+
+constexpr uint32_t kCells = kCoverEdge * kCoverEdge;
+constexpr uint32_t kRim = (1u << kRimPlaces) - 1;
+// Edges are shortened by this share on both sides: what lies on the very edge of a texel may lie in a wall
+// that stands there.
+constexpr float kInset = 1.0f / 256.0f;
+// Charts whose edge is a texel's, too, cover it for all that rounding does [texels].
+constexpr double kEdgeRounding = 1e-3;
+// Points keep to where the surface is no farther from the patch's plane, and from where the patch's own
+// triangle would have it, than this share of the texel: beyond, it bends or is stretched.
+constexpr float kMostBend = 0.05f;
+// Below the surface no ray may start: it may rise by no more than this share of the patch's offset.
+constexpr float kMostRise = 0.5f;
+// Normals that differ by more than some 25 degrees are another surface's.
+constexpr float kLeastCosine = 0.9f;
+
+// A triangle in the lightmap [texels].
+struct TexelTriangle {
+    std::array<glm::dvec2, 3> corner;
+    double det = 0; // twice its area, signed
+
+    // Returns the weights of corners 1 and 2 there.
+    glm::dvec2 weights(const glm::dvec2& at) const {
+        const glm::dvec2 a = corner[1] - corner[0], b = corner[2] - corner[0], q = at - corner[0];
+        return glm::dvec2(q.x * b.y - q.y * b.x, a.x * q.y - a.y * q.x) / det;
+    }
+    // Tells whether a point lies in it, or no farther beyond its edges than rounding does.
+    bool has(const glm::dvec2& at) const {
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::dvec2 edge = corner[(k + 1) % 3] - corner[k], way = at - corner[k];
+            const double side = (edge.x * way.y - edge.y * way.x) * (det > 0 ? 1.0 : -1.0);
+            if (side < -kEdgeRounding * glm::length(edge)) return false;
+        }
+        return true;
+    }
+};
+
+class CoverBuilder {
+public:
+    CoverBuilder(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames)
+        : set_(set), group_(group), frames_(frames), rims_(set.scene.patches.size(), 0) {
+        set_.covers.assign(set.scene.patches.size(), shader::PatchCover{});
+    }
+
+    void run() {
+        const WorldMesh& mesh = set_.scene.mesh;
+        for (uint32_t t = 0; t < mesh.opaqueCount; ++t)
+            if (mesh.chart[t] != kNoChart) cover(t);
+        const auto whole = static_cast<float>(shader::kCoverPlaces);
+        const TexelWindow& w = group_.window;
+        for (uint32_t y = w.row; y < w.row + w.rows; ++y) {
+            for (uint32_t x = w.column; x < w.column + w.columns; ++x) {
+                const uint32_t patch = set_.scene.texelToPatch[w.index(x, y)];
+                if (patch == kNoPatch || !covers(patch)) continue;
+                const TriangleFrame& frame = frames_[ownTriangle(x, y)];
+                shader::PatchCover& c = set_.covers[patch];
+                const glm::vec2 place = placeOf(patch, ownTriangle(x, y), {x, y});
+                c.du = (1.0f - 2.0f * kInset) * frame.du;
+                c.dv = (1.0f - 2.0f * kInset) * frame.dv;
+                c.place = static_cast<uint32_t>(std::lround(place.x * whole)) |
+                          static_cast<uint32_t>(std::lround(place.y * whole)) << 16;
+                if (c.cells == kCoverCells && rims_[patch] == kRim) c.cells |= kCoverWhole;
+            }
+        }
+        set_.coverCells.clear();
+        for (const shader::PatchCover& c : set_.covers)
+            set_.coverCells.push_back(c.cells);
+        set_.reach.clear();
+        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk)
+            set_.reach.push_back(chunkReach(set_, chunk));
+    }
+
+private:
+    bool covers(uint32_t patch) const { return set_.covers[patch].cells != 0; }
+    uint32_t ownTriangle(uint32_t x, uint32_t y) const {
+        return group_.triangle[group_.window.index(x, y)] - 1;
+    }
+
+    TexelTriangle texelTriangle(uint32_t t) const {
+        const glm::vec2* uv = &set_.scene.mesh.lightmapUv[size_t{t} * 3];
+        TexelTriangle result;
+        for (size_t k = 0; k < 3; ++k)
+            result.corner[k] = glm::dvec2(uv[k]) * double(group_.size);
+        const glm::dvec2 a = result.corner[1] - result.corner[0], b = result.corner[2] - result.corner[0];
+        result.det = a.x * b.y - a.y * b.x;
+        return result;
+    }
+
+    // Returns where the patch's own point lies in its texel.
+    glm::vec2 placeOf(uint32_t patch, uint32_t triangle, glm::uvec2 texel) const {
+        const glm::dvec3 du(frames_[triangle].du), dv(frames_[triangle].dv);
+        const glm::dvec3 way = glm::dvec3(set_.scene.patches[patch].position) -
+                               glm::dvec3(set_.scene.mesh.positions[size_t{triangle} * 3]);
+        const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv);
+        const double det = uu * vv - uv * uv, a = glm::dot(way, du), b = glm::dot(way, dv);
+        if (!(det > 0)) return glm::vec2(0.5f);
+        const glm::dvec2 at =
+            texelTriangle(triangle).corner[0] + glm::dvec2(a * vv - b * uv, b * uu - a * uv) / det;
+        const glm::dvec2 place = glm::clamp(at - glm::dvec2(texel), glm::dvec2(0.0), glm::dvec2(1.0));
+        // A point that was not moved there lies in the middle, whatever the position has lost by rounding.
+        constexpr double kMiddle = 1e-3;
+        if (std::abs(place.x - 0.5) < kMiddle && std::abs(place.y - 0.5) < kMiddle) return glm::vec2(0.5f);
+        return glm::vec2(place);
+    }
+
+    // Adds what a triangle covers to the patches of its chart.
+    void cover(uint32_t t) {
+        const TexelTriangle triangle = texelTriangle(t);
+        if (!(std::abs(triangle.det) > 0)) return;
+        glm::dvec2 lo = triangle.corner[0], hi = lo;
+        for (const glm::dvec2& c : triangle.corner) {
+            lo = glm::min(lo, c);
+            hi = glm::max(hi, c);
+        }
+        const TexelWindow& w = group_.window;
+        const glm::dvec2 first(w.column, w.row), last(w.column + w.columns - 1, w.row + w.rows - 1);
+        const glm::dvec2 from = glm::max(glm::floor(lo), first), to = glm::min(glm::floor(hi), last);
+        for (double y = from.y; y <= to.y; ++y)
+            for (double x = from.x; x <= to.x; ++x)
+                coverTexel(t, triangle, {static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
+    }
+
+    void coverTexel(uint32_t t, const TexelTriangle& triangle, glm::uvec2 texel) {
+        const uint32_t patch = set_.scene.texelToPatch[group_.window.index(texel.x, texel.y)];
+        if (patch == kNoPatch || set_.scene.patchChart[patch] != set_.scene.mesh.chart[t]) return;
+        const uint32_t own = ownTriangle(texel.x, texel.y);
+        if (own >= set_.scene.mesh.opaqueCount) return;
+        shader::PatchCover& c = set_.covers[patch];
+        if (c.cells == kCoverCells && rims_[patch] == kRim) return;
+        const glm::dvec2 corner(texel);
+        const auto inside = [&](double x, double y) { return triangle.has(corner + glm::dvec2(x, y)); };
+        if (t == own && inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)) {
+            c.cells = kCoverCells;
+            rims_[patch] = kRim;
+            return;
+        }
+        const auto goesOn = [&](const glm::vec2& place) {
+            const glm::dvec2 at = corner + glm::dvec2(place);
+            return triangle.has(at) && (t == own || continues(patch, own, t, triangle, at));
+        };
+        for (uint32_t cell = 0; cell < kCells; ++cell)
+            if ((c.cells >> cell & 1u) == 0 && goesOn(cellPlace(cell))) c.cells |= 1u << cell;
+        for (uint32_t i = 0; i < kRimPlaces; ++i)
+            if ((rims_[patch] >> i & 1u) == 0 && goesOn(rimPlace(i)))
+                rims_[patch] |= static_cast<uint8_t>(1u << i);
+    }
+
+    // Tells whether triangle t goes on, at a place in the lightmap [texels], where the patch's own one would.
+    bool continues(uint32_t patch, uint32_t own, uint32_t t, const TexelTriangle& triangle,
+                   const glm::dvec2& at) const {
+        const shader::Patch& p = set_.scene.patches[patch];
+        if (glm::dot(frames_[t].normal, p.normal) < kLeastCosine) return false;
+        const auto pointOf = [&](uint32_t of, const TexelTriangle& texels) {
+            const glm::vec3* corner = &set_.scene.mesh.positions[size_t{of} * 3];
+            const glm::vec2 b(texels.weights(at));
+            return corner[0] + b.x * (corner[1] - corner[0]) + b.y * (corner[2] - corner[0]);
+        };
+        const glm::vec3 there = pointOf(t, triangle), wanted = pointOf(own, texelTriangle(own));
+        const float size = std::min(glm::length(frames_[own].du), glm::length(frames_[own].dv));
+        return glm::dot(there - p.position, p.normal) <= kMostRise * p.offset &&
+               glm::distance(there, wanted) <= kMostBend * size;
+    }
+
+    PatchSet& set_;
+    const TextureGroup& group_;
+    std::span<const TriangleFrame> frames_;
+    std::vector<uint8_t> rims_; // per patch: a bit for each place on the texel's edge that is covered
+};
+
+} // namespace
+
+void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames) {
+    CoverBuilder(set, group, frames).run();
+}
+
+float coverReach(const shader::PatchCover& cover) {
+    return cover.cells == 0 ? 0.0f : glm::length(cover.du) + glm::length(cover.dv);
+}
+
+float chunkReach(const PatchSet& set, uint32_t chunk) {
+    float reach = 0.0f;
+    for (size_t i = size_t{chunk} * shader::kChunk; i < size_t{chunk + 1} * shader::kChunk; ++i)
+        reach = std::max(reach, coverReach(set.covers[i]));
+    return reach;
+}
+
+glm::vec2 rimPlace(uint32_t index) {
+    const uint32_t place = index < kRimPlaces / 2 ? index : index + 1; // all of 3 x 3 but the middle
+    return 0.5f * glm::vec2(static_cast<float>(place % 3), static_cast<float>(place / 3));
+}
+
+glm::vec2 cellPlace(uint32_t cell) {
+    const auto edge = static_cast<float>(kCoverEdge);
+    return (glm::vec2(static_cast<float>(cell % kCoverEdge), static_cast<float>(cell / kCoverEdge)) + 0.5f) /
+           edge;
+}
+
+} // namespace relume

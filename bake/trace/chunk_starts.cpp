@@ -1,0 +1,94 @@
+#include "bake/trace/chunk_starts.h"
+
+#include <bit>
+
+namespace relume {
+
+using shader::kChunk;
+
+namespace {
+
+struct StartLanes {
+    const float *px, *py, *pz, *ux, *uy, *uz, *vx, *vy, *vz;
+    const uint32_t* seed;
+};
+
+// Makes points anywhere in whole texels, in a form that compilers turn into vector code. It is always
+// inlined, to be compiled once for each instruction set.
+[[gnu::always_inline]] inline void makeStarts(uint32_t index, const StartLanes& in, float* __restrict x,
+                                              float* __restrict y, float* __restrict z) {
+#pragma GCC ivdep
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        const glm::vec2 u = shader::sobolPoint(index, in.seed[i]);
+        x[i] = in.px[i] + u.x * in.ux[i] + u.y * in.vx[i];
+        y[i] = in.py[i] + u.x * in.uy[i] + u.y * in.vy[i];
+        z[i] = in.pz[i] + u.x * in.uz[i] + u.y * in.vz[i];
+    }
+}
+
+using MakeStarts = void (*)(uint32_t, const StartLanes&, float*, float*, float*);
+
+void makeStartsPlain(uint32_t index, const StartLanes& in, float* x, float* y, float* z) {
+    makeStarts(index, in, x, y, z);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void makeStartsAvx2(uint32_t index, const StartLanes& in, float* x, float* y,
+                                                    float* z) {
+    makeStarts(index, in, x, y, z);
+}
+MakeStarts chooseMakeStarts() {
+    return __builtin_cpu_supports("avx2") ? makeStartsAvx2 : makeStartsPlain;
+}
+#else
+MakeStarts chooseMakeStarts() {
+    return makeStartsPlain;
+}
+#endif
+
+} // namespace
+
+void ChunkStarts::setPatches(const shader::Patch* patches, const shader::PatchCover* covers) {
+    patches_ = patches;
+    covers_ = covers;
+    parts_ = 0;
+    Lanes& l = lanes_;
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        const shader::Patch& p = patches[i];
+        glm::vec3 corner = p.position, du(0.0f), dv(0.0f);
+        if (covers && covers[i].cells != 0) {
+            const shader::PatchCover& cover = covers[i];
+            corner += shader::coverWay(cover, glm::vec2(0.0f));
+            du = cover.du, dv = cover.dv;
+            if ((cover.cells & shader::kCoverWhole) == 0) parts_ |= uint64_t{1} << i;
+        }
+        l.px[i] = corner.x, l.py[i] = corner.y, l.pz[i] = corner.z;
+        l.ux[i] = du.x, l.uy[i] = du.y, l.uz[i] = du.z;
+        l.vx[i] = dv.x, l.vy[i] = dv.y, l.vz[i] = dv.z;
+        if (!covers) continue;
+        for (uint32_t r = 0; r < shader::kReplicates; ++r)
+            l.seed[r][i] = shader::startSeed(shader::replicateSeed(shader::seedKey(p), r));
+    }
+}
+
+void ChunkStarts::make(uint32_t number, Points& out) const {
+    const Lanes& l = lanes_;
+    if (!covers_) {
+        out.x = l.px, out.y = l.py, out.z = l.pz;
+        return;
+    }
+    static const MakeStarts makeWhole = chooseMakeStarts();
+    makeWhole(shader::replicateIndex(number),
+              {l.px.data(), l.py.data(), l.pz.data(), l.ux.data(), l.uy.data(), l.uz.data(), l.vx.data(),
+               l.vy.data(), l.vz.data(), l.seed[number % shader::kReplicates].data()},
+              out.x.data(), out.y.data(), out.z.data());
+    for (uint64_t rest = parts_; rest != 0; rest &= rest - 1)
+        makePart(number, static_cast<uint32_t>(std::countr_zero(rest)), out);
+}
+
+void ChunkStarts::makePart(uint32_t number, uint32_t lane, Points& out) const {
+    const glm::vec3 at = shader::startPoint(patches_[lane], covers_[lane], number);
+    out.x[lane] = at.x, out.y[lane] = at.y, out.z[lane] = at.z;
+}
+
+} // namespace relume

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "bake/base/shader_types.h"
+
+namespace relume {
+
+/// The points that the samples of one chunk's patches start from (shader::startPoint), by component: for a
+/// sample of all patches at once.
+class ChunkStarts {
+public:
+    using Lane = std::array<float, shader::kChunk>;
+    struct alignas(64) Points {
+        Lane x, y, z; // [m]
+    };
+
+    /// Takes the chunk's 64 patches and their covers; without covers all samples start at the patches' own
+    /// points. Both must outlive it.
+    void setPatches(const shader::Patch* patches, const shader::PatchCover* covers);
+    /// Makes the points of sample `number`, on the surface, to the last bit or two.
+    void make(uint32_t number, Points& out) const;
+    /// Tells whether samples start elsewhere than at the patches' own points.
+    bool move() const { return covers_ != nullptr; }
+
+private:
+    void makePart(uint32_t number, uint32_t lane, Points& out) const;
+
+    const shader::Patch* patches_ = nullptr;
+    const shader::PatchCover* covers_ = nullptr;
+    struct alignas(64) Lanes {
+        Lane px, py, pz;             // the texels' corners; where nothing moves the patches' own points [m]
+        Lane ux, uy, uz, vx, vy, vz; // edges [m], zero where nothing moves
+        std::array<std::array<uint32_t, shader::kChunk>, shader::kReplicates> seed;
+    } lanes_;
+    uint64_t parts_ = 0; // bit i: only some cells of patch i's texel are covered
+};
+
+} // namespace relume
