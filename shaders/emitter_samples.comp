@@ -19,11 +19,11 @@ layout(local_size_x = 64) in;
 // seeds.
 const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
 
-// Tells whether the polygon is so near that the texel is no point for it.
-bool isClose(Patch p, EmitterPolygon e) {
-    vec3 centre = 0.25 * (e.c0 + e.c1 + e.c2 + e.c3);
-    float reach = max(length(e.c0 - centre), length(e.c2 - centre));
-    return length(centre - p.position) - reach < kClosePair * sqrt(p.area);
+// Nearer than this many patch sizes the form factor in the middle of a texel is off by some per cent of its mean.
+const float kNearSizes = 2.0;
+
+bool isNear(Patch p, EmitterPolygon e) {
+    return polygonDistance(p.position, e) < kNearSizes * sqrt(p.area);
 }
 
 void main() {
@@ -49,7 +49,7 @@ void main() {
         light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
-    bool near = push.covers != 0ul && light != vec3(0.0) && isClose(p, e);
+    bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p, e);
     float factors = 0.0;
     PatchCover cover = coverOf(index);
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;

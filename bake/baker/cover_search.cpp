@@ -135,7 +135,7 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
     for (size_t i = 0; i < whole.size(); ++i)
         if (std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces}) parts.push_back(whole[i]);
     std::sort(parts.begin(), parts.end());
-    const std::vector<uint32_t> cells = batches.seen(parts, kPlaces, cellPlace);
+    const std::vector<uint32_t> cells = batches.seen(parts, kPlaces, shader::cellPlace);
     for (size_t i = 0; i < parts.size(); ++i)
         covers[parts[i]].cells &= cells[i] & kCoverCells;
     std::vector<uint32_t> others;

@@ -18,7 +18,7 @@ constexpr uint64_t kCitTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t) + s
 // Corners, hit table, and the acceleration structure while it is built.
 constexpr uint64_t kTriangleBytes = 400;
 // The host's copies of a patch and of its light.
-constexpr uint64_t kHostBytes = 180;
+constexpr uint64_t kHostBytes = 216;
 constexpr uint64_t kPictureTexelBytes = 4;
 
 // Embree's tables are the host's own.

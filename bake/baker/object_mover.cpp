@@ -398,7 +398,8 @@ void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots,
     if (!on_.light.covers) return;
     const auto near = [&](uint32_t i) {
         const shader::Patch& p = patches.scene.patches[i];
-        const glm::vec3 reach(coverReach(patches.covers[i]) + 2.0f * p.offset);
+        const shader::PatchCover& cover = patches.covers[i];
+        const glm::vec3 reach = glm::abs(cover.du) + glm::abs(cover.dv) + 2.0f * p.offset;
         return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
             return glm::all(glm::lessThanEqual(p.position - reach, box.hi)) &&
                    glm::all(glm::greaterThanEqual(p.position + reach, box.lo));

@@ -34,7 +34,7 @@ void addBits(uint32_t& to, uint32_t bits) {
 struct PatchLanes {
     using Lane = ChunkStarts::Lane;
     ChunkStarts::Points at; // where the sample starts
-    Lane nx, ny, nz, sx, sy, sz, offset;
+    Lane px, py, pz, nx, ny, nz, sx, sy, sz, offset;
     std::array<uint32_t, kChunk> key, sends;
 };
 
@@ -64,7 +64,9 @@ template<uint32_t kType>
         p.normal = {lanes.nx[i], lanes.ny[i], lanes.nz[i]};
         p.shading = {lanes.sx[i], lanes.sy[i], lanes.sz[i]};
         const uint32_t seed = shader::lampSeed(lamp, lanes.key[i], desc.number);
-        const shader::LampSample s = shader::lampSample(lamp, p, shader::sobolPoint(index, seed), desc.reach);
+        const glm::vec3 own(lanes.px[i], lanes.py[i], lanes.pz[i]);
+        const shader::LampSample s =
+            shader::lampSample(lamp, p, own, shader::sobolPoint(index, seed), desc.reach);
         const float height = glm::dot(s.target - p.position, p.normal);
         const bool traced = (lanes.sends[i] != 0) & (height > lanes.offset[i]);
         out.x[i] = s.target.x, out.y[i] = s.target.y, out.z[i] = s.target.z;
@@ -113,6 +115,7 @@ bool load(const HostLamps& work, size_t first, PatchLanes& lanes) {
     bool any = false;
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
+        lanes.px[i] = p.position.x, lanes.py[i] = p.position.y, lanes.pz[i] = p.position.z;
         lanes.nx[i] = p.normal.x, lanes.ny[i] = p.normal.y, lanes.nz[i] = p.normal.z;
         lanes.sx[i] = p.shading.x, lanes.sy[i] = p.shading.y, lanes.sz[i] = p.shading.z;
         lanes.offset[i] = p.offset;

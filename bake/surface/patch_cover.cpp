@@ -152,7 +152,7 @@ private:
             return triangle.has(at) && (t == own || continues(patch, own, t, triangle, at));
         };
         for (uint32_t cell = 0; cell < kCells; ++cell)
-            if ((c.cells >> cell & 1u) == 0 && goesOn(cellPlace(cell))) c.cells |= 1u << cell;
+            if ((c.cells >> cell & 1u) == 0 && goesOn(shader::cellPlace(cell))) c.cells |= 1u << cell;
         for (uint32_t i = 0; i < kRimPlaces; ++i)
             if ((rims_[patch] >> i & 1u) == 0 && goesOn(rimPlace(i)))
                 rims_[patch] |= static_cast<uint8_t>(1u << i);
@@ -200,12 +200,6 @@ float chunkReach(const PatchSet& set, uint32_t chunk) {
 glm::vec2 rimPlace(uint32_t index) {
     const uint32_t place = index < kRimPlaces / 2 ? index : index + 1; // all of 3 x 3 but the middle
     return 0.5f * glm::vec2(static_cast<float>(place % 3), static_cast<float>(place / 3));
-}
-
-glm::vec2 cellPlace(uint32_t cell) {
-    const auto edge = static_cast<float>(kCoverEdge);
-    return (glm::vec2(static_cast<float>(cell % kCoverEdge), static_cast<float>(cell / kCoverEdge)) + 0.5f) /
-           edge;
 }
 
 } // namespace relume

@@ -22,7 +22,5 @@ float chunkReach(const PatchSet& set, uint32_t chunk);
 /// The places in the texel that tell whether a point may lie anywhere in it: corners and middles of edges.
 constexpr uint32_t kRimPlaces = 8;
 glm::vec2 rimPlace(uint32_t index);
-/// Returns the middle of a cell (PatchCover::cells).
-glm::vec2 cellPlace(uint32_t cell);
 
 } // namespace relume

@@ -35,9 +35,8 @@ public:
     alignas(64) Rays<float> mirror;  // below 0: the direction was mirrored up (shader::mirroredUp)
     /// Returns where a ray starts [m], off its surface.
     glm::vec3 origin(uint32_t number) const {
-        const ChunkStarts::Points& at = starts_[number / shader::kChunk];
         const uint32_t i = number % shader::kChunk;
-        return glm::vec3(at.x[i], at.y[i], at.z[i]) + offsets_[i];
+        return starts_[number / shader::kChunk].at(i) + offsets_[i];
     }
 
 private:

@@ -13,6 +13,7 @@
 #include "bake/trace/embree_api.h"
 #include "bake/trace/embree_blockers.h"
 #include "bake/trace/embree_chunks.h"
+#include "bake/trace/embree_packet.h"
 #include "bake/trace/embree_rays.h"
 #include "bake/trace/embree_shaft.h"
 
@@ -45,8 +46,7 @@ struct HitTables {
 
 namespace {
 
-constexpr uint32_t kPacket =
-    8; // rays, what AVX holds: 16 are taken apart by Embree without AVX-512 and cost more
+constexpr uint32_t kPacket = OcclusionPacket::kRays;
 
 struct DeviceRelease {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -176,59 +176,6 @@ void EmbreeScene::Impl::attach(uint32_t first, uint32_t last, bool masked) {
     rtcAttachGeometryByID(embree.get(), geometry, masked ? 1 : 0);
     rtcReleaseGeometry(geometry);
 }
-
-namespace {
-
-// The rays of one block on their way through Embree: filled lane by lane, traced when full.
-class OcclusionPacket {
-public:
-    OcclusionPacket(RTCScene scene, Blockers& blockers, std::array<uint64_t, kChunk>& visible)
-        : scene_(scene), blockers_(blockers), visible_(visible) {
-        for (uint32_t lane = 0; lane < kPacket; ++lane) {
-            valid_[lane] = -1;
-            rays_.time[lane] = 0;
-            rays_.mask[lane] = ~0u;
-            rays_.id[lane] = lane;
-            rays_.flags[lane] = 0;
-        }
-    }
-
-    void add(uint32_t i, uint32_t j, const shader::Segment& segment) {
-        const uint32_t lane = count_++;
-        rays_.org_x[lane] = segment.origin.x, rays_.org_y[lane] = segment.origin.y,
-        rays_.org_z[lane] = segment.origin.z;
-        rays_.dir_x[lane] = segment.direction.x, rays_.dir_y[lane] = segment.direction.y;
-        rays_.dir_z[lane] = segment.direction.z;
-        rays_.tnear[lane] = segment.tMin, rays_.tfar[lane] = segment.tMax;
-        pair_[lane] = uint16_t(i << 6 | j);
-        if (count_ == kPacket) trace();
-    }
-
-    void trace() {
-        if (count_ == 0) return;
-        for (uint32_t lane = count_; lane < kPacket; ++lane)
-            valid_[lane] = 0;
-        query_.context.blocker = kNone;
-        embreeOccluded(valid_.data(), scene_, query_, rays_);
-        if (query_.context.blocker != kNone) blockers_.add(query_.context.blocker);
-        for (uint32_t lane = 0; lane < count_; ++lane) {
-            if (rays_.tfar[lane] < 0) visible_[pair_[lane] >> 6] &= ~(uint64_t(1) << (pair_[lane] & 63));
-        }
-        count_ = 0;
-    }
-
-private:
-    alignas(64) RTCRay8 rays_;
-    alignas(64) std::array<int, kPacket> valid_;
-    std::array<uint16_t, kPacket> pair_;
-    RTCScene scene_;
-    EmbreeOccludedQuery query_;
-    Blockers& blockers_;
-    std::array<uint64_t, kChunk>& visible_;
-    uint32_t count_ = 0;
-};
-
-} // namespace
 
 // Clears pairs in open shafts, which see each other, from `rows`; the pairs that are left need rays. First
 // the whole block is tried, then the pairs of quarters.

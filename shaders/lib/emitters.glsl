@@ -17,6 +17,23 @@ FUNCTION vec3 emitterNormal(EmitterPolygon e) {
     return size > 0.0f ? front / size : vec3(0.0f, 0.0f, 0.0f);
 }
 
+FUNCTION float segmentDistance(vec3 p, vec3 a, vec3 b) {
+    vec3 along = b - a;
+    float length2 = dot(along, along);
+    float t = length2 > 0.0f ? clamp(dot(p - a, along) / length2, 0.0f, 1.0f) : 0.0f;
+    return length(a + t * along - p);
+}
+
+// Returns the distance of a point from the polygon [m].
+FUNCTION float polygonDistance(vec3 p, EmitterPolygon e) {
+    vec3 n = emitterNormal(e);
+    bool above = dot(cross(e.c1 - e.c0, p - e.c0), n) >= 0.0f && dot(cross(e.c2 - e.c1, p - e.c1), n) >= 0.0f &&
+                 dot(cross(e.c3 - e.c2, p - e.c2), n) >= 0.0f && dot(cross(e.c0 - e.c3, p - e.c3), n) >= 0.0f;
+    if (above) return abs(dot(p - e.c0, n));
+    return min(min(segmentDistance(p, e.c0, e.c1), segmentDistance(p, e.c1, e.c2)),
+               min(segmentDistance(p, e.c2, e.c3), segmentDistance(p, e.c3, e.c0)));
+}
+
 FUNCTION PolygonPart emitterPart(EmitterPolygon e) {
     PolygonPart q;
     q.a = e.c0;

@@ -26,6 +26,7 @@ struct LampRay {
 // Makes sample s of patch p, which starts at another point of its texel.
 LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
     uint number = push.round * l.samples + s, index = replicateIndex(number);
+    vec3 own = p.position;
     p = startingPatch(p, cover, number);
     uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
@@ -37,7 +38,7 @@ LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
         ray.target = p.position + push.reach * sky.direction;
         ray.light = sky.light;
     } else {
-        LampSample point = lampSample(l, p, sobolPoint(index, seed), push.reach);
+        LampSample point = lampSample(l, p, own, sobolPoint(index, seed), push.reach);
         ray.target = point.target;
         ray.light = vec3(point.factor);
     }

@@ -77,8 +77,10 @@ struct LampSample {
     float factor; // its mean over u is the whole light's
 };
 
-// Samples a light other than the sky, for uniform u in [0, 1)^2. reach is far outside the scene [m].
-FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
+// Samples a light other than the sky, for uniform u in [0, 1)^2. reach is far outside the scene [m]. The light
+// fades as it does at the patch's own point, which p may have been moved away from: so a share of the whole light
+// is one of what is seen alone.
+FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 own, vec2 u, float reach) {
     LampSample s;
     s.target = l.position;
     s.factor = 0.0f;
@@ -112,7 +114,7 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec2 u, float reach) {
         float along = dot(w, d);
         float within = r2 - (d2 - along * along);
         s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
-        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, d);
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - own);
     }
     s.target += kLampGap * (p.position - s.target);
     return s;

