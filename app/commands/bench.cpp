@@ -60,6 +60,7 @@ void benchTrace(const BenchOptions& o) {
         PreparedScene& prepared = scenes[i];
         BakeSettings settings;
         settings.size = o.sizes[i];
+        settings.solver.method = Method::Hybrid; // whose rays start all over their texels
         Baker baker(device, prepared.scene, std::move(prepared.mesh), settings);
         for (TracerKind kind : tracersOf(o, device.info())) {
             const TraceRates r = measureTracer(device, baker, kind, o.bench);
