@@ -143,6 +143,8 @@ expectStatus 0 samples 16
 
 expectUsageError bake room.glb -o room.exr --method pure --directions lec
 expectUsageError bake room.glb -o room.exr --method pure --rotate tile
+expectUsageError bake room.glb -o room.exr --method pure --points texel
+expectUsageError bake room.glb -o room.exr --points everywhere
 expectUsageError bake room.glb -o room.exr --rotate sometimes
 expectUsageError samples
 expectUsageError samples 0
