@@ -113,9 +113,7 @@ bool sameAtlas(const LightmapAtlas& a, const LightmapAtlas& b) {
 
 bool sameSurfaces(const PreparedScene& before, const PreparedScene& after) {
     const Scene &a = before.scene, &b = after.scene;
-    const auto object = [](const Instance& x, const Instance& y) {
-        return x.mesh == y.mesh && x.name == y.name;
-    };
+    const auto object = [](const Instance& x, const Instance& y) { return x.mesh == y.mesh; };
     return before.size == after.size && sameAtlas(before.atlas, after.atlas) && samePictures(a, b) &&
            std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
                       object) &&
@@ -239,8 +237,8 @@ bool hasSameParts(const Scene& before, const Scene& after) {
 
 } // namespace
 
-SceneChanges changesBetween(const PreparedScene& before, const PreparedScene& after) {
-    const Scene &a = before.scene, &b = after.scene;
+SceneChanges changesBetween(const Scene& held, const PreparedScene& before, const PreparedScene& after) {
+    const Scene &a = held, &b = after.scene;
     SceneChanges out;
     out.lights = countDifferent(withoutPreview(a.lights), withoutPreview(b.lights), sameLight);
     out.objects = countDifferent(a.instances, b.instances, [](const Instance& x, const Instance& y) {
@@ -249,7 +247,7 @@ SceneChanges changesBetween(const PreparedScene& before, const PreparedScene& af
     out.materials = countDifferent(a.materials, b.materials, [](const Material& x, const Material& y) {
         return sameColours(x, y) && sameSurface(x, y);
     });
-    out.meshes = countDifferent(a.meshes, b.meshes, sameTriangles);
+    out.meshes = countDifferent(before.scene.meshes, b.meshes, sameTriangles);
     out.sky = !a.sky.preview && !b.sky.preview && static_cast<const SkySettings&>(a.sky) != b.sky;
     out.surfaces = !sameSurfaces(before, after);
     return out;

@@ -20,9 +20,10 @@ struct SceneChanges {
     bool any() const { return lights + objects + materials + meshes > 0 || sky || surfaces; }
 };
 
-/// Compares a scene with the same file's former one. Objects, lights and materials are told apart by name, or
-/// by number where names are missing or stand twice.
-SceneChanges changesBetween(const PreparedScene& before, const PreparedScene& after);
+/// Compares a scene with the same file's former one. `held` has the materials, objects, lights and sky that
+/// the file held last, which a save may have changed since `before` was read. Objects, lights and materials
+/// are told apart by name, or by number where names are missing or stand twice.
+SceneChanges changesBetween(const Scene& held, const PreparedScene& before, const PreparedScene& after);
 
 /// Returns the changes in words: "1 light, 2 objects", "nothing".
 std::string describe(const SceneChanges& changes);

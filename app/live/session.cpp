@@ -19,6 +19,12 @@ bool sameObjects(const Scene& a, const Scene& b) {
         [](const Instance& x, const Instance& y) { return x.name == y.name && x.mesh == y.mesh; });
 }
 
+// Tells whether another program wrote the file since it was read or saved, and nobody has read it yet.
+bool isNewer(const FileWatch& watch) {
+    const FileSet now{watch.files().paths, watch.files().timesNow()};
+    return watch.on() && !now.times.empty() && now.times.front() && !watch.isKnown(now);
+}
+
 } // namespace
 
 Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prepare_(request.prepare) {
@@ -56,7 +62,7 @@ void Session::load(const Next& next) {
 }
 
 bool Session::update() {
-    dropFormer();
+    std::erase_if(former_, [&](const auto& scene) { return !bake_.holds(scene->prepared); });
     takeSaved();
     if (nextSave_ && !file_.saving() && !loader_.loading()) save(*std::exchange(nextSave_, std::nullopt));
     const bool changed = finishLoading();
@@ -108,14 +114,20 @@ void Session::fail(const std::string& message, const std::string& opened) {
 }
 
 // Follows a file that was written anew: returns the edits as they stand on it, and notes what changed.
-SceneEdits Session::reloaded(const PreparedScene& now) {
-    const SceneChanges changes = changesBetween(scene_->prepared, now);
+SceneEdits Session::reloaded(const PreparedScene& now, const SceneChanges& changes) {
     Scene before = file_.scene();
-    before.materials =
-        scene_->prepared.scene.materials; // a colour that was saved stays, whoever writes the file
+    // A colour that was saved, and still is as it was saved, stays, whoever writes the file.
+    for (size_t i = 0; i < before.materials.size(); ++i) {
+        const Material &own = document_.edits.materials[i], &read = scene_->prepared.scene.materials[i];
+        Material& saved = before.materials[i];
+        if (own.baseColor == saved.baseColor) saved.baseColor = read.baseColor;
+        if (own.emission == saved.emission) saved.emission = read.emission;
+    }
     CarriedEdits carried = carryEdits(before, document_.edits, now.scene);
     file_.loaded(now.scene);
-    if (!carried.sameFile) history_.forget(); // it refers to what the file had
+    // Its steps hold all that can be edited as the file had it, whole materials with their textures' numbers
+    // too.
+    if (!carried.sameFile || changes.materials > 0 || changes.surfaces) history_.forget();
     if (!carried.sameNumbers) document_.mix = {};
     reloadNotes_ = {
         fmt::format("reloaded: {}{}", describe(changes), changes.surfaces ? " (the bake begins anew)" : "")};
@@ -134,10 +146,14 @@ void Session::save(const std::string& path) {
                          loader_.path()));
         return;
     }
-    if (file_.saving() || loader_.loading())
+    if (file_.saving() || loader_.loading()) {
         nextSave_ = path;
-    else
+    } else if (isNewer(watch_)) { // edits go into its nodes, which may be others now
+        open(prepare_.path, true);
+        nextSave_ = path;
+    } else {
         file_.save(path.empty() ? prepare_.path : path, document_.edits);
+    }
 }
 
 void Session::takeSaved() {
@@ -168,15 +184,17 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
     kept_ = loading_.keep && scene_ != nullptr;
     const Scene& file = scene->prepared.scene;
     SceneEdits edits = document_.edits;
+    SceneChanges changes{.surfaces = true};
+    if (kept_) changes = changesBetween(file_.scene(), scene_->prepared, scene->prepared);
     if (!kept_) {
         file_.loaded(file);
         history_.forget();
         document_.mix = {};
         edits = editsOf(file);
     } else if (!loading_.sameFile || !sameObjects(scene_->prepared.scene, file)) {
-        edits = reloaded(scene->prepared);
+        edits = reloaded(scene->prepared, changes);
     }
-    if (!kept_ || changesBetween(scene_->prepared, scene->prepared).surfaces) ++surfaces_;
+    if (changes.surfaces) ++surfaces_;
     document_.edits = std::move(edits);
     if (loading_.fits) document_.bake.size = scene->size;
     ++changes_;
@@ -185,10 +203,6 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
     prepare_.path = path;
     prepare_.choice = loading_.choice;
     startBake(kept_);
-}
-
-void Session::dropFormer() {
-    std::erase_if(former_, [&](const auto& scene) { return !bake_.holds(scene->prepared); });
 }
 
 void Session::startBake(bool keepLight) {

@@ -10,6 +10,7 @@
 #include "app/live/edit_history.h"
 #include "app/live/file_watch.h"
 #include "app/live/live_bake.h"
+#include "app/live/reload.h"
 #include "app/live/scene_file.h"
 #include "app/live/scene_loader.h"
 #include "app/offline/bake_options.h"
@@ -118,11 +119,10 @@ private:
     void startBake(bool keepLight);
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene, const std::string& path);
-    SceneEdits reloaded(const PreparedScene& now);
+    SceneEdits reloaded(const PreparedScene& now, const SceneChanges& changes);
     void takeSaved();
     void finishSaving();
     void fail(const std::string& message, const std::string& opened = "");
-    void dropFormer();
     void pollFile();
 
     LiveBake& bake_;

@@ -5,7 +5,7 @@ Edit > Preferences > Add-ons > Install... takes this file. Its panel stands in t
 - Start writes the scene beside the .blend file (room.relume.glb) and opens Relume on it.
 - Every save writes it anew, and so does a change while one works, where that is switched on. Relume follows
   what changed: a moved lamp costs its own light only.
-- Take lightmap reads the lightmap that Relume exported and shows it on all meshes.
+- Take lightmap shows the lightmap that Relume exported on all meshes that have a second UV map, the lightmap's.
 
 Without a window: blender -b room.blend -P relume_link.py -- OUT.glb
 With --mean-sky behind it the level is one file: a picture of the sky becomes its mean colour.
@@ -17,6 +17,7 @@ import subprocess
 import sys
 
 import bpy
+import numpy
 from mathutils import Matrix
 
 bl_info = {
@@ -42,8 +43,8 @@ def area_light(light, scale):
     found = {
         "name": light.name,
         "color": list(light.color),
-        # A Lambertian emitter of P lumens and area A has P / (pi A).
-        "intensity": light.energy * LUMENS_PER_WATT / (math.pi * max(area, 1e-12)),
+        # Blender's area lights have P / (4 A), as if a sphere of that power were seen from one side.
+        "intensity": light.energy * LUMENS_PER_WATT / (4 * max(area, 1e-12)),
     }
     if round_one:  # an ellipse becomes the disc of its area
         return {**found, "type": "disc", "radius": math.sqrt(area / math.pi)}
@@ -61,21 +62,26 @@ def linked_node(socket, kind):
 def mean_color(image):
     """Returns the mean of an equirectangular picture over the sphere, linear."""
     width, height, channels = *image.size, image.channels
-    pixels = list(image.pixels)
-    total, weights = [0.0, 0.0, 0.0], 0.0
-    for row in range(height):
-        weight = math.sin(math.pi * (row + 0.5) / height)  # of a row's solid angle
-        line = pixels[row * width * channels:(row + 1) * width * channels]
-        for c in range(3):
-            total[c] += weight * sum(line[min(c, channels - 1)::channels])
-        weights += weight * width
-    return [one / weights for one in total] if weights else total
+    if width * height == 0:
+        return [0.0, 0.0, 0.0]
+    pixels = numpy.empty(width * height * channels, numpy.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, channels)
+    weights = numpy.sin(numpy.pi * (numpy.arange(height) + 0.5) / height)  # of a row's solid angle
+    found = []
+    for c in range(3):
+        plane = pixels[:, :, min(c, channels - 1)]
+        if not image.is_float:  # 8 bits are sRGB encoded
+            plane = numpy.where(plane <= 0.04045, plane / 12.92, ((plane + 0.055) / 1.055) ** 2.4)
+        found.append(float((plane.mean(1) * weights).sum() / weights.sum()))
+    return found
 
 
 def sky(world, folder):
     """Returns the sky of a world as Relume's extras have it, or None for a dark one.
 
-    A picture is copied to `folder`; without one the sky has its mean colour.
+    A picture stays where it is and is named from `folder`. Without a folder, or where it is no .exr or .hdr file, the sky
+    has its mean colour.
     """
     if world is None:
         return None
@@ -89,19 +95,19 @@ def sky(world, folder):
     if picture is None or picture.image is None:
         color = list(background.inputs["Color"].default_value)[:3]
         return {"color": color, "intensity": strength} if strength > 0 and any(color) else None
-    if folder is None:
-        return {"color": mean_color(picture.image), "intensity": strength}
     source = bpy.path.abspath(picture.image.filepath)
-    if not source.lower().endswith((".exr", ".hdr")) or not os.path.isfile(source):
-        print(f"relume: the sky's picture '{source}' is no .exr or .hdr file: the sky is left out", file=sys.stderr)
-        return None
-    target = os.path.join(folder, os.path.basename(source))
-    if os.path.abspath(source) != os.path.abspath(target):
-        shutil.copyfile(source, target)
+    if folder is None or not source.lower().endswith((".exr", ".hdr")) or not os.path.isfile(source):
+        return {"color": mean_color(picture.image), "intensity": strength}
     mapping = linked_node(picture.inputs["Vector"], "MAPPING")
     turned = mapping.inputs["Rotation"].default_value[2] if mapping else 0.0
     # The middle of a picture lies in +X here and in +Y (glTF's -Z) there; a mapping turns what is looked up.
-    return {"color": [1, 1, 1], "intensity": strength, "file": os.path.basename(source), "rotation": -math.pi / 2 - turned}
+    return {"color": [1, 1, 1], "intensity": strength, "file": os.path.relpath(source, folder).replace(os.sep, "/"), "rotation": -math.pi / 2 - turned}
+
+
+def kept(thing):
+    """Returns a copy of what a thing has for Relume."""
+    value = thing.get("relume")
+    return value.to_dict() if hasattr(value, "to_dict") else value
 
 
 class Dressed:
@@ -109,41 +115,68 @@ class Dressed:
 
     def __init__(self, folder):
         self.folder = folder
-        self.added = []
 
     def __enter__(self):
         scene = bpy.context.scene
+        self.added, self.shown, self.strengths = [], [], []
+        self.former = kept(scene)
+        self.lights = [(light, kept(light)) for light in bpy.data.lights]
+        try:
+            self.dress(scene)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def dress(self, scene):
         for thing in [thing for thing in scene.objects if thing.type == "LIGHT" and thing.visible_get()]:
             if thing.data.type == "AREA":
                 self.add_area(scene, thing)
-        self.former = scene.get("relume")
         shines = sky(scene.world, self.folder)
         if shines:
             scene["relume"] = {"sky": shines}
         elif self.former is not None:
             del scene["relume"]
-        self.radii = [(light, light.get("relume")) for light in bpy.data.lights]
-        for light, _ in self.radii:
+        for light, _ in self.lights:
             if light.type in {"POINT", "SPOT"}:
                 light["relume"] = {"radius": light.shadow_soft_size}
             elif light.type == "SUN":
                 light["relume"] = {"angle": light.angle}
-        return self
+        for material in bpy.data.materials:  # the exporter follows the surface, not the lightmap that is shown for it
+            if not material.use_nodes:
+                continue
+            self.brighten(material.node_tree.nodes)
+            if "Relume lightmap" in material.node_tree.nodes and "relume_surface" in material:
+                nodes, links = material.node_tree.nodes, material.node_tree.links
+                entry = nodes[material["relume_output"]].inputs["Surface"]
+                self.shown.append((links, entry, entry.links[0].from_socket))
+                links.new(nodes[material["relume_surface"]].outputs[0], entry)
+
+    def brighten(self, nodes):
+        """Brings what glows to the same unit as the lamps: the exporter takes watts for candelas there."""
+        for node in nodes:
+            name = {"BSDF_PRINCIPLED": "Emission Strength", "EMISSION": "Strength"}.get(node.type)
+            if name and name in node.inputs and not node.inputs[name].is_linked:
+                self.strengths.append((node.inputs[name], node.inputs[name].default_value))
+                node.inputs[name].default_value *= LUMENS_PER_WATT
 
     def add_area(self, scene, thing):
         place, turn, scale = thing.matrix_world.decompose()
         empty = bpy.data.objects.new(thing.name + " (area)", None)
+        self.added.append(empty)
         empty["relume"] = {"areaLight": {**area_light(thing.data, scale), "name": thing.name}}
         empty.matrix_world = Matrix.Translation(place) @ turn.to_matrix().to_4x4() @ LIGHT_AXES
         scene.collection.objects.link(empty)
-        self.added.append(empty)
 
     def __exit__(self, *_):
-        scene = bpy.context.scene
+        for socket, strength in self.strengths:
+            socket.default_value = strength
+        for links, entry, socket in self.shown:
+            links.new(socket, entry)
         for empty in self.added:
             bpy.data.objects.remove(empty)
-        restore(scene, self.former)
-        for light, former in self.radii:
+        restore(bpy.context.scene, self.former)
+        for light, former in self.lights:
             restore(light, former)
 
 
@@ -167,6 +200,8 @@ def write_level(path, mean_sky=False):
         "use_visible": True,
         "export_apply": True,
         "export_animations": False,
+        "export_current_frame": True,
+        "use_active_scene": True,
         "export_import_convert_lighting_mode": "SPEC",
     }
     known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
@@ -181,33 +216,41 @@ def level_path():
 
 
 def show_lightmap(path):
-    """Puts a lightmap on all meshes: an image node on the second UV map, beside what the materials are."""
+    """Shows a lightmap on all meshes that have a second UV map, in place of their materials' surfaces.
+
+    That map has to be the lightmap's: an atlas of all meshes together. Returns how many meshes have none.
+    """
     picture = bpy.data.images.load(path, check_existing=True)
     picture.reload()
     picture.colorspace_settings.name = "Non-Color"
-    for material in {slot.material for thing in bpy.context.scene.objects for slot in thing.material_slots if slot.material}:
-        if material.use_nodes:
-            light_material(material, picture)
+    without = 0
+    for thing in [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]:
+        if len(thing.data.uv_layers) < 2:
+            without += 1
+            continue
+        for slot in thing.material_slots:
+            if slot.material and slot.material.use_nodes:
+                light_material(slot.material, picture, thing.data.uv_layers[1].name)
+    return without
 
 
-def light_material(material, picture):
-    """Adds lightmap x base colour to what a material emits; a second call replaces the picture."""
+def light_material(material, picture, uv_map):
+    """Shows lightmap x base colour; a second call replaces the picture. What was shown before stays in the nodes."""
     nodes, links = material.node_tree.nodes, material.node_tree.links
     if "Relume lightmap" in nodes:
         nodes["Relume lightmap"].image = picture
         return
     surface = next((node for node in nodes if node.type == "BSDF_PRINCIPLED"), None)
     output = next((node for node in nodes if node.type == "OUTPUT_MATERIAL"), None)
-    if surface is None or output is None:
+    if surface is None or output is None or not output.inputs["Surface"].is_linked:
         return
+    material["relume_surface"] = output.inputs["Surface"].links[0].from_node.name
+    material["relume_output"] = output.name
     texture = nodes.new("ShaderNodeTexImage")
     texture.name = texture.label = "Relume lightmap"
     texture.image = picture
-    uv = nodes.new("ShaderNodeUVMap")  # without a name: the one that is active for rendering
-    maps = next((thing.data.uv_layers for thing in bpy.context.scene.objects
-                 if thing.type == "MESH" and material.name in thing.data.materials), [])
-    if len(maps) > 1:
-        uv.uv_map = maps[1].name
+    uv = nodes.new("ShaderNodeUVMap")
+    uv.uv_map = uv_map
     links.new(uv.outputs[0], texture.inputs[0])
     product = nodes.new("ShaderNodeVectorMath")
     product.operation = "MULTIPLY"
@@ -218,6 +261,7 @@ def light_material(material, picture):
     else:
         product.inputs[1].default_value = list(base.default_value)[:3]
     emission = nodes.new("ShaderNodeEmission")
+    emission.inputs["Strength"].default_value = 1 / LUMENS_PER_WATT  # the lightmap is in cd/m^2, Blender's light in watts
     links.new(product.outputs[0], emission.inputs["Color"])
     links.new(emission.outputs[0], output.inputs["Surface"])
 
@@ -243,7 +287,7 @@ class RELUME_OT_start(bpy.types.Operator):
 
 
 class RELUME_OT_lightmap(bpy.types.Operator):
-    """Show the lightmap that Relume exported on all meshes"""
+    """Show the lightmap that Relume exported on all meshes that have a second UV map"""
 
     bl_idname = "relume.lightmap"
     bl_label = "Take lightmap"
@@ -257,7 +301,9 @@ class RELUME_OT_lightmap(bpy.types.Operator):
         if not os.path.isfile(self.filepath):
             self.report({"ERROR"}, f"{self.filepath}: no such file: export a lightmap in Relume (Ctrl+E)")
             return {"CANCELLED"}
-        show_lightmap(self.filepath)
+        without = show_lightmap(self.filepath)
+        if without:
+            self.report({"WARNING"}, f"{without} meshes have no second UV map: in Relume, File > Export for > blender writes the level with one")
         return {"FINISHED"}
 
 
@@ -279,8 +325,12 @@ class RELUME_PT_panel(bpy.types.Panel):
 def on_save(*_):
     """Writes the level anew where there is one: Start has made the first."""
     path = level_path()
-    if path and os.path.exists(path):
+    if not path or not os.path.exists(path):
+        return
+    try:
         write_level(path)
+    except Exception as error:  # a save must not fail by it, nor the timer end
+        print(f"relume: {path}: was not written ({error})", file=sys.stderr)
 
 
 SECONDS = 1.0  # between two looks for changes while one works
@@ -288,7 +338,7 @@ changed = False
 
 
 @bpy.app.handlers.persistent
-def on_change(scene, graph):
+def on_change(_, graph):
     global changed
     changed = changed or any(update.is_updated_transform or update.is_updated_geometry or update.is_updated_shading
                              for update in graph.updates)
@@ -296,10 +346,13 @@ def on_change(scene, graph):
 
 def write_what_changed():
     global changed
-    scene = bpy.context.scene
-    if changed and scene.relume_live and bpy.context.mode == "OBJECT":
-        on_save()
-        changed = False  # what the export itself changed is no change
+    windows = bpy.context.window_manager.windows
+    if changed and len(windows) > 0:
+        with bpy.context.temp_override(window=windows[0]):  # a timer has none, and the exporter asks for it
+            if bpy.context.scene.relume_live and bpy.context.mode == "OBJECT":
+                on_save()
+                bpy.context.view_layer.update()  # what the export itself changed is told now, and is no change
+                changed = False
     return SECONDS
 
 

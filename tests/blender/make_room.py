@@ -22,7 +22,11 @@ bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.ops.mesh.primitive_plane_add(size=6)
 named("Floor").data.materials.append(paint("Floor", (0.6, 0.6, 0.6)))
 bpy.ops.mesh.primitive_cube_add(size=1, location=(1, 0.5, 0.5))
-named("Box").data.materials.append(paint("Box", (0.8, 0.2, 0.2)))
+glowing = paint("Box", (0.8, 0.2, 0.2))
+glow = glowing.node_tree.nodes["Principled BSDF"].inputs
+glow["Emission"].default_value, glow["Emission Strength"].default_value = (1, 1, 1, 1), 2
+named("Box").data.materials.append(glowing)
+bpy.context.object.data.uv_layers.new(name="Lightmap")
 bpy.ops.object.light_add(type="AREA", location=(0, 0, 3), rotation=(0.3, 0, 0))
 panel = named("Panel").data
 panel.shape, panel.size, panel.size_y, panel.energy = "RECTANGLE", 1, 0.5, 100

@@ -65,7 +65,7 @@ TEST(SkyLinks, BringWhatRaysToTheSkyDo) {
     picture.sky.width = picture.sky.height = 1;
     picture.sky.pixels = {glm::vec3(1.0f)};
     for (const Method method : {Method::Directional, Method::Hybrid}) {
-        const BakeDesc desc = precise(method, 2048);
+        const BakeDesc desc = precise(method, 4096);
         ASSERT_TRUE(linksSeeSky(scene.sky, settingsOf(desc).solver));
         ASSERT_FALSE(linksSeeSky(picture.sky, settingsOf(desc).solver));
         const Baked links = bakeScene(scene, desc), rays = bakeScene(picture, desc);

@@ -34,8 +34,13 @@ PreparedScene twoOfEach() {
     return out;
 }
 
+SceneChanges changesOf(const PreparedScene& after) {
+    const PreparedScene before = twoOfEach();
+    return changesBetween(before.scene, before, after);
+}
+
 TEST(SceneChanges, NothingIsNothing) {
-    const SceneChanges none = changesBetween(twoOfEach(), twoOfEach());
+    const SceneChanges none = changesOf(twoOfEach());
     EXPECT_FALSE(none.any());
     EXPECT_EQ(describe(none), "nothing");
 }
@@ -49,27 +54,25 @@ TEST(SceneChanges, WhatABakeFollowsIsCounted) {
     after.scene.instances[0].hidden = true;
     after.scene.materials[0].baseColor.r = 0.5f;
     after.scene.sky.radiance = glm::vec3(1.0f);
-    const SceneChanges changes = changesBetween(twoOfEach(), after);
+    const SceneChanges changes = changesOf(after);
     EXPECT_FALSE(changes.surfaces);
     EXPECT_EQ(describe(changes), "2 lights, the sky, 2 objects, 1 material");
 }
 
 TEST(SceneChanges, WhatPatchesAreMadeWithIsMore) {
     using Change = void (*)(PreparedScene&);
-    for (const Change change :
-         {+[](PreparedScene& p) { p.scene.meshes[0].primitives[0].positions[1].x = 2; },
-          +[](PreparedScene& p) { p.scene.meshes[0].primitives[0].material = 1; },
-          +[](PreparedScene& p) { p.scene.materials[0].roughness = 0.5f; },
-          +[](PreparedScene& p) { p.scene.materials[0].doubleSided = true; },
-          +[](PreparedScene& p) { p.scene.images.emplace_back(); },
-          +[](PreparedScene& p) { p.scene.instances.pop_back(); },
-          +[](PreparedScene& p) { std::swap(p.scene.instances[0], p.scene.instances[1]); },
-          +[](PreparedScene& p) { p.scene.sky.pixels.emplace_back(1.0f); },
-          +[](PreparedScene& p) { p.atlas.instances[1].offset.x = 0.5f; },
-          +[](PreparedScene& p) { p.size = 128; }}) {
+    for (const Change change : {+[](PreparedScene& p) { p.scene.meshes[0].primitives[0].positions[1].x = 2; },
+                                +[](PreparedScene& p) { p.scene.meshes[0].primitives[0].material = 1; },
+                                +[](PreparedScene& p) { p.scene.materials[0].roughness = 0.5f; },
+                                +[](PreparedScene& p) { p.scene.materials[0].doubleSided = true; },
+                                +[](PreparedScene& p) { p.scene.images.emplace_back(); },
+                                +[](PreparedScene& p) { p.scene.instances.pop_back(); },
+                                +[](PreparedScene& p) { p.scene.sky.pixels.emplace_back(1.0f); },
+                                +[](PreparedScene& p) { p.atlas.instances[1].offset.x = 0.5f; },
+                                +[](PreparedScene& p) { p.size = 128; }}) {
         PreparedScene after = twoOfEach();
         change(after);
-        EXPECT_TRUE(changesBetween(twoOfEach(), after).surfaces);
+        EXPECT_TRUE(changesOf(after).surfaces);
     }
 }
 
@@ -254,6 +257,55 @@ TEST_F(Reload, EditsThatAreNotSavedStayAndConflictsAreTold) {
     const std::vector<std::string> notes = session_.takeReloadNotes();
     ASSERT_EQ(notes.size(), 2u);
     EXPECT_TRUE(contains(notes[1], instances.at(0).name + ": was edited here and in the file")) << notes[1];
+}
+
+TEST_F(Reload, WhatWasSavedByUsIsNoChangeOfTheOther) {
+    const std::string name = session_.scene()->prepared.scene.instances.at(0).name;
+    Document next = session_.document();
+    next.edits.placements.at(1).transform[3].x += 0.25f;
+    session_.edit("Move", next);
+    session_.endEdit();
+    session_.save();
+    ASSERT_TRUE(until([&] { return session_.saves() == 1; }));
+    // The other program knows nothing of that: its file has the object where it was.
+    writeChanged([&](nlohmann::json& document) { move(document, name, 0.125f); });
+    const std::vector<std::string> notes = session_.takeReloadNotes();
+    ASSERT_FALSE(notes.empty());
+    EXPECT_EQ(notes[0], "reloaded: 2 objects");
+}
+
+TEST_F(Reload, StepsOfAnotherFileAreForgotten) {
+    Document next = session_.document();
+    next.edits.placements.at(0).hidden = true;
+    session_.edit("Hide", next);
+    session_.endEdit();
+    EXPECT_EQ(session_.undoName(), "Hide");
+    writeChanged([&](nlohmann::json& document) {
+        document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.1, 0.2, 0.3, 1.0};
+    });
+    EXPECT_EQ(session_.undoName(), "") << "it would bring back the wall's old colour, too";
+    EXPECT_TRUE(session_.document().edits.placements.at(0).hidden);
+}
+
+TEST_F(Reload, ASaveWaitsUntilANewerFileIsRead) {
+    session_.watchFile(false);
+    Document next = session_.document();
+    next.edits.placements.at(0).hidden = true;
+    session_.edit("Hide", next);
+    session_.endEdit();
+    session_.watchFile(true);
+    const std::string name = session_.scene()->prepared.scene.instances.at(1).name;
+    std::ifstream in(kScenes + "cornell_small.glb", std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    std::ofstream(file(), std::ios::binary)
+        << withJson(bytes, [&](nlohmann::json& document) { move(document, name, 0.125f); });
+    std::filesystem::last_write_time(file(), time_ += std::chrono::seconds(2));
+    const float x = session_.document().edits.placements.at(1).transform[3].x;
+    session_.save();
+    ASSERT_TRUE(until([&] { return session_.saves() == 1; }));
+    const Scene saved = loadGltf(file());
+    EXPECT_TRUE(saved.instances.at(0).hidden);
+    EXPECT_NEAR(saved.instances.at(1).transform[3].x, x + 0.125f, 1e-5f) << "the other program's";
 }
 
 // A program that saves all the time: the last save counts, and none is read half.
