@@ -6,13 +6,13 @@
 #include "app/offline/solve.h"
 #include "app/pictures/make_frame_writer.h"
 #include "app/pictures/picture_studio.h"
+#include "app/pictures/turn.h"
 #include "app/text/frame_names.h"
 #include "app/text/interrupt.h"
 #include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/images/image_file.h"
-#include "renderer/scene_geometry.h"
 #include "shaders/shader_library.h"
 
 #include <memory>
@@ -26,18 +26,6 @@ FloatImage bakeLightmap(const ShotOptions& o, const BakeRequest& request, Pictur
     solve(bake.baker().solver(), request.bake.solver, none);
     bake.logEnd();
     return bake.baker().lightmap(request.lightmap);
-}
-
-// Takes the pictures of a turn, all with the exposure of the first.
-void takeTurn(PictureStudio& studio, const LightmapTexture& lightmap, DrawSettings draw, const Box& bounds,
-              uint32_t count, FrameWriter& writer) {
-    for (const ViewCamera& camera : turntable(studio.camera(), bounds, count)) {
-        stopIfInterrupted();
-        studio.setCamera(camera);
-        writer.write(studio.take(lightmap, draw), 1);
-        if (showsLight(draw.view)) draw.exposure = studio.exposure();
-    }
-    writer.finish();
 }
 
 void shoot(ShotOptions o) {
@@ -86,7 +74,7 @@ void shoot(ShotOptions o) {
     const LightmapTexture texture =
         lightmap ? lightmap->texture() : LightmapTexture{.size = request.prepare.size};
     if (writer)
-        takeTurn(studio, texture, shot.draw, boundsOf(prepared.mesh), o.turntable, *writer);
+        takeTurn(studio, texture, shot.draw, prepared.mesh, o.turntable, *writer);
     else
         writeImage(o.bake.files.output, studio.take(texture, shot.draw));
     if (showsLight(shot.draw.view)) spdlog::info("exposure {:.2f} EV", studio.exposure());
