@@ -113,7 +113,7 @@ protected:
         return {.size = 64,
                 .passes = 1,
                 .method = name == "directional" ? Method::Directional : Method::Hybrid,
-                .samples = 64,
+                .samples = 256, // of which a GPU takes few for direct light
                 .layers = name == "layers"};
     }
 };
