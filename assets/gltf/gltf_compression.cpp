@@ -83,6 +83,7 @@ std::vector<CompressedView> takeCompressedViews(json& document) {
                          .buffer = (*use)["buffer"].get<size_t>(),
                          .offset = use->value("byteOffset", uint64_t{0}),
                          .bytes = use->value("byteLength", uint64_t{0}),
+                         .stride = (*views)[i].value("byteStride", size_t{0}),
                          .layout = layoutOf(*use)});
         (*views)[i] = {{"buffer", small}, {"byteLength", 1}};
     }
@@ -114,7 +115,7 @@ void decodeViews(Build& build, const std::vector<CompressedView>& views) {
         target.buffer = static_cast<int>(model.buffers.size());
         target.byteOffset = 0;
         target.byteLength = decoded.data.size();
-        target.byteStride = view.layout.mode == MeshoptMode::Attributes ? view.layout.stride : 0;
+        target.byteStride = view.stride;
         model.buffers.push_back(std::move(decoded));
         loop.step();
     }

@@ -15,6 +15,7 @@ namespace relume::gltf {
 struct CompressedView {
     size_t view = 0, buffer = 0;
     uint64_t offset = 0, bytes = 0;
+    size_t stride = 0; // of the view itself [bytes], by which its accessors were checked; 0: none
     MeshoptLayout layout;
 };
 

@@ -2,6 +2,8 @@
 
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
+#include "tests/fuzz/gltf_corpus.h"
+#include "tests/temporary_folder.h"
 #include "tests/unit/guarded_bytes.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <limits>
 
@@ -187,6 +190,19 @@ TEST(Meshopt, AThousandMutatedStreamsNeverReadPastTheirEnd) {
     }
     EXPECT_GT(decoded, 100);
     EXPECT_GT(refused, 100);
+}
+
+// A view without a stride of its own is read tightly, as its accessors are checked: by the stride of its
+// stream the last of these would lie behind it.
+TEST(Meshopt, IndicesThatNameAViewOfVerticesEndWithIt) {
+    const TemporaryFolder folder;
+    test::GlbBuilder file = fuzz::meshoptScene();
+    file.json["accessors"][1]["bufferView"] = 0;
+    file.json["accessors"][1]["count"] = 12;
+    const std::vector<uint8_t> bytes = file.bytes();
+    std::ofstream(folder.path("a.glb"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    EXPECT_THROW(loadGltf(folder.path("a.glb")), Error); // coordinates are no indices
 }
 
 glm::vec3 worldPoint(const Scene& scene, size_t instance, size_t vertex) {
