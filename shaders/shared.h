@@ -45,7 +45,9 @@ CONST uint kLinkDark =
     0xfffffffdu; // hit geometry that is no receiver (no lightmap UV), or the back of a double-sided one
 // Hit nothing, in a direction that was mirrored up from below the geometric horizon, where no sky shines.
 CONST uint kLinkSkyBelow = 0xfffffffcu;
-FUNCTION bool linkIsSky(uint link) { return link == kLinkSky || link == kLinkSkyBelow; }
+FUNCTION bool linkIsSky(uint link) {
+    return link == kLinkSky || link == kLinkSkyBelow;
+}
 CONST uint kNoPatch = 0xffffffffu; // texel -> patch map: empty
 CONST uint kNoTexel = 0xffffffffu; // patch -> texel: not shown
 
@@ -74,7 +76,7 @@ CONST uint kCoverWhole = 0x80000000u;
 
 // The part of a texel that its patch's surface covers, for samples that start all over it.
 struct PatchCover {
-    vec3 du;    // [m], world-space edge along the texel's u, a little shortened so that no point lies on the edge
+    vec3 du;    // [m], along the texel's u, a little shortened so that no point lies on the edge
     uint cells; // kCover...
     vec3 dv;    // [m], likewise
     uint place; // where the patch's own point lies in the texel, from 0 to kCoverPlaces: u | v << 16
