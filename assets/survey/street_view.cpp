@@ -20,7 +20,7 @@ constexpr float kStreetReach = 80.0f; // [m], how far walls may be
 constexpr float kEnclosed = 0.5f;     // share of all directions that must end at walls: one stands among them
 constexpr float kGlance = 0.09f;      // [rad], above the horizon, of the rays that look for walls
 
-// What is seen around an eye: columns go around, rows go up. Both are some 6 degrees apart.
+// Holds what is seen around an eye: columns go around, rows go up. Both are some 6 degrees apart.
 constexpr int kColumns = 64, kRows = 11;
 constexpr float kStepUp = 0.1f, kPitch = 0.05f; // [rad]; the pitch of the picture's middle
 

@@ -130,7 +130,7 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
         ((covers[patch].cells & kCoverWhole) != 0 ? whole : parts).push_back(patch);
     }
     CoverBatches batches(search);
-    // Where the whole rim is seen, nothing stands in the texel, as a rule.
+    // As a rule nothing stands in a texel whose whole rim is seen.
     const std::vector<uint32_t> rims = batches.seen(whole, kRimPlaces, rimPlace);
     for (size_t i = 0; i < whole.size(); ++i)
         if (std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces}) parts.push_back(whole[i]);

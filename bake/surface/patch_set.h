@@ -19,8 +19,8 @@ constexpr uint32_t kMaxLightmapSize = 4096;
 struct PatchSet {
     TraceScene scene;
     std::vector<shader::PatchEdges> edges;
-    // Where samples may start; none with rtrad. Cells in front of which something stands are taken away later
-    // (bake/baker/cover_search.h); coverCells has them as the surface has them.
+    // They tell where samples may start; there are none with rtrad. Cells in front of which something stands
+    // are taken away later (bake/baker/cover_search.h); coverCells has them as the surface has them.
     std::vector<shader::PatchCover> covers;
     std::vector<uint32_t> coverCells;
     std::vector<float> reach; // per chunk: how far samples may start from their patch's own point [m]

@@ -1,4 +1,4 @@
-// Where links bring a sky's light, it must be the light that rays to the sky would bring.
+// A sky that links bring must give the light that rays to it give.
 #include "assets/images/metrics.h"
 #include "bake/links/link_memory.h"
 #include "tests/gpu/bake_comparison.h"
@@ -95,8 +95,8 @@ TEST(SkyLinks, BatchesAndTheCacheChangeNoByte) {
     EXPECT_TRUE(sameBytes(bakeScene(scene, desc).lighting, baked.lighting));
 }
 
-// What is told is what is left, in the deep room, too. The first sample pass has 16 directions of each of few
-// patches, and goes over them again and again: what is wrong with that must not stay.
+// The told error is what is left, in the deep room, too. The first sample pass has 16 directions of each of
+// few patches, and goes over them again and again: what is wrong with that must not stay.
 TEST(SkyLinks, TellTheLocalErrorThatIsThere) {
     const Scene scene = court();
     BakeDesc desc = precise(Method::Hybrid, 8192);

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 constexpr const char* kOwnName = "Relume: copies"; // of accessors, views and buffers that are made here
 
-/// What is to become of the copies of a node.
+/// Says what is to become of the copies of a node.
 struct NodeChange {
     std::map<size_t, std::pair<const Instance*, const Instance*>> moved; // by copy: as it was, as it is to be
     std::set<size_t> hidden;
