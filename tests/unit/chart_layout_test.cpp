@@ -283,7 +283,7 @@ TEST(ChartLayout, AChartLongerThanTheAtlas) {
     EXPECT_GE(plain.density, 0.99 * 128 / 1e4);
     EXPECT_LE(plain.density, 1.16 * 128 / 1e4);
     EXPECT_GE(plain.leastShare, 1 / 1.16);
-    // What fits is not shortened.
+    // A chart that fits is not shortened.
     charts[0] = rectangle(1, 1);
     const ChartLayout squares = layOutCharts(layoutOf(charts), {128}, pool);
     EXPECT_EQ(squares.shortened, 0u);

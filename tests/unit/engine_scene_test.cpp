@@ -179,7 +179,7 @@ TEST(EngineScene, TexturesThatNobodyReadsAreLeftOut) {
     EXPECT_EQ(out.scene.materials[0].baseColorTexture.texture, 0);
 }
 
-// What our kernels and what engines make of the same surface [shaders/lib/scene_material.glsl].
+// Our kernels and engines must make the same of a surface [shaders/lib/scene_material.glsl].
 TEST(EngineMetals, AnEnginesAlbedoIsOurs) {
     for (const float metallic : {0.0f, 0.3f, 1.0f})
         for (const float roughness : {0.0f, 0.5f, 1.0f}) {

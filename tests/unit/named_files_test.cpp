@@ -46,7 +46,7 @@ TEST_F(NamedFiles, AreAnObjsLibraryAndItsPictures) {
 TEST_F(NamedFiles, AreFoundInTextAndInBinaryFiles) {
     write("images/red wall.jpg");
     write("a.tif");
-    write("d.dae", "<image><init_from>file:///C:/work/images/red%20wall.jpg</init_from></image>");
+    write("d.dae", "<image><init_from>file:///C:/art/images/red%20wall.jpg</init_from></image>");
     EXPECT_EQ(named("d.dae"), Paths{"images/red wall.jpg"});
     const std::string zero(1, '\0');
     write("b.fbx", "Kaydara FBX Binary  " + zero + "S\x18" + zero + zero + zero +

@@ -173,7 +173,7 @@ TEST(CarriedEdits, LightsOfOneNameGoByTheirNumbers) {
     CarriedEdits out = all.carried();
     EXPECT_EQ(out.edits.lights[0].intensity, 2.0f);
     EXPECT_EQ(out.edits.lights[1].intensity, 4.0f);
-    // Where their number changed nobody knows which is which: the file's count, and none comes twice.
+    // Nobody knows which is which once their number changed: the file's count, and none comes twice.
     all.after.lights.push_back(Light{.name = "Lamp", .node = 8});
     all.own = editsOf(all.before);
     out = all.carried();

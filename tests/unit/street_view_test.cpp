@@ -1,4 +1,4 @@
-// Where somebody would stand in levels of which one knows what they are.
+// These tests ask where somebody would stand in levels of which one knows what they are.
 #include "assets/survey/street_view.h"
 
 #include "assets/survey/level_ground.h"
