@@ -302,7 +302,7 @@ struct SegmentPush {
     ADDRESS covers;  // as of ClosestPush
     uint firstChunk;
     uint targetCount;
-    uint round, turn, run; // which sample a target is: startNumber (lib/start_point.glsl)
+    uint round, turn, run; // which sample a target is: startNumber (lib/rays/start_point.glsl)
 };
 struct TransposePush {
     ADDRESS supers;

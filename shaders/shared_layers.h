@@ -9,7 +9,7 @@ const uint kPenumbraRounds = 8u;
 struct LayerDirectPush {
     ADDRESS sums;   // vec4[kReplicates][patchCount], of these sample passes
     ADDRESS direct; // vec4[patchCount]: lighting, and the variance of R, G and B together
-    ADDRESS parts;  // lib/penumbra.glsl
+    ADDRESS parts;  // lib/light/penumbra.glsl
     ADDRESS penumbra;
     uint patchCount;
     // These are for patches outside penumbrae and within: the factor from a replicate's sum to its mean, and

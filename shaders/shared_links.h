@@ -6,7 +6,7 @@ struct EmitterSamplesPush {
     ADDRESS nodes;    // EmitterNode[]
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
     ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
-    ADDRESS parts;    // lib/penumbra.glsl, as penumbra
+    ADDRESS parts;    // lib/light/penumbra.glsl, as penumbra
     ADDRESS penumbra; // 0: every patch takes every sample pass
     ADDRESS covers;   // as of ClosestPush
     uint firstChunk;
@@ -38,7 +38,7 @@ struct LampPush {
     ADDRESS bits;      // as SegmentPush
     ADDRESS sums;      // vec4[kReplicates][patchCount], added to
     ADDRESS direct;    // vec4[patchCount]: the mean so far
-    ADDRESS skyPixels; // vec4[height][width]: lib/sky.glsl
+    ADDRESS skyPixels; // vec4[height][width]: lib/light/sky.glsl
     ADDRESS skyRows;   // float[height]
     ADDRESS parts;
     ADDRESS penumbra;  // as of EmitterSamplesPush

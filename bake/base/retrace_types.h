@@ -4,7 +4,7 @@
 
 namespace relume::shader {
 #include "shaders/shared_objects.h"
-#include "shaders/lib/boxes.glsl"
+#include "shaders/lib/rays/boxes.glsl"
 
 static_assert(sizeof(TraceBox) == 24 && sizeof(RetraceMarkPush) <= 128 && sizeof(RetracePush) <= 128);
 } // namespace relume::shader

@@ -15,10 +15,10 @@ using shader::kReplicates;
 using shader::Lamp;
 using shader::Patch;
 
-constexpr uint32_t kTargetsPerWord = 32; // lib/segments.glsl
-constexpr uint32_t kLightBits = 32;      // lib/penumbra.glsl
+constexpr uint32_t kTargetsPerWord = 32; // lib/rays/segments.glsl
+constexpr uint32_t kLightBits = 32;      // lib/light/penumbra.glsl
 
-// Does what lib/penumbra_rounds.glsl does.
+// Does what lib/light/penumbra_rounds.glsl does.
 bool leftOut(const HostLamps& work, size_t index) {
     if (!work.penumbra || work.round % shader::kPenumbraRounds == 0) return false;
     const glm::uvec2& lights = work.penumbra[work.parts[index]];

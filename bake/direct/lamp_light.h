@@ -55,7 +55,7 @@ public:
         // every pass.
         const Penumbra* penumbra = nullptr;
         // Or each chunk notes in the first sample pass which lights all of its rays agree on, and asks those
-        // in few later ones (lib/light_notes.glsl): uvec2 per chunk, all 0 before; not on the CPU.
+        // in few later ones (lib/light/light_notes.glsl): uvec2 per chunk, all 0 before; not on the CPU.
         const vk::Buffer* notes = nullptr;
         const vk::Buffer* soFar = nullptr; // with notes: direct light, vec4 per patch
     };

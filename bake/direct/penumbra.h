@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// The places where neighbours see a light unalike (shaders/lib/penumbra.glsl), on the device.
+/// The places where neighbours see a light unalike (shaders/lib/light/penumbra.glsl), on the device.
 struct Penumbra {
     vk::Buffer parts;  // uint per patch: TileParts::ofPatch
     vk::Buffer lights; // uvec2 per part; of the light under way

@@ -7,10 +7,10 @@
 
 namespace relume {
 
-/// This gathers links on devices whose memory is the CPU's own: it makes the sums of shaders/links.comp in
-/// loops of C++, which are several times as fast as the shader on such a device. All pointers are to what the
-/// passes have in their buffers (link_passes.h), one entry per patch, padding included, unless said
-/// otherwise. The same bytes come out whatever the number of threads.
+/// This gathers links on devices whose memory is the CPU's own: it makes the sums of
+/// shaders/gather/links.comp in loops of C++, which are several times as fast as the shader on such a device.
+/// All pointers are to what the passes have in their buffers (link_passes.h), one entry per patch, padding
+/// included, unless said otherwise. The same bytes come out whatever the number of threads.
 
 /// Links of chunks firstChunk .. firstChunk + chunkCount - 1.
 struct HostLinks {

@@ -9,9 +9,9 @@
 namespace relume {
 
 /// Makes a layer's result of its sums over links, on devices whose memory is the CPU's own:
-/// shaders/smooth.comp, resolve.comp and layer_result.comp in loops of C++ that take eight texels at a time.
-/// All pointers are to what the passes have in their buffers (link_passes.h, and those of layers), one entry
-/// per patch, padding included, unless said otherwise. The same bytes come out whatever the number of
+/// shaders/gather/smooth.comp, resolve.comp and layer_result.comp in loops of C++ that take eight texels at a
+/// time. All pointers are to what the passes have in their buffers (link_passes.h, and those of layers), one
+/// entry per patch, padding included, unless said otherwise. The same bytes come out whatever the number of
 /// threads.
 struct HostResolve {
     const shader::Patch* patches = nullptr;

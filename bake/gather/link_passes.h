@@ -27,7 +27,7 @@ struct LinkBuffers {
     vk::Buffer linkSums, directSums;
     vk::Buffer direct;        // vec4 per patch, the mean
     vk::Buffer carried;       // vec4 per patch: light of links that later ones read (carriedShare)
-    vk::Buffer notes;         // uvec2 per chunk, of lights (lib/light_notes.glsl)
+    vk::Buffer notes;         // uvec2 per chunk, of lights (lib/light/light_notes.glsl)
     vk::Buffer distances;     // float per patch [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back

@@ -22,8 +22,8 @@ struct ErrorSketch {
     double square() const;
 };
 
-/// Makes the sketch of sums over links on the CPU, as shaders/layer_sketch.comp does: patches has an entry
-/// per patch, padding included, and sums are [kReplicates][patches].
+/// Makes the sketch of sums over links on the CPU, as shaders/layers/layer_sketch.comp does: patches has an
+/// entry per patch, padding included, and sums are [kReplicates][patches].
 ErrorSketch sketchOf(WorkerPool& pool, std::span<const shader::Patch> patches, const glm::vec4* sums);
 
 } // namespace relume

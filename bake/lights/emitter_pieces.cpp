@@ -17,7 +17,7 @@ namespace {
 struct MaskTexels {
     const Image* image;
     float alphaTexel(uint texel) { return float(image->rgba[size_t{texel} * 4 + 3]) / 255.0f; }
-#include "shaders/lib/alpha.glsl"
+#include "shaders/lib/rays/alpha.glsl"
 };
 
 } // namespace

@@ -9,7 +9,7 @@
 namespace relume {
 
 /// All mesh lights, as polygons to be sampled and the tree to choose among them
-/// (shaders/lib/pick_emitter.glsl): what the direct light is made of.
+/// (shaders/lib/light/pick_emitter.glsl): what the direct light is made of.
 struct EmitterSet {
     std::vector<shader::EmitterPolygon> polygons;
     /// The first one is the root; never empty: without mesh lights there is a root of power 0, at which every

@@ -7,8 +7,8 @@
 
 namespace relume {
 
-/// All analytic lights, as shaders/lib/lamps.glsl and sky.glsl sample them. Lights of no intensity are left
-/// out.
+/// All analytic lights, as shaders/lib/light/lamps.glsl and sky.glsl sample them. Lights of no intensity are
+/// left out.
 struct LampSet {
     std::vector<shader::Lamp> lamps; // the sky, where it shines, is the last one
     std::vector<glm::vec4>

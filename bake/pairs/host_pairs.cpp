@@ -34,8 +34,8 @@ struct Received {
     Floats r, g, b;
 };
 
-// Adds light by the disc form factor (farFactor of shaders/gather.comp) from senders whose bit is set and
-// that are not within `close` patch sizes. It is inlined, to be compiled for each instruction set.
+// Adds light by the disc form factor (farFactor of shaders/pairs/gather.comp) from senders whose bit is set
+// and that are not within `close` patch sizes. It is inlined, to be compiled for each instruction set.
 [[gnu::always_inline]] inline void addFar(const shader::Patch* receivers, const Rows& rows,
                                           const SenderLanes& s, float close, Received* sums) {
     constexpr Ints kBits = {1, 2, 4, 8, 16, 32, 64, 128};

@@ -7,10 +7,10 @@
 
 namespace relume {
 
-/// This gathers pairs on devices whose memory is the CPU's own: it makes the sums of shaders/gather.comp in
-/// loops of C++, which are several times as fast as the shader on such a device. All pointers are to what the
-/// passes have in their buffers (pair_passes.h), one entry per patch, padding included, unless said
-/// otherwise. The same bytes come out whatever the number of threads.
+/// This gathers pairs on devices whose memory is the CPU's own: it makes the sums of
+/// shaders/pairs/gather.comp in loops of C++, which are several times as fast as the shader on such a device.
+/// All pointers are to what the passes have in their buffers (pair_passes.h), one entry per patch, padding
+/// included, unless said otherwise. The same bytes come out whatever the number of threads.
 
 /// The visible pairs of whole super-blocks; the exact form factor is taken where they are close.
 struct HostPairs {

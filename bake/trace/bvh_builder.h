@@ -14,7 +14,7 @@ namespace relume {
 /// A tree has fewer triangles than this: the shaders count bytes in 32 bits.
 constexpr uint32_t kMostBvhTriangles = 1u << 26;
 
-/// The tree that shaders/lib/bvh_traverse.glsl walks.
+/// The tree that shaders/lib/rays/bvh_traverse.glsl walks.
 struct Bvh {
     std::vector<shader::BvhNode> nodes;         // depth first, node 0 is the root
     std::vector<shader::BvhTriangle> triangles; // those of a leaf are neighbours

@@ -30,7 +30,7 @@ namespace {
 struct AlphaTables {
     const uint8_t* texels;
     float alphaTexel(uint offset) { return float(texels[offset]) / 255.0f; }
-#include "shaders/lib/alpha.glsl"
+#include "shaders/lib/rays/alpha.glsl"
 };
 
 struct HitTables {
@@ -38,7 +38,7 @@ struct HitTables {
     const uint32_t* charts;
     uint texelPatch(uint texel) { return map[texel]; }
     uint chartOfPatch(uint patch) { return charts[patch]; }
-#include "shaders/lib/hit.glsl"
+#include "shaders/lib/rays/hit.glsl"
 };
 
 } // namespace

@@ -13,7 +13,7 @@ namespace relume {
 namespace {
 
 using shader::kChunk;
-constexpr uint32_t kSamplesPerInvocation = 8; // lib/closest.glsl
+constexpr uint32_t kSamplesPerInvocation = 8; // lib/rays/closest.glsl
 
 uint32_t segmentWords(const SegmentWork& work) {
     return (work.targetCount + kTargetsPerWord - 1) / kTargetsPerWord;

@@ -88,7 +88,7 @@ struct SegmentWork {
     uint32_t round = 0, turn = 1, run = 1;
 };
 
-constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/segments.glsl
+constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/rays/segments.glsl
 
 /// Links of `closest` that were traced before objects moved: those of patches that have changed, and those
 /// whose ray meets a box in which an object was or is, are traced again; all others stay as they are.

@@ -2,7 +2,7 @@
 // tone mapped as the scene is.
 
 #include "gl/light.glsl"
-#include "lib/sky_place.glsl"
+#include "lib/light/sky_place.glsl"
 
 layout(binding = 0) uniform sampler2D picture;
 layout(location = 0) uniform vec3 ahead;  // direction of the picture's middle, unit

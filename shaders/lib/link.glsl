@@ -6,7 +6,7 @@ uint chartOfPatch(uint index) { return Words(push.patchChart).items[index]; }
 #ifdef TRACER_VOXEL
 uint closestLink(Patch p, vec3 direction) { return voxelLink(p, direction); }
 #else
-#include "lib/hit.glsl"
+#include "lib/rays/hit.glsl"
 
 uint linkOf(Hit found, vec3 direction) {
     if (found.triangle == kNoPatch) return kLinkSky;

@@ -199,12 +199,12 @@ TEST_F(Viewer, ReloadsShaders) {
     const std::string sources = std::string(RELUME_SOURCE_DIR) + "/shaders";
     std::filesystem::copy(sources + "/gl/scene.frag", shaders + "/gl/scene.frag",
                           std::filesystem::copy_options::overwrite_existing);
-    std::ofstream(shaders + "/resolve.comp", std::ios::app) << "\nthis is no GLSL\n";
+    std::ofstream(shaders + "/gather/resolve.comp", std::ios::app) << "\nthis is no GLSL\n";
     viewer->mark();
     viewer->keys({"F5"});
     EXPECT_TRUE(viewer->says("resolve.comp")) << viewer->output();
     EXPECT_LT(difference(before, screenshot(*viewer)), 0.002) << "so do the old kernels";
-    std::filesystem::copy(sources + "/resolve.comp", shaders + "/resolve.comp",
+    std::filesystem::copy(sources + "/gather/resolve.comp", shaders + "/gather/resolve.comp",
                           std::filesystem::copy_options::overwrite_existing);
     viewer->mark();
     viewer->keys({"F5"});

@@ -19,8 +19,8 @@ struct BvhWalk {
     }
     BvhTriangle bvhTriangle(uint index) { return bvh->triangles.at(index); }
     bool solidHit(uint id, float b1, float b2) { return solid(id, b1, b2); }
-#include "shaders/lib/intersect.glsl"
-#include "shaders/lib/bvh_traverse.glsl"
+#include "shaders/lib/rays/intersect.glsl"
+#include "shaders/lib/rays/bvh_traverse.glsl"
 
     BvhHit bruteForce(vec3 origin, vec3 direction, float tMin, float tMax) {
         const BvhRay ray = bvhRay(origin, direction);

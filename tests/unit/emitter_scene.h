@@ -14,7 +14,7 @@ namespace relume::shader {
 struct EmitterTables {
     const EmitterSet* set;
     EmitterNode emitterNode(uint index) { return set->nodes[index]; }
-#include "shaders/lib/pick_emitter.glsl"
+#include "shaders/lib/light/pick_emitter.glsl"
 };
 
 } // namespace relume::shader

@@ -1,0 +1,70 @@
+// Adds the light of the mesh lights' points that are seen to the replicates' sums: F_polygon L sum(V f) /
+// sum(f), f being each point's own form factor. There is one workgroup per chunk and one invocation per
+// patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+layout(push_constant, scalar) uniform Push { DirectPush push; };
+#include "lib/light/penumbra_rounds.glsl"
+
+layout(local_size_x = 64) in;
+
+const uint kTargetsPerWord = 32u; // lib/rays/segments.glsl
+
+uint chunk, lane;
+
+bool seen(uint target) {
+    uint words = (push.pickCount * push.pointCount + kTargetsPerWord - 1u) / kTargetsPerWord;
+    uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
+    return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
+}
+
+void main() {
+    chunk = gl_WorkGroupID.x;
+    lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    if (roundLeftOut(index)) return;
+    bool all = push.all != 0u;
+    uint reachedEmitters = 0u, hiddenEmitters = 0u;
+    vec3 value[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
+    for (uint pick = 0u; pick < push.pickCount; ++pick) {
+        vec3 light = Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane].rgb;
+        uint first = pick * push.pointCount;
+        float sum = 0.0, visible = 0.0;
+        float part[kReplicates], partVisible[kReplicates]; // of each replicate's points
+        for (uint q = 0u; q < kReplicates; ++q) part[q] = partVisible[q] = 0.0;
+        for (uint s = 0u; s < push.pointCount; s += kReplicates) {
+            for (uint q = 0u; q < kReplicates; ++q) {
+                float w = Vec4s(push.targets).items[(chunk * push.pickCount * push.pointCount + first + s + q) * kChunk + lane].w;
+                float f = abs(w), v = w > 0.0 && seen(first + s + q) ? f : 0.0;
+                part[q] += f;
+                partVisible[q] += v;
+                sum += f;
+                visible += v;
+            }
+        }
+        float share = sum > 0.0 ? visible / sum : 0.0;
+        uint bit = light != vec3(0.0) ? 1u << (pick % 32u) : 0u;
+        if (visible > 0.0) reachedEmitters |= bit;
+        if (visible < sum) hiddenEmitters |= bit;
+        if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
+        for (uint q = 0u; q < kReplicates; ++q) {
+            // A ratio's error comes from the residuals V - share alone: what is seen as a whole is exact
+            // [Cochran 1977, Sampling Techniques, 6.3].
+            float residual = sum > 0.0 ? float(kReplicates) * (partVisible[q] - share * part[q]) / sum : 0.0;
+            if (all) value[q] += light * (share + residual);
+            else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
+        }
+    }
+    noteLights(index, reachedEmitters, hiddenEmitters);
+    vec3 total = vec3(0.0);
+    Vec4s sums = Vec4s(push.sums);
+    for (uint q = 0u; q < kReplicates; ++q) {
+        vec3 s = sums.items[q * push.patchCount + index].rgb + value[q];
+        sums.items[q * push.patchCount + index] = vec4(s, 0.0);
+        total += s;
+    }
+    Vec4s(push.direct).items[index] = vec4(max(total * push.scale, 0.0), 1.0);
+}

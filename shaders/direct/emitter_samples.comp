@@ -1,0 +1,79 @@
+// Makes points on mesh lights for the patches of some chunks: which polygon, where on it, and what it would
+// send unshadowed. There is one workgroup per chunk (x) and pick (y), and one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+#include "lib/form_factor.glsl"
+#include "lib/light/polygon_sample.glsl"
+#include "lib/light/emitters.glsl"
+layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
+EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
+#include "lib/light/pick_emitter.glsl"
+#include "lib/light/penumbra_rounds.glsl"
+#include "lib/rays/starts.glsl"
+
+layout(local_size_x = 64) in;
+
+// The salts keep the numbers of picks and of points apart from those of directions, which start from the same
+// seeds.
+const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
+
+// Nearer than this many patch sizes the form factor in the middle of a texel is off by some per cent of its mean.
+const float kNearSizes = 2.0;
+
+bool isNear(Patch p, EmitterPolygon e) {
+    return polygonDistance(p.position, e) < kNearSizes * sqrt(p.area);
+}
+
+void main() {
+    uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
+    uint base = (chunk * push.pickCount + pick) * push.pointCount;
+    uint key = seedKey(p);
+    bool all = push.all != 0u;
+
+    uint emitter = pick, sequence = 0u; // of the pick's points, where it has one of its own
+    float probability = 1.0;
+    if (!all) {
+        uint number = push.round * push.pickCount + pick;
+        uint seed = hash32(replicateSeed(key, number) ^ kPickSalt);
+        emitter = pickEmitter(p.position, p.shading, sobolPoint(replicateIndex(number), seed).x, probability);
+        sequence = replicateIndex(number) * push.pointCount;
+    }
+    vec3 light = vec3(0.0);
+    EmitterPolygon e;
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !roundLeftOut(index)) {
+        e = loadEmitterPolygon(push.polygons, emitter);
+        light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
+    }
+    // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
+    bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p, e);
+    float factors = 0.0;
+    PatchCover cover = coverOf(index);
+    bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
+    vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
+    for (uint s = 0u; s < push.pointCount; ++s) {
+        vec4 point = vec4(0.0);
+        if (shines) {
+            // If all polygons are sampled, a patch's points take turns among the replicates; if they are
+            // picked, a pick's points belong to one.
+            uint number = all ? push.round * push.pointCount + s : pick;
+            uint turn = all ? replicateIndex(number) : sequence + s;
+            uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
+            uint target = pick * push.pointCount + s;
+            uint start = startNumber(target, push.round, all ? push.pointCount : push.pickCount * push.pointCount,
+                                     all ? 1u : push.pointCount);
+            Patch from = startingPatch(p, cover, start);
+            if (near) factors += emitterFormFactor(from.position, from.shading, e);
+            EmitterSample y = emitterSample(from.position, from.shading, e, sobolPoint(turn, seed));
+            // Below the geometric horizon the point is hidden, and not asked for.
+            bool above = dot(y.point - from.position, from.normal) > from.offset;
+            point = vec4(y.point + off, above ? y.factor : -y.factor);
+        }
+        Vec4s(push.targets).items[(base + s) * kChunk + lane] = point;
+    }
+    if (near) light = e.radiance * (factors / (float(push.pointCount) * probability));
+    Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane] = vec4(light, 0.0);
+}

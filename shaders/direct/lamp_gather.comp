@@ -1,0 +1,91 @@
+// Adds the light of a group of analytic lights to the replicates' sums. Where the unshadowed light of a whole
+// one is known, its samples tell the share that is seen; else their mean is the light. There is one workgroup
+// per chunk and one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/light/lamp_group.glsl"
+
+layout(local_size_x = 64) in;
+
+const uint kTargetsPerWord = 32u; // lib/rays/segments.glsl
+
+uint chunk, lane;
+
+// Returns what was sampled; the sky's light, of three colours, is made again.
+LampRay sampled(Lamp l, Patch p, PatchCover cover, uint s) {
+    if (l.type == kLampSky) return lampRay(l, p, cover, s);
+    float light = Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane].w;
+    return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
+}
+
+bool seen(uint target) {
+    uint words = (targetCount() + kTargetsPerWord - 1u) / kTargetsPerWord;
+    uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
+    return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
+}
+
+void main() {
+    chunk = gl_WorkGroupID.x;
+    lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    if (roundLeftOut(index)) return;
+    Patch p = loadPatch(push.patches, index);
+    PatchCover cover = coverOf(index); // the sky's samples are made again
+    vec3 value[kReplicates];
+    for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
+    uint reachedLamps = 0u, hiddenLamps = 0u;
+    for (uint k = 0u; k < lampCount(); ++k) {
+        Lamp l = loadLamp(k);
+        uint bit = lampBit(k);
+        LightNote note = lampNote(l, p, index, k);
+        if (!note.asked) {
+            if (note.seen > 0.0)
+                for (uint q = 0u; q < kReplicates; ++q) value[q] += l.color * wholeLight(l, p);
+            continue;
+        }
+        vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
+        for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
+        float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
+        for (uint s = 0u; s < l.samples; ++s) {
+            LampRay ray = sampled(l, p, cover, s);
+            bool reached = ray.traced && seen(l.firstTarget + s);
+            part[s % kReplicates] += ray.light;
+            all += ray.light.r;
+            if (reached) reachedLamps |= bit;
+            else if (ray.light != vec3(0.0)) hiddenLamps |= bit;
+            if (!reached) continue;
+            partSeen[s % kReplicates] += ray.light;
+            visible += ray.light.r;
+        }
+        float whole = lampWhole(l, p), share = all > 0.0 ? visible / all : 0.0;
+        // Where no share is known, what is reached is asked again.
+        if (l.samples > 1u && whole < 0.0 && all > 0.0) {
+            if (!takesNotes()) reachedLamps = hiddenLamps = ~0u;
+            else if (visible > 0.0 && wholeLight(l, p).r < 0.0) hiddenLamps |= bit;
+        }
+        for (uint q = 0u; q < kReplicates; ++q) {
+            vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
+            if (l.samples == 1u) {
+                unit = partSeen[0];
+            } else if (whole >= 0.0) { // a ratio, and its residuals as in direct.comp
+                float residual = all > 0.0 ? float(kReplicates) * (partSeen[q].r - share * part[q].r) / all : 0.0;
+                unit = vec3(whole * (share + residual));
+            }
+            if (note.known) {
+                vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);
+                unit = noted + float(kNoteRounds) * (unit - noted);
+            }
+            value[q] += l.color * unit;
+        }
+    }
+    if ((p.flags & kPatchSends) == 0u) return;
+    noteLights(index, reachedLamps, hiddenLamps);
+    vec3 total = vec3(0.0);
+    Vec4s sums = Vec4s(push.sums);
+    for (uint q = 0u; q < kReplicates; ++q) {
+        vec3 s = sums.items[q * push.patchCount + index].rgb + value[q];
+        sums.items[q * push.patchCount + index] = vec4(s, 0.0);
+        total += s;
+    }
+    Vec4s(push.direct).items[index] = vec4(max(total * push.scale, 0.0), 1.0);
+}

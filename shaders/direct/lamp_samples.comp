@@ -1,0 +1,25 @@
+// Makes the ends of rays from the patches of some chunks to a group of analytic lights. There is one
+// workgroup per chunk (x) and light (y), and one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/light/lamp_group.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
+    Lamp l = loadLamp(gl_WorkGroupID.y);
+    bool leftOut = roundLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
+    PatchCover cover = coverOf(index);
+    for (uint s = 0u; s < l.samples; ++s) {
+        vec4 target = vec4(0.0);
+        if (!leftOut) {
+            LampRay ray = lampRay(l, p, cover, s);
+            float light = l.type == kLampSky ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
+            target = vec4(ray.target, ray.traced ? light : -light);
+        }
+        Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane] = target;
+    }
+}

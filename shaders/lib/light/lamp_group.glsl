@@ -1,0 +1,72 @@
+// Sampling a group of analytic lights and gathering their light share this: both draw the same rays.
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+#include "lib/form_factor.glsl"
+#include "lib/light/polygon_sample.glsl"
+#include "lib/light/lamps.glsl"
+layout(push_constant, scalar) uniform Push { LampPush push; };
+#include "lib/light/penumbra_rounds.glsl"
+#include "lib/rays/starts.glsl"
+vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
+float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
+#include "lib/light/sky.glsl"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
+Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp + indexInGroup]; }
+
+uint lampCount() { return push.counts & 0xffffu; }
+uint targetCount() { return push.counts >> 16; }
+
+struct LampRay {
+    vec3 target;
+    vec3 light; // unshadowed, per unit of the light's colour; the mean over its samples counts
+    bool traced;
+};
+
+// Makes sample s of patch p, which starts at another point of its texel.
+LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
+    uint number = push.round * l.samples + s, index = replicateIndex(number);
+    vec3 own = p.position;
+    p = startingPatch(p, cover, number);
+    uint seed = lampSeed(l, seedKey(p), number);
+    LampRay ray;
+    if (l.type == kLampSky) {
+        // With a picture, samples come in pairs, one by each way, that share their numbers.
+        uvec2 size = uvec2(push.skySize & 0xffffu, push.skySize >> 16);
+        uint turn = size.x > 0u ? index / 2u : index;
+        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, size, push.skyRotation);
+        ray.target = p.position + push.reach * sky.direction;
+        ray.light = sky.light;
+    } else {
+        LampSample point = lampSample(l, p, own, sobolPoint(index, seed), push.reach);
+        ray.target = point.target;
+        ray.light = vec3(point.factor);
+    }
+    // Below the geometric horizon the end is hidden, and not asked for.
+    ray.traced = ray.light != vec3(0.0) && (p.flags & kPatchSends) != 0u && dot(ray.target - p.position, p.normal) > p.offset;
+    return ray;
+}
+
+// Returns the bit of a light in notes and penumbrae.
+uint lampBit(uint indexInGroup) {
+    return push.parts == 0ul ? 1u << ((push.firstLamp + indexInGroup) % kNotedLamps) : 1u << (indexInGroup % 32u);
+}
+
+// Returns the light of a whole one, unshadowed, per unit of its colour; negative where only samples tell.
+vec3 wholeLight(Lamp l, Patch p) {
+    if (l.type == kLampSky && push.skySize == 0u) return lampRay(l, p, PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), 0u).light;
+    return vec3(lampWhole(l, p));
+}
+
+// A light that brings a patch no more than this share of its direct light is asked in one sample pass of
+// kNoteRounds, too: its noise is small whatever is in its way.
+const float kMinorShare = 0.01;
+
+LightNote lampNote(Lamp l, Patch p, uint patchIndex, uint indexInGroup) {
+    uint light = push.firstLamp + indexInGroup;
+    LightNote note = lightNote(patchIndex, lampBit(indexInGroup), light);
+    if (!takesNotes() || push.round == 0u || note.known || l.samples == 1u) return note;
+    vec3 whole = wholeLight(l, p) * l.color, soFar = Vec4s(push.direct).items[patchIndex].rgb;
+    bool minor = whole.r >= 0.0 && whole.r + whole.g + whole.b <= kMinorShare * (soFar.r + soFar.g + soFar.b);
+    return minor ? LightNote(true, isAsked(patchIndex, light), 0.0) : note;
+}

@@ -1,0 +1,121 @@
+// Analytic lights: points, spheres, suns, rectangles and discs. It is legal as GLSL and as C++ (namespace
+// relume::shader); it comes after lib/light/polygon_sample.glsl and lib/sampling.glsl. Factors are lighting
+// (irradiance / pi) per unit of the light's colour; occlusion is left to the caller.
+
+// Rays end this share of their length before a light: one that is fixed to a surface must not be hidden by
+// it.
+CONST float kLampGap = 1e-4f;
+
+// This distance is squared [m^2]: a light without extent that is nearer than a micrometre counts as if it
+// were as far away. What is at a surface is there by rounding, and 1 / d^2 has no bound.
+CONST float kNearestLamp2 = 1e-12f;
+
+// The salt keeps the numbers of analytic lights apart from those of directions and of mesh lights.
+CONST uint kLampSalt = 0x85ebca6bu;
+
+// Returns the seed that scrambles sample `number` of all sample passes; key is seedKey of the patch.
+FUNCTION uint lampSeed(Lamp l, uint key, uint number) { return hash32((replicateSeed(key, number) ^ kLampSalt) + l.seed); }
+
+// Returns what is left of the light by KHR_lights_punctual: the recommended end at the range, and the spot's
+// smooth edge. d leads from the patch to the light [m].
+FUNCTION float lampFade(Lamp l, vec3 d) {
+    float distance2 = dot(d, d), fade = 1.0f;
+    if (l.range > 0.0f) {
+        float share = distance2 / (l.range * l.range);
+        fade = max(0.0f, 1.0f - share * share);
+    }
+    if (l.type != kLampSpot) return fade;
+    float cone = clamp(-dot(l.axis, d) / sqrt(max(distance2, 1e-30f)) * l.coneScale + l.coneOffset, 0.0f, 1.0f);
+    return fade * cone * cone;
+}
+
+// Returns a direction within the cone around unit `axis` whose half angle has this squared sine, uniform in
+// solid angle.
+FUNCTION vec3 coneDirection(vec3 axis, float sine2, vec2 u) {
+    vec3 c = cosineDirection(u); // whose x and y are uniform in the unit disc
+    float r2 = c.x * c.x + c.y * c.y;
+    float drop = r2 * sine2 / (1.0f + sqrt(1.0f - sine2)); // 1 - cosine
+    float scale = sqrt(drop * (2.0f - drop) / max(r2, 1e-30f));
+    return aroundNormal(axis, vec3(c.x * scale, c.y * scale, 1.0f - drop));
+}
+
+FUNCTION vec3 rectangleCorner(Lamp l, float u, float v) { return l.position + (u - 0.5f) * l.edgeU + (v - 0.5f) * l.edgeV; }
+
+FUNCTION PolygonPart rectanglePart(Lamp l) {
+    PolygonPart q;
+    q.a = rectangleCorner(l, 0.0f, 0.0f);
+    q.b = rectangleCorner(l, 1.0f, 0.0f);
+    q.c = rectangleCorner(l, 1.0f, 1.0f);
+    q.d = rectangleCorner(l, 0.0f, 1.0f);
+    q.shape = kEmitterParallelogram;
+    q.split = 0.5f;
+    return q;
+}
+
+// Returns the factor of the whole light, unshadowed; negative where only samples tell. A sphere or sun that
+// stands above the horizon as a whole lights like its centre.
+FUNCTION float lampWhole(Lamp l, Patch p) {
+    if (l.type == kLampDisc || l.type == kLampSky) return -1.0f;
+    if (l.type == kLampRectangle) {
+        PolygonPart q = rectanglePart(l);
+        return polygonFormFactor(p.position, p.shading, q.a, q.b, q.c, q.d);
+    }
+    if (l.type == kLampSun) {
+        float c = -dot(p.shading, l.axis);
+        if (l.radius > 0.0f && abs(c) < l.radius) return -1.0f;
+        return kInvPi * max(c, 0.0f);
+    }
+    vec3 d = l.position - p.position;
+    float height = dot(p.shading, d), d2 = max(dot(d, d), kNearestLamp2);
+    if (l.radius > 0.0f && abs(height) < l.radius) return -1.0f;
+    if (!(height > 0.0f)) return 0.0f;
+    return kInvPi * height / (d2 * sqrt(d2)) * lampFade(l, d);
+}
+
+struct LampSample {
+    vec3 target;  // end of the ray [m]
+    float factor; // its mean over u is the whole light's
+};
+
+// Samples a light other than the sky, for uniform u in [0, 1)^2. reach is far outside the scene [m]. The light
+// fades as it does at the patch's own point, which p may have been moved away from: so a share of the whole light
+// is one of what is seen alone.
+FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 own, vec2 u, float reach) {
+    LampSample s;
+    s.target = l.position;
+    s.factor = 0.0f;
+    if (l.type == kLampSun) {
+        float sine2 = l.radius * l.radius;
+        vec3 w = coneDirection(-l.axis, sine2, u);
+        s.target = p.position + reach * w;
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (1.0f + sqrt(1.0f - sine2));
+        return s;
+    }
+    if (l.type == kLampRectangle || l.type == kLampDisc) {
+        float area = length(cross(l.edgeU, l.edgeV));
+        if (l.type == kLampDisc) {
+            vec3 c = cosineDirection(u);
+            s.target = l.position + l.radius * (c.x * l.edgeU + c.y * l.edgeV);
+            area = 3.14159265f * l.radius * l.radius;
+        } else {
+            PolygonPoint y = polygonPoint(p.position, p.shading, rectanglePart(l), u);
+            s.target = y.point;
+            area *= y.weight;
+        }
+        vec3 d = s.target - p.position;
+        float d2 = dot(d, d), received = dot(p.shading, d), sent = -dot(l.axis, d);
+        if (received > 0.0f && sent > 0.0f) s.factor = kInvPi * area * (received / d2) * (sent / d2);
+    } else {
+        vec3 d = l.position - p.position;
+        float d2 = dot(d, d), r2 = l.radius * l.radius;
+        if (!(d2 > 0.0f)) return s;
+        float sine2 = min(r2 / d2, 1.0f), away = sqrt(d2);
+        vec3 w = coneDirection(d / away, sine2, u);
+        float along = dot(w, d);
+        float within = r2 - (d2 - along * along);
+        s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - own);
+    }
+    s.target += kLampGap * (p.position - s.target);
+    return s;
+}

@@ -1,0 +1,33 @@
+// Makes one word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own.
+#include "lib/rays/starts.glsl"
+
+const uint kTargetsPerWord = 32u;
+
+void traceTargets(uint chunk, uint word, uint lane) {
+    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    Patch p = loadPatch(push.patches, index);
+    PatchCover cover = coverOf(index);
+    uint first = word * kTargetsPerWord, count = min(kTargetsPerWord, push.targetCount - first);
+    uint seen = 0u, rays = 0u;
+#ifdef TRACER_VOXEL
+    uint marched = 0u; // bits that are not another tracer's
+#endif
+    for (uint s = 0u; s < count; ++s) {
+        vec4 target = Vec4s(push.targets).items[(chunk * push.targetCount + first + s) * kChunk + lane];
+#ifdef TRACER_VOXEL
+        if (!voxelsServeTarget(first + s)) continue;
+        marched |= 1u << s;
+#endif
+        if (target.w <= 0.0) continue;
+        ++rays;
+        Patch start = startingPatch(p, cover, startNumber(first + s, push.round, push.turn, push.run));
+        if (pointSeen(start, target.xyz)) seen |= 1u << s;
+    }
+    if (rays != 0u) atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], rays);
+    uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
+    uint at = (chunk * words + word) * kChunk + lane;
+#ifdef TRACER_VOXEL
+    if (grid.ratio > 1u) seen |= Words(push.bits).items[at] & ~marched;
+#endif
+    Words(push.bits).items[at] = seen;
+}

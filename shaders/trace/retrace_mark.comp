@@ -1,0 +1,53 @@
+// Lists links that are to be traced again. There is one workgroup per chunk (x) and eight samples (y), and
+// one invocation per patch.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
+#include "shared_objects.h"
+#include "lib/rays/boxes.glsl"
+layout(push_constant, scalar) uniform Push { RetraceMarkPush push; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Boxes { TraceBox items[]; };
+
+#include "lib/rays/starts.glsl"
+
+layout(local_size_x = 64) in;
+
+const uint kSamplesPerInvocation = 8u;
+
+void list(uint marks, uint base) {
+    if (marks == 0u) return;
+    uint at = atomicAdd(Words(push.list).items[0], uint(bitCount(marks)));
+    for (; marks != 0u; marks &= marks - 1u)
+        Words(push.list).items[1u + at++] = base + uint(findLSB(marks)) * kChunk;
+}
+
+void main() {
+    uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x, firstLocal = gl_WorkGroupID.y * kSamplesPerInvocation;
+    uint first = (push.firstChunk + chunk) * kChunk;
+    Patch p = loadPatch(push.patches, first + lane);
+    uint base = (chunk * push.sampleCount + firstLocal) * kChunk + lane;
+    uint changed = Words(push.changed).items[(push.firstChunk + chunk) * 2u + lane / 32u];
+    bool asks = asksAgain(p, push.silent);
+    uint marks = (changed >> (lane % 32u)) & 1u;
+    if (marks != 0u) {
+        marks = (1u << kSamplesPerInvocation) - 1u;
+    } else if (asks) {
+        uint key = rotationKey(p, loadPatch(push.patches, first), push.rotation, push.size);
+        PatchCover cover = coverOf(first + lane);
+        bool above = false;
+        for (uint b = 0u; b < push.boxCount; ++b) above = above || boxAbove(p.position, p.normal, Boxes(push.boxes).items[b]);
+        for (uint k = 0u; above && k < kSamplesPerInvocation; ++k) {
+            uint number = push.firstSample + firstLocal + k;
+            vec3 origin = startingPatch(p, cover, number).position + p.offset * p.normal;
+            vec3 direction = patchDirection(p, key, number);
+            bool meets = false;
+            for (uint b = 0u; b < push.boxCount; ++b)
+                meets = meets || rayMeetsBox(origin, direction, Boxes(push.boxes).items[b]);
+            if (meets) marks |= 1u << k;
+        }
+    }
+    list(marks, base);
+    if (marks != 0u && asks)
+        atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], uint(bitCount(marks)));
+}
