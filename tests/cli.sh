@@ -124,6 +124,8 @@ expectUsageError bench quality room.glb --seconds 0
 expectUsageError bench edits room.glb --lights 0
 expectUsageError bench edits room.glb --error 0
 expectUsageError bench edits room.glb --tracer nosuchtracer
+expectUsageError bench reload room.glb --lights 0
+expectUsageError bench reload room.glb --samples 64 --error 0.01
 expectUsageError compare a.exr b.exr --metric nosuchmetric
 expectUsageError compare a.exr b.exr --diff diff.exr
 expectUsageError compare a.exr b.exr --metric local --diff diff.exr
@@ -203,6 +205,7 @@ expectWorldError missing.glb bench trace missing.glb
 expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.glb bench edits missing.glb
 expectWorldError missing.glb bench quality missing.glb
+expectWorldError missing.glb bench reload missing.glb
 expectWorldError missing.exr compare missing.exr other.exr
 expectWorldError missing.exr compare missing.exr other.exr --metric local
 
@@ -274,6 +277,7 @@ expectOneFile --json SCENE bench trace s.glb --json s.glb
 expectOneFile --json SCENE bench frames s.glb --json s.glb
 expectOneFile --json SCENE bench edits s.glb --json s.glb
 expectOneFile --json --plot bench edits s.glb --json j --plot j
+expectOneFile --json SCENE bench reload s.glb --json s.glb
 expectOneFile --plot --plot-rays bench quality s.glb --plot j --plot-rays j
 expectOneFile --html SCENE bench methods s.glb --html s.glb
 expectOneFile --html --json bench methods s.glb --html j --json j

@@ -106,6 +106,7 @@ void addBenchCommand(CLI::App& app) {
     addBenchFramesCommand(*bench);
     addBenchEditsCommand(*bench);
     addBenchQualityCommand(*bench);
+    addBenchReloadCommand(*bench);
     CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
     auto options = std::make_shared<BenchOptions>();
     trace->add_option("scene", options->scene, "glTF scene")->required();

@@ -26,5 +26,6 @@ void addBenchMethodsCommand(CLI::App& bench);
 void addBenchFramesCommand(CLI::App& bench);
 void addBenchEditsCommand(CLI::App& bench);
 void addBenchQualityCommand(CLI::App& bench);
+void addBenchReloadCommand(CLI::App& bench);
 
 } // namespace relume

@@ -2,6 +2,7 @@
 
 #include "assets/foreign/foreign_files.h"
 #include "assets/foreign/load_scene.h"
+#include "assets/gltf/gltf_file.h"
 
 #include <chrono>
 #include <system_error>
@@ -30,15 +31,25 @@ std::vector<FileTime> FileSet::timesNow() const {
     return now;
 }
 
+bool FileSet::isWhole() const {
+    return paths.size() == 1 && gltf::isWholeGlb(paths.front());
+}
+
 bool FileWatch::isDue(Clock::time_point now) const {
     return on_ && std::chrono::duration<double>(now - looked_).count() >= kPeriod;
 }
 
-bool FileWatch::look(const std::vector<FileTime>& times, Clock::time_point now) {
+FileChange FileWatch::look(const FileLook& found, Clock::time_point now) {
+    const std::vector<FileTime>& times = found.times;
     looked_ = now;
-    const bool still = times == seen_;
-    seen_ = times;
-    return still && !times.empty() && times.front() && times != known_.times;
+    const bool same = times == seen_;
+    if (!same) {
+        seen_ = times;
+        changed_ = now;
+    }
+    if (times.empty() || !times.front() || times == known_.times) return FileChange::None;
+    if (same && std::chrono::duration<double>(now - changed_).count() >= kQuiet) return FileChange::Settled;
+    return found.whole && (same || found.finished) ? FileChange::Hasty : FileChange::None;
 }
 
 void FileWatch::know(FileSet files) {

@@ -114,4 +114,13 @@ void LiveBake::setWake(std::function<void()> wake) {
     desk_->wake = std::move(wake);
 }
 
+void LiveBake::wake() const {
+    std::function<void()> wake;
+    {
+        const std::lock_guard lock(desk_->mutex);
+        wake = desk_->wake;
+    }
+    if (wake) wake();
+}
+
 } // namespace relume

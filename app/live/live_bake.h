@@ -60,6 +60,8 @@ public:
     /// Sets what the bake thread calls whenever there is something new to see. It must be harmless at any
     /// time.
     void setWake(std::function<void()> wake);
+    /// Calls it, from any thread.
+    void wake() const;
 
 private:
     template<typename Change>

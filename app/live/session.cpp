@@ -27,13 +27,14 @@ bool isNewer(const FileWatch& watch) {
 
 } // namespace
 
-Session::Session(LiveBake& bake, const BakeRequest& request) : bake_(bake), prepare_(request.prepare) {
+Session::Session(LiveBake& bake, const BakeRequest& request)
+    : bake_(bake), prepare_(request.prepare), news_([&bake] { bake.wake(); }) {
     document_.bake = request.bake;
     document_.lightmap = request.lightmap;
 }
 
 void Session::open(const std::string& path, bool keep) {
-    const Next next{path, keep, path == prepare_.path ? prepare_.choice : GltfChoice{}};
+    const Next next{path, keep, path == prepare_.path ? prepare_.choice : GltfChoice{}, false};
     if (!loader_.loading()) return load(next);
     // One at a time: the newest request is followed when the present load has ended.
     if (path != loader_.path()) loader_.drop();
@@ -41,14 +42,14 @@ void Session::open(const std::string& path, bool keep) {
 }
 
 void Session::choose(const GltfChoice& choice) {
-    const Next next{prepare_.path, false, choice};
+    const Next next{prepare_.path, false, choice, false};
     if (!loader_.loading()) return load(next);
     loader_.drop();
     next_ = next;
 }
 
 void Session::load(const Next& next) {
-    const auto& [path, keep, choice] = next;
+    const auto& [path, keep, choice, hasty] = next;
     PrepareDesc desc = prepare_;
     desc.path = path;
     desc.choice = choice;
@@ -56,7 +57,7 @@ void Session::load(const Next& next) {
     if (keep) desc.leastDensity = 0; // its size stays
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
-    loading_ = {.keep = keep, .fits = desc.leastDensity > 0, .choice = choice};
+    loading_ = {.keep = keep, .hasty = hasty, .fits = desc.leastDensity > 0, .choice = choice};
     // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
     loader_.start(desc, !keep);
 }
@@ -76,10 +77,10 @@ bool Session::finishLoading() {
     early_.reset();
     bool changed = false;
     const std::string path = loader_.path();
-    // A file that cannot be read is not tried again until it is another one.
     const FileSet files = loader_.files();
     loading_.sameFile = loading_.keep && path == prepare_.path && watch_.isKnown(files);
-    if (path == prepare_.path && !files.paths.empty()) watch_.know(files);
+    // A file that cannot be read is not tried again until it is another one, or its writer is surely done.
+    if (path == prepare_.path && !files.paths.empty() && !loading_.hasty) watch_.know(files);
     try {
         if (std::unique_ptr<LoadedScene> scene = loader_.finish()) {
             take(std::move(scene), path);
@@ -90,7 +91,10 @@ bool Session::finishLoading() {
         fail(path + ": does not fit in memory: make it smaller, or close other programs",
              loading_.keep ? "" : path);
     } catch (const std::exception& error) {
-        fail(error.what(), loading_.keep ? "" : path);
+        if (loading_.hasty)
+            spdlog::info("{} is being written", path);
+        else
+            fail(error.what(), loading_.keep ? "" : path);
     }
     if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
         load(*next);
@@ -279,11 +283,17 @@ bool Session::redo() {
     return after.has_value();
 }
 
-// Reads the scene's files again once their new time stamps stay as they are: their writer may take a while.
+// Reads the scene's files again once they seem to be written: their writer may take a while.
 void Session::pollFile() {
     const Clock::time_point now = Clock::now();
-    if (!scene_ || loader_.loading() || !watch_.isDue(now)) return;
-    if (watch_.look(watch_.files().timesNow(), now)) open(prepare_.path, true);
+    if (!scene_ || loader_.loading() || file_.saving()) return; // what we write is no news
+    const FileSet& files = watch_.files();
+    news_.follow(watch_.on() ? files.paths : std::vector<std::string>());
+    const bool finished = news_.take();
+    if (!watch_.isDue(now) && !finished) return;
+    const FileLook found{.times = files.timesNow(), .whole = files.isWhole(), .finished = finished};
+    const FileChange change = watch_.look(found, now);
+    if (change != FileChange::None) load({prepare_.path, true, prepare_.choice, change == FileChange::Hasty});
 }
 
 } // namespace relume

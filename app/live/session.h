@@ -8,6 +8,7 @@
 
 #include "app/live/document.h"
 #include "app/live/edit_history.h"
+#include "app/live/file_news.h"
 #include "app/live/file_watch.h"
 #include "app/live/live_bake.h"
 #include "app/live/reload.h"
@@ -104,6 +105,7 @@ private:
     /// Holds what was said when the load under way began.
     struct Loading {
         bool keep = false;
+        bool hasty = false;    // the file's writer may go on
         bool sameFile = false; // its files are as they were read or saved before
         bool fits = false;     // its size is chosen for it
         GltfChoice choice;
@@ -113,6 +115,7 @@ private:
         std::string path;
         bool keep = false;
         GltfChoice choice;
+        bool hasty = false;
     };
     void load(const Next& next);
     void apply(const Document& next);
@@ -141,6 +144,7 @@ private:
     std::optional<std::string> nextSave_; // the path of a save that waits for the one under way
     EditHistory history_;
     FileWatch watch_; // of the scene's files
+    FileNews news_;   // of these, where it is on
     uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0, surfaces_ = 0;
 };
 

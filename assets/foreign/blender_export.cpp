@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
+#include "assets/base/passing_folder.h"
 #include "assets/foreign/blender_script.h"
 
 #include <cerrno>
@@ -23,28 +24,6 @@ namespace relume {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes with all that is in it.
-class PassingFolder {
-public:
-    PassingFolder() {
-        std::error_code code;
-        path_ = (fs::temp_directory_path(code) / "relume_blend_XXXXXX").string();
-        if (code || mkdtemp(path_.data()) == nullptr)
-            throw Error(fmt::format("{}: cannot be made ({}): make room in the system's temporary folder",
-                                    path_, std::strerror(errno)));
-    }
-    ~PassingFolder() {
-        std::error_code code;
-        fs::remove_all(path_, code);
-    }
-    PassingFolder(const PassingFolder&) = delete;
-    PassingFolder& operator=(const PassingFolder&) = delete;
-    std::string file(const char* name) const { return path_ + "/" + name; }
-
-private:
-    std::string path_;
-};
 
 // Between fork and exec only what is safe there is called.
 [[noreturn]] void becomeBlender(char* const* arguments, pid_t parent) {
@@ -86,7 +65,7 @@ std::optional<std::string> findBlender() {
 }
 
 std::vector<uint8_t> exportByBlender(const std::string& blender, const std::string& path) {
-    const PassingFolder folder;
+    const PassingFolder folder("relume_blend");
     const std::string script = folder.file("relume_link.py"), level = folder.file("level.glb");
     std::ofstream(script, std::ios::binary) << blenderScript();
     const int status = runBlender({blender, "--background", "--factory-startup", "--disable-autoexec",

@@ -102,6 +102,18 @@ int nestingDepth(const char* begin, const char* end) {
 
 } // namespace
 
+bool isWholeGlb(const std::string& path) {
+    std::vector<uint8_t> header(kHeaderBytes);
+    try {
+        RegularFile file(path, "");
+        if (file.size() < header.size()) return false;
+        file.read(header.data(), header.size());
+        return readU32(header, 0) == kMagic && readU32(header, 8) <= file.size();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 File readFile(const std::string& path) {
     File file;
     file.path = path;

@@ -29,6 +29,10 @@ struct File {
 /// glTF 2.0, nested too deeply or no JSON.
 File readFile(const std::string& path);
 
+/// Tells whether the path names a GLB file that has at least the bytes that its header promises: whoever
+/// writes it is done. False where it cannot be read.
+bool isWholeGlb(const std::string& path);
+
 /// Returns how many bytes the buffer that lies in a GLB's binary chunk has by a checked file's JSON; 0 for
 /// none.
 uint64_t chunkBytesOf(const nlohmann::json& json);

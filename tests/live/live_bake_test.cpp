@@ -1,5 +1,6 @@
 #include "app/live/live_bake.h"
 
+#include "app/bench/map_sink.h"
 #include "app/live/layer_remark.h"
 #include "app/offline/lightmap_attributes.h"
 #include "assets/generate/generate.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <thread>
@@ -31,48 +33,24 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 /// Stands for the drawing thread without OpenGL: it takes every map into memory.
-class Screen {
+class Screen : public MapSink {
 public:
-    explicit Screen(LightmapExchange& exchange) : exchange_(exchange) {}
-
-    /// Takes a map and tells whether one came.
-    bool update() {
-        if (const auto offer = exchange_.takeOffer()) {
-            EXPECT_FALSE(offer->shared);
-            std::array<std::span<std::byte>, LightmapExchange::kSlots> spans;
-            for (size_t slot = 0; slot < spans.size(); ++slot) {
-                next_[slot].assign(size_t{offer->size} * offer->size * 8, std::byte{0});
-                spans[slot] = next_[slot];
-            }
-            exchange_.accept(offer->set, spans);
-            if (offer->set > 1) exchange_.retire(offer->set - 1);
-        }
-        const auto map = exchange_.take();
-        if (!map) return false;
-        if (map_ && map_->set == map->set) exchange_.release(map_->set, map_->slot);
-        map_ = map;
-        return true;
-    }
-
-    const std::optional<PublishedMap>& map() const { return map_; }
+    using MapSink::MapSink;
 
     /// Returns the mean of all patches [cd/m^2].
     double mean() const {
-        const auto* texels = reinterpret_cast<const glm::u16vec4*>(next_[map_->slot].data());
+        const std::span<const std::byte> bytes = texels();
         double sum = 0, count = 0;
-        for (size_t i = 0; i < next_[map_->slot].size() / sizeof(*texels); ++i) {
-            const glm::vec4 value = glm::unpackHalf(texels[i]);
+        for (size_t i = 0; i < bytes.size(); i += sizeof(glm::u16vec4)) {
+            glm::u16vec4 texel;
+            std::memcpy(&texel, &bytes[i], sizeof(texel));
+            const glm::vec4 value = glm::unpackHalf(texel);
             if (value.a < 0.75f) continue;
             sum += double{value.r} + value.g + value.b;
             count += 3;
         }
-        return map_->unit * sum / count;
+        return map()->unit * sum / count;
     }
-
-private:
-    LightmapExchange& exchange_;
-    std::array<std::vector<std::byte>, LightmapExchange::kSlots> next_;
-    std::optional<PublishedMap> map_;
 };
 
 class LiveBakeTest : public testing::Test {
@@ -310,12 +288,10 @@ TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     InspectRequest alone{.content = MapContent::Layer, .light = sources[0].key, .weight = sources[0].weight};
     bake_.inspect(alone);
     const auto shows = [&](double factor) {
-        return until(
-            [&] {
-                return screen_.map()->content == MapContent::Layer &&
-                       std::abs(screen_.mean() - factor * whole) < 1e-3 * whole;
-            },
-            20);
+        return until([&] {
+            return screen_.map()->content == MapContent::Layer &&
+                   std::abs(screen_.mean() - factor * whole) < 1e-3 * whole;
+        });
     };
     EXPECT_TRUE(shows(1)) << screen_.mean() << " for " << whole;
     alone.weight *= 3.0f;
@@ -333,7 +309,7 @@ TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
         if (map.find("coverage")->at(texel) == 1.0f) texels.push_back(texel);
     bake_.askProbes({.number = 7, .texels = texels});
     std::optional<LayerProbe> probe;
-    ASSERT_TRUE(until([&] { return (probe = bake_.exchange().takeProbe()).has_value(); }, 20));
+    ASSERT_TRUE(until([&] { return (probe = bake_.exchange().takeProbe()).has_value(); }));
     EXPECT_EQ(probe->request, 7u);
     EXPECT_EQ(probe->key, sources[0].key);
     ASSERT_EQ(probe->light.size(), texels.size());

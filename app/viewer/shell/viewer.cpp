@@ -13,7 +13,7 @@ namespace relume {
 namespace {
 
 // Without anything to draw, the viewer looks at what runs beside it after so long [s].
-constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleWatching = 0.25, kIdleFence = 0.01;
+constexpr double kIdle = 1.0, kIdleBaking = 0.1, kIdleLoading = 0.03, kIdleFence = 0.01;
 // Frames are drawn hardly faster than the monitor shows them: just so much that vsync decides, where it
 // works.
 constexpr double kLimiterSlack = 1.05;
@@ -106,7 +106,7 @@ float Viewer::pixelsPerPoint() const {
 
 double Viewer::idleSeconds(double time) const {
     double idle = baking_.busy() ? kIdleBaking : kIdle;
-    if (session_.watchesFile()) idle = std::min(idle, kIdleWatching);
+    if (session_.watchesFile()) idle = std::min(idle, FileWatch::kPeriod);
     if (session_.loading() || skyKeys_.reading() || ui_.start().looking())
         idle = std::min(idle, kIdleLoading);
     if (picture_.waitsForMaps() || picture_.pane().tilesPending() || previews_.underWay())

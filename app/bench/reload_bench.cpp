@@ -1,0 +1,337 @@
+#include "app/bench/reload_bench.h"
+
+#include "app/bench/edited_parts.h"
+#include "app/bench/edits_report.h"
+#include "app/bench/lamp_placement.h"
+#include "app/bench/map_sink.h"
+#include "app/edit/prepare.h"
+#include "app/live/session.h"
+#include "app/offline/solve.h"
+#include "app/text/interrupt.h"
+#include "app/text/stopwatch.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/base/passing_folder.h"
+#include "assets/foreign/load_scene.h"
+#include "assets/gltf/edit/gltf_edit.h"
+#include "assets/images/image_file.h"
+#include "assets/images/metrics.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <thread>
+#include <utility>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace relume {
+namespace {
+
+// Places and colours differ by this share from run to run, or the layers of the run before would serve.
+constexpr float kNudge = 1e-4f;
+constexpr float kObjectStep = 0.05f;    // of the diagonal, by which an object is moved
+constexpr float kDimmed = 0.8f;         // a base colour becomes this share of itself
+constexpr uint32_t kProbeStride = 61;   // every so many texels a layer is looked at; a prime, so no column
+constexpr double kFollowPatience = 600; // [s] that a bake may take to follow an edit
+constexpr uint32_t kPlacingSize = 64;   // lightmap edge that places for lamps are sought with [texels]
+
+/// An edit of what a file holds; `run` counts from 0, and each run makes another one.
+struct BenchEdit {
+    std::string name;
+    LightKey light; // whose layer it changes alone, where it is a lamp's
+    std::function<void(SceneEdits&, uint32_t run)> make;
+};
+
+BakeRequest requestOf(const ReloadBenchDesc& desc, const std::string& level) {
+    BakeRequest request;
+    request.prepare = {.path = level, .size = desc.size, .furnishing = {.daylight = false}};
+    request.bake.size = desc.size;
+    request.bake.tracer = desc.tracer;
+    SolverSettings& solver = request.bake.solver;
+    solver.method = Method::Hybrid;
+    solver.layers.on = true;
+    solver.error = desc.samples > 0 ? 0.0 : desc.error;
+    solver.links.samples = desc.samples;
+    return request;
+}
+
+// Prepares the scene for the search of places for lamps, which need no fine lightmap.
+PreparedScene placingOf(const ReloadBenchDesc& desc) {
+    return prepareScene(
+        {.path = desc.scene, .choice = desc.choice, .size = kPlacingSize, .furnishing = {.daylight = false}});
+}
+
+class ReloadBench {
+public:
+    /// `placing` is the scene as placingOf() has it.
+    ReloadBench(const ReloadBenchDesc& desc, PreparedScene placing)
+        : desc_(desc), device_({.select = desc.device}), level_(folder_.file("level.glb")),
+          request_(requestOf(desc, level_)), bake_({.device = desc.device, .batchMs = desc.batchMs}),
+          sink_(bake_.exchange()), session_(bake_, request_) {
+        makeLevel(std::move(placing));
+    }
+    ~ReloadBench() { bake_.stop(); } // before the memory goes that it writes
+
+    ReloadReport run() {
+        session_.watchFile(true);
+        session_.open(level_);
+        waitFor([&] { return session_.scene() != nullptr; });
+        waitUntilDone();
+        describeBake();
+        for (const BenchEdit& edit : edits()) {
+            spdlog::info("{}: {} runs", edit.name, desc_.runs);
+            report_.edits.push_back(measure(edit));
+        }
+        report_.readSeconds = reading();
+        if (desc_.changes > 0) changeAtRandom();
+        report_.beginnings = bake_.status().beginnings;
+        return std::move(report_);
+    }
+
+private:
+    // Writes the scene with the lamps, which light it alone.
+    void makeLevel(PreparedScene placing) {
+        BakeSettings settings = request_.bake;
+        settings.size = kPlacingSize;
+        WorldMesh mesh = placing.mesh;
+        const Baker baker(device_, placing.scene, std::move(placing.mesh), settings);
+        places_ = placeLamps(baker.patches().scene, desc_.lamps);
+        material_ = largestMaterial(mesh, placing.scene);
+        if (const auto object = smallObject(mesh, placing.scene)) object_ = object->first;
+        const Scene before = loadScene(desc_.scene, desc_.choice);
+        Scene after = before;
+        for (Material& material : after.materials)
+            material.emission = glm::vec3(0.0f);
+        static_cast<SkySettings&>(after.sky) = {};
+        after.lights.clear();
+        for (uint32_t i = 0; i < desc_.lamps; ++i) {
+            after.lights.push_back(lampAt(places_, i));
+            after.lights.back().name = fmt::format("Lamp {}", i);
+        }
+        saveEditedScene(desc_.scene, before, after, level_);
+    }
+
+    std::vector<BenchEdit> edits() const {
+        std::vector<BenchEdit> out;
+        out.push_back({"lamp moved", {LightKey::Kind::Lamp, 0, 0}, [this](SceneEdits& edits, uint32_t run) {
+                           const glm::vec3 nudge(nudgeOf(run) * places_.diagonal, 0.0f, 0.0f);
+                           edits.lights[0].transform = glm::translate(glm::mat4(1.0f), places_.moved + nudge);
+                       }});
+        if (object_)
+            out.push_back({"object moved", {}, [this](SceneEdits& edits, uint32_t run) {
+                               glm::mat4& place = edits.placements[*object_].transform;
+                               const glm::vec3 way(kObjectStep + nudgeOf(run), 0.0f, 0.0f);
+                               place = glm::translate(glm::mat4(1.0f), places_.diagonal * way) * place;
+                           }});
+        if (material_)
+            out.push_back({"base colour", {}, [this](SceneEdits& edits, uint32_t run) {
+                               glm::vec4& colour = edits.materials[*material_].baseColor;
+                               colour = glm::vec4((kDimmed - nudgeOf(run)) * glm::vec3(colour), colour.a);
+                           }});
+        return out;
+    }
+    static float nudgeOf(uint32_t run) { return static_cast<float>(run + 1) * kNudge; }
+
+    MeasuredReload measure(const BenchEdit& edit) {
+        MeasuredReload out{.edit = edit.name};
+        const SceneEdits home = editsOf(session_.scene()->prepared.scene);
+        const bool ofLamp = edit.light.kind == LightKey::Kind::Lamp;
+        std::vector<double> file, viewer, fileRays, viewerRays;
+        for (uint32_t run = 0; run < desc_.runs; ++run) {
+            const auto before = ofLamp ? layers() : Layers();
+            SceneEdits there = home;
+            edit.make(there, 2 * run);
+            file.push_back(untilSeen([&] { writeLevel(there); }));
+            fileRays.push_back(raysUntilDone());
+            if (ofLamp) countKept(edit.light, before, layers(), out);
+            untilSeen([&] { writeLevel(home); });
+            waitUntilDone();
+
+            Document document = session_.document();
+            edit.make(document.edits, 2 * run + 1);
+            viewer.push_back(untilSeen([&] { session_.edit(edit.name, document); }));
+            session_.endEdit();
+            viewerRays.push_back(raysUntilDone());
+            untilSeen([&] { session_.undo(); });
+            waitUntilDone();
+        }
+        out.fileSeconds = median(file);
+        out.viewerSeconds = median(viewer);
+        out.fileRays = static_cast<uint64_t>(median(fileRays));
+        out.viewerRays = static_cast<uint64_t>(median(viewerRays));
+        return out;
+    }
+
+    // Writes the file as an exporter does, under another name first.
+    void writeLevel(const SceneEdits& edits) {
+        const Scene before = loadScene(level_);
+        Scene after = before;
+        applyEdits(after, edits);
+        for (size_t i = 0; i < after.lights.size(); ++i)
+            after.lights[i].node = before.lights[i].node;
+        const std::string next = folder_.file("next.glb");
+        saveEditedScene(level_, before, after, next);
+        rays_ = bake_.status().progress.rays;
+        written_ = Clock::now();
+        std::filesystem::rename(next, level_);
+    }
+
+    // Returns how long it takes from the end of `change` until its light is on screen, bounces and all [s].
+    double untilSeen(const std::function<void()>& change) {
+        const uint64_t bake = session_.newestBake();
+        rays_ = bake_.status().progress.rays;
+        written_ = Clock::now();
+        change();
+        waitFor([&] {
+            return session_.newestBake() > bake && sink_.map() &&
+                   sink_.map()->bake == session_.newestBake() && sink_.map()->complete;
+        });
+        return secondsSince(written_);
+    }
+    void waitUntilDone() {
+        waitFor([&] {
+            const BakeStatus status = bake_.status();
+            return status.phase == BakeStatus::Phase::Done && status.bake == session_.newestBake();
+        });
+    }
+    double raysUntilDone() {
+        waitUntilDone();
+        const uint64_t rays = bake_.status().progress.rays;
+        return static_cast<double>(rays >= rays_ ? rays - rays_ : rays); // less: the bake began anew
+    }
+    void waitFor(const std::function<bool()>& what) {
+        const auto start = Clock::now();
+        for (; !what(); std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+            stopIfInterrupted();
+            session_.update();
+            sink_.update();
+            const BakeStatus status = bake_.status();
+            if (status.phase == BakeStatus::Phase::Failed) throw Error(status.doing);
+            if (const auto failure = session_.takeOpenFailure()) throw Error(failure->message);
+            if (!session_.lastError().empty()) throw Error(session_.lastError());
+            if (secondsSince(start) > kFollowPatience)
+                throw Error(fmt::format("the bake has not followed after {:g} s: use a smaller --size",
+                                        kFollowPatience));
+        }
+    }
+
+    // Returns what the layer of each light holds at some texels.
+    using Layers = std::map<LightKey, std::vector<glm::vec3>>;
+    Layers layers() {
+        ProbeRequest request{.number = ++probes_, .texels = {}};
+        for (uint32_t texel = 0; texel < desc_.size * desc_.size; texel += kProbeStride)
+            request.texels.push_back(texel);
+        bake_.askProbes(request);
+        Layers out;
+        waitFor([&] {
+            while (const auto probe = bake_.exchange().takeProbe())
+                if (probe->request == request.number) out[probe->key] = probe->light;
+            return out.size() == desc_.lamps;
+        });
+        return out;
+    }
+    static void countKept(const LightKey& changed, const Layers& before, const Layers& after,
+                          MeasuredReload& out) {
+        uint32_t kept = 0;
+        for (const auto& [key, light] : before)
+            kept += key != changed && after.at(key) == light;
+        out.layersKept = out.layersAll == 0 ? kept : std::min(out.layersKept, kept);
+        out.layersAll = static_cast<uint32_t>(before.size()) - 1;
+    }
+
+    double reading() const {
+        std::vector<double> seconds;
+        for (uint32_t run = 0; run < desc_.runs; ++run) {
+            Stopwatch watch;
+            watch([&] { return prepareScene(request_.prepare); });
+            seconds.push_back(watch.seconds);
+        }
+        return median(std::move(seconds));
+    }
+
+    void changeAtRandom() {
+        spdlog::info("{} random changes", desc_.changes);
+        const SceneEdits home = editsOf(session_.scene()->prepared.scene);
+        SceneEdits edits = home;
+        std::mt19937 random(1);
+        const auto share = [&] { return static_cast<float>(random()) * 0x1p-32f; };
+        for (uint32_t change = 0; change < desc_.changes; ++change) {
+            const size_t lamp = random() % edits.lights.size(), object = random() % edits.placements.size(),
+                         material = random() % edits.materials.size();
+            const glm::vec3 way = 0.1f * places_.diagonal * (glm::vec3(share(), share(), share()) - 0.5f);
+            switch (random() % 4) {
+            case 0:
+                edits.lights[lamp].transform =
+                    glm::translate(glm::mat4(1.0f), places_.positions[lamp] + 0.5f * way);
+                break;
+            case 1:
+                edits.lights[lamp].intensity = home.lights[lamp].intensity * (0.1f + 1.9f * share());
+                edits.lights[lamp].color = {share(), share(), share()};
+                break;
+            case 2:
+                edits.placements[object].transform =
+                    glm::translate(glm::mat4(1.0f), way) * home.placements[object].transform;
+                break;
+            default:
+                edits.materials[material].baseColor = {share(), share(), share(),
+                                                       home.materials[material].baseColor.a};
+                break;
+            }
+            untilSeen([&] { writeLevel(edits); });
+            ++report_.changes;
+        }
+        waitUntilDone();
+        report_.difference = differenceFromFresh();
+    }
+    double differenceFromFresh() {
+        const std::string shown = folder_.file("shown.exr");
+        bake_.exportLightmap({.path = shown, .lightmap = {}, .scene = level_});
+        waitFor([&] { return std::filesystem::exists(shown); });
+        PreparedScene scene = prepareScene(request_.prepare);
+        Baker fresh(device_, scene.scene, std::move(scene.mesh), request_.bake);
+        while (!fresh.solver().done()) {
+            stopIfInterrupted();
+            fresh.solver().step();
+        }
+        return compareImages(readImage(shown), "shown", fresh.lightmap({}), "fresh").relRmse;
+    }
+
+    void describeBake() {
+        const BakeStatus status = bake_.status();
+        if (!status.layered) throw Error(desc_.scene + ": has no layer for each light: " + status.remark);
+        report_ = {.scene = desc_.scene,
+                   .device = status.device,
+                   .tracer = status.tracer,
+                   .size = desc_.size,
+                   .patches = status.patches,
+                   .lamps = desc_.lamps,
+                   .edits = {},
+                   .difference = {}};
+    }
+
+    const ReloadBenchDesc& desc_;
+    const vk::Device device_; // before there is a thread that makes one
+    const PassingFolder folder_{"relume_bench"};
+    std::string level_;
+    BakeRequest request_;
+    LiveBake bake_;
+    MapSink sink_;
+    Session session_;
+    LampPlaces places_;
+    std::optional<uint32_t> material_, object_; // that are edited
+    Clock::time_point written_{};               // when the newest edit was made
+    uint64_t rays_ = 0;                         // of the bake by then
+    uint64_t probes_ = 0;                       // requests
+    ReloadReport report_;
+};
+
+} // namespace
+
+ReloadReport benchReload(const ReloadBenchDesc& desc) {
+    ASSERT(desc.lamps > 0 && desc.runs > 0);
+    return ReloadBench(desc, placingOf(desc)).run(); // a scene that cannot be read is told before a device is
+}
+
+} // namespace relume
