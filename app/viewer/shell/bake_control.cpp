@@ -40,6 +40,7 @@ void BakeControl::abortPass() {
 
 void BakeControl::follow() {
     BakeStatus status = bake_.status();
+    tellLinks(status); // before the end of a bake is told, which has them all
     // An edit may be answered between two looks: then the bake was done before, and is done again.
     if (status.phase != status_.phase ||
         (status.bake != status_.bake && status.phase == BakeStatus::Phase::Done)) {
@@ -49,12 +50,11 @@ void BakeControl::follow() {
     const bool doesOther = status.doing != status_.doing;
     status_ = std::move(status);
     if (busy() || session_.loading() || doesOther) feedback_.pacer().statusChanged();
-    tellLinks();
 }
 
 // Tells how much device memory keeps links: it grows while the light converges, and nobody else's does.
-void BakeControl::tellLinks() {
-    const uint64_t links = status_.progress.cacheBytes / kMebi;
+void BakeControl::tellLinks(const BakeStatus& status) {
+    const uint64_t links = status.progress.cacheBytes / kMebi;
     if (links == linksTold_) return;
     linksTold_ = links;
     feedback_.tell("links", std::to_string(links) + " MiB");

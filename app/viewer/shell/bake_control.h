@@ -26,7 +26,7 @@ public:
     void setBudget(double budgetMs, bool moves);
 
 private:
-    void tellLinks();
+    void tellLinks(const BakeStatus& status);
 
     const Session& session_;
     LiveBake& bake_;

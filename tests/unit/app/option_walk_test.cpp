@@ -45,6 +45,7 @@ const std::map<std::string, WalkWords> kVerbs = {
     {"bench frames", {"missing.glb"}},
     {"bench quality", {"missing.glb"}},
     {"bench edits", {"missing.glb"}},
+    {"bench reload", {"missing.glb"}},
     {"bench methods", {"missing.glb", "--html", "out.html"}},
 };
 
@@ -84,6 +85,7 @@ const std::map<std::string, WalkWords> kMeanings = {
     {"--rate", {"0"}}, // as many frames as there can be
     {"--msaa", {"0"}}, // one sample
     {"--seed", {"0"}},
+    {"--changes", {"0"}},        // of bench reload: none at random
     {"--local-error", {"0"}},    // any will do
     {"--time", {"0"}},           // where the animation begins
     {"--up", {"x"}},             // an axis
