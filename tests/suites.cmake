@@ -1,7 +1,6 @@
 # relume_discover_suites(TARGET PROPERTIES...) makes one test of ctest of each suite of a program of GoogleTest: cases of a suite
 # share a process, so that the device and its shaders are made once and not once per case. Each test writes
-# results/SUITE.xml in the build folder of the tests, by which cases are counted. Temporary files of tests, and what the program saves
-# there where it cannot write elsewhere, lie in temporary/ of that folder.
+# results/SUITE.xml in the build folder of the tests, by which cases are counted.
 #
 # The program names its suites after it is linked: this file runs as a script then.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
@@ -9,12 +8,10 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
 
   function(relume_discover_suites TARGET)
     set(LIST ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_suites.cmake)
-    file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/temporary)
     string(REPLACE ";" "|" PROPERTIES "${ARGN}") # a list would fall apart on the command line
     add_custom_command(TARGET ${TARGET} POST_BUILD BYPRODUCTS ${LIST}
       COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${TARGET}> -DLIST=${LIST}
-              -DRESULTS=${CMAKE_CURRENT_BINARY_DIR}/results
-              -DTEMPORARY=${CMAKE_CURRENT_BINARY_DIR}/temporary -DPROPERTIES=${PROPERTIES} -P ${RELUME_SUITES_SCRIPT}
+              -DRESULTS=${CMAKE_CURRENT_BINARY_DIR}/results -DPROPERTIES=${PROPERTIES} -P ${RELUME_SUITES_SCRIPT}
       VERBATIM)
     # A program that is not built yet is told as a test that fails.
     set(INCLUDED ${CMAKE_CURRENT_BINARY_DIR}/${TARGET}_include.cmake)
@@ -36,7 +33,6 @@ foreach(SUITE IN LISTS SUITES)
   string(REPLACE "/" "." RESULT "${SUITE}")
   string(APPEND TESTS "add_test([=[${SUITE}]=] \"${PROGRAM}\" \"--gtest_filter=${SUITE}.*\" "
                       "\"--gtest_output=xml:${RESULTS}/${RESULT}.xml\")\n"
-                      "set_tests_properties([=[${SUITE}]=] PROPERTIES ${PROPERTIES})\n"
-                      "set_tests_properties([=[${SUITE}]=] PROPERTIES ENVIRONMENT_MODIFICATION [=[TMPDIR=set:${TEMPORARY}]=])\n")
+                      "set_tests_properties([=[${SUITE}]=] PROPERTIES ${PROPERTIES})\n")
 endforeach()
 file(WRITE ${LIST} "${TESTS}")

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -19,7 +20,6 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kMinEdge = 16, kMaxEdge = 16384; // of a picture [pixels]
-constexpr uint32_t kMostFrames = 100000;            // more than an hour of a video
 constexpr float kMostMetres = 1e9f; // squares and products of such places are far from what floats can hold
 
 glm::vec3 parsePoint(const std::string& option, const std::string& text) {
@@ -61,6 +61,10 @@ std::string cameraNames(const Scene& scene) {
 
 } // namespace
 
+std::vector<std::string> shotPaths() {
+    return {kAnimationPath, kBookmarksPath, kCamerasPath};
+}
+
 void addPictureOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--size", o.size, "Of the picture in pixels")->capture_default_str()->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
@@ -88,9 +92,9 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("scene", o.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")->required();
     addChoiceOptions(command, o.bake.files.choice);
     command
-        .add_option(
-            "-o,--output", o.bake.files.output,
-            "Picture to write, .png; with --turntable a folder for its frames, or FILE.mp4 (by ffmpeg)")
+        .add_option("-o,--output", o.bake.files.output,
+                    "Picture to write, .png; with --turntable or --path a folder for its frames, or FILE.mp4 "
+                    "(by ffmpeg)")
         ->required();
     CLI::Option* turn =
         command
@@ -98,12 +102,24 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
                 "--turntable", o.turntable,
                 "Make so many pictures of a turn: about the scene, or in place where the camera is inside")
             ->check(wholeFrom(2, kMostFrames));
-    command.add_option("--fps", o.rate, "With --turntable: rate of the video")
-        ->capture_default_str()
-        ->check(numberFrom(FrameWriter::kLeastRate, FrameWriter::kMostRate))
-        ->needs(turn);
-    command.add_flag("--overwrite", o.overwrite, "With --turntable: remove the frames that the folder holds")
-        ->needs(turn);
+    command
+        .add_option("--path", o.path,
+                    "Make pictures of a way: of the camera in the file's first animation, or through all of "
+                    "the viewer's bookmarks of this scene, or through all cameras of the file")
+        ->check(oneOf(shotPaths()))
+        ->excludes(turn);
+    command
+        .add_option("--seconds", o.seconds,
+                    "With --path: how long it takes (default: the animation's own time; 3 s from one stop to "
+                    "the next)")
+        ->check(numberFrom(0.01, 36000.0))
+        ->needs("--path");
+    command.add_option("--fps", o.fps, "With --turntable or --path: pictures per second (default: 25)")
+        ->check(numberFrom(FrameWriter::kLeastRate, FrameWriter::kMostRate));
+    command.add_flag("--no-caption", o.noCaption,
+                     "With --turntable or --path: leave out scene, light and where the camera is on its way");
+    command.add_flag("--overwrite", o.overwrite,
+                     "With --turntable or --path: remove the frames that the folder holds");
     addPictureOptions(command, o);
     command.add_option("--lightmap", o.lightmap, "Take this lightmap, .exr or .png, and do not bake");
     CLI::Option* lightmap = command.get_option("--lightmap");
@@ -114,10 +130,19 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
 
 ShotRequest resolveShotOptions(const ShotOptions& o) {
     const std::string& output = o.bake.files.output;
-    if (o.turntable == 0 && !output.ends_with(".png"))
+    if (!o.isSeries() && !output.ends_with(".png"))
         throw UsageError("--output: '" + output + "' does not end in .png");
-    const ShotRequest request = resolvePictureOptions(o);
-    if (o.turntable > 0)
+    for (const auto& [given, option] :
+         {std::pair(o.fps > 0, "--fps"), {o.noCaption, "--no-caption"}, {o.overwrite, "--overwrite"}})
+        if (given && !o.isSeries())
+            throw UsageError(std::string(option) + ": is about a series: give --turntable or --path, too");
+    if (!o.path.empty() && !o.eye.empty())
+        throw UsageError("--path: not with --eye and --target, which are one place");
+    if ((o.path == kBookmarksPath || o.path == kCamerasPath) && !o.camera.empty())
+        throw UsageError("--camera: not with --path " + o.path + ", which goes through all of them");
+    ShotRequest request = resolvePictureOptions(o);
+    if (o.fps > 0) request.rate = o.fps;
+    if (o.isSeries())
         checkSeries(
             {.path = output, .width = request.width, .height = request.height, .overwrite = o.overwrite});
     return request;

@@ -8,6 +8,12 @@
 
 namespace relume {
 
+/// Returns the ways of a camera that users can name.
+std::vector<std::string> shotPaths();
+constexpr const char *kAnimationPath = "animation", *kBookmarksPath = "bookmarks", *kCamerasPath = "cameras";
+constexpr uint32_t kMostFrames = 100000; // of a series: more than an hour of a video
+constexpr double kSeriesRate = 25;       // pictures per second, where the user names no other number
+
 /// The options that the user typed after `relume shot`.
 struct ShotOptions {
     BakeOptions bake;     // scene, output and how the lightmap is made; its size is the lightmap's
@@ -16,9 +22,14 @@ struct ShotOptions {
     double fov = 0; // [degrees], 0: not given
     std::string size = "1440x810", exposure = "auto";
     std::string view = "lit", filter = "bilinear", tone = "agx";
-    uint32_t turntable = 0; // pictures of a turn, 0: one picture
-    double rate = 25;       // of a video [frames/s]
+    uint32_t turntable = 0; // pictures of a turn, 0: no turn
+    std::string path;       // where the camera goes: one of shotPaths(), "": nowhere
+    double seconds = 0;     // that this takes; 0: as long as it takes by itself
+    double fps = 0;         // pictures per second, 0: kSeriesRate
+    bool noCaption = false; // in pictures of a series
     bool overwrite = false; // the frames that the folder holds
+
+    bool isSeries() const { return turntable > 0 || !path.empty(); }
 };
 
 void addShotOptions(CLI::App& command, ShotOptions& options);
@@ -29,6 +40,7 @@ void addPictureOptions(CLI::App& command, ShotOptions& options);
 /// contradict each other.
 struct ShotRequest {
     uint32_t width = 0, height = 0; // [pixels]
+    double rate = kSeriesRate;      // pictures per second
     DrawSettings draw;
 };
 ShotRequest resolveShotOptions(const ShotOptions& options);

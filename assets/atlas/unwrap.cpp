@@ -73,8 +73,8 @@ private:
 bool Unwrapper::choose() {
     const size_t count = scene_.meshes.size();
     std::vector<int> set(count, -1);
+    tellWatch("unwrapping", 0.0); // helpers may take all of the work below, and nobody hears them
     pool_.run(static_cast<uint32_t>(count), [&](uint32_t i) {
-        tellWatch("unwrapping", 0.0);
         if (desc_.onlyMissing) set[i] = lightmapSet(scene_.meshes[i]);
     });
     chosen_.assign(count, false);

@@ -200,12 +200,31 @@ Poses AnimationReader::poses(double time) {
     return poses;
 }
 
+const json& firstAnimation(const Build& build, const char* mend) {
+    if (build.animations.empty()) throw Error(fmt::format("{}: has no animation: {}", build.path, mend));
+    return build.animations[0];
+}
+
+constexpr const char* kNoPath = "leave out --path animation";
+
 } // namespace
 
+double secondsOfAnimation(Build& build) {
+    AnimationReader reader(build, firstAnimation(build, kNoPath));
+    reader.poses(0.0);
+    return reader.end();
+}
+
+std::vector<Poses> posesOver(Build& build, const std::vector<double>& times) {
+    AnimationReader reader(build, firstAnimation(build, kNoPath));
+    std::vector<Poses> out;
+    for (const double time : times)
+        out.push_back(reader.poses(time));
+    return out;
+}
+
 Poses posesAt(Build& build, double time) {
-    if (build.animations.empty())
-        throw Error(fmt::format("{}: has no animation: leave out --time", build.path));
-    const json& animation = build.animations[0];
+    const json& animation = firstAnimation(build, "leave out --time");
     AnimationReader reader(build, animation);
     Poses poses = reader.poses(time);
     const std::string name = textOf(animation, "name", "");

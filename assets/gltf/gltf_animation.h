@@ -10,4 +10,11 @@ namespace relume::gltf {
 /// read is left out with a warning. Throws Error where the file has no animation.
 Poses posesAt(Build& build, double time);
 
+/// Returns the last key's time of the file's first animation [s]; what cannot be read of it does not count.
+/// Throws Error where the file has no animation.
+double secondsOfAnimation(Build& build);
+
+/// Returns what posesAt() does for each of many times.
+std::vector<Poses> posesOver(Build& build, const std::vector<double>& times);
+
 } // namespace relume::gltf

@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "assets/gltf/gltf_camera.h"
 #include "assets/gltf/gltf_file.h"
 #include "assets/gltf/gltf_instancing.h"
 #include "assets/gltf/gltf_node.h"
@@ -48,26 +49,6 @@ std::string nameOf(const json& node) {
 std::string labelOf(const json& node, size_t index) {
     const std::string name = nameOf(node);
     return name.empty() ? fmt::format("node {}", index) : "node " + inQuotes(name);
-}
-
-Camera makeCamera(const tinygltf::Camera& source, const std::string& name, const glm::mat4& transform) {
-    Camera camera;
-    camera.name = source.name.empty() ? name : source.name;
-    camera.transform = transform;
-    camera.perspective = source.type != "orthographic";
-    if (camera.perspective) {
-        camera.yfov = static_cast<float>(source.perspective.yfov);
-        camera.aspect = static_cast<float>(source.perspective.aspectRatio);
-        camera.znear = static_cast<float>(source.perspective.znear);
-        camera.zfar = static_cast<float>(source.perspective.zfar);
-    } else {
-        camera.ymag = static_cast<float>(source.orthographic.ymag);
-        if (source.orthographic.ymag != 0.0)
-            camera.aspect = static_cast<float>(source.orthographic.xmag / source.orthographic.ymag);
-        camera.znear = static_cast<float>(source.orthographic.znear);
-        camera.zfar = static_cast<float>(source.orthographic.zfar);
-    }
-    return camera;
 }
 
 bool hasLight(const json& node) {

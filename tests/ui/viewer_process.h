@@ -67,6 +67,8 @@ public:
     double linksMiB() { return std::strtod(last("links: ").c_str(), nullptr); }
     /// The state of the bake, as it told last: "paused".
     std::string phase() { return last("bake: "); }
+    /// Returns the control that the keyboard is at.
+    std::string focus() { return last("focus: "); }
     pid_t pid() const { return pid_; }
 
 private:

@@ -166,6 +166,36 @@ TEST_F(Viewer, ScreenshotsNeverOverwrite) {
     quit(*viewer);
 }
 
+// The camera goes by itself, picture by picture, and comes back.
+TEST_F(Viewer, RecordsATourAndComesBack) {
+    auto viewer = openCornell();
+    viewer->resize(480, 360);
+    viewer->settle();
+    viewer->mark();
+    viewer->keys({"alt+F12"});
+    EXPECT_TRUE(viewer->says("two bookmarks")) << viewer->output();
+    viewer->keys({"ctrl+b"});
+    viewer->drag(300, 200, 340, 210);
+    viewer->keys({"ctrl+b"});
+    viewer->settle();
+    const FloatImage before = screenshot(*viewer);
+    viewer->mark();
+    viewer->keys({"alt+F12"});
+    EXPECT_TRUE(viewer->says("recording")) << viewer->output();
+    EXPECT_TRUE(viewer->says("(91 frames)", 240)) << "three seconds, and both ends: " << viewer->output();
+    viewer->settle();
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.002) << "the camera is where it was";
+    viewer->mark();
+    viewer->keys({"ctrl+shift+F12"});
+    EXPECT_TRUE(viewer->says("recording")) << viewer->output();
+    viewer->keys({"ctrl+F12"});
+    EXPECT_TRUE(viewer->says(" frames)", 240)) << "a tour can be ended: " << viewer->output();
+    EXPECT_FALSE(viewer->says("(360 frames)", 0.1));
+    viewer->settle();
+    EXPECT_LT(difference(before, screenshot(*viewer)), 0.002);
+    quit(*viewer);
+}
+
 // ImGui aborts where modifiers change while a text is being drawn.
 TEST_F(Viewer, ModifiersMayBePressedAndReleasedWithinAFrame) {
     auto viewer = openCornell();

@@ -24,10 +24,22 @@ ItemLog* ItemLog::current() {
     return innermost;
 }
 
+std::string ItemLog::nameOf(const char* label) const {
+    const std::string text = label;
+    return path_ + text.substr(0, text.find("##")); // behind it is what only ImGui reads
+}
+
+void ItemLog::focused(const char* label) {
+    if (!on_) return;
+    const std::string name = nameOf(label);
+    if (name == focused_) return;
+    focused_ = name;
+    std::fprintf(stderr, "focus: %s\n", name.c_str());
+}
+
 void ItemLog::add(const char* label, const glm::ivec2& at) {
     if (!on_) return;
-    const std::string text = label;
-    const std::string name = path_ + text.substr(0, text.find("##")); // behind it is what only ImGui reads
+    const std::string name = nameOf(label);
     const auto [known, fresh] = places_.try_emplace(name, at);
     if (!fresh && known->second == at) return;
     known->second = at;

@@ -29,13 +29,17 @@ public:
     explicit ItemLog(bool on) : on_(on) {}
     /// Adds a control with its label; `at` is its middle.
     void add(const char* label, const glm::ivec2& at);
+    /// Says that the keyboard is at the control with this label.
+    void focused(const char* label);
     /// Returns the log of the innermost scope, nullptr outside of all. There is one because ImGui has one
     /// context.
     static ItemLog* current();
 
 private:
+    std::string nameOf(const char* label) const;
+
     bool on_ = false;
-    std::string path_;
+    std::string path_, focused_; // focused_: the control that the keyboard was at last
     std::map<std::string, glm::ivec2> places_;
 };
 

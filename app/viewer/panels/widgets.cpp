@@ -19,6 +19,7 @@ void mark(const char* label, bool framed) {
     if (TabOrder* order = TabOrder::current()) order->add();
     ItemLog* log = ItemLog::current();
     if (log == nullptr || !ImGui::IsItemVisible()) return;
+    if (ImGui::IsItemFocused()) log->focused(label);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float width = framed ? ImGui::CalcItemWidth() : high.x - low.x;
     log->add(label, {static_cast<int>(low.x + 0.5f * width), static_cast<int>(0.5f * (low.y + high.y))});

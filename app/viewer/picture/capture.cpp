@@ -24,7 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRate = 30;     // [frames/s] of a recording
 constexpr size_t kMostJobs = 6;  // pictures that wait: tens of megabytes
 constexpr double kLongest = 600; // [s] that one picture stays in a recording
 

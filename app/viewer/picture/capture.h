@@ -30,6 +30,8 @@ std::string captureName(const std::string& folder, const std::string& ending);
 /// than they are written are left out.
 class Capture {
 public:
+    static constexpr double kRate = 30; // [frames/s] of a recording
+
     Capture();
     ~Capture(); // writes what waits
     Capture(const Capture&) = delete;

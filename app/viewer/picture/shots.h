@@ -13,17 +13,24 @@
 namespace relume {
 
 /// Takes screenshots and recordings when they are due: a screenshot once the picture has settled, a recording
-/// whenever there is another picture.
+/// whenever there is another picture. A tour is a recording for which the camera moves by itself, picture by
+/// picture, as fast as they are written.
 class Shots {
 public:
     /// Returns the lines that are written into a picture.
     using Caption = std::function<std::vector<std::string>()>;
+    /// Returns the scene's path, by which bookmarks are kept; "" without a scene.
+    using ScenePath = std::function<std::string()>;
     /// The first three must outlive it.
-    Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Caption caption);
+    Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Caption caption, ScenePath path);
 
     /// Does an action from Screenshot to Caption.
     void perform(Action action);
     bool recording() const { return capture_.recording(); }
+    /// Moves the camera on its tour, before the frame is drawn.
+    void moveCamera();
+    /// Ends a tour where it is, as there is another scene.
+    void sceneCame();
     /// Says that there is another picture of the scene.
     void pictureDrawn() { recordDue_ = true; }
     /// Takes what is due, once the frame is drawn that is shown from `time` [s] on, and before it is shown.
@@ -35,8 +42,20 @@ private:
         bool withUi = false;
         int frames = 0; // that it has waited
     };
+    /// A camera that moves by itself.
+    struct Tour {
+        std::vector<ViewCamera> cameras;
+        size_t next = 0;
+        ViewCamera home;                    // where it was
+        std::optional<float> exposure = {}; // as it was set; all pictures have that of the first
+        double time() const { return (static_cast<double>(next) + 0.5) / Capture::kRate; } // of a video
+    };
     bool settled(Waiting& shot);
     void toggleRecording();
+    std::vector<ViewCamera> stops() const;
+    void begin(std::vector<ViewCamera> cameras);
+    void takeTourFrame();
+    void endTour(bool goHome);
     void record(double time);
     Pixels captionedPicture() const;
     std::string folder() const;
@@ -45,7 +64,9 @@ private:
     Preferences& preferences_;
     Feedback& feedback_;
     Caption caption_;
+    ScenePath path_;
     Capture capture_;
+    std::optional<Tour> tour_;
     std::optional<Waiting> shot_;
     bool recordDue_ = false; // the picture is not in the recording
 };

@@ -18,12 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string absolutePath(const std::string& path) {
-    std::error_code code;
-    const fs::path whole = fs::absolute(path, code);
-    return code ? path : whole.lexically_normal().string();
-}
-
 std::vector<std::string> sceneEndings() {
     std::vector<std::string> endings = {".glb", ".gltf"};
     endings.insert(endings.end(), foreignEndings().begin(), foreignEndings().end());

@@ -43,7 +43,9 @@ Viewer::Viewer(const ViewerDesc& desc)
       lights_(session_, baking_.status(), picture_, feedback_), comparison_(picture_, feedback_),
       editing_(session_, comparison_, progress_, feedback_), inspection_(*bake_, picture_),
       previews_(session_, *bake_, picture_),
-      shots_(picture_, preferences_.values(), feedback_, [this] { return captionLines(); }),
+      shots_(
+          picture_, preferences_.values(), feedback_, [this] { return captionLines(); },
+          [this] { return files_.path(); }),
       ui_(desc.logActions), lightKeys_(session_, picture_, lights_, editing_, feedback_),
       skyKeys_(session_, picture_, lights_, editing_, feedback_),
       mover_(session_, picture_, lights_, editing_, feedback_),
@@ -185,6 +187,7 @@ void Viewer::takeScene() {
     progress_.sceneCame(feedback_.now());
     comparison_.sceneCame();
     if (!session_.sceneWasKept()) {
+        shots_.sceneCame();
         const ViewCamera camera = firstCamera(scene);
         if (!picture_.wasEarly(scene)) picture_.camera().set(camera, scene.geometry.bounds);
         picture_.camera().setHome(camera);
@@ -338,6 +341,7 @@ void Viewer::drawOverlay() {
 
 void Viewer::frame(const Redraw& redraw) {
     const double begin = feedback_.now();
+    shots_.moveCamera();
     const float pixels = pixelsPerPoint();
     const float scale =
         gui_.animates() ? picture_.scale() : window_.contentScale() / pixels * preferences_.values().uiScale;

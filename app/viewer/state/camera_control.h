@@ -15,6 +15,7 @@ public:
     };
 
     const ViewCamera& camera() const { return camera_; }
+    const Box& bounds() const { return bounds_; } // of the scene
     /// Sets the camera, and the scene's bounds, which give the speed of flight.
     void set(const ViewCamera& camera, const Box& bounds);
     void set(const ViewCamera& camera) { set(camera, bounds_); }

@@ -9,7 +9,7 @@ void Feedback::tell(const char* kind, const std::string& what) const {
 }
 
 void Feedback::note(const std::string& text, bool bad) {
-    if (bad) tell("error", text);
+    tell(bad ? "error" : "note", text);
     messages_.add(text, bad, now());
     pacer_.input();
 }

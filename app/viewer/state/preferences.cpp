@@ -179,7 +179,7 @@ std::string Preferences::addBookmark(const std::string& scene, const ViewCamera&
 
 void Preferences::addRecent(const std::string& path) {
     std::error_code code;
-    const fs::path whole = fs::absolute(path, code);
+    const std::filesystem::path whole = std::filesystem::absolute(path, code);
     pushRecent(code ? path : whole.lexically_normal().string());
 }
 
@@ -197,6 +197,12 @@ std::string preferencesPath() {
     if (config != nullptr && config[0] == '/') return std::string(config) + "/relume/preferences.json";
     if (home != nullptr && home[0] == '/') return std::string(home) + "/.config/relume/preferences.json";
     return "";
+}
+
+std::string absolutePath(const std::string& path) {
+    std::error_code code;
+    const std::filesystem::path whole = std::filesystem::absolute(path, code);
+    return code ? path : whole.lexically_normal().string();
 }
 
 std::string defaultCaptureFolder() {

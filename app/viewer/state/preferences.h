@@ -41,6 +41,9 @@ struct Preferences {
     std::string addBookmark(const std::string& scene, const ViewCamera& camera);
 };
 
+/// Returns the path by which bookmarks of a scene are kept.
+std::string absolutePath(const std::string& path);
+
 /// Returns $XDG_CONFIG_HOME/relume/preferences.json, or the same in ~/.config; "" where there is neither.
 std::string preferencesPath();
 /// Returns ~/Pictures/relume where there is a ~/Pictures, else the working folder.

@@ -54,6 +54,8 @@ enum class Action : uint8_t {
     Screenshot,
     ScreenshotWithUi,
     Record,
+    RecordTurn,
+    RecordPath,
     Caption,
     ReloadShaders,
     Help,

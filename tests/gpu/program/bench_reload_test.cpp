@@ -12,8 +12,8 @@ TEST(BenchReload, AFileIsAsGoodAsAnEdit) {
     const TemporaryFolder folder;
     const std::string scene = folder.path("room.glb");
     ASSERT_EQ(runRelume({"scene", "cornell_small", "-o", scene}).status, 0);
-    const ProcessResult run = runRelume({"bench", "reload", scene, "--lights", "3", "--size", "64", "--samples",
-                                         "64", "--runs", "1", "--changes", "12", "--json", "-"});
+    const ProcessResult run = runRelume({"bench", "reload", scene, "--lights", "3", "--size", "64",
+                                         "--samples", "64", "--runs", "1", "--changes", "12", "--json", "-"});
     ASSERT_EQ(run.status, 0) << run.err;
     const auto report = nlohmann::json::parse(run.out);
     EXPECT_EQ(report.at("beginnings"), 1) << "no file began the bake anew";

@@ -1,6 +1,7 @@
 // This runs `relume shot` as a user does: pictures of the scenes that ship are held against those kept in
 // tests/golden, and it checks what is refused.
 #include "app/text/heat_map.h"
+#include "app/viewer/state/preferences.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
@@ -191,7 +192,7 @@ TEST(ShotTurntable, IsASeriesOfPicturesThatBeginsWithTheShot) {
         more.insert(more.begin(), look.begin(), look.end());
         return shot(more);
     };
-    ProcessResult run = with({"-o", folder.path("turn"), "--turntable", "3"});
+    ProcessResult run = with({"-o", folder.path("turn"), "--turntable", "3", "--no-caption"});
     ASSERT_EQ(run.status, 0) << run.err;
     run = with({"-o", folder.path("one.png")});
     ASSERT_EQ(run.status, 0) << run.err;
@@ -204,12 +205,65 @@ TEST(ShotTurntable, IsASeriesOfPicturesThatBeginsWithTheShot) {
     EXPECT_EQ(run.status, 1) << "frames are there";
     run = with({"-o", folder.path("turn"), "--turntable", "2", "--overwrite"});
     EXPECT_EQ(run.status, 0) << run.err;
+    const FloatImage captioned = readImage(folder.path("turn/frame_0001.png"));
+    EXPECT_NE(captioned.planes, one.planes) << "it has a caption";
+    for (size_t channel = 0; channel < captioned.planes.size(); ++channel)
+        for (size_t i = 0; i < size_t{captioned.width} * 4; ++i)
+            ASSERT_EQ(captioned.planes[channel][i], one.planes[channel][i]) << "its upper rows are the same";
     EXPECT_FALSE(std::filesystem::exists(folder.path("turn/frame_0003.png")));
-    for (const Strings& wrong : std::vector<Strings>{{"-o", folder.path("a.png"), "--turntable", "3"},
-                                                     {"-o", folder.path("a.png"), "--fps", "3"},
-                                                     {"-o", folder.path("turn")},
-                                                     {"-o", folder.path("t"), "--turntable", "1"}})
+    for (const Strings& wrong :
+         std::vector<Strings>{{"-o", folder.path("a.png"), "--turntable", "3"},
+                              {"-o", folder.path("a.png"), "--fps", "3"},
+                              {"-o", folder.path("a.png"), "--no-caption"},
+                              {"-o", folder.path("t"), "--path", "nowhere"},
+                              {"-o", folder.path("t"), "--seconds", "3"},
+                              {"-o", folder.path("t"), "--path", "bookmarks", "--turntable", "3"},
+                              {"-o", folder.path("turn")},
+                              {"-o", folder.path("t"), "--turntable", "1"}})
         EXPECT_EQ(with(wrong).status, 2) << wrong[1];
+}
+
+TEST(ShotPath, GoesThroughBookmarksAndCameras) {
+    const TemporaryFolder folder;
+    const std::string config = folder.path("config");
+    const Environment home("XDG_CONFIG_HOME", config.c_str());
+    const std::string scene = folder.path("room.glb");
+    std::filesystem::copy_file(std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb", scene);
+    const Strings look = {scene, "--size",    "64x48", "--lightmap-size",
+                          "32",  "--samples", "8",     "--no-caption"};
+    const auto with = [&](Strings more) {
+        more.insert(more.begin(), look.begin(), look.end());
+        return shot(more);
+    };
+    ProcessResult run = with({"-o", folder.path("way"), "--path", "bookmarks"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "has no bookmarks, and a path needs two")) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path("way")));
+
+    Preferences preferences;
+    ViewCamera camera;
+    camera.eye = {0.0f, 1.0f, 2.5f};
+    camera.target = {0.0f, 1.0f, 0.0f};
+    preferences.addBookmark(scene, camera);
+    camera.eye.x = 0.5f;
+    preferences.addBookmark(scene, camera);
+    writePreferences(preferencesPath(), preferences);
+    run = with({"-o", folder.path("way"), "--path", "bookmarks", "--seconds", "1", "--fps", "4"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    run = shot({scene, "--size", "64x48", "--lightmap-size", "32", "--samples", "8", "-o",
+                folder.path("first.png"), "--eye", "0,1,2.5", "--target", "0,1,0"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto frame = [&](int number) {
+        return readImage(folder.path("way/frame_000" + std::to_string(number) + ".png")).planes;
+    };
+    EXPECT_EQ(frame(1), readImage(folder.path("first.png")).planes);
+    for (int i = 2; i <= 5; ++i)
+        EXPECT_NE(frame(i), frame(i - 1)) << i;
+    EXPECT_FALSE(std::filesystem::exists(folder.path("way/frame_0006.png")));
+
+    run = with({"-o", folder.path("none"), "--path", "animation"});
+    EXPECT_EQ(run.status, 1);
+    EXPECT_TRUE(contains(run.err, "has no animation: leave out --path animation")) << run.err;
 }
 
 } // namespace

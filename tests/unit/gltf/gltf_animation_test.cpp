@@ -1,5 +1,6 @@
 #include "assets/gltf/gltf.h"
 #include "assets/gltf/edit/gltf_edit.h"
+#include "assets/gltf/gltf_camera_motion.h"
 
 #include "assets/base/error.h"
 #include "tests/unit/glb_builder.h"
@@ -290,6 +291,44 @@ TEST(GltfSkin, NodesWithSkinsOfTheirOwnHaveMeshesOfTheirOwn) {
     expectPoint(corner(1), {2, 0, 5}, 1e-4f);
     expectPoint(corner(2), {2, 0, 0});
     EXPECT_EQ(scene.instances[2].mesh, 0); // what is shown as it is keeps the file's number
+}
+
+std::string motionError(const std::string& path, const std::string& name, uint32_t most = 1000) {
+    try {
+        readCameraMotion(path, {}, name, 10, most);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// The node above the second camera rises by 4 m in 2 s; the first camera stays where it is.
+TEST(GltfCameraMotion, FollowsTheCameraAndWhatIsAboveIt) {
+    GlbBuilder b;
+    b.node({{"mesh", b.mesh(b.square())}});
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}},
+                         {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    b.node({{"camera", 0}, {"name", "Still"}});
+    const int crane = b.node({{"name", "Crane"}});
+    const int riding = b.node({{"camera", 1}, {"name", "Riding"}, {"translation", {0, 1, 0}}});
+    b.json["nodes"][static_cast<size_t>(crane)]["children"] = {riding};
+    const std::string fixed = b.write("fixed.glb");
+    EXPECT_NE(motionError(fixed, "Riding").find("has no animation"), std::string::npos);
+    addChannel(b, crane, "translation", b.accessor<float>({0, 2}, "SCALAR"),
+               b.accessor<float>({0, 0, 0, 0, 4, 0}, "VEC3"), "LINEAR");
+    const std::string path = b.write("crane.glb");
+    const CameraMotion motion = readCameraMotion(path, {}, "Riding", 10, 1000);
+    EXPECT_DOUBLE_EQ(motion.seconds, 2.0);
+    ASSERT_EQ(motion.cameras.size(), 21u) << "ten times per second, and both ends";
+    for (size_t i = 0; i < motion.cameras.size(); ++i) {
+        expectPoint(glm::vec3(motion.cameras[i].transform[3]), {0, 1 + 0.2f * static_cast<float>(i), 0});
+        EXPECT_FLOAT_EQ(motion.cameras[i].yfov, 0.5f);
+    }
+    EXPECT_NE(motionError(path, "").find("does not move camera 'Still'"), std::string::npos)
+        << motionError(path, "");
+    EXPECT_NE(motionError(path, "None").find("has no camera 'None'"), std::string::npos);
+    EXPECT_NE(motionError(path, "Riding", 20).find("21 pictures, more than 20"), std::string::npos)
+        << motionError(path, "Riding", 20);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "renderer/camera.h"
+#include "renderer/camera_path.h"
 #include "renderer/frustum.h"
 
 #include <gtest/gtest.h>
@@ -179,6 +180,50 @@ TEST(Turntable, TurnsAboutTheTargetOutsideAndInPlaceInside) {
         EXPECT_EQ(camera.eye, inside.eye);
         EXPECT_NEAR(glm::distance(camera.eye, camera.target), 0.5f, 1e-6f);
     }
+}
+
+TEST(CameraPath, GoesThroughAllStops) {
+    std::vector<ViewCamera> stops = {along({0, 0, 5}, {0, 0, 0}), along({5, 1, 0}, {0, 0, 0}),
+                                     along({0, 2, -5}, {0, 0, 0}), along({-4, 0, 0}, {0, 1, 0})};
+    stops[1].yfov = 0.5f;
+    const std::vector<ViewCamera> way = cameraPath(stops, 31);
+    ASSERT_EQ(way.size(), 31u);
+    for (size_t i = 0; i < stops.size(); ++i)
+        EXPECT_EQ(way[10 * i], stops[i]) << i;
+    for (size_t i = 1; i < way.size(); ++i) {
+        EXPECT_LT(glm::distance(way[i - 1].eye, way[i].eye), 1.1f) << i;
+        EXPECT_LT(std::acos(std::min(glm::dot(forward(way[i - 1]), forward(way[i])), 1.0f)), 0.25f) << i;
+        EXPECT_NEAR(glm::length(way[i].up), 1.0f, 1e-5f);
+    }
+    EXPECT_NEAR(way[5].yfov, 0.5f * (stops[0].yfov + 0.5f), 1e-6f);
+}
+
+// Neither the way nor the turn has a kink at a stop: what changes there from picture to picture changes
+// little.
+TEST(CameraPath, HasNoKinkAtAStop) {
+    const std::vector<ViewCamera> stops = {along({0, 0, 5}, {0, 0, 0}), along({5, 0, 0}, {0, 0, 0}),
+                                           along({0, 0, -5}, {0, 0, 0})};
+    constexpr uint32_t kPictures = 2001;
+    const std::vector<ViewCamera> way = cameraPath(stops, kPictures);
+    const size_t middle = kPictures / 2;
+    const glm::vec3 before = way[middle].eye - way[middle - 1].eye,
+                    after = way[middle + 1].eye - way[middle].eye;
+    EXPECT_LT(glm::distance(before, after), 0.01f * glm::length(after));
+    const glm::vec3 turnBefore = forward(way[middle]) - forward(way[middle - 1]),
+                    turnAfter = forward(way[middle + 1]) - forward(way[middle]);
+    EXPECT_LT(glm::distance(turnBefore, turnAfter), 0.01f * glm::length(turnAfter));
+    EXPECT_GT(glm::length(turnAfter), 0.0f);
+}
+
+TEST(CameraPath, TakesTheShorterWayAroundAndKeepsTheKindOfCamera) {
+    ViewCamera front = along({0, 0, 5}, {0, 0, 0}), back = along({0.1f, 0, -5}, {0, 0, 0});
+    const std::vector<ViewCamera> half = cameraPath(std::vector{front, back}, 3);
+    EXPECT_NEAR(std::abs(forward(half[1]).x), 1.0f, 1e-3f) << "half way around, level";
+    EXPECT_NEAR(half[1].up.y, 1.0f, 1e-3f);
+    back.halfHeight = 2.0f;
+    const std::vector<ViewCamera> mixed = cameraPath(std::vector{front, back}, 5);
+    EXPECT_EQ(mixed[1].halfHeight, 0.0f);
+    EXPECT_EQ(mixed[3].halfHeight, 2.0f);
 }
 
 } // namespace
