@@ -7,6 +7,15 @@ namespace relume {
 /// Bounces may leave this share of the error that is asked for.
 constexpr double kIterationShare = 0.2;
 constexpr double kLeastIterationError = 1e-4;
+/// Bounces over links that are kept may leave this share, as they cost no ray. What they leave is told
+/// against the mean light, and a place that later bounces light has little of that: there it is a larger
+/// share.
+constexpr double kKeptIterationShare = 0.02;
+
+/// Returns what bounces over such links may leave where this error is asked for, 0: none.
+inline double keptIterationAim(double error) {
+    return std::max(kKeptIterationShare * error, kLeastIterationError);
+}
 
 /// Tells how much of the mean light is still to come, if what each bounce adds goes on as a geometric series.
 /// It goes by the mean, for the root mean square says little while a few bright texels make most of it.

@@ -323,7 +323,7 @@ double BounceJob::iterationAim() const {
     const SolverSettings& settings = tools_->kit.settings;
     const double own = settings.layers.error, composite = settings.error;
     const double error = own > 0 && composite > 0 ? std::min(own, composite) : std::max(own, composite);
-    const double aim = error > 0 ? kIterationShare * error : kLeastIterationError;
+    const double aim = keptIterationAim(error);
     return desc_.hasty ? std::max(aim, kFirstIterationError) : aim;
 }
 

@@ -84,8 +84,7 @@ bool LinkSchedule::isLastBounce(const LinkState& state) const {
 
 bool LinkSchedule::hasConverged(const LinkState& state) const {
     const double asked = rules_.error > 0 ? rules_.error : rules_.localError;
-    const double aim = asked > 0 ? kIterationShare * asked : kLeastIterationError;
-    return state.series.error <= aim || state.bounce + 1 >= kMostBounces;
+    return state.series.error <= keptIterationAim(asked) || state.bounce + 1 >= kMostBounces;
 }
 
 } // namespace relume
