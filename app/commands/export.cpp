@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/commands/export_web.h"
 #include "app/edit/choice_options.h"
 #include "app/export/export_options.h"
 #include "app/offline/bake_checkpoints.h"
@@ -24,6 +25,7 @@ namespace {
 struct ExportCommand {
     BakeOptions bake;
     ExportOptions out;
+    WebOptions web;
     std::string lightmap, layers; // "": bake
 };
 
@@ -83,9 +85,12 @@ void exportScene(const ExportCommand& o) {
 
 void addExportCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "export", "Write a scene with its lightmap as a game engine reads it: GLB, KTX2, loader");
+        "export",
+        "Write a scene with its lightmap as a game engine reads it: GLB, KTX2, loader; or as a web page");
     const auto o = std::make_shared<ExportCommand>();
-    command->add_option("scene", o->bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+    command
+        ->add_option("scene", o->bake.files.scene,
+                     "Scene: .glb, .gltf, .obj, .fbx, .dae, ...; with --web also its layers: .exr")
         ->required()
         ->type_name("SCENE");
     addChoiceOptions(*command, o->bake.files.choice);
@@ -107,7 +112,27 @@ void addExportCommand(CLI::App& app) {
     addSolverOptionsBeside(*command, o->bake, {lightmap, layers}, {"--device", "--validate"});
     for (CLI::Option* given : {lightmap, layers})
         command->get_option("--size")->excludes(given);
-    command->callback([o] { exportScene(*o); });
+    CLI::Option* web =
+        command
+            ->add_option(
+                "--web", o->web.path,
+                "Write a web page in this folder, on which the lights are mixed, in place of --for and "
+                "-o; it needs layers, and opens without a network")
+            ->type_name("OUT")
+            ->excludes(lightmap);
+    for (const char* engines :
+         {"--for", "--output", "--texture-format", "--texture-size", "--gloss", "--size"})
+        web->excludes(command->get_option(engines));
+    command->add_flag("--single-file", o->web.single, "With --web: one file, OUT.html")->needs(web);
+    command
+        ->add_option("--timelapse", o->web.timelapse,
+                     "With --web: show these pictures of the bake, too ('relume timelapse')")
+        ->type_name("FOLDER")
+        ->needs(web);
+    command->callback([o] {
+        if (o->web.path.empty()) return exportScene(*o);
+        exportWeb(o->web, o->bake, o->layers, o->out.exposure);
+    });
 }
 
 } // namespace relume

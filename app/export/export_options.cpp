@@ -10,13 +10,11 @@ namespace relume {
 
 void addExportOptions(CLI::App& command, ExportOptions& options) {
     command.add_option("-o,--output", options.folder, "Folder to write; it is made where it is missing")
-        ->required()
         ->type_name("FOLDER");
     command
         .add_option("--for", options.engine,
                     "Who shows it: any (plain glTF, the light as emission), three (three.js), babylon, "
                     "playcanvas, bevy, godot, unity, blender")
-        ->required()
         ->check(oneOf(engineNames()));
     command.add_option("--exposure", options.exposure, "EV that the engine's files ask for, or auto")
         ->capture_default_str();
@@ -36,6 +34,8 @@ void addExportOptions(CLI::App& command, ExportOptions& options) {
 }
 
 ExportDesc resolveExportOptions(const ExportOptions& options) {
+    if (options.engine.empty() || options.folder.empty())
+        throw UsageError("export: say for whom and where: --for ENGINE -o FOLDER, or --web OUT for a page");
     ExportDesc desc;
     desc.engine = engineOf(options.engine);
     desc.folder = options.folder;

@@ -1,0 +1,218 @@
+// These tests open exported pages with a mix board in headless Chromium, from the disk, and hold what they
+// show against `relume mix` and `relume shot`.
+#include "assets/base/file_write.h"
+#include "assets/images/image_file.h"
+#include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
+#include "tests/text.h"
+#include "tests/web/web_page.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+namespace relume {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr uint32_t kPageWidth = 800, kPageHeight = 450; // of the compared pictures [pixels]
+constexpr size_t kLamps = 14;                           // of the gallery
+const std::string kGallery = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/gallery.glb";
+
+void run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "-q");
+    const ProcessResult result = runRelume(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+}
+
+double number(const json& point, const char* from, const char* to) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; ++c)
+        sum += std::pow(point[from][c].get<double>() - point[to][c].get<double>(), 2);
+    return std::sqrt(sum);
+}
+
+struct Weighting {
+    double intensity;
+    double color[3];
+};
+
+std::vector<Weighting> randomWeighting(std::mt19937& random) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::vector<Weighting> lamps(kLamps);
+    for (Weighting& lamp : lamps) {
+        const bool on = share(random) < 0.75;
+        lamp.intensity = on ? 4.0 * std::pow(10.0, 2.0 * share(random)) : 0.0; // [cd/m^2], up to 400
+        for (double& c : lamp.color)
+            c = share(random);
+    }
+    return lamps;
+}
+
+json jsonOf(const std::vector<Weighting>& lamps) {
+    json mix = json::array();
+    for (const Weighting& lamp : lamps)
+        mix.push_back({{"intensity", lamp.intensity},
+                       {"color", {lamp.color[0], lamp.color[1], lamp.color[2]}},
+                       {"muted", false}});
+    return mix;
+}
+
+class MixBoard : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (!whyNoPages().empty()) return;
+        folder_ = std::make_unique<TemporaryFolder>();
+        fs::copy_file(kGallery, folder_->path("gallery.glb"));
+        run({"bake", folder_->path("gallery.glb"), "--layers", "-o", layers(), "--size", "128", "--samples",
+             "64"});
+        run({"export", layers(), "--web", folder_->path("page")});
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+    void SetUp() override {
+        if (const std::string reason = whyNoPages(); !reason.empty()) GTEST_SKIP() << reason;
+    }
+
+    static std::string layers() { return folder_->path("layers.exr"); }
+    static std::string page() { return folder_->path("page/index.html"); }
+
+    // Opens a page, lets it do a job and returns what came of it; pictures go to the folder of this test.
+    json opened(const std::string& path, json job) {
+        writeFileAtomically(out_.path("job.json"), job.dump());
+        const std::string script = std::string(RELUME_SOURCE_DIR) + "/tests/web/mix_board.mjs";
+        constexpr double kLimit = 600; // [s]
+        const ProcessResult result = runProgram(
+            "/usr/bin/env", {"node", script, path, out_.path("job.json"), out_.path()}, nullptr, kLimit);
+        EXPECT_EQ(result.status, 0) << result.err;
+        const json told = json::parse(bytesOf(out_.path("result.json")));
+        EXPECT_EQ(told["errors"], json::array());
+        EXPECT_EQ(told["failed"], "");
+        EXPECT_EQ(told["requests"], json::array()) << "the page asks a network";
+        EXPECT_EQ(told["sideways"], false) << "the page scrolls sideways";
+        return told;
+    }
+
+    // Returns how far the page's picture of a mix is off, of each channel as displayed; full scale is 1.
+    std::vector<double> differences(size_t number, const std::vector<Weighting>& lamps) {
+        std::vector<std::string> mix = {"mix", layers(), "-o", out_.path("mix.exr")};
+        for (size_t i = 0; i < lamps.size(); ++i) {
+            const Weighting& lamp = lamps[i];
+            mix.insert(mix.end(), {"--set", fmt::format("Lamp {}={},{},{},{}", i + 1, lamp.intensity,
+                                                        lamp.color[0], lamp.color[1], lamp.color[2])});
+        }
+        run(mix);
+        run({"shot", kGallery, "--lightmap", out_.path("mix.exr"), "--exposure", "0", "--size",
+             fmt::format("{}x{}", kPageWidth, kPageHeight), "-o", out_.path("shot.png")});
+        const FloatImage right = readImage(out_.path("shot.png"));
+        const auto pixels = bytesOf(out_.path(fmt::format("mix{}.rgb", number)));
+        std::vector<double> off;
+        EXPECT_EQ(pixels.size(), size_t{3} * kPageWidth * kPageHeight);
+        if (pixels.size() != size_t{3} * kPageWidth * kPageHeight) return {1.0};
+        for (size_t i = 0; i < pixels.size(); ++i)
+            off.push_back(std::abs(static_cast<uint8_t>(pixels[i]) / 255.0 -
+                                   srgbFromLinear(double(right.planes[i % 3][i / 3]))));
+        return off;
+    }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+    TemporaryFolder out_;
+};
+
+std::unique_ptr<TemporaryFolder> MixBoard::folder_;
+
+TEST_F(MixBoard, HundredRandomWeightingsLookAsMixAndShotHaveThem) {
+    constexpr size_t kMixes = 100;
+    std::mt19937 random(14);
+    std::vector<std::vector<Weighting>> mixes;
+    json job = {{"viewport", {1280, 800}}, {"width", kPageWidth}, {"height", kPageHeight}, {"exposure", 0}};
+    for (size_t i = 0; i < kMixes; ++i) {
+        mixes.push_back(randomWeighting(random));
+        job["mixes"].push_back(jsonOf(mixes.back()));
+    }
+    opened(page(), job);
+    double worst = 0, sum = 0, count = 0;
+    for (size_t i = 0; i < kMixes; ++i) {
+        std::vector<double> off = differences(i, mixes[i]);
+        std::sort(off.begin(), off.end());
+        worst = std::max(worst, off[size_t(0.99 * double(off.size()))]);
+        for (const double v : off)
+            sum += v;
+        count += double(off.size());
+    }
+    std::printf("worst p99 of %zu mixes: %.3f %%, mean %.4f %%\n", kMixes, 100 * worst, 100 * sum / count);
+    EXPECT_LE(worst, 0.01);
+}
+
+TEST_F(MixBoard, SlidersShowTheirLightWithinATenthOfASecond) {
+    const json told = opened(page(), {{"viewport", {1280, 800}}, {"slides", 41}});
+    std::vector<double> times = told["slides"].get<std::vector<double>>();
+    std::sort(times.begin(), times.end());
+    std::printf("slider to frame: median %.1f ms, p90 %.1f ms\n", times[times.size() / 2],
+                times[times.size() * 9 / 10]);
+    EXPECT_LE(times[times.size() / 2], 100.0);
+}
+
+TEST_F(MixBoard, KeysReachEveryControl) {
+    const json told = opened(page(), {{"viewport", {1280, 800}}, {"keys", true}});
+    EXPECT_EQ(told["unlabelled"], 0);
+    const json &before = told["before"], &after = told["afterKeys"];
+    EXPECT_GT(after["lights"][0]["intensity"], before["lights"][0]["intensity"]);
+    EXPECT_EQ(before["lights"][1]["solo"], false);
+    EXPECT_EQ(after["lights"][1]["solo"], true);
+    EXPECT_EQ(after["camera"]["target"], before["camera"]["target"]);
+    EXPECT_NE(after["camera"]["eye"], before["camera"]["eye"]);
+    EXPECT_LT(number(told["afterPlus"]["camera"], "eye", "target"),
+              0.95 * number(after["camera"], "eye", "target"));
+}
+
+TEST_F(MixBoard, FingersTurnAndPinchOnAPhone) {
+    const json told = opened(page(), {{"viewport", {390, 844}}, {"touch", true}});
+    const json &before = told["before"]["camera"], &one = told["afterOne"]["camera"],
+               &two = told["afterTwo"]["camera"];
+    EXPECT_EQ(one["target"], before["target"]);
+    EXPECT_NEAR(number(one, "eye", "target"), number(before, "eye", "target"), 1e-3);
+    EXPECT_NE(one["eye"], before["eye"]);
+    // The fingers end 110 pixels apart instead of 50.
+    EXPECT_NEAR(number(two, "eye", "target"), number(one, "eye", "target") * 50 / 110,
+                0.02 * number(one, "eye", "target"));
+    EXPECT_NE(two["target"], one["target"]);
+    EXPECT_EQ(told["afterTap"]["lights"][1]["muted"], true);
+}
+
+TEST_F(MixBoard, OneFileHoldsTheWholePage) {
+    run({"export", kGallery, "--layers", layers(), "--web", out_.path("page.html"), "--single-file",
+         "--exposure", "1.5"});
+    fs::create_directory(out_.path("apart"));
+    fs::rename(out_.path("page.html"), out_.path("apart/page.html"));
+    const json told = opened(out_.path("apart/page.html"), {{"viewport", {800, 600}}, {"keys", true}});
+    EXPECT_EQ(told["before"]["lights"].size(), kLamps);
+}
+
+TEST_F(MixBoard, ExposureIsMeasuredAsAShotDoes) {
+    const json told = opened(page(), {{"viewport", {340 + kPageWidth, kPageHeight}}});
+    const ProcessResult shot =
+        runRelume({"shot", kGallery, "--lightmap", layers(), "--size",
+                   fmt::format("{}x{}", kPageWidth, kPageHeight), "-o", out_.path("shot.png")});
+    const size_t at = shot.err.find("exposure ");
+    ASSERT_NE(at, std::string::npos) << shot.err;
+    EXPECT_NEAR(told["measured"].get<double>(), std::stod(shot.err.substr(at + 9)), 0.05);
+}
+
+TEST_F(MixBoard, GalleryAtFullSizeFitsIn25Megabytes) {
+    const std::string large = out_.path("large.exr");
+    run({"bake", kGallery, "--layers", "-o", large, "--size", "512", "--samples", "16", "--half"});
+    run({"export", kGallery, "--layers", large, "--web", out_.path("large.html"), "--single-file"});
+    const double bytes = double(fs::file_size(out_.path("large.html")));
+    std::printf("gallery at 512 x 512: %.1f MB\n", bytes / 1e6);
+    EXPECT_LE(bytes, 25e6);
+}
+
+} // namespace
+} // namespace relume
