@@ -11,6 +11,7 @@
 
 #include "app/edit/prepare.h"
 #include "app/export/export_folder.h"
+#include "app/export/web/web_page.h"
 #include "app/live/lightmap_exchange.h"
 #include "assets/model/scene_edits.h"
 #include "bake/baker/baker.h"
@@ -118,10 +119,13 @@ struct BakeOrders {
     };
     struct EngineExport {
         ExportDesc desc;
+        std::optional<WebDesc> web = {}; // a page with the mix board is wanted instead
         std::string scene;               // the file that it names as its scene's
         uint64_t surfaces = 1;           // of the scene, as in Start
         std::vector<Material> materials; // of the scene, as it is shown
         glm::vec3 sky{0.0f};             // its radiance, or the factor of its picture, as it is shown
+
+        const std::string& path() const { return web ? web->path : desc.folder; } // of what is written
     };
     std::optional<Start> start;
     bool reset = false, abort = false, reload = false;

@@ -305,7 +305,7 @@ void BakeLoop::refuseExports() {
     for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
         spdlog::error("{}: not written, as there is no bake: begin one", wanted.path);
     for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
-        spdlog::error("{}: not written, as there is no bake: begin one", wanted.desc.folder);
+        spdlog::error("{}: not written, as there is no bake: begin one", wanted.path());
 }
 
 void BakeLoop::publish() {

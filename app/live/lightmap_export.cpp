@@ -22,6 +22,16 @@ FloatImage lightmapNow(const LightmapDesc& desc, const std::string& scene, Baker
     return image;
 }
 
+// Writes the page with the mix board of the layers as they stand.
+void exportPage(const WebDesc& desc, const std::string& name, const Scene& scene, const WorldMesh& mesh,
+                const SceneBake& bake) {
+    if (!bake.layers())
+        throw Error(desc.path + ": not written, as the page needs a layer for each light: turn on layers");
+    const LayeredImage image = layeredImage(*bake.baker(), scene, {}, {});
+    writeWebPage(desc, scene, mesh, image, name);
+    spdlog::info("wrote {}", desc.path);
+}
+
 } // namespace
 
 void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSettings& settings,
@@ -49,13 +59,14 @@ void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& d
         Scene scene = level.scene;
         scene.materials = wanted.materials;
         scene.sky.radiance = wanted.sky;
+        if (wanted.web) return exportPage(*wanted.web, wanted.scene, scene, level.mesh, bake);
         const FloatImage lightmap = lightmapNow({}, wanted.scene, *bake.baker(), bake.settings(), lightNow);
         exportLevel(wanted.desc, device, {scene, level.atlas, level.mesh}, lightmap);
         spdlog::info("wrote {}", wanted.desc.folder);
     } catch (const Error& error) {
         spdlog::error("{}", error.what());
     } catch (const std::bad_alloc&) { // the bake itself has what it needs
-        spdlog::error("{}: not written, as the memory is full: close other programs", wanted.desc.folder);
+        spdlog::error("{}: not written, as the memory is full: close other programs", wanted.path());
     }
 }
 

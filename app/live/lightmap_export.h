@@ -12,8 +12,8 @@ namespace relume {
 void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSettings& settings,
                     const std::function<std::vector<glm::vec4>()>& lightNow);
 
-/// Writes the level of a bake with such a lightmap as an engine reads it (app/export); the log tells how it
-/// went.
+/// Writes the level of a bake with such a lightmap as an engine reads it (app/export), or a page with the mix
+/// board of its layers as they stand (app/export/web); the log tells how it went.
 void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& device, const SceneBake& bake,
                      const std::function<std::vector<glm::vec4>()>& lightNow);
 

@@ -275,6 +275,31 @@ TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("other")));
 }
 
+// A page has the layers of the bake that is shown; without layers none is written, and the log says so.
+TEST_F(LiveBakeTest, APageIsWrittenOfLayersAlone) {
+    const TemporaryFolder folder;
+    const auto order = [&](const char* name, bool page) {
+        BakeOrders::EngineExport wanted;
+        wanted.desc.folder = folder.path(name);
+        if (page) wanted.web = WebDesc{.path = folder.path(name), .exposure = 1.0f, .frames = {}};
+        wanted.scene = "scene.glb";
+        wanted.materials = scene_.scene.materials;
+        bake_.exportForEngine(wanted);
+    };
+    BakeSettings settings = quickSettings();
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    order("plain", true);
+    order("after", false); // exports come one after another
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("after/loader.js")); }));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("plain")));
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    order("layered", true);
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("layered/index.html")); }));
+}
+
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     BakeSettings settings = quickSettings();
     settings.solver.layers.on = true;

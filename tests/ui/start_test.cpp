@@ -153,6 +153,25 @@ TEST_F(ViewerStart, AMenuExportsTheLevelForAnEngine) {
     quit(*viewer);
 }
 
+TEST_F(ViewerStart, AMenuExportsAPageWithTheMixBoard) {
+    const std::string path = home_.path("room.glb"), folder = home_.path("room_page");
+    std::filesystem::copy_file(kScenes + "cornell_small.glb", path);
+    auto viewer = open({path, "--layer-memory", "1G"});
+    ASSERT_TRUE(viewer->shows("bake: done", 240)) << viewer->output();
+    for (const char* name : {"Menu/File", "File/Export for", "File/Export for/web page"}) {
+        const Place place = placeOf(*viewer, name);
+        viewer->click(place.first, place.second);
+        viewer->settle();
+    }
+    viewer->mark();
+    viewer->keys({"Return"}); // the folder that it offers, beside the scene
+    EXPECT_TRUE(viewer->says("export: " + folder)) << viewer->output();
+    ASSERT_TRUE(viewer->says("wrote " + folder, 60)) << viewer->output();
+    for (const char* file : {"index.html", "scene.js", "main.js"})
+        EXPECT_TRUE(std::filesystem::exists(folder + "/" + file)) << file;
+    quit(*viewer);
+}
+
 TEST_F(ViewerStart, AViewerThatIsKilledKeepsItsRecentFiles) {
     const std::string level = home_.path("level.glb");
     fs::copy_file(kScenes + "cornell_small.glb", level);

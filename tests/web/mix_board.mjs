@@ -53,7 +53,8 @@ try {
             const frame = () => new Promise((done) => requestAnimationFrame(done));
             await frame();
             const sliders = document.querySelectorAll('#lights input[type=range]');
-            const slider = sliders[position % sliders.length];
+            const slider = sliders[Math.floor(position / 8) % sliders.length]; // dragged by eight steps
+            slider.focus();
             const start = performance.now();
             slider.value = String(40 + (37 * position) % 120);
             slider.dispatchEvent(new Event('input'));
@@ -61,6 +62,17 @@ try {
             await frame();
             return performance.now() - start;
         }, i));
+    // Turned one by one, the mix must be the one that all layers together make.
+    if (job.slides)
+        result.drift = await tab.evaluate(() => {
+            const { page: shown } = relume;
+            const mix = shown.mixes()[0], turned = shown.pixels(320, 180);
+            shown.setMix(shown.beginning);
+            shown.pixels(320, 180);
+            shown.setMix(mix);
+            const whole = shown.pixels(320, 180);
+            return whole.reduce((most, v, i) => Math.max(most, i % 4 === 3 ? 0 : Math.abs(v - turned[i])), 0);
+        });
     if (job.slides) result.share = await tab.evaluate(() => relume.page.share());
     result.sideways = await tab.evaluate(() =>
         document.documentElement.scrollWidth > innerWidth || document.querySelector('#board').scrollWidth > document.querySelector('#board').clientWidth);

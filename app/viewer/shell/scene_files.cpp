@@ -62,6 +62,7 @@ void SceneFiles::perform(Action action, int argument) {
     if (action == Action::Save) return askToSaveAs(); // a file that was converted is not written
     if (action == Action::SaveAs) return askToSaveAs();
     if (action == Action::ExportFor) return askToExportFor(static_cast<Engine>(argument));
+    if (action == Action::ExportPage) return askToExportPage();
     askToExport();
 }
 
@@ -104,6 +105,20 @@ void SceneFiles::askToExportFor(Engine engine) {
                        }});
 }
 
+void SceneFiles::askToExportPage() {
+    const fs::path scene(path());
+    desc_.dialog.open({.title = "Export a web page into a folder",
+                       .path = freePath((scene.parent_path() / scene.stem()).string() + "_page"),
+                       .endings = {},
+                       .recent = {},
+                       .saves = true,
+                       .folder = true,
+                       .done = [this](const std::string& chosen) {
+                           exportPage(
+                               {.path = chosen, .single = false, .exposure = desc_.exposure(), .frames = {}});
+                       }});
+}
+
 void SceneFiles::open(const std::string& path) {
     desc_.feedback.pacer().input();
     leave({.scene = path});
@@ -136,23 +151,37 @@ void SceneFiles::exportLightmap(const std::string& path) {
 }
 
 void SceneFiles::exportForEngine(const ExportDesc& desc) {
+    BakeOrders::EngineExport wanted;
+    wanted.desc = desc;
+    write(exportedFiles(desc), std::move(wanted));
+}
+
+void SceneFiles::exportPage(const WebDesc& desc) {
+    BakeOrders::EngineExport wanted;
+    wanted.web = desc;
+    write(webFiles(desc), std::move(wanted));
+}
+
+// Orders what is written of the level as it is shown.
+void SceneFiles::write(const std::vector<std::string>& paths, BakeOrders::EngineExport wanted) {
     Session& session = desc_.session;
-    desc_.feedback.tell("export", desc.folder);
+    const std::string folder = wanted.path();
+    desc_.feedback.tell("export", folder);
     CommandFiles files;
     files.readsScene("the scene", session.path());
-    for (const std::string& path : exportedFiles(desc))
+    for (const std::string& path : paths)
         files.writes("the export", path);
     if (const std::string problem = files.clash(); !problem.empty())
         return desc_.feedback.note(problem, true);
     LightList lights;
     lights.update(session.scene(), session);
     ShiningScene shown = shiningScene(session.document(), lights.sources(), {}, {});
-    session.bake().exportForEngine({.desc = desc,
-                                    .scene = session.path(),
-                                    .surfaces = session.surfaces(),
-                                    .materials = std::move(shown.materials),
-                                    .sky = shown.sky.radiance});
-    desc_.feedback.note("writing " + desc.folder);
+    wanted.scene = session.path();
+    wanted.surfaces = session.surfaces();
+    wanted.materials = std::move(shown.materials);
+    wanted.sky = shown.sky.radiance;
+    session.bake().exportForEngine(std::move(wanted));
+    desc_.feedback.note("writing " + folder);
 }
 
 void SceneFiles::save(const std::string& path) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/export/export_folder.h"
+#include "app/export/web/web_page.h"
 #include "app/live/session.h"
 #include "app/viewer/shell/editing.h"
 #include "app/viewer/shell/file_dialog.h"
@@ -59,9 +60,12 @@ private:
     void askToSaveAs();
     void askToExport();
     void askToExportFor(Engine engine);
+    void askToExportPage();
     void save(const std::string& path);
     void exportLightmap(const std::string& path);
     void exportForEngine(const ExportDesc& desc);
+    void exportPage(const WebDesc& desc);
+    void write(const std::vector<std::string>& paths, BakeOrders::EngineExport wanted);
     void leave(const Departure::Goal& goal);
     void go(const std::optional<Departure::Goal>& goal);
     void followOpening();

@@ -112,6 +112,8 @@ void drawEngines(const PanelContext& context) {
         if (ImGui::MenuItem(engines[i].c_str())) context.perform(Action::ExportFor, static_cast<int>(i));
         ui::mark(engines[i].c_str(), false);
     }
+    if (ImGui::MenuItem("web page")) context.perform(Action::ExportPage, 0);
+    ui::mark("web page", false);
     ImGui::EndMenu();
 }
 

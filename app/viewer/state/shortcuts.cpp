@@ -95,6 +95,7 @@ std::vector<Shortcut> makeShortcuts() {
     for (size_t i = 0; i < engines.size(); ++i)
         all.push_back({Action::ExportFor, static_cast<int>(i), 0, 0, "Export for",
                        std::string("Export for ") + engines[i]});
+    all.push_back({Action::ExportPage, 0, 0, 0, "Export for", "Export for web page"});
     addEditShortcuts(all);
     const std::vector<ViewEntry>& views = viewEntries();
     for (size_t i = 0; i < views.size(); ++i)

@@ -14,6 +14,7 @@ enum class Action : uint8_t {
     SaveAs,
     Export,
     ExportFor, // argument: an Engine
+    ExportPage,
     Watch,
     Quit,
     Undo,

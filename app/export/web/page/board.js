@@ -1,6 +1,7 @@
-// The board: a row for each light. board.show(mix) shows a mix; changed(index, settings) is called when the user sets a light.
+// The board: a row for each light. board.show(mix) shows a mix; changed(index, settings) is called when the user sets a light,
+// and before that touched(index), once its slider has the focus.
 'use strict';
-relume.makeBoard = function (list, lights, changed) {
+relume.makeBoard = function (list, lights, changed, touched) {
     const { mix: mixing } = relume;
     function element(kind, settings) {
         const made = document.createElement(kind);
@@ -22,6 +23,7 @@ relume.makeBoard = function (list, lights, changed) {
         let shown = null;
         slider.addEventListener('input', () =>
             changed(i, { intensity: mixing.atSlider(Number(slider.value), light.intensity), muted: false }));
+        slider.addEventListener('focus', () => touched(i));
         slider.addEventListener('dblclick', () => changed(i, { intensity: light.intensity }));
         color.addEventListener('input', () => changed(i, { color: mixing.fromHex(color.value) }));
         solo.addEventListener('click', () => changed(i, { solo: !shown.solo }));

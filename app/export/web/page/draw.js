@@ -81,6 +81,7 @@ relume.makeDrawing = async function (canvas, data) {
             data.words(sky.picture));
     }
 
+    const none = gl.createVertexArray();
     // ---- lightmaps: a texture with all layers, and one for each mix ----
     const size = lightmap.size;
     const layers = makeTexture(gl.TEXTURE_2D_ARRAY, gl.CLAMP_TO_EDGE, gl.CLAMP_TO_EDGE, gl.NEAREST, gl.NEAREST);
@@ -102,7 +103,7 @@ relume.makeDrawing = async function (canvas, data) {
         return true;
     }
     const filled = isFilled() ? 1 : 0;
-    function makeMixed() {
+    function makeLightmap() {
         const texture = makeTexture(gl.TEXTURE_2D, gl.CLAMP_TO_EDGE, gl.CLAMP_TO_EDGE, gl.LINEAR, gl.LINEAR);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA16F, size, size);
         const framebuffer = gl.createFramebuffer();
@@ -110,25 +111,27 @@ relume.makeDrawing = async function (canvas, data) {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
         return { texture, framebuffer, shares: null, ambient: [0, 0, 0], unit: 1 };
     }
-    const mixed = [makeMixed(), makeMixed()];
+    // Each has the lightmap of its mix, and once a light is turned that of all others: then the next turn of it adds one
+    // layer to that, whatever the number of lights.
+    const mixed = [0, 1].map(() => ({ ...makeLightmap(), held: -1, rest: null }));
 
-    // Sums the layers by these weights into lightmap A (0) or B (1).
-    function mix(side, shares) {
-        const to = mixed[side];
-        if (to.shares && JSON.stringify(to.shares) === JSON.stringify(shares)) return;
-        to.shares = shares;
-        to.ambient = relume.mix.ambient(lights, shares);
-        const mean = maths.luminance(to.ambient);
+    // Sums the layers by these weights into a lightmap; rest: another lightmap that is added, with all its layers, or null.
+    function sum(to, shares, rest) {
+        const total = rest ? maths.add(rest.ambient, relume.mix.ambient(lights, shares)) : relume.mix.ambient(lights, shares);
+        to.ambient = total;
+        const mean = maths.luminance(total);
         to.unit = mean > 0 ? 2 ** Math.round(Math.log2(mean)) : 1; // half floats are finest near 1
         const used = lights.map((light, i) => [...shares[i].map((w) => w * 2 ** light.exponent / to.unit), i])
             .filter((weight) => weight[0] !== 0 || weight[1] !== 0 || weight[2] !== 0);
-        const { program, places } = programOf('precision highp float;' + shaders.screenVertex, shaders.mixFragment, {});
+        const { program, places } = programOf('precision highp float;' + shaders.screenVertex, shaders.mixFragment,
+            { REST: rest ? 1 : 0 });
         gl.useProgram(program);
         gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
         gl.viewport(0, 0, size, size);
         gl.disable(gl.DEPTH_TEST);
         gl.disable(gl.CULL_FACE);
         gl.disable(gl.SCISSOR_TEST);
+        gl.bindVertexArray(none);
         gl.activeTexture(gl.TEXTURE0);
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, layers);
         gl.activeTexture(gl.TEXTURE1);
@@ -136,6 +139,12 @@ relume.makeDrawing = async function (canvas, data) {
         gl.uniform1i(places.layers, 0);
         gl.uniform1i(places.coverage, 1);
         gl.uniform1f(places.depth, 0);
+        gl.activeTexture(gl.TEXTURE3);
+        gl.bindTexture(gl.TEXTURE_2D, rest ? rest.texture : null); // never the one that is drawn into
+        if (rest) {
+            gl.uniform1i(places.rest, 3);
+            gl.uniform1f(places.restScale, rest.unit / to.unit);
+        }
         gl.blendFunc(gl.ONE, gl.ONE);
         for (let first = 0; first === 0 || first < used.length; first += 64) {
             const some = used.slice(first, first + 64);
@@ -147,9 +156,32 @@ relume.makeDrawing = async function (canvas, data) {
         }
         gl.disable(gl.BLEND);
     }
+    const isSame = (a, b) => a.every((v, c) => v === b[c]);
+    const kDark = [0, 0, 0];
+    // Sums all lights but one, which is about to be turned.
+    function hold(side, index) {
+        const to = mixed[side];
+        if (to.held === index || !to.shares) return;
+        to.rest ??= makeLightmap();
+        sum(to.rest, to.shares.map((share, i) => (i === index ? kDark : share)), null);
+        to.held = index;
+    }
+    // Mixes the lights by these weights into lightmap A (0) or B (1).
+    function mix(side, shares) {
+        const to = mixed[side];
+        const turned = to.shares ? shares.map((_, i) => i).filter((i) => !isSame(shares[i], to.shares[i])) : [];
+        if (to.shares && turned.length === 0) return;
+        to.shares = shares;
+        if (turned.length !== 1) {
+            to.held = -1;
+            return sum(to, shares, null);
+        }
+        hold(side, turned[0]);
+        sum(to, shares.map((share, i) => (i === to.held ? share : kDark)), to.rest);
+    }
 
     // ---- triangles ----
-    const vertices = gl.createVertexArray(), none = gl.createVertexArray();
+    const vertices = gl.createVertexArray();
     gl.bindVertexArray(vertices);
     const { geometry } = header;
     const buffers = new Map();
@@ -349,5 +381,5 @@ relume.makeDrawing = async function (canvas, data) {
     // Waits until all that was asked for is drawn.
     const finish = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     const meanOf = (side) => maths.luminance(mixed[side].ambient);
-    return { mix, show, pixels, finish, meanOf };
+    return { mix, hold, show, pixels, finish, meanOf };
 };

@@ -65,7 +65,8 @@ relume.makePage = async function (at, data) {
     }
 
     // ---- what is shown ----
-    const board = relume.makeBoard(at('lights'), lights, (index, settings) => setLight(index, settings));
+    const board = relume.makeBoard(at('lights'), lights, (index, settings) => setLight(index, settings),
+        (index) => drawing.hold(side, index));
     const mover = relume.makeMover(canvas, header.bounds, () => { at('frame').hidden = true; changed(); });
     const press = (id, on) => at(id).setAttribute('aria-pressed', String(on));
     function setLight(index, settings) {
@@ -122,6 +123,7 @@ relume.makePage = async function (at, data) {
     }
 
     // ---- controls ----
+    at('view').open = innerWidth > 720 && innerHeight > 480; // small screens have room for the lights first
     at('mixA').onclick = () => setSide(0);
     at('mixB').onclick = () => setSide(1);
     at('compare').onclick = () => setWipe(wipe === null ? 0.5 : null);

@@ -25,20 +25,28 @@ void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, depth, 1.0);
 }
 `;
-    // Sums up to 64 layers: weights[i].rgb times layer weights[i].a.
+    // Sums up to 64 layers, weights[i].rgb times layer weights[i].a, and the rest, restScale times another lightmap.
     const mixFragment = `
 precision highp float;
 precision highp int;
+precision highp sampler2D;
 precision highp sampler2DArray;
 uniform sampler2DArray layers;
 uniform sampler2D coverage;
 uniform int count;
 uniform vec4 weights[64];
 uniform float share; // of the coverage: 1 in the first pass, 0 in those that add to it
+#if REST
+uniform sampler2D rest;
+uniform float restScale;
+#endif
 out vec4 result;
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     vec3 sum = vec3(0.0);
+#if REST
+    sum = restScale * texelFetch(rest, texel, 0).rgb;
+#endif
     for (int i = 0; i < count; ++i)
         sum += weights[i].rgb * texelFetch(layers, ivec3(texel, int(weights[i].a)), 0).rgb;
     result = vec4(sum, share * texelFetch(coverage, texel, 0).r);
