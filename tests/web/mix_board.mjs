@@ -2,7 +2,7 @@
 //
 //     node mix_board.mjs PAGE.html JOB.json FOLDER
 //
-// JOB: { width, height, exposure, mixes: [[{ intensity, color }, ...], ...], touch, slides }. FOLDER gets `mixN.rgb` of each mix
+// JOB: { width, height, exposure, mixes: [[{ intensity, color }, ...], ...], glow, touch, keys, slides }. FOLDER gets `mixN.rgb` of each mix
 // (rows from the top, R, G and B, as displayed), `page.png` and result.json: what was asked from a network, the errors, how long it
 // took from a slider to its frame, what keys and fingers did, whether the page scrolls sideways.
 import { readFile, writeFile } from 'node:fs/promises';
@@ -34,9 +34,9 @@ try {
     result.measured = await tab.evaluate(() => relume.page.measure());
     if (job.exposure !== undefined) await tab.evaluate((value) => relume.page.setExposure(value), job.exposure);
     for (const [i, mix] of (job.mixes ?? []).entries()) {
-        const text = await tab.evaluate(({ lights, width, height }) => {
+        const text = await tab.evaluate(({ lights, width, height, glow }) => {
             const { page: shown } = relume;
-            shown.setGlow(false); // `relume mix` changes the lightmap alone, and `relume shot` shows what emits as the scene has it
+            shown.setGlow(glow);
             lights.forEach((settings, index) => shown.setLight(index, settings));
             const from = shown.pixels(width, height);
             let letters = '';
@@ -44,7 +44,7 @@ try {
                 for (let x = 0; x < width; ++x)
                     for (let c = 0; c < 3; ++c) letters += String.fromCharCode(from[4 * (y * width + x) + c]);
             return btoa(letters);
-        }, { lights: mix, width: job.width, height: job.height });
+        }, { lights: mix, width: job.width, height: job.height, glow: job.glow ?? false });
         await writeFile(join(folder, `mix${i}.rgb`), Buffer.from(text, 'base64'));
     }
     // Each slide waits for the frame after the one that it asks for: what it shows was handed to the screen by then.
