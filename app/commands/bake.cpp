@@ -36,6 +36,7 @@ void checkFiles(const BakeOptions& o) {
         .writes("--checkpoint", o.checkpoint.file)
         .writes("--json", o.files.json)
         .writes("--scene-out", o.files.sceneOut)
+        .writes("--probes-out", o.probes.output)
         .mayBe("--checkpoint", "--resume")
         .check();
 }
@@ -51,6 +52,7 @@ void bake(BakeOptions o) {
     if (!o.files.picture.empty()) checkWritable(o.files.picture);
     if (!o.files.errorMap.empty()) checkWritable(o.files.errorMap);
     if (!o.files.sceneOut.empty()) checkFileWritable(o.files.sceneOut, 0);
+    if (!o.probes.output.empty()) checkFileWritable(o.probes.output, 0);
     if (!o.files.json.empty() && o.files.json != "-") checkFileWritable(o.files.json, 0);
     if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
     BakeCheckpoints checkpoints(o);
@@ -58,6 +60,8 @@ void bake(BakeOptions o) {
     std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
     if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
+    ProbePlan probePlan;
+    if (o.probes.wanted()) probePlan = planProbes(o.probes, prepared.mesh);
     stopIfInterrupted();
     const auto deviceStart = Clock::now();
     const vk::Device device({.select = o.machine.device, .validation = o.machine.validate});
@@ -85,6 +89,10 @@ void bake(BakeOptions o) {
         writeImage(o.files.output, image, type);
     if (!o.files.picture.empty()) writeImage(o.files.picture, image);
     if (!o.files.errorMap.empty()) writeImage(o.files.errorMap, baker.errorMap());
+    if (o.probes.wanted())
+        writeProbes(o.probes.output, probePlan,
+                    bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samples,
+                               request.bake.solver.transport.reflectivity));
     if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
 
     spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.solve.method,

@@ -256,6 +256,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->needs(layers);
     command.add_flag("--half", o.files.half, "Write 16-bit floats");
     addCheckpointOptions(command, o.checkpoint);
+    addProbeOptions(command, o.probes);
     command.add_option("--json", o.files.json, "Write statistics to this file, - for standard output");
     command.add_option("--scene-out", o.files.sceneOut,
                        "Write the scene with the lightmap UVs that were used, .glb");
@@ -326,6 +327,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
                         .sew = !o.lightmap.noSew && o.lightmap.dilate > 0,
                         .dilate = o.lightmap.dilate,
                         .rtrad = rtrad};
+    checkProbeOptions(o.probes, request.bake, o.lightmap.quantity == "radiance");
     return request;
 }
 

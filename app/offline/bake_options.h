@@ -5,6 +5,7 @@
 
 #include "app/edit/prepare.h"
 #include "app/offline/pair_options.h"
+#include "app/offline/probe_options.h"
 #include "bake/baker/baker.h"
 #include "bake/trace/voxel_map.h"
 
@@ -92,6 +93,7 @@ struct BakeOptions {
     MachineOptions machine;
     LightmapOptions lightmap;
     CheckpointOptions checkpoint;
+    ProbeOptions probes;
 };
 
 void addBakeOptions(CLI::App& command, BakeOptions& options);

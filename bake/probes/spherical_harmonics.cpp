@@ -1,0 +1,39 @@
+#include "bake/probes/spherical_harmonics.h"
+
+#include <numbers>
+
+namespace relume {
+
+std::array<double, 9> harmonicsAt(const glm::dvec3& d) {
+    constexpr double kBand0 = 0.28209479177387814;   // sqrt(1 / (4 pi))
+    constexpr double kBand1 = 0.48860251190291992;   // sqrt(3 / (4 pi))
+    constexpr double kBand2 = 1.0925484305920792;    // sqrt(15 / (4 pi))
+    constexpr double kBand2z = 0.31539156525252005;  // sqrt(5 / (16 pi))
+    constexpr double kBand2xy = 0.54627421529603959; // sqrt(15 / (16 pi))
+    return {kBand0,
+            kBand1 * d.y,
+            kBand1 * d.z,
+            kBand1 * d.x,
+            kBand2 * d.x * d.y,
+            kBand2 * d.y * d.z,
+            kBand2z * (3.0 * d.z * d.z - 1.0),
+            kBand2 * d.x * d.z,
+            kBand2xy * (d.x * d.x - d.y * d.y)};
+}
+
+void addLight(Harmonics& harmonics, const glm::dvec3& direction, const glm::dvec3& light) {
+    const std::array<double, 9> values = harmonicsAt(direction);
+    for (size_t i = 0; i < values.size(); ++i)
+        harmonics[i] += values[i] * light;
+}
+
+glm::dvec3 irradiance(const Harmonics& radiance, const glm::dvec3& normal) {
+    constexpr double kPi = std::numbers::pi;
+    const std::array<double, 9> values = harmonicsAt(normal);
+    glm::dvec3 sum(0.0);
+    for (size_t i = 0; i < values.size(); ++i)
+        sum += (i == 0 ? kPi : i < 4 ? 2.0 / 3.0 * kPi : kPi / 4.0) * values[i] * radiance[i];
+    return sum;
+}
+
+} // namespace relume
