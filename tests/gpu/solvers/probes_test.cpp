@@ -94,6 +94,21 @@ Harmonics tracedHarmonics(const PatchSet& patches, const std::vector<glm::vec4>&
     return sum;
 }
 
+// Expects the irradiance a millimetre above the middle of a floor of 25 x 25 texels to be the middle texel's.
+void expectFloorsLight(const Scene& scene, uint32_t size, const TexelRect& floor, const glm::vec3& middle,
+                       double tolerance) {
+    ProbedBake bake(scene,
+                    {.size = size, .passes = 0, .error = 1e-3, .method = Method::Hybrid, .samples = 1024});
+    const FloatImage lighting = bake.baker().lightmap({.quantity = Quantity::Lighting, .sew = false});
+    const double expected = texel(lighting, floor, 12, 12);
+    for (TracerKind tracer : tracersOfTestDevice()) {
+        const Probe probe = bake.probes({middle + 0.001f * kY}, tracer).at(0);
+        const double above = irradiance(probe.radiance, {0, 1, 0}).r / kProbePi;
+        testing::Test::RecordProperty(tracerName(tracer), std::to_string(above / expected - 1.0));
+        EXPECT_NEAR(above, expected, tolerance * expected) << tracerName(tracer);
+    }
+}
+
 } // namespace
 
 TEST(Probes, InAFurnaceAllCoefficientsAreRight) {
@@ -121,21 +136,6 @@ TEST(Probes, AnalyticLightsAreExactUnlessHidden) {
         const std::vector<Probe> probes = bake.probes({{0, 1, 0}, {0, -1, 0}}, tracer);
         EXPECT_NEAR(irradiance(probes.at(0).radiance, {0, 1, 0}).r, 17.0 / 16.0 * 2.0, 1e-4);
         EXPECT_NEAR(irradiance(probes.at(1).radiance, {0, 1, 0}).r, 0.0, 1e-9) << tracerName(tracer);
-    }
-}
-
-// Expects the irradiance a millimetre above the middle of a floor of 25 x 25 texels to be the middle texel's.
-void expectFloorsLight(const Scene& scene, uint32_t size, const TexelRect& floor, const glm::vec3& middle,
-                       double tolerance) {
-    ProbedBake bake(scene,
-                    {.size = size, .passes = 0, .error = 1e-3, .method = Method::Hybrid, .samples = 1024});
-    const FloatImage lighting = bake.baker().lightmap({.quantity = Quantity::Lighting, .sew = false});
-    const double expected = texel(lighting, floor, 12, 12);
-    for (TracerKind tracer : tracersOfTestDevice()) {
-        const Probe probe = bake.probes({middle + 0.001f * kY}, tracer).at(0);
-        const double above = irradiance(probe.radiance, {0, 1, 0}).r / kProbePi;
-        testing::Test::RecordProperty(tracerName(tracer), std::to_string(above / expected - 1.0));
-        EXPECT_NEAR(above, expected, tolerance * expected) << tracerName(tracer);
     }
 }
 
