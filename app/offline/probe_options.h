@@ -13,7 +13,7 @@ class App;
 
 namespace relume {
 
-/// The light probes that the user wants; files and settings for them.
+/// Says which light probes the user wants, and which file they go to.
 struct ProbeOptions {
     double spacing = 0;          // of a grid [m]; 0: none
     std::vector<std::string> at; // "X,Y,Z" [m] of single probes
@@ -24,7 +24,7 @@ struct ProbeOptions {
 };
 
 void addProbeOptions(CLI::App& command, ProbeOptions& options);
-/// Throws UsageError where they contradict each other or the bake, which knows nothing else of probes.
+/// Throws UsageError where they contradict each other or the settings of the bake.
 void checkProbeOptions(const ProbeOptions& options, const BakeSettings& bake, bool radianceWanted);
 
 /// The places of probes, and the grid that they are of, where they are of one.
