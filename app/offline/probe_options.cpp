@@ -5,8 +5,11 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/model/scene_limits.h"
 #include "bake/lights/lamps.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <CLI/CLI.hpp>
@@ -15,14 +18,17 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kDefaultProbeSamples = 4096;
+constexpr uint32_t kDefaultProbeSamples = 4096, kMostProbeSamples = 16384;
 constexpr uint32_t kProbeLampSamples = 64; // to each analytic light that has an extent
 
 glm::vec3 typedPlace(const std::string& text) {
     const std::vector<float> numbers = typedNumbers(text, 3);
-    if (numbers.empty())
-        throw UsageError("--probe-at: '" + text +
-                         "' is not a place: give three numbers in metres, as 1,2.5,-3");
+    const auto isNear = [](float number) { return std::abs(number) <= kFarthest; };
+    if (numbers.empty() || !std::all_of(numbers.begin(), numbers.end(), isNear))
+        throw UsageError(
+            fmt::format("--probe-at: '{}' is no place: give three numbers in metres, as 1,2.5,-3, "
+                        "each from -{:g} to {:g}",
+                        text, kFarthest, kFarthest));
     return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -51,8 +57,10 @@ void addProbeOptions(CLI::App& command, ProbeOptions& o) {
             ->check(numberFrom(1e-6, 1e6));
     command.add_option("--probe-at", o.at, "Bake a light probe, too, at X,Y,Z in metres; may be repeated")
         ->excludes(grid);
-    command.add_option("--probe-samples", o.samples,
-                       "Rays on each of the six sides of a probe, a multiple of 8 (default: 4096)");
+    command
+        .add_option("--probe-samples", o.samples,
+                    "Rays on each of the six sides of a probe, a multiple of 8 (default: 4096)")
+        ->check(wholeFrom(8, kMostProbeSamples));
     command.add_option("--probes-out", o.output, "Write the light probes to this .json");
 }
 
@@ -66,14 +74,15 @@ void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool rad
                 "--probe-samples: there are no probes: add --probes SPACING or --probe-at X,Y,Z");
         return;
     }
+    for (const std::string& place : o.at)
+        typedPlace(place);
     if (o.output.empty())
         throw UsageError("--probes: nothing says where they go: add --probes-out FILE.json");
     if (!o.output.ends_with(".json"))
         throw UsageError("--probes-out: '" + o.output + "' does not end in .json");
-    constexpr uint32_t kMostSamples = 16384;
-    if (o.samples % 8 != 0 || o.samples > kMostSamples)
+    if (o.samples % 8 != 0)
         throw UsageError(
-            fmt::format("--probe-samples {}: take a multiple of 8 up to {}", o.samples, kMostSamples));
+            fmt::format("--probe-samples {}: take a multiple of 8 up to {}", o.samples, kMostProbeSamples));
     if (bake.solver.transport.rtrad)
         throw UsageError(
             "--probes: not with --preset rtrad, which computes RTRad's radiosity: leave one out");
@@ -86,8 +95,6 @@ void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool rad
     if (bake.solver.layers.on)
         throw UsageError(
             "--probes: not with --layers: probes have the light of all lights together; bake twice");
-    for (const std::string& place : o.at)
-        typedPlace(place);
     if (o.at.size() > kMostProbes)
         throw UsageError(fmt::format("--probe-at: {} probes are more than {}", o.at.size(), kMostProbes));
 }

@@ -59,6 +59,9 @@ const std::map<std::string, WalkWords> kWith = {
     {"--threshold", {"--method", "adaptive"}},
     {"--threshold-ramp", {"--method", "adaptive"}},
     {"--voxels", {"--tracer", "voxel"}},
+    {"--probes", {"--probes-out", "probes.json"}},
+    {"--probe-at", {"--probes-out", "probes.json"}},
+    {"--probe-samples", {"--probes", "1", "--probes-out", "probes.json"}},
     {"--eye", {"--target", "1,2,3"}},
     {"--target", {"--eye", "1,2,3"}},
 };
@@ -72,7 +75,7 @@ const OptionNames kTexts = {
     "--device",    "--resume",    "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
     "--set",       "--move",      "--rotate", "--aim",        "--add",       "--duplicate",
     "--delete",    "--hide",      "--show",   "--mute",       "--solo",      "--pictures",
-    "--plot-rays", "--reference", "--layers"};
+    "--plot-rays", "--reference", "--layers", "--probes-out"};
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {

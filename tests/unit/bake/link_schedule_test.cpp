@@ -131,9 +131,9 @@ TEST(LinkSchedule, BouncesAreCountedOrFollowedUntilTheyHaveConverged) {
 TEST(LinkSchedule, BouncesHaveConvergedAtAShareOfTheErrorOrAtTheLimit) {
     const LinkSchedule schedule(kRules);
     LinkState state = after(1, 0);
-    state.series.error = 0.0021;
+    state.series.error = 0.00021;
     EXPECT_FALSE(schedule.hasConverged(state));
-    state.series.error = 0.0019;
+    state.series.error = 0.00019;
     EXPECT_TRUE(schedule.hasConverged(state));
     const LinkSchedule exact(with([](LinkRules& r) { r.error = 0; }));
     EXPECT_FALSE(exact.hasConverged(state));
