@@ -313,7 +313,7 @@ private:
 
     const ReloadBenchDesc& desc_;
     const vk::Device device_; // before there is a thread that makes one
-    const PassingFolder folder_{"relume_bench"};
+    const PassingFolder folder_{std::filesystem::temp_directory_path(), "relume_bench_"};
     std::string level_;
     BakeRequest request_;
     LiveBake bake_;

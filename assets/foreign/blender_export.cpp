@@ -65,7 +65,7 @@ std::optional<std::string> findBlender() {
 }
 
 std::vector<uint8_t> exportByBlender(const std::string& blender, const std::string& path) {
-    const PassingFolder folder("relume_blend");
+    const PassingFolder folder(fs::temp_directory_path(), "relume_blend_");
     const std::string script = folder.file("relume_link.py"), level = folder.file("level.glb");
     std::ofstream(script, std::ios::binary) << blenderScript();
     const int status = runBlender({blender, "--background", "--factory-startup", "--disable-autoexec",

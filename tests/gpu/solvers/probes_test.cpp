@@ -179,7 +179,7 @@ TEST(Probes, AgreeWithManyRaysOfEmbree) {
     }
     constexpr uint32_t kRays = 100000, kNormals = 32;
     double worst = 0;
-    const std::vector<Probe> probes = bake.probes(points, TracerKind::Embree);
+    const std::vector<Probe> probes = bake.probes(points, tracersOfTestDevice().front());
     for (const Probe& probe : probes) {
         const Harmonics reference =
             tracedHarmonics(bake.baker().patches(), bake.radiance(), probe.position, kRays);
@@ -198,10 +198,11 @@ TEST(Probes, SeeBacksOfWalls) {
     SceneMaker room(32);
     room.box({0, 0, 0}, {kX, kY, kZ}, room.material(0.5f, 1.0f), 4);
     ProbedBake bake(room.scene(), {.size = room.size()});
-    const std::vector<Probe> probes =
-        bake.probes({{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, -0.001f}}, TracerKind::Embree);
-    EXPECT_EQ(probes.at(0).backs, 0.0);
-    EXPECT_NEAR(probes.at(1).backs, 0.5, 0.01);
+    for (const TracerKind tracer : tracersOfTestDevice()) {
+        const std::vector<Probe> probes = bake.probes({{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, -0.001f}}, tracer);
+        EXPECT_EQ(probes.at(0).backs, 0.0);
+        EXPECT_NEAR(probes.at(1).backs, 0.5, 0.01);
+    }
 }
 
 } // namespace relume
