@@ -228,6 +228,34 @@ std::vector<Light> carryLights(Merge& merge, const std::vector<Light>& before, c
     return out;
 }
 
+bool isPreviewed(const Scene& scene) {
+    return scene.sky.preview || std::any_of(scene.lights.begin(), scene.lights.end(),
+                                            [](const Light& light) { return light.preview; });
+}
+
+// Tells whether a scene has light that is no preview, as isDark does it for a file without edits.
+bool shines(const Scene& scene, const SceneEdits& edits) {
+    const auto emits = [&](const Primitive& primitive) {
+        return primitive.material >= 0 &&
+               edits.materials[static_cast<size_t>(primitive.material)].emission != glm::vec3(0.0f);
+    };
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Mesh& mesh = scene.meshes[static_cast<size_t>(scene.instances[i].mesh)];
+        if (!edits.placements[i].hidden && std::any_of(mesh.primitives.begin(), mesh.primitives.end(), emits))
+            return true;
+    }
+    return !withoutPreview(edits.lights).empty() ||
+           (!edits.sky.preview && edits.sky.radiance != glm::vec3(0.0f));
+}
+
+// A file that lost its last light comes with preview light. The user never saw it, and has no use for it
+// where an edit that is not saved shines.
+void dropNewPreview(const Scene& before, const Scene& after, SceneEdits& edits) {
+    if (isPreviewed(before) || !isPreviewed(after) || !shines(after, edits)) return;
+    edits.lights = withoutPreview(std::move(edits.lights));
+    if (edits.sky.preview) edits.sky = {};
+}
+
 // Tells whether a file has the same lights, objects and sky as before.
 bool hasSameParts(const Scene& before, const Scene& after) {
     const SceneEdits was = editsOf(before), is = editsOf(after);
@@ -275,6 +303,7 @@ CarriedEdits carryEdits(const Scene& before, const SceneEdits& own, const Scene&
     out.edits.lights = carryLights(merge, before.lights, own.lights, after.lights);
     const SkySettings& wasSky = before.sky;
     out.edits.sky = merge.value(wasSky, own.sky, out.edits.sky, "the sky");
+    dropNewPreview(before, after, out.edits);
     out.conflicts = merge.take();
     out.sameNumbers = haveSameNames(before.materials, after.materials) &&
                       haveSameNames(before.instances, after.instances) &&

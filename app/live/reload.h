@@ -40,7 +40,8 @@ struct CarriedEdits {
 /// it is there, and where both did, the user's edit stays and is told. Materials go by their colour and
 /// emission, lights and objects as a whole. What the file has no more is gone. `before` is the scene as the
 /// file had it, `own` what the user made of it, `after` the scene as the file has it now. Lights of the file
-/// keep the nodes of `after`.
+/// keep the nodes of `after`. Preview light that comes because the file is dark now stays away where the
+/// user's edits shine.
 CarriedEdits carryEdits(const Scene& before, const SceneEdits& own, const Scene& after);
 
 } // namespace relume

@@ -152,6 +152,59 @@ TEST(CarriedEdits, LightsThatCameAndWentOnEitherSide) {
     EXPECT_TRUE(contains(out.conflicts[1], "Blue lamp: was edited here and deleted"));
 }
 
+/// Makes a file that has lost its lights, so that preview light stands in for them.
+ThreeWays lostItsLights() {
+    ThreeWays all;
+    all.after.lights = {Light{.name = "Preview sun", .preview = true}};
+    all.after.sky.radiance = glm::vec3(4000.0f);
+    all.after.sky.preview = true;
+    return all;
+}
+
+TEST(CarriedEdits, AFileThatLostItsLastLightGetsPreviewLight) {
+    const CarriedEdits out = lostItsLights().carried();
+    ASSERT_EQ(out.edits.lights.size(), 1u);
+    EXPECT_TRUE(out.edits.lights[0].preview);
+    EXPECT_TRUE(out.edits.sky.preview);
+}
+
+TEST(CarriedEdits, PreviewLightStaysAwayWhereTheUsersEditsShine) {
+    ThreeWays lamp = lostItsLights();
+    lamp.own.lights.emplace_back().name = "Mine";
+    lamp.own.lights.back().node = -2;
+    CarriedEdits out = lamp.carried();
+    ASSERT_EQ(out.edits.lights.size(), 1u);
+    EXPECT_EQ(out.edits.lights[0].name, "Mine");
+    EXPECT_EQ(out.edits.sky, SkySettings{});
+
+    ThreeWays sky = lostItsLights();
+    sky.own.sky.radiance = glm::vec3(2.0f);
+    out = sky.carried();
+    EXPECT_TRUE(out.edits.lights.empty());
+    EXPECT_EQ(out.edits.sky.radiance, glm::vec3(2.0f));
+
+    ThreeWays glow = lostItsLights();
+    glow.after.meshes[0].primitives[0].material = 1;
+    glow.own.materials[0].emission = glm::vec3(3.0f); // which no surface has
+    EXPECT_EQ(glow.carried().edits.lights.size(), 1u);
+    glow.own.materials[1].emission = glm::vec3(3.0f);
+    EXPECT_TRUE(glow.carried().edits.lights.empty());
+    for (Placement& placement : glow.own.placements)
+        placement.hidden = true;
+    EXPECT_EQ(glow.carried().edits.lights.size(), 1u) << "hidden objects give no light";
+}
+
+TEST(CarriedEdits, PreviewLightThatTheUserHadStaysBesideALamp) {
+    ThreeWays all = lostItsLights();
+    all.before.lights = all.after.lights;
+    all.before.sky = all.after.sky;
+    all.own = editsOf(all.before);
+    all.own.lights.emplace_back().name = "Mine";
+    all.own.lights.back().node = -2;
+    EXPECT_EQ(all.carried().edits.lights.size(), 2u);
+    EXPECT_TRUE(all.carried().edits.sky.preview);
+}
+
 TEST(CarriedEdits, ALightThatTheUserRenamedIsStillTheFiles) {
     ThreeWays all;
     all.own.lights[0].name = "Key light";
