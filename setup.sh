@@ -23,6 +23,7 @@ packages=(
     libeigen3-dev                             # sparse equations, by which lightmap charts are flattened
     libepoxy-dev libegl-dev libgl-dev         # OpenGL: the pictures; EGL makes them without a display
     libglfw3-dev libimgui-dev                 # the viewer's window and panels
+    fonts-dejavu-core                         # their letters: without it they are ImGui's bitmap of 13 pixels
     libcli11-dev libspdlog-dev nlohmann-json3-dev
     libgtest-dev libbenchmark-dev vulkan-validationlayers
     xvfb xdotool libx11-dev                   # the tests of the window, on a machine without a display

@@ -64,9 +64,11 @@ TEST_F(ViewerStart, TheStartPageOpensRecentFilesAndScenesThatShip) {
 
     viewer = open({"view"});
     ASSERT_TRUE(viewer->shows("recent: 2 files, 0 gone")) << "the file was forgotten: " << viewer->output();
-    // Arrow keys go down to the newest file, which Enter opens.
-    for (int i = 0; i < 4 && viewer->focus() != "Start/Recent/level.glb"; ++i) {
-        viewer->keys({"Down"});
+    // The keyboard begins at the newest file, which Enter opens; an arrow key shows where it is, or leaves it.
+    viewer->keys({"Down"});
+    viewer->settle();
+    if (viewer->focus() != "Start/Recent/level.glb") {
+        viewer->keys({"Up"});
         viewer->settle();
     }
     ASSERT_EQ(viewer->focus(), "Start/Recent/level.glb") << viewer->output();

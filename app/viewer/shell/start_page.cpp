@@ -116,7 +116,7 @@ void StartPage::drawHow(const PanelContext& context, bool back) {
 }
 
 // Draws one of the recent files. Returns whether it is to be forgotten.
-bool StartPage::drawRecentFile(const PanelContext& context, const RecentFile& file) {
+bool StartPage::drawRecentFile(const PanelContext& context, const RecentFile& file, bool newest) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float line = ImGui::GetTextLineHeight(), edge = ImGui::GetFrameHeight();
     const float height = 2 * line + 2 * style.FramePadding.y;
@@ -124,6 +124,8 @@ bool StartPage::drawRecentFile(const PanelContext& context, const RecentFile& fi
     ImGui::PushID(file.path.c_str());
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool chosen = ImGui::Selectable("##open", false, ImGuiSelectableFlags_None, {width, height});
+    // The keyboard begins at what one most likely wants, wherever the columns stand with this font.
+    if (newest && ImGui::IsWindowAppearing()) ImGui::SetItemDefaultFocus();
     ui::mark((file.name + (file.gone ? " (gone)" : "")).c_str(), false);
     const float indent = style.FramePadding.x, room = width - 2 * indent;
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -151,8 +153,11 @@ void StartPage::drawRecent(const PanelContext& context) {
     const std::vector<std::string> recent = context.preferences.recent; // opening and forgetting change it
     if (recent.empty()) ImGui::TextDisabled("Nothing was opened yet.");
     std::string forgotten;
-    for (const RecentFile& file : recentFiles(recent, gone_, homeFolder()))
-        if (drawRecentFile(context, file)) forgotten = file.path;
+    bool newest = true;
+    for (const RecentFile& file : recentFiles(recent, gone_, homeFolder())) {
+        if (drawRecentFile(context, file, newest)) forgotten = file.path;
+        newest = false;
+    }
     if (!forgotten.empty()) context.forget(forgotten);
 }
 

@@ -31,7 +31,7 @@ public:
 private:
     void drawHow(const PanelContext& context, bool back);
     void drawRecent(const PanelContext& context);
-    bool drawRecentFile(const PanelContext& context, const RecentFile& file);
+    bool drawRecentFile(const PanelContext& context, const RecentFile& file, bool newest);
     void drawScenes(const PanelContext& context);
     bool drawScene(const ShippedScene& scene, float width);
 
