@@ -64,7 +64,8 @@ TEST_F(ViewerStart, TheStartPageOpensRecentFilesAndScenesThatShip) {
 
     viewer = open({"view"});
     ASSERT_TRUE(viewer->shows("recent: 2 files, 0 gone")) << "the file was forgotten: " << viewer->output();
-    // The keyboard begins at the newest file, which Enter opens; an arrow key shows where it is, or leaves it.
+    // The keyboard begins at the newest file, which Enter opens; an arrow key shows where it is, or leaves
+    // it.
     viewer->keys({"Down"});
     viewer->settle();
     if (viewer->focus() != "Start/Recent/level.glb") {
