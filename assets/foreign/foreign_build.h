@@ -19,7 +19,7 @@ struct Build {
 
     std::string path;     // as given by the user
     std::string ending;   // in lower case, ".obj"
-    bool inWatts = false; // lights have Blender's units
+    bool inWatts = false; // lights and what glows have Blender's units
     const aiScene* source = nullptr;
     ForeignChoice choice;
     NearFiles near;
@@ -31,6 +31,14 @@ struct Build {
 /// Returns a name from the file as UTF-8: libassimp hands on the bytes of old files as they are, which are
 /// taken for Latin-1.
 std::string nameOf(const aiString& name);
+
+/// Of green light of 555 nm: the add-on and Blender's own glTF exporter convert by it, too.
+inline constexpr float kLumensPerWatt = 683.0f;
+
+/// Returns by how much radiance in the file's unit becomes cd/m^2: Blender has watts, other files none.
+inline float unitOfLight(const Build& build) {
+    return build.inWatts ? kLumensPerWatt : 1.0f;
+}
 
 /// Returns what turns and scales what libassimp read into metres with Y up.
 glm::dmat4 toMetres(const Build& build);

@@ -15,6 +15,8 @@ constexpr float kUnknownSide = 1.0f;
 // Where a file of COLLADA tells no outer cone, libassimp guesses it by a cosine that falls to a tenth, so
 // that it is at least acos(0.1) wider [rad].
 constexpr float kGuessedCone = 1.4706f;
+// The whole angle of a new spot of Blender's: libassimp tells none for .blend files [rad].
+constexpr float kBlenderCone = glm::quarter_pi<float>();
 
 glm::vec3 finiteColor(const aiColor3D& color) {
     const glm::vec3 rgb(color.r, color.g, color.b);
@@ -64,11 +66,8 @@ float fallOff(const Build& build, const aiLight& light, float distance) {
     return unsaid || constant || !std::isfinite(sum) || sum <= 0.0f ? 1.0f : sum;
 }
 
-/// Sets the half angles of a cone; files tell whole ones.
-void setCone(const Build& build, const aiLight& source, Light& light) {
-    float inner = source.mAngleInnerCone, outer = source.mAngleOuterCone;
-    if (build.ending == ".3ds") outer -= inner; // libassimp adds them
-    if (build.ending == ".dae" && outer - inner > kGuessedCone - 1e-3f) outer = inner;
+/// Sets the half angles of a cone by whole ones [rad].
+void setCone(float inner, float outer, Light& light) {
     if (!std::isfinite(outer) || outer <= 0.0f) outer = inner;
     if (!std::isfinite(outer) || outer <= 0.0f) outer = glm::half_pi<float>();
     if (!std::isfinite(inner)) inner = 0.0f;
@@ -78,15 +77,26 @@ void setCone(const Build& build, const aiLight& source, Light& light) {
     light.innerConeAngle = std::clamp(inner / 2, 0.0f, 0.98f * light.outerConeAngle);
 }
 
-/// Sets the intensity of a light in watts, as Blender has it. A watt counts as a lumen, so that lights keep
-/// their relation to what glows by itself.
+void setConeOfFile(const Build& build, const aiLight& source, Light& light) {
+    const float inner = source.mAngleInnerCone;
+    float outer = source.mAngleOuterCone;
+    if (build.ending == ".3ds") outer -= inner; // libassimp adds them
+    if (build.ending == ".dae" && outer - inner > kGuessedCone - 1e-3f) outer = inner;
+    setCone(inner, outer, light);
+}
+
+/// Sets the intensity of a light in watts by what Cycles makes of it, which a path traced plane below each
+/// kind confirms: a sphere of P watts has P / 4 pi W/sr, a spot is such a sphere behind a screen, a sun's
+/// watts are those per square metre that faces it, and an area light has P / 4A W/(m^2 sr), which is pi / 4
+/// of what a Lambertian surface of that power would have.
 void setByWatts(Light& light, float value) {
+    const float lumens = kLumensPerWatt * value;
     if (light.type == LightType::Point || light.type == LightType::Spot)
-        light.intensity = value / (4 * kPi);
+        light.intensity = lumens / (4 * kPi);
     else if (light.type == LightType::Rectangle)
-        light.intensity = value / (kPi * light.size.x * light.size.y);
+        light.intensity = lumens / (4 * light.size.x * light.size.y);
     else
-        light.intensity = value;
+        light.intensity = lumens;
 }
 
 /// Sets the intensity of a light without a unit: a white surface that it shines upon has the radiance that
@@ -106,7 +116,7 @@ void setByLook(const Build& build, const aiLight& source, const Placing& placing
 void addAmbient(Build& build, const aiLight& source, const std::string& name) {
     const glm::vec3 color = glm::max(finiteColor(source.mColorAmbient), glm::vec3(0.0f));
     if (color == glm::vec3(0.0f)) return;
-    build.made.scene.sky.radiance += color;
+    build.made.scene.sky.radiance += unitOfLight(build) * color;
     build.warnings.add("ambient light " + inQuotes(name), "shines from everywhere: it becomes a sky");
 }
 
@@ -118,17 +128,27 @@ bool setKind(Build& build, const aiLight& source, Light& light, const Placing& p
         return true;
     case aiLightSource_SPOT:
         light.type = LightType::Spot;
-        setCone(build, source, light);
+        setConeOfFile(build, source, light);
         return true;
     case aiLightSource_DIRECTIONAL:
         light.type = LightType::Directional;
         return true;
-    case aiLightSource_UNDEFINED: // area lights of .fbx files
+    case aiLightSource_UNDEFINED: // area lights of .fbx files, spots of .blend files
+        if (build.ending == ".blend" && build.inWatts) {
+            light.type = LightType::Spot;
+            setCone(kBlenderCone, kBlenderCone, light);
+            build.warnings.add("spot light " + inQuotes(light.name),
+                               "has no cone that libassimp tells: it becomes one of 45 degrees");
+            return true;
+        }
         if (build.ending != ".fbx") return false;
         [[fallthrough]];
     case aiLightSource_AREA: {
         light.type = LightType::Rectangle;
-        const glm::vec2 size = glm::vec2(source.mSize.x, source.mSize.y) * static_cast<float>(placing.scale);
+        // The node's scale counts: its lengths along the light's own X and Y.
+        const glm::vec2 size(
+            source.mSize.x * glm::length(glm::dmat3(placing.world) * glm::dvec3(1.0, 0.0, 0.0)),
+            source.mSize.y * glm::length(glm::dmat3(placing.world) * glm::dvec3(0.0, 1.0, 0.0)));
         const bool known = std::isfinite(size.x) && std::isfinite(size.y) && size.x > 0 && size.y > 0;
         light.size = known ? size : glm::vec2(kUnknownSide);
         if (!known)
@@ -152,9 +172,11 @@ void addLight(Build& build, const aiLight& source, const Placing& placing) {
         return;
     }
     const glm::vec3 down(0.0f, -1.0f, 0.0f);
-    light.transform = looking(placeOf(placing.world, source.mPosition),
-                              directionOf(placing.world, vec3Of(source.mDirection), down),
-                              directionOf(placing.world, vec3Of(source.mUp), glm::vec3(0.0f, 1.0f, 0.0f)));
+    const bool untold = source.mType == aiLightSource_UNDEFINED && build.ending == ".blend";
+    const glm::vec3 along = untold ? glm::vec3(0.0f, 0.0f, -1.0f) : vec3Of(source.mDirection);
+    light.transform =
+        looking(placeOf(placing.world, source.mPosition), directionOf(placing.world, along, down),
+                directionOf(placing.world, vec3Of(source.mUp), glm::vec3(0.0f, 1.0f, 0.0f)));
     if (!isPlaced(light.transform)) {
         build.warnings.add("light " + inQuotes(light.name), "has no finite position, left out");
         return;

@@ -121,12 +121,12 @@ void MaterialBuilder::setEmission(const aiMaterial& source, Material& material) 
     source.Get(AI_MATKEY_COLOR_EMISSIVE, color);
     float strength = 1.0f;
     source.Get(AI_MATKEY_EMISSIVE_INTENSITY, strength);
-    material.emission = rgbOf(color) * std::max(finiteOr(strength, 1.0f), 0.0f);
+    material.emission = rgbOf(color) * std::max(finiteOr(strength, 1.0f), 0.0f) * unitOfLight(build_);
     const auto use = useOf(source, {aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE});
     if (!use) return;
     material.emissionTexture.texture = texture(pictures_.image(use->reference, material.name), *use);
     if (material.emissionTexture.texture >= 0 && material.emission == glm::vec3(0.0f))
-        material.emission = glm::vec3(1.0f);
+        material.emission = glm::vec3(unitOfLight(build_));
 }
 
 Material MaterialBuilder::make(const aiMaterial& source) {

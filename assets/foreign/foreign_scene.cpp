@@ -33,17 +33,36 @@ double blendVersion(const std::string& path) {
     return stream && head.starts_with("BLENDER") ? std::atoi(head.c_str() + 9) / 100.0 : 0.0;
 }
 
-/// Tells whether the lights of the file are in watts, because Blender wrote it.
-bool isInWatts(const Build& build) {
-    if (build.ending == ".blend") return blendVersion(build.path) >= kFirstInWatts;
-    aiString generator;
-    const aiMetadata* data = build.source->mMetaData;
-    if (!data || !data->Get(AI_METADATA_SOURCE_GENERATOR, generator)) return false;
-    const std::string text(generator.data, generator.length);
+/// Returns the first number behind "Blender" in what a file says of its maker, or 0.
+double versionIn(const std::string& text) {
     const size_t name = text.find("Blender");
     const size_t digit =
         name == std::string::npos ? std::string::npos : text.find_first_of("0123456789", name);
-    return digit != std::string::npos && std::strtod(text.c_str() + digit, nullptr) >= kFirstInWatts;
+    return digit == std::string::npos ? 0.0 : std::strtod(text.c_str() + digit, nullptr);
+}
+
+/// Returns the first line of a file, or what fits into a sane one.
+std::string firstLine(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string head(256, '\0');
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<size_t>(stream.gcount()));
+    return head.substr(0, head.find('\n'));
+}
+
+/// Tells whether the lights and the emission of the file are in watts, because Blender wrote it.
+bool isInWatts(const Build& build) {
+    if (build.ending == ".blend") return blendVersion(build.path) >= kFirstInWatts;
+    // libassimp does not hand on the comment that tells who has written an .obj file: "# Blender v2.93.1
+    // OBJ".
+    if (build.ending == ".obj") {
+        const std::string line = firstLine(build.path);
+        return line.starts_with("# Blender") && versionIn(line) >= kFirstInWatts;
+    }
+    aiString generator;
+    const aiMetadata* data = build.source->mMetaData;
+    if (!data || !data->Get(AI_METADATA_SOURCE_GENERATOR, generator)) return false;
+    return versionIn(std::string(generator.data, generator.length)) >= kFirstInWatts;
 }
 
 void warnUnsupported(Build& build) {

@@ -100,6 +100,70 @@ TEST_F(RelumeLink, ABlendFileOpensByBlender) {
     }
 }
 
+/// W/sr or W/m^2 in each light's own direction: what a small light far away is seen by.
+double alongItself(const Light& light) {
+    const double area = light.type == LightType::Rectangle ? double(light.size.x) * light.size.y
+                        : light.type == LightType::Disc    ? std::numbers::pi * light.radius * light.radius
+                                                           : 1.0;
+    return light.intensity * area / kLumensPerWatt;
+}
+
+const Light& named(const Scene& scene, const std::string& name) {
+    for (const Light& light : scene.lights)
+        if (light.name == name) return light;
+    throw Error("no light is named " + name);
+}
+
+const Material& glowing(const Scene& scene) {
+    for (const Material& material : scene.materials)
+        if (material.name == "Box") return material;
+    throw Error("no material is named Box");
+}
+
+TEST_F(RelumeLink, AllWaysGiveTheSameLight) {
+    const std::string room = folder_.path("lamps.blend"), level = folder_.path("lamps.glb");
+    blender({"-b", "-P", kFolder + "make_lamps.py", "--", room, folder_.path("lamps.fbx"),
+             folder_.path("lamps.obj"), folder_.path("lamps.dae")});
+    blender({"-b", room, "-P", kAddOn, "--", level});
+    const Scene exported = loadGltf(level);
+    const struct {
+        const char* name;
+        double watts;
+    } lights[] = {{"Bulb", 50 / (4 * std::numbers::pi)},
+                  {"Spot", 40 / (4 * std::numbers::pi)},
+                  {"Sun", 3},
+                  {"Panel", 100 / 4.0},
+                  {"Disc", 60 / 4.0}};
+    std::vector<std::string> others = {"lamps.fbx"};
+    if (std::filesystem::exists(folder_.path("lamps.dae"))) others.emplace_back("lamps.dae");
+    for (const auto& light : lights)
+        EXPECT_NEAR(alongItself(named(exported, light.name)) / light.watts, 1, 1e-4) << light.name;
+    for (const std::string& other : others) {
+        const Scene scene = loaded(folder_.path(other));
+        ASSERT_EQ(scene.lights.size(), exported.lights.size()) << other;
+        for (const auto& light : lights) {
+            const Light &one = named(exported, light.name), &same = named(scene, light.name);
+            EXPECT_LT(glm::distance(one.transform[3], same.transform[3]), 1e-4f)
+                << other << ' ' << light.name;
+            // Blender writes area lights into .dae files as points.
+            if (same.type == LightType::Point && one.type != LightType::Point) continue;
+            EXPECT_NEAR(alongItself(same) / light.watts, 1, 1e-4) << other << ' ' << light.name;
+            EXPECT_LT(glm::distance(one.color, same.color), 1e-4f) << other << ' ' << light.name;
+            EXPECT_NEAR(one.outerConeAngle, same.outerConeAngle, 1e-3f) << other << ' ' << light.name;
+            if (one.type == LightType::Point) continue;
+            EXPECT_LT(glm::distance(one.transform[2], same.transform[2]), 1e-3f)
+                << other << ' ' << light.name;
+        }
+    }
+    const glm::vec3 glow = glowing(exported).emission;
+    EXPECT_LT(glm::distance(glow, 2.0f * float(kLumensPerWatt) * glm::vec3(1, 0.5f, 0.25f)), 0.1f);
+    for (const char* other : {"lamps.fbx", "lamps.obj"}) {
+        const Material material = glowing(loaded(folder_.path(other)));
+        EXPECT_LT(glm::distance(material.emission, glow), 0.1f) << other;
+        EXPECT_LT(glm::distance(material.baseColor, glowing(exported).baseColor), 1e-3f) << other;
+    }
+}
+
 TEST_F(RelumeLink, ASavedLampIsAnEditOfTheBakeAndTheLightmapComesBack) {
     const PreparedScene before = prepared();
     FloatImage lightmap{8, 8, {}, {}, {}};

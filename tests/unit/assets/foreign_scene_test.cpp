@@ -2,6 +2,7 @@
 #include "assets/foreign/foreign_scene.h"
 
 #include "assets/base/error.h"
+#include "assets/foreign/foreign_build.h"
 #include "assets/foreign/foreign_files.h"
 #include "assets/gltf/gltf.h"
 #include "tests/unit/foreign_files.h"
@@ -238,15 +239,81 @@ TEST(ForeignScene, ColladaHasUnitsAxesInstancesLightsAndCameras) {
 
 TEST(ForeignScene, LightsOfBlenderAreInWatts) {
     const TemporaryFolder folder;
-    const auto lampBy = [&](const std::string& tool) {
+    const auto roomBy = [&](const std::string& tool) {
         std::string text = test::kRoomDae;
         text.replace(text.find("<asset>"), 7,
                      "<asset><contributor><authoring_tool>" + tool + "</authoring_tool></contributor>");
-        return convertForeign(writeFile(folder, "room.dae", text)).scene.lights.at(0).intensity;
+        return convertForeign(writeFile(folder, "room.dae", text)).scene;
     };
-    EXPECT_NEAR(lampBy("Blender 2.93.1 commit date:2021"), 2 / (4 * M_PI), 1e-6);
+    const auto lampBy = [&](const std::string& tool) { return roomBy(tool).lights.at(0).intensity; };
+    const Scene room = roomBy("Blender 2.93.1 commit date:2021");
+    EXPECT_NEAR(room.lights.at(0).intensity, 683 * 2 / (4 * M_PI), 1e-3);
+    expectNear(room.materials.at(0).emission, {0, 683 * 4, 0}); // what glows has the lamps' unit
+    expectNear(room.sky.radiance, 683.0f * glm::vec3(0.1f, 0.2f, 0.3f), 1e-3f);
     EXPECT_NEAR(lampBy("Blender 2.79.0"), M_PI * 0.5, 1e-4);
     EXPECT_NEAR(lampBy("Maya 2020"), M_PI * 0.5, 1e-4);
+    // An .obj file has no lights; its first line says whether what glows is in watts.
+    const auto glowBy = [&](const std::string& comment) {
+        texturedSquare(folder, "Ke 1 2 3\n");
+        const std::string path =
+            writeFile(folder, "level/named.obj", comment + "mtllib square.mtl\nusemtl m\n" + test::kFloorObj);
+        return convertForeign(path).scene.materials.at(0).emission;
+    };
+    expectNear(glowBy("# Blender 3.4.1\n"), 683.0f * glm::vec3(1, 2, 3), 1e-3f);
+    expectNear(glowBy("# Blender v2.93.1 OBJ File: 'a.blend'\n"), 683.0f * glm::vec3(1, 2, 3), 1e-3f);
+    expectNear(glowBy("# Blender v2.79 OBJ File: 'a.blend'\n"), {1, 2, 3});
+    expectNear(glowBy("# made after Blender 3.4.1\n"), {1, 2, 3});
+}
+
+/// The one light that libassimp's light becomes in a .blend file whose node is placed like this.
+Light lightOfBlend(const aiLight& source, const glm::dmat4& world = glm::dmat4(1.0)) {
+    foreign::Build build("room.blend");
+    build.ending = ".blend";
+    build.inWatts = true;
+    foreign::addLight(build, source, {.world = world});
+    return build.made.scene.lights.at(0);
+}
+
+aiLight lightOf(aiLightSourceType type, float watts) {
+    aiLight light;
+    light.mType = type;
+    light.mColorDiffuse = aiColor3D(watts, watts / 2, watts / 4);
+    light.mDirection = type == aiLightSource_UNDEFINED ? aiVector3D() : aiVector3D(0, 0, -1);
+    light.mUp = aiVector3D(0, 1, 0);
+    light.mSize = aiVector2D(0.5f, 0.25f);
+    return light;
+}
+
+// What a white plane 4 m below a light of 100 W (a sun of 3) has for radiance was path traced by Cycles of
+// Blender 3.4: 0.15829 for a point, 0.15828 for a spot, 0.9549 for the sun; 0.4970, 0.4969, 0.4972 and 0.4967
+// for area lights, square, oblong, round and in an object of scale 3.
+TEST(ForeignScene, LightsOfBlenderShineAsCyclesHasThem) {
+    constexpr double kTraced = 0.003, kSquared = 4.0 * 4.0; // [1], [m^2]
+    const auto below = [&](const Light& light) {            // in watts, of a small light straight above
+        const double area = light.type == LightType::Rectangle ? double(light.size.x) * light.size.y : 1.0;
+        const double distance = light.type == LightType::Directional ? 1.0 : kSquared;
+        return light.intensity * area / distance / M_PI / 683;
+    };
+    const Light point = lightOfBlend(lightOf(aiLightSource_POINT, 100));
+    EXPECT_EQ(point.type, LightType::Point);
+    EXPECT_NEAR(below(point) / 0.15829, 1, kTraced);
+    expectNear(point.color, {1, 0.5f, 0.25f});
+    const glm::dmat4 sideways(glm::dmat3({0, 0, -1}, {0, 1, 0}, {1, 0, 0})); // -Z becomes -X
+    const Light spot = lightOfBlend(lightOf(aiLightSource_UNDEFINED, 100), sideways);
+    EXPECT_EQ(spot.type, LightType::Spot);
+    EXPECT_NEAR(below(spot) / 0.15828, 1, kTraced);
+    EXPECT_NEAR(spot.outerConeAngle, glm::radians(22.5f), 1e-6f);
+    expectNear(-glm::vec3(spot.transform[2]), {-1, 0, 0});
+    EXPECT_NEAR(below(lightOfBlend(lightOf(aiLightSource_DIRECTIONAL, 3))) / 0.95492, 1, kTraced);
+    const Light panel = lightOfBlend(lightOf(aiLightSource_AREA, 100));
+    EXPECT_EQ(panel.type, LightType::Rectangle);
+    EXPECT_NEAR(below(panel) / 0.49736, 1, kTraced);
+    EXPECT_NEAR(panel.intensity, 683 * 100 / (4 * 0.5 * 0.25), 0.1);
+    // A scaled object has a larger light of the same watts.
+    const Light wide = lightOfBlend(lightOf(aiLightSource_AREA, 100),
+                                    sideways * glm::dmat4(glm::dmat3(3.0, 0, 0, 0, 1, 0, 0, 0, 1)));
+    expectNear({wide.size, 0}, {1.5f, 0.25f, 0});
+    EXPECT_NEAR(below(wide) / 0.49669, 1, kTraced);
 }
 
 TEST(ForeignScene, FbxHasUnitsAxesAndLights) {
@@ -269,7 +336,7 @@ TEST(ForeignScene, FbxHasUnitsAxesAndLights) {
                  "\"UnitScaleFactor\", \"double\", \"Number\", \"\",1");
     const Scene small = convertForeign(writeFile(folder, "small.fbx", text)).scene; // in centimetres
     expectNear(glm::vec3(small.instances.at(0).transform * glm::vec4(2, 3, 0, 1)), {0.02f, 0.05f, -0.03f});
-    EXPECT_NEAR(small.lights.at(0).intensity, 2, 1e-5); // watts per square metre
+    EXPECT_NEAR(small.lights.at(0).intensity, 2 * 683, 1e-3); // of 2 watts per square metre
 }
 
 TEST(ForeignScene, SmallKindsOfFiles) {
