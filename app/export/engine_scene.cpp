@@ -17,7 +17,7 @@ namespace {
 struct MaterialUse {
     size_t original = 0;
     bool mapped = false; // it has lightmap UVs
-    bool moved = false;  // its textures read TEXCOORD_0, whatever the file's material says
+    int moved = -1;      // the set that its textures read for TEXCOORD_1 (Primitive::movedUvs)
 
     auto operator<=>(const MaterialUse&) const = default;
 };
@@ -26,12 +26,12 @@ std::array<TextureRef*, 3> usesOf(Material& material) {
     return {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture};
 }
 
-// Tells whether a texture of the material reads TEXCOORD_1 of the primitive.
-bool readsSecondSet(const Primitive& primitive, Material material) {
-    if (primitive.uvsMoved) return false;
+// Tells whether a texture of the material, whose UVs moved already, reads TEXCOORD_1 or a set behind it,
+// which needs the one before.
+bool readsSecondSet(Material material) {
     const auto uses = usesOf(material);
     return std::any_of(uses.begin(), uses.end(),
-                       [](const TextureRef* use) { return use->texture >= 0 && use->texCoord == 1; });
+                       [](const TextureRef* use) { return use->texture >= 0 && use->texCoord >= 1; });
 }
 
 class MaterialSplit {
@@ -45,7 +45,7 @@ public:
     int numberOf(const Primitive& primitive, bool mapped) {
         const size_t original =
             primitive.material < 0 ? originals_.size() - 1 : static_cast<size_t>(primitive.material);
-        const MaterialUse use{original, mapped, primitive.uvsMoved};
+        const MaterialUse use{original, mapped, primitive.movedUvs};
         const auto [place, isNew] = numbers_.try_emplace(use, static_cast<int>(materials_.size()));
         if (isNew) add(use);
         return place->second;
@@ -56,9 +56,8 @@ public:
 private:
     void add(const MaterialUse& use) {
         Material material = originals_[use.original];
-        if (use.moved)
-            for (TextureRef* texture : usesOf(material))
-                texture->texCoord = 0;
+        for (TextureRef* texture : usesOf(material))
+            texture->texCoord = setOf(use.moved, *texture);
         if (!use.mapped || material.pane) material = shining(material);
         // Engines find materials by name.
         if (material.name.empty()) material.name = fmt::format("Material {}", use.original);
@@ -101,10 +100,10 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
             const int number = split.numberOf(primitive, mapped);
             // Some engines light whatever has a second set of UVs.
             if (!split.lit()[static_cast<size_t>(number)] &&
-                !readsSecondSet(primitive, split.materials()[static_cast<size_t>(number)]))
+                !readsSecondSet(split.materials()[static_cast<size_t>(number)]))
                 primitive.texCoord1.clear();
             primitive.material = number;
-            primitive.uvsMoved = false;
+            primitive.movedUvs = -1;
         }
         instance.mesh = static_cast<int>(out.scene.meshes.size());
         instance.density = 1.0f;
@@ -120,6 +119,23 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
     giveEngineMetals(out.scene);
     dropUnusedTextures(out.scene);
     return out;
+}
+
+std::vector<std::string> meshesWithThirdSet(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Mesh& mesh : scene.meshes)
+        if (std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& primitive) {
+                if (primitive.material < 0) return false;
+                Material material = scene.materials[static_cast<size_t>(primitive.material)];
+                const auto uses = usesOf(material);
+                return std::any_of(uses.begin(), uses.end(), [&](const TextureRef* use) {
+                    return use->texture >= 0 && setOf(primitive.movedUvs, *use) == 2;
+                });
+            }))
+            names.push_back(mesh.name);
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
 }
 
 void dropUnusedTextures(Scene& scene) {

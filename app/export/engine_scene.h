@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -21,6 +22,10 @@ struct EngineScene {
 /// `ambient`, the mean lighting [cd/m^2], as emission, as the viewer shows it; so do panes, which no bake
 /// lights.
 EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const glm::vec3& ambient);
+
+/// Returns the names of meshes with a texture that reads TEXCOORD_2, each once: glTF asks engines to read two
+/// sets, of which the lightmap has one.
+std::vector<std::string> meshesWithThirdSet(const Scene& scene);
 
 /// Leaves out images and textures that no material reads.
 void dropUnusedTextures(Scene& scene);

@@ -4,6 +4,7 @@
 #include "app/export/engine_scene.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
+#include "assets/base/warnings.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/image_file.h"
 #include "renderer/good_view.h"
@@ -14,6 +15,7 @@
 #include <numbers>
 
 #include <glm/gtc/matrix_inverse.hpp>
+#include <spdlog/spdlog.h>
 
 namespace relume {
 namespace {
@@ -75,6 +77,11 @@ void exposeEmission(Scene& scene, float exposure) {
         material.emission *= std::exp2(exposure);
         material.emission /= std::max({1.0f, material.emission.r, material.emission.g, material.emission.b});
     }
+}
+
+// three.js reads four sets of UVs, Babylon.js six and Blender eight; glTF promises two.
+bool readsThirdSet(Engine engine) {
+    return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::Blender;
 }
 
 Camera startCamera(const WorldMesh& mesh) {
@@ -155,6 +162,11 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     result.exposure = desc.exposure.value_or(exposureOf(light));
     EngineScene level = engineScene(scene, source.atlas, meanLight(lightmap, light));
     if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
+    if (!readsThirdSet(desc.engine))
+        for (const std::string& name : meshesWithThirdSet(level.scene))
+            spdlog::warn("{}: mesh {} reads a texture by a third UV set, which {} may not: let its textures "
+                         "share one set",
+                         scene.path, inQuotes(name), engineNames()[static_cast<size_t>(desc.engine)]);
     GlbLook look;
     look.matte = !desc.gloss;
     if (desc.engine == Engine::Any) {

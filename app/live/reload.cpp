@@ -84,10 +84,11 @@ bool sameSurface(const Material& a, const Material& b) {
 bool sameTriangles(const Mesh& a, const Mesh& b) {
     return std::equal(a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(),
                       [](const Primitive& x, const Primitive& y) {
-                          return x.material == y.material && x.uvsMoved == y.uvsMoved &&
+                          return x.material == y.material && x.movedUvs == y.movedUvs &&
                                  x.indices == y.indices && x.positions == y.positions &&
                                  x.normals == y.normals && x.texCoord0 == y.texCoord0 &&
-                                 x.texCoord1 == y.texCoord1 && x.colors == y.colors;
+                                 x.texCoord1 == y.texCoord1 && x.texCoord2 == y.texCoord2 &&
+                                 x.colors == y.colors;
                       });
 }
 

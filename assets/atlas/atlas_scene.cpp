@@ -1,26 +1,40 @@
 #include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/uv_writer.h"
+#include "assets/base/warnings.h"
+
+#include <spdlog/spdlog.h>
 
 namespace relume {
 
 Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas) {
     Scene result = scene;
+    Warnings warnings;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = atlas.instances[i];
         const bool asItIs =
             rect.texCoord == 1 && rect.scale == glm::vec2(1.0f) && rect.offset == glm::vec2(0.0f);
         if (rect.texCoord < 0 || asItIs) continue;
         Mesh mesh = scene.meshes[static_cast<size_t>(scene.instances[i].mesh)];
-        for (Primitive& primitive : mesh.primitives) {
-            const auto& uvs = rect.texCoord == 1 ? primitive.texCoord1 : primitive.texCoord0;
-            std::vector<glm::vec2> placed;
-            placed.reserve(uvs.size());
-            for (glm::vec2 uv : uvs)
-                placed.push_back(uv * rect.scale + rect.offset);
-            primitive.texCoord1 = std::move(placed);
+        if (!canFreeSecondSet(scene, mesh))
+            warnings.add(
+                "mesh " + inQuotes(mesh.name),
+                "needs three UV sets for textures, of which the lightmap takes one where the scene is "
+                "written: let its textures share one set");
+        std::vector<std::vector<glm::vec2>> lightmapUvs;
+        for (const Primitive& primitive : mesh.primitives) {
+            std::vector<glm::vec2> placed = uvSet(primitive, rect.texCoord);
+            for (glm::vec2& uv : placed)
+                uv = uv * rect.scale + rect.offset;
+            lightmapUvs.push_back(std::move(placed));
         }
+        freeSecondSet(scene, mesh); // or textures that read it would read the lightmap's UVs
+        for (size_t k = 0; k < mesh.primitives.size(); ++k)
+            mesh.primitives[k].texCoord1 = std::move(lightmapUvs[k]);
         result.instances[i].mesh = static_cast<int>(result.meshes.size());
         result.meshes.push_back(std::move(mesh));
     }
+    for (const std::string& line : warnings.lines(scene.path))
+        spdlog::warn("{}", line);
     return result;
 }
 

@@ -88,7 +88,7 @@ bool Unwrapper::choose() {
         if (!canFreeSecondSet(scene_, mesh)) {
             if (set[i] < 0)
                 warnings.add("mesh " + inQuotes(mesh.name),
-                             "needs both its UV sets for textures, so none is free for the lightmap: let its "
+                             "needs three UV sets for textures, so none is free for the lightmap: let its "
                              "textures share one set");
             continue;
         }

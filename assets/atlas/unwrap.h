@@ -32,10 +32,10 @@ struct UnwrapResult {
 /// of each instance: charts in their true shapes, see layOutCharts. An instance of a mesh that others share
 /// gets a mesh of its own. Where a mesh has a valid set of UVs, this is kept as one chart, which moves and is
 /// scaled to the density; where all meshes have one, the scene stays as it is. Splits vertices where charts
-/// meet. A mesh whose textures need both of its UV sets is left alone and warned about. With a memory, what
-/// did not change since the unwrap that left it stays where it is if all still fits; then the memory is that
-/// of this unwrap. Throws Error where there are more charts than texels, and for a density that would need
-/// absurdly many.
+/// meet. Textures that read TEXCOORD_1 read another set from then on (freeSecondSet()); a mesh whose textures
+/// need three sets is left alone and warned about. With a memory, what did not change since the unwrap that
+/// left it stays where it is if all still fits; then the memory is that of this unwrap. Throws Error where
+/// there are more charts than texels, and for a density that would need absurdly many.
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory = nullptr);
 
 /// Throws Error for a scene of points and lines, which no lightmap UVs would help.

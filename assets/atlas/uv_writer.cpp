@@ -3,6 +3,7 @@
 #include "assets/base/numbering.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace relume {
@@ -47,6 +48,7 @@ void applyUvs(const CornerUvs& uvs, size_t first, Primitive& primitive) {
     pickVertices(primitive.positions, vertices);
     pickVertices(primitive.normals, vertices);
     pickVertices(primitive.texCoord0, vertices);
+    pickVertices(primitive.texCoord2, vertices);
     pickVertices(primitive.colors, vertices);
     primitive.texCoord1 = std::move(placed);
 }
@@ -84,17 +86,14 @@ Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs) {
 
 namespace {
 
-/// The sets of UVs that a primitive's textures use.
-struct UsedSets {
-    bool set[2] = {false, false};
-};
-
-UsedSets usedSets(const Scene& scene, const Primitive& primitive) {
-    UsedSets used;
+/// Tells which sets of UVs a primitive's textures use.
+std::array<bool, 3> usedSets(const Scene& scene, const Primitive& primitive) {
+    std::array<bool, 3> used{};
     if (primitive.material < 0) return used;
     const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
     for (TextureRef Material::*use : kTextureUses)
-        if ((material.*use).texture >= 0) used.set[primitive.uvsMoved ? 0 : (material.*use).texCoord] = true;
+        if ((material.*use).texture >= 0)
+            used[static_cast<size_t>(setOf(primitive.movedUvs, material.*use))] = true;
     return used;
 }
 
@@ -102,16 +101,17 @@ UsedSets usedSets(const Scene& scene, const Primitive& primitive) {
 
 bool canFreeSecondSet(const Scene& scene, const Mesh& mesh) {
     return std::none_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& primitive) {
-        const UsedSets used = usedSets(scene, primitive);
-        return used.set[0] && used.set[1];
+        const std::array<bool, 3> used = usedSets(scene, primitive);
+        return used[0] && used[1] && used[2];
     });
 }
 
 void freeSecondSet(const Scene& scene, Mesh& mesh) {
     for (Primitive& primitive : mesh.primitives) {
-        if (!usedSets(scene, primitive).set[1]) continue;
-        primitive.texCoord0 = primitive.texCoord1;
-        primitive.uvsMoved = true;
+        const std::array<bool, 3> used = usedSets(scene, primitive);
+        if (!used[1] || (used[0] && used[2])) continue;
+        primitive.movedUvs = used[0] ? 2 : 0;
+        (used[0] ? primitive.texCoord2 : primitive.texCoord0) = primitive.texCoord1;
     }
 }
 

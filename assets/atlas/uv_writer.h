@@ -20,9 +20,10 @@ CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* pl
 /// Returns the mesh with the UVs as TEXCOORD_1; a vertex that has several UVs becomes several.
 Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs);
 
-/// Tells whether a mesh's textures leave it one of its two sets of UVs.
+/// Tells whether a mesh's textures leave it one of three sets of UVs.
 bool canFreeSecondSet(const Scene& scene, const Mesh& mesh);
-/// Frees TEXCOORD_1 of a mesh whose textures use it, by moving it to TEXCOORD_0 (Primitive::uvsMoved).
+/// Frees TEXCOORD_1 of a mesh whose textures use it, by copying it to TEXCOORD_0 or, where textures use that
+/// too, to TEXCOORD_2 (Primitive::movedUvs). A primitive whose textures use all three stays as it is.
 void freeSecondSet(const Scene& scene, Mesh& mesh);
 
 } // namespace relume

@@ -76,8 +76,8 @@ public:
 
 private:
     Json primitive(const Primitive& primitive);
-    /// Returns the number of a material's copy whose textures read TEXCOORD_0.
-    int movedMaterial(int material);
+    /// Returns the number of a material's copy whose textures read another set than TEXCOORD_1.
+    int movedMaterial(int material, int set);
     void addMeshes();
     void addTextures();
     void addNodes();
@@ -95,7 +95,7 @@ private:
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
     std::vector<std::vector<uint8_t>> pngs_; // or JPEG, as it came
-    std::vector<int> moved_;                 // materials that have such a copy behind all materials
+    std::vector<std::pair<int, int>> moved_; // materials and sets of such copies behind all materials
     std::vector<int> meshIndices_;           // of the file by Scene::meshes, -1 for one without triangles
     gltf::UsedExtensions extensions_;
 };
@@ -131,6 +131,7 @@ Json GlbWriter::primitive(const Primitive& p) {
     ASSERT(p.normals.empty() || p.normals.size() == count);
     ASSERT(p.texCoord0.empty() || p.texCoord0.size() == count);
     ASSERT(p.texCoord1.empty() || p.texCoord1.size() == count);
+    ASSERT(p.texCoord2.empty() || p.texCoord2.size() == count);
     ASSERT(p.colors.empty() || p.colors.size() == count);
 
     Json attributes;
@@ -153,6 +154,11 @@ Json GlbWriter::primitive(const Primitive& p) {
         if (p.texCoord0.empty()) attributes["TEXCOORD_0"] = accessor;
         attributes["TEXCOORD_1"] = accessor;
     }
+    if (!p.texCoord2.empty()) {
+        const int accessor = addAccessor(kTexCoords, p.texCoord2.data(), count, kFloat, "VEC2");
+        for (const char* set : {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2"})
+            if (!attributes.contains(set)) attributes[set] = accessor;
+    }
     if (!p.colors.empty())
         attributes["COLOR_0"] = addAccessor(kColors, p.colors.data(), count, kFloat, "VEC4");
 
@@ -164,7 +170,8 @@ Json GlbWriter::primitive(const Primitive& p) {
     } else {
         out["indices"] = addAccessor(kIntIndices, p.indices.data(), p.indices.size(), kUnsignedInt, "SCALAR");
     }
-    if (p.material >= 0) out["material"] = p.uvsMoved ? movedMaterial(p.material) : p.material;
+    if (p.material >= 0)
+        out["material"] = p.movedUvs >= 0 ? movedMaterial(p.material, p.movedUvs) : p.material;
     return out;
 }
 
@@ -184,10 +191,11 @@ void GlbWriter::addMeshes() {
     }
 }
 
-int GlbWriter::movedMaterial(int material) {
-    const auto found = std::find(moved_.begin(), moved_.end(), material);
+int GlbWriter::movedMaterial(int material, int set) {
+    const std::pair<int, int> copy{material, set};
+    const auto found = std::find(moved_.begin(), moved_.end(), copy);
     const auto place = found - moved_.begin();
-    if (found == moved_.end()) moved_.push_back(material);
+    if (found == moved_.end()) moved_.push_back(copy);
     return static_cast<int>(scene_.materials.size()) + static_cast<int>(place);
 }
 
@@ -349,16 +357,18 @@ std::vector<uint8_t> GlbWriter::write() {
     addTextures();
     for (const Material& m : scene_.materials)
         json_["materials"].push_back(gltf::materialJson(m, extensions_));
-    for (const int original : moved_) {
+    for (const auto& [original, set] : moved_) {
         Material copy = scene_.materials[static_cast<size_t>(original)];
-        copy.baseColorTexture.texCoord = copy.emissionTexture.texCoord = 0;
-        copy.metallicRoughnessTexture.texCoord = 0;
+        for (TextureRef* use :
+             {&copy.baseColorTexture, &copy.emissionTexture, &copy.metallicRoughnessTexture})
+            use->texCoord = setOf(set, *use);
         json_["materials"].push_back(gltf::materialJson(copy, extensions_));
     }
     const size_t ownMaterials = scene_.materials.size();
     for (size_t i = 0; i < ownMaterials + moved_.size(); ++i)
         gltf::addLook(json_["materials"][i], look_,
-                      i < ownMaterials ? i : static_cast<size_t>(moved_[i - ownMaterials]), extensions_);
+                      i < ownMaterials ? i : static_cast<size_t>(moved_[i - ownMaterials].first),
+                      extensions_);
     addNodes();
     addBuffers();
     for (const auto& [extension, used] : extensions_)

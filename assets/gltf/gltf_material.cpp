@@ -166,10 +166,10 @@ TextureRef MaterialBuilder::reference(const json& holder, const char* key) {
         ref.transform = transformMatrix(*extension);
         texCoord = numberOr(*extension, "texCoord", texCoord);
     }
-    if (texCoord >= 2.0)
+    if (texCoord >= 3.0)
         build_.warnings.add(fmt::format("texture {}", index),
-                            "uses TEXCOORD_2 or higher, TEXCOORD_0 is taken");
-    ref.texCoord = texCoord == 1.0 ? 1 : 0;
+                            "uses TEXCOORD_3 or higher, TEXCOORD_0 is taken");
+    ref.texCoord = texCoord == 1.0 ? 1 : texCoord == 2.0 ? 2 : 0;
     return ref;
 }
 

@@ -40,7 +40,8 @@ private:
     void mendNormals(Primitive& primitive) const;
     void morph(Primitive& primitive) const;
     void bendBySkin(Primitive& primitive) const;
-    void warnUnused() const;
+    bool readsThirdSet(const Primitive& primitive) const;
+    void warnUnused(const Primitive& primitive) const;
 
     Build& build_;
     std::string where_;
@@ -196,6 +197,7 @@ void makeFlat(Primitive& primitive) {
     gather(primitive.positions, primitive.indices);
     gather(primitive.texCoord0, primitive.indices);
     gather(primitive.texCoord1, primitive.indices);
+    gather(primitive.texCoord2, primitive.indices);
     gather(primitive.colors, primitive.indices);
     primitive.normals.resize(primitive.positions.size());
     for (uint32_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
@@ -234,8 +236,18 @@ void PrimitiveBuilder::mendNormals(Primitive& primitive) const {
     warn("has normals without a direction, replaced by those of their triangles");
 }
 
-void PrimitiveBuilder::warnUnused() const {
-    if (attribute("TEXCOORD_2")) warn("TEXCOORD_2 and higher are ignored");
+/// Tells whether a texture reads TEXCOORD_2, as it does where a lightmap has taken TEXCOORD_1.
+bool PrimitiveBuilder::readsThirdSet(const Primitive& primitive) const {
+    if (primitive.material < 0) return false;
+    const Material& material = build_.scene.materials[static_cast<size_t>(primitive.material)];
+    const auto reads = [](const TextureRef& use) { return use.texture >= 0 && use.texCoord == 2; };
+    return reads(material.baseColorTexture) || reads(material.emissionTexture) ||
+           reads(material.metallicRoughnessTexture);
+}
+
+void PrimitiveBuilder::warnUnused(const Primitive& primitive) const {
+    if (attribute("TEXCOORD_2") && !readsThirdSet(primitive))
+        warn("TEXCOORD_2 and higher are read by no texture, and ignored");
     if (attribute("COLOR_1")) warn("COLOR_1 and higher are ignored");
 }
 
@@ -280,16 +292,17 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
         warn("has points or lines, which are skipped");
         return false;
     }
-    warnUnused();
     if (!attribute("POSITION")) {
         warn("has no POSITION and is skipped");
         return false;
     }
     primitive.material = materialOf(build_, source_);
+    warnUnused(primitive);
     primitive.positions = read<glm::vec3>("POSITION");
     primitive.normals = read<glm::vec3>("NORMAL");
     primitive.texCoord0 = read<glm::vec2>("TEXCOORD_0");
     primitive.texCoord1 = read<glm::vec2>("TEXCOORD_1");
+    if (readsThirdSet(primitive)) primitive.texCoord2 = read<glm::vec2>("TEXCOORD_2");
     primitive.colors = readColors();
     morph(primitive);
     bendBySkin(primitive);
@@ -297,6 +310,7 @@ bool PrimitiveBuilder::run(Primitive& primitive) {
     dropBadTriangles(primitive);
     mendTexCoords(primitive.texCoord0, "TEXCOORD_0");
     mendTexCoords(primitive.texCoord1, "TEXCOORD_1");
+    mendTexCoords(primitive.texCoord2, "TEXCOORD_2");
     if (primitive.indices.empty()) return false;
     mendNormals(primitive);
     return true;

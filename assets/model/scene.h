@@ -28,7 +28,7 @@ struct Texture {
 /// included.
 struct TextureRef {
     int texture = -1; // index into Scene::textures, -1 for none
-    int texCoord = 0; // 0 or 1
+    int texCoord = 0; // 0, 1 or 2
     glm::mat3 transform{1.0f};
 };
 
@@ -52,22 +52,26 @@ struct Material {
 /// Holds triangles of one material. Arrays other than positions may be empty where the file has none. Normals
 /// never are after import: where they are missing, the triangles become flat, which splits vertices.
 struct Primitive {
-    std::vector<glm::vec3> positions; // [m], object space
-    std::vector<glm::vec3> normals;   // unit
-    std::vector<glm::vec2> texCoord0, texCoord1;
-    std::vector<glm::vec4> colors; // COLOR_0, linear
-    std::vector<uint32_t> indices; // 3 per triangle, always filled
-    int material = -1;             // index into Scene::materials, -1 for glTF's default material
-    bool uvsMoved = false;         // texCoord0 holds its textures' TEXCOORD_1, as the lightmap has that set
+    std::vector<glm::vec3> positions;                       // [m], object space
+    std::vector<glm::vec3> normals;                         // unit
+    std::vector<glm::vec2> texCoord0, texCoord1, texCoord2; // the last only where textures read it
+    std::vector<glm::vec4> colors;                          // COLOR_0, linear
+    std::vector<uint32_t> indices;                          // 3 per triangle, always filled
+    int material = -1; // index into Scene::materials, -1 for glTF's default material
+    int movedUvs = -1; // the set that holds its textures' TEXCOORD_1, as the lightmap has that; -1: none
 };
 
-/// Returns TEXCOORD_0 or TEXCOORD_1.
+/// Returns TEXCOORD_0, TEXCOORD_1 or TEXCOORD_2.
 inline const std::vector<glm::vec2>& uvSet(const Primitive& primitive, int set) {
-    return set == 1 ? primitive.texCoord1 : primitive.texCoord0;
+    return set == 2 ? primitive.texCoord2 : set == 1 ? primitive.texCoord1 : primitive.texCoord0;
+}
+/// Returns the set of a primitive whose UVs `moved` says of (Primitive::movedUvs) that a texture reads.
+inline int setOf(int moved, const TextureRef& use) {
+    return use.texCoord == 1 && moved >= 0 ? moved : use.texCoord;
 }
 /// Returns the UVs that a texture reads.
 inline const std::vector<glm::vec2>& uvsOf(const Primitive& primitive, const TextureRef& use) {
-    return uvSet(primitive, primitive.uvsMoved ? 0 : use.texCoord);
+    return uvSet(primitive, setOf(primitive.movedUvs, use));
 }
 
 struct Mesh {

@@ -111,11 +111,36 @@ TEST(EngineScene, WhatTheLightmapDoesNotLightHasNoLightmapUvs) {
     EXPECT_EQ(uvsOf(bare, 2), 0u);
     three.scene.materials[0].pane = true;
     EXPECT_EQ(uvsOf(engineScene(three.scene, three.atlas, kAmbient), 0), 0u);
-    // Its picture is laid out by them.
+    // Its picture was laid out by them before they were placed, which are another set now.
     three.scene.images = {{"Used", 1, 1, {9, 9, 9, 255}}};
     three.scene.textures = {{.image = 0}};
     three.scene.materials[0].baseColorTexture = {.texture = 0, .texCoord = 1};
-    EXPECT_EQ(uvsOf(engineScene(three.scene, three.atlas, kAmbient), 0), 4u);
+    const EngineScene pictured = engineScene(three.scene, three.atlas, kAmbient);
+    EXPECT_EQ(uvsOf(pictured, 0), 0u);
+    const Primitive& square = pictured.scene.meshes[0].primitives[0];
+    const Material& pane = pictured.scene.materials[static_cast<size_t>(square.material)];
+    EXPECT_EQ(uvSet(square, pane.baseColorTexture.texCoord), three.scene.meshes[0].primitives[0].texCoord1);
+}
+
+TEST(EngineScene, TexturesKeepTheirUvsBesideTheLightmaps) {
+    ThreeObjects three;
+    Scene& scene = three.scene;
+    scene.images.push_back({"", 1, 1, {1, 2, 3, 4}});
+    scene.textures.push_back({0, Wrap::Repeat, Wrap::Repeat, false});
+    scene.materials[0].baseColorTexture = {0, 0, glm::mat3(1)};
+    scene.materials[0].emissionTexture = {0, 1, glm::mat3(1)};
+    scene.meshes[0].primitives[0].texCoord0 = {{0, 0}, {5, 0}, {5, 5}, {0, 5}};
+    const EngineScene level = engineScene(scene, three.atlas, kAmbient);
+    const Primitive& left = level.scene.meshes.at(0).primitives.at(0);
+    const Material& material = level.scene.materials.at(static_cast<size_t>(left.material));
+    EXPECT_EQ(left.movedUvs, -1) << "the material itself says which set is read";
+    EXPECT_EQ(uvsOf(left, material.baseColorTexture)[2], glm::vec2(5, 5));
+    EXPECT_EQ(material.emissionTexture.texCoord, 2);
+    EXPECT_EQ(uvsOf(left, material.emissionTexture)[2], glm::vec2(1, 1));
+    EXPECT_NE(left.texCoord1[2], glm::vec2(1, 1)) << "a part of the atlas";
+    EXPECT_EQ(meshesWithThirdSet(level.scene), (std::vector<std::string>{"Left", "Right"}));
+    scene.materials[0].emissionTexture.texCoord = 0;
+    EXPECT_TRUE(meshesWithThirdSet(engineScene(scene, three.atlas, kAmbient).scene).empty());
 }
 
 TEST(AnyScene, WhateverShinesIsBroughtToTheScreen) {

@@ -315,7 +315,7 @@ TEST(Unwrap, TexturesOnTexCoord1MoveAside) {
     scene.meshes[0].primitives[0].material = 0;
     unwrap(scene, {});
     const Primitive& primitive = scene.meshes[0].primitives[0];
-    EXPECT_TRUE(primitive.uvsMoved);
+    EXPECT_EQ(primitive.movedUvs, 0);
     EXPECT_EQ(&uvsOf(primitive, scene.materials[0].baseColorTexture), &primitive.texCoord0);
     EXPECT_EQ(scene.materials.size(), 1u) << "edits go by the file's list";
     EXPECT_EQ(scene.materials[0].baseColorTexture.texCoord, 1); // other meshes may still use it
@@ -335,14 +335,72 @@ TEST(Unwrap, TexturesOnTexCoord1MoveAside) {
     EXPECT_EQ(again.lightmapUv, mesh.lightmapUv);
 }
 
-TEST(Unwrap, AMeshThatNeedsBothItsSetsIsLeftAlone) {
+/// A square whose base colour reads TEXCOORD_1, which tiles, and whose emission reads TEXCOORD_0.
+Scene squareOfTwoSets() {
     Scene scene = test::sceneOf(test::square({0, 0}, {4, 4}));
-    scene.meshes[0].primitives[0].texCoord0 = scene.meshes[0].primitives[0].texCoord1;
-    scene.textures.push_back({});
+    Primitive& primitive = scene.meshes[0].primitives[0];
+    primitive.texCoord0 = test::square({0, 0}, {3, 2}).texCoord1;
+    primitive.material = 0;
+    scene.images.push_back({"", 1, 1, {1, 2, 3, 4}});
+    scene.textures.push_back({0, Wrap::Repeat, Wrap::Repeat, false});
     scene.materials.resize(1);
     scene.materials[0].baseColorTexture = {0, 1, glm::mat3(1)};
+    scene.materials[0].emission = glm::vec3(1.0f);
     scene.materials[0].emissionTexture = {0, 0, glm::mat3(1)};
-    scene.meshes[0].primitives[0].material = 0;
+    return scene;
+}
+
+TEST(Unwrap, AMeshWhoseTexturesNeedBothSetsGetsAThird) {
+    Scene scene = squareOfTwoSets();
+    const Primitive before = scene.meshes[0].primitives[0];
+    EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
+    const Primitive& primitive = scene.meshes[0].primitives[0];
+    const Material& material = scene.materials[0];
+    EXPECT_EQ(lightmapSet(scene.meshes[0]), 1) << "where engines look for it";
+    EXPECT_EQ(primitive.movedUvs, 2);
+    EXPECT_EQ(uvsOf(primitive, material.baseColorTexture), before.texCoord1);
+    EXPECT_EQ(uvsOf(primitive, material.emissionTexture), before.texCoord0);
+    // The scene that is written looks alike, and needs no unwrap.
+    const WorldMesh mesh = flatten(scene, buildAtlas(scene, 64));
+    const std::string path = test::tempPath("three_sets.glb");
+    saveGlb(scene, path);
+    Scene written = loadGltf(path);
+    EXPECT_TRUE(written.warnings.empty()) << written.warnings.at(0);
+    const Primitive& again = written.meshes.at(0).primitives.at(0);
+    EXPECT_EQ(written.materials.at(static_cast<size_t>(again.material)).baseColorTexture.texCoord, 2);
+    const WorldMesh read = flatten(written, buildAtlas(written, 64));
+    EXPECT_EQ(read.baseUv, mesh.baseUv);
+    EXPECT_EQ(read.emissionUv, mesh.emissionUv);
+    EXPECT_EQ(read.lightmapUv, mesh.lightmapUv);
+    EXPECT_EQ(unwrap(written, {}).meshes, 0u);
+    // So does one whose UVs are made anew.
+    UnwrapDesc desc;
+    desc.onlyMissing = false;
+    EXPECT_EQ(unwrap(written, desc).meshes, 1u);
+    EXPECT_EQ(uvsOf(written.meshes[0].primitives[0], material.baseColorTexture).size(),
+              written.meshes[0].primitives[0].positions.size());
+    EXPECT_EQ(flatten(written, buildAtlas(written, 64)).baseUv, mesh.baseUv);
+}
+
+TEST(Unwrap, LightmapUvsThatMoveToTheSecondSetLeaveTexturesTheirs) {
+    // The lightmap has TEXCOORD_0, two instances of it make rectangles, and base colour reads TEXCOORD_1.
+    Scene scene = squareOfTwoSets();
+    scene.meshes[0].primitives[0].texCoord0 = test::square().texCoord1;
+    test::addInstance(scene, 0, glm::translate(glm::mat4(1), glm::vec3(3, 0, 0)));
+    const LightmapAtlas atlas = buildAtlas(scene, 64);
+    ASSERT_EQ(atlas.instances[0].texCoord, 0);
+    const WorldMesh before = flatten(scene, atlas);
+    const Scene placed = withAtlas(scene, atlas);
+    const WorldMesh after = flatten(placed, buildAtlas(placed, 64));
+    EXPECT_EQ(after.lightmapUv, before.lightmapUv);
+    EXPECT_EQ(after.baseUv, before.baseUv);
+    EXPECT_EQ(after.emissionUv, before.emissionUv);
+}
+
+TEST(Unwrap, AMeshThatNeedsThreeSetsIsLeftAlone) {
+    Scene scene = squareOfTwoSets();
+    scene.materials[0].metallicRoughnessTexture = {0, 2, glm::mat3(1)};
+    scene.meshes[0].primitives[0].texCoord2 = scene.meshes[0].primitives[0].texCoord0;
     test::addInstance(scene, test::addMesh(scene, test::cube()));
     EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
     EXPECT_EQ(scene.meshes[0].primitives[0].texCoord1[2], glm::vec2(4, 4));
