@@ -189,6 +189,9 @@ expectUsageError mix layers.exr # neither -o nor --list
 expectUsageError mix layers.exr -o out.exr --set Lamp=nan
 expectUsageError mix layers.exr -o out.exr --set Lamp
 expectUsageError mix layers.exr -o out.png --layers-out
+expectUsageError mix layers.exr --probes-out out.json # no probes to weigh
+expectUsageError mix layers.exr -o out.exr --probes-in probes.json # they go nowhere
+expectUsageError mix layers.exr --probes-in probes.json --probes-out out.txt
 expectWorldError missing.exr mix missing.exr -o out.exr
 expectWorldError nosuchfolder mix missing.exr -o nosuchfolder/out.exr
 expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp
@@ -270,6 +273,7 @@ expectOneFile --output SCENE unwrap s.glb -o s.glb
 expectOneFile --bake SCENE edit s.glb --delete Bulb --bake hard.exr
 expectOneFile --output --bake edit s.glb --delete Bulb -o o.exr --bake o.exr
 expectOneFile --output LAYERS mix a.exr -o a.exr
+expectOneFile --probes-out --probes-in mix a.exr --probes-in p.json --probes-out p.json
 expectOneFile --diff A compare a.png b.exr --diff a.png
 expectOneFile --diff B compare a.exr b.png --diff b.png
 expectOneFile --diff --mask compare a.exr b.exr --mask m.png --diff ./m.png

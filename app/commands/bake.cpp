@@ -4,6 +4,7 @@
 #include "app/offline/command_files.h"
 #include "app/offline/layer_file.h"
 #include "app/offline/lightmap_attributes.h"
+#include "app/offline/probe_bake.h"
 #include "app/offline/progress.h"
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"
@@ -44,7 +45,7 @@ void checkFiles(const BakeOptions& o) {
 void bake(BakeOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
-    const BakeRequest request = resolveBakeOptions(o);
+    BakeRequest request = resolveBakeOptions(o);
     checkFiles(o);
     o.solve.method = methodName(request.bake.solver.method);
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
@@ -61,7 +62,10 @@ void bake(BakeOptions o) {
     PreparedScene prepared = prepareScene(request.prepare);
     if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
     ProbePlan probePlan;
-    if (o.probes.wanted()) probePlan = planProbes(o.probes, prepared.mesh);
+    if (o.probes.wanted()) {
+        probePlan = planProbes(o.probes, prepared.mesh);
+        request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);
+    }
     stopIfInterrupted();
     const auto deviceStart = Clock::now();
     const vk::Device device({.select = o.machine.device, .validation = o.machine.validate});
@@ -76,6 +80,12 @@ void bake(BakeOptions o) {
     phase.reset();
     solve(baker.solver(), request.bake.solver, checkpoints);
     phase.emplace(false);
+    const auto probesStart = Clock::now();
+    ProbeSet probes;
+    if (o.probes.wanted())
+        probes = bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samplesOrDefault(),
+                            request.bake.solver.transport.reflectivity);
+    // From here on files are written, and all of them: what Ctrl-C ends before has written nothing.
     const auto writeStart = Clock::now();
     FloatImage image = baker.lightmap(request.lightmap);
     const double bakeCpuSeconds = cpuSeconds() - cpuStart;
@@ -89,10 +99,7 @@ void bake(BakeOptions o) {
         writeImage(o.files.output, image, type);
     if (!o.files.picture.empty()) writeImage(o.files.picture, image);
     if (!o.files.errorMap.empty()) writeImage(o.files.errorMap, baker.errorMap());
-    if (o.probes.wanted())
-        writeProbes(o.probes.output, probePlan,
-                    bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samples,
-                               request.bake.solver.transport.reflectivity));
+    if (o.probes.wanted()) writeProbes(o.probes.output, probes);
     if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
 
     spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.solve.method,
@@ -108,6 +115,8 @@ void bake(BakeOptions o) {
         {"load", prepared.loadSeconds}, {"atlas", prepared.atlasSeconds}, {"device", deviceSeconds}};
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     phases.push_back({"solve", progress.seconds});
+    if (o.probes.wanted())
+        phases.push_back({"probes", std::chrono::duration<double>(writeStart - probesStart).count()});
     phases.push_back({"write", secondsSince(writeStart)});
     writeStatistics(o.files.json, {.options = o,
                                    .prepared = prepared,

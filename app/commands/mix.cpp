@@ -1,26 +1,34 @@
 #include "app/commands/command.h"
 #include "app/offline/command_files.h"
 #include "app/offline/light_mix.h"
+#include "app/offline/probe_set.h"
 #include "assets/base/error.h"
+#include "assets/base/file_write.h"
 #include "assets/base/log.h"
 #include "assets/images/finite_image.h"
 #include "assets/images/image_file.h"
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
 
 struct MixOptions {
-    std::string layers, output;
+    std::string layers, output, probesIn, probesOut;
     std::vector<std::string> sets, muted, solo;
     bool list = false, layersOut = false, half = false;
 };
 
 MixDesc resolve(const MixOptions& options) {
-    if (options.output.empty() && !options.list)
-        throw UsageError("mix: nothing to do: give -o FILE.exr or .png, or --list");
+    if (options.output.empty() && options.probesOut.empty() && !options.list)
+        throw UsageError("mix: nothing to do: give -o FILE.exr or .png, --probes-out FILE, or --list");
+    if (options.probesIn.empty() && !options.probesOut.empty())
+        throw UsageError("--probes-out: there are no probes to weigh: add --probes-in FILE.json");
+    if (!options.probesIn.empty() && options.probesOut.empty())
+        throw UsageError("--probes-in: nothing says where the weighed probes go: add --probes-out FILE");
+    if (!options.probesOut.empty()) checkProbeName("--probes-out", options.probesOut);
     if (options.layersOut && !options.output.ends_with(".exr"))
         throw UsageError("--layers-out: layers are kept in OpenEXR only: give -o a name that ends in .exr");
     MixDesc desc;
@@ -59,10 +67,36 @@ void printList(const LayeredImage& image) {
     }
 }
 
+ProbeSet weighedProbes(const MixOptions& options, const LayeredImage& image) {
+    ProbeSet probes = readProbes(options.probesIn);
+    try {
+        weighLike(probes, image);
+    } catch (const Error& error) {
+        throw Error(options.probesIn + ": " + error.what());
+    }
+    return probes;
+}
+
+void writeSum(const MixOptions& options, const LayeredImage& image) {
+    requireFinite(image.composite, options.output);
+    const ExrType type = options.half ? ExrType::Half : ExrType::Float;
+    if (options.layersOut)
+        writeLayeredExr(options.output, image, type);
+    else
+        writeImage(options.output, image.composite, type);
+    spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
+}
+
 void runMix(const MixOptions& options) {
     const MixDesc desc = resolve(options);
-    CommandFiles().reads("LAYERS", options.layers).writes("--output", options.output).check();
+    CommandFiles()
+        .reads("LAYERS", options.layers)
+        .reads("--probes-in", options.probesIn)
+        .writes("--output", options.output)
+        .writes("--probes-out", options.probesOut)
+        .check();
     if (!options.output.empty()) checkWritable(options.output);
+    if (!options.probesOut.empty()) checkFileWritable(options.probesOut, 0);
     LayeredImage image = readLayeredExr(options.layers);
     try {
         mixLayers(image, desc);
@@ -72,19 +106,17 @@ void runMix(const MixOptions& options) {
         throw Error(options.layers + ": " + error.what());
     }
     if (options.list) printList(image);
-    if (options.output.empty()) return;
+    // Both are made before either is written.
+    std::optional<ProbeSet> probes;
+    if (!options.probesIn.empty()) probes = weighedProbes(options, image);
+    if (options.output.empty() && !probes) return;
     for (const LayeredImage::Layer& layer : image.layers) {
         const std::string stale = attribute(layer, layer_attribute::kStale);
         if (!stale.empty() && layer.weight != glm::vec3(0.0f))
             spdlog::warn("{}: stale: {}: bake it again", options.layers, stale);
     }
-    requireFinite(image.composite, options.output);
-    const ExrType type = options.half ? ExrType::Half : ExrType::Float;
-    if (options.layersOut)
-        writeLayeredExr(options.output, image, type);
-    else
-        writeImage(options.output, image.composite, type);
-    spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
+    if (!options.output.empty()) writeSum(options, image);
+    if (probes) writeProbes(options.probesOut, *probes);
 }
 
 } // namespace
@@ -109,6 +141,11 @@ void addMixCommand(CLI::App& app) {
         ->type_name("NAME=INTENSITY[,COLOR]");
     names("--mute", options->muted, "Turn this light off")->type_name("NAME");
     names("--solo", options->solo, "Only this light, and others with --solo")->type_name("NAME");
+    command
+        ->add_option("--probes-in", options->probesIn,
+                     "Light probes of the same bake, by 'relume bake --layers --probes', to be weighed alike")
+        ->type_name("PROBES.json");
+    command->add_option("--probes-out", options->probesOut, "The weighed probes, .json")->type_name("FILE");
     command->add_flag("--list", options->list, "Print the lights, as they are mixed");
     command->add_flag("--layers-out", options->layersOut, "Write the layers too, with their new weights");
     command->add_flag("--half", options->half, "16-bit floats in an .exr");

@@ -38,7 +38,9 @@ std::string describe(const LinkSettings& settings) {
 } // namespace
 
 std::string describeSettings(const BakeSettings& settings) {
-    const auto& [size, conservative, tracer, voxels, solver] = settings;
+    // Probes change nothing of a lightmap.
+    const auto& [size, conservative, tracer, voxels, solver, probes] = settings;
+    (void)probes;
     const auto& [resolution, ratio] = voxels;
     const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
     const auto& [method, layers, pairs, links, cache, transport, passes, error, localError, batchMs, live] =

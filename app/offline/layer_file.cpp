@@ -38,6 +38,26 @@ std::string namesOf(const std::vector<LightSource>& lights) {
 
 } // namespace
 
+LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer) {
+    const LightText light = describe(scene, layer.source.key);
+    LayeredImage::Layer part{layer.source.name, layer.source.weight, {}, {}};
+    part.attributes[layer_attribute::kType] = light.type;
+    part.attributes[layer_attribute::kUnit] = light.unit;
+    part.attributes[layer_attribute::kIntensity] = fmt::format("{}", light.intensity);
+    part.attributes[layer_attribute::kColor] =
+        fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
+    if (!layer.members.empty()) part.attributes[layer_attribute::kMembers] = namesOf(layer.members);
+    const std::string stale = staleReason(layer);
+    if (!stale.empty()) part.attributes[layer_attribute::kStale] = stale;
+    const Layer* shown = layer.shown();
+    if (shown) {
+        part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",
+                                                      shown->level.directRounds, shown->level.linkRounds);
+        part.attributes["relume:error"] = fmt::format("{:.6g}", shown->error);
+    }
+    return part;
+}
+
 LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc,
                           const std::map<std::string, std::string>& attributes) {
     ASSERT(desc.quantity == Quantity::Lighting);
@@ -47,22 +67,8 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
     image.composite = baker.lightmap(desc);
     image.composite.attributes = attributes;
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
-        const LightText light = describe(scene, layer->source.key);
-        LayeredImage::Layer part{layer->source.name, layer->source.weight, {}, {}};
-        part.attributes[layer_attribute::kType] = light.type;
-        part.attributes[layer_attribute::kUnit] = light.unit;
-        part.attributes[layer_attribute::kIntensity] = fmt::format("{}", light.intensity);
-        part.attributes[layer_attribute::kColor] =
-            fmt::format("{},{},{}", light.color.r, light.color.g, light.color.b);
-        if (!layer->members.empty()) part.attributes[layer_attribute::kMembers] = namesOf(layer->members);
-        const std::string stale = staleReason(*layer);
-        if (!stale.empty()) part.attributes[layer_attribute::kStale] = stale;
+        LayeredImage::Layer part = layerWithoutImage(scene, *layer);
         const Layer* shown = layer->shown();
-        if (shown) {
-            part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",
-                                                          shown->level.directRounds, shown->level.linkRounds);
-            part.attributes["relume:error"] = fmt::format("{:.6g}", shown->error);
-        }
         part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), desc);
         image.layers.push_back(std::move(part));
     }

@@ -10,6 +10,10 @@
 
 namespace relume {
 
+/// Returns a layer's name, weight, light and level, and what it does not show of the scene any more: all but
+/// its image.
+LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer);
+
 /// Returns the lightmap of a bake that has layers (Baker::layers) as it stands, light by light: each
 /// layer with its weight, light and level, and with what it does not show of the scene any more. Seams are
 /// filled as in the composite, which is the sum of the others and bears these attributes. desc.quantity must

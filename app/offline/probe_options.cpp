@@ -1,25 +1,24 @@
 #include "app/offline/probe_options.h"
 
+#include "app/offline/probe_set.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
-#include "assets/base/file_write.h"
-#include "assets/base/log.h"
 #include "assets/model/scene_limits.h"
 #include "bake/lights/lamps.h"
+#include "bake/lights/light_source.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
 
 namespace relume {
 namespace {
 
 constexpr uint32_t kDefaultProbeSamples = 4096, kMostProbeSamples = 16384;
-constexpr uint32_t kProbeLampSamples = 64; // to each analytic light that has an extent
 
 glm::vec3 typedPlace(const std::string& text) {
     const std::vector<float> numbers = typedNumbers(text, 3);
@@ -32,23 +31,11 @@ glm::vec3 typedPlace(const std::string& text) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-uint32_t samplesOf(const ProbeOptions& o) {
-    return o.samples > 0 ? o.samples : kDefaultProbeSamples;
-}
-
-// Throws where the links of so many probes take more memory than those of the largest grid with the default.
-void checkMemory(const ProbeOptions& o, uint64_t probes) {
-    constexpr uint64_t kMostSamples = uint64_t{kMostProbes} * kDefaultProbeSamples;
-    if (probes * samplesOf(o) <= kMostSamples) return;
-    throw UsageError(fmt::format("--probe-samples {}: too many for {} probes: {} fit", o.samples, probes,
-                                 kMostSamples / probes / 8 * 8));
-}
-
-nlohmann::ordered_json vectorJson(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 } // namespace
+
+uint32_t ProbeOptions::samplesOrDefault() const {
+    return samples > 0 ? samples : kDefaultProbeSamples;
+}
 
 void addProbeOptions(CLI::App& command, ProbeOptions& o) {
     CLI::Option* grid =
@@ -78,8 +65,7 @@ void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool rad
         typedPlace(place);
     if (o.output.empty())
         throw UsageError("--probes: nothing says where they go: add --probes-out FILE.json");
-    if (!o.output.ends_with(".json"))
-        throw UsageError("--probes-out: '" + o.output + "' does not end in .json");
+    checkProbeName("--probes-out", o.output);
     if (o.samples % 8 != 0)
         throw UsageError(
             fmt::format("--probe-samples {}: take a multiple of 8 up to {}", o.samples, kMostProbeSamples));
@@ -92,9 +78,6 @@ void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool rad
     if (radianceWanted)
         throw UsageError(
             "--probes: not with --quantity radiance: probes need irradiance, leave --quantity out");
-    if (bake.solver.layers.on)
-        throw UsageError(
-            "--probes: not with --layers: probes have the light of all lights together; bake twice");
     if (o.at.size() > kMostProbes)
         throw UsageError(fmt::format("--probe-at: {} probes are more than {}", o.at.size(), kMostProbes));
 }
@@ -104,7 +87,6 @@ ProbePlan planProbes(const ProbeOptions& o, const WorldMesh& mesh) {
     if (!o.at.empty()) {
         for (const std::string& place : o.at)
             plan.points.push_back(typedPlace(place));
-        checkMemory(o, plan.points.size());
         return plan;
     }
     glm::vec3 low(std::numeric_limits<float>::max()), high(-low);
@@ -115,56 +97,16 @@ ProbePlan planProbes(const ProbeOptions& o, const WorldMesh& mesh) {
     plan.isGrid = true;
     plan.grid = planProbeGrid(low, high, static_cast<float>(o.spacing));
     plan.points = probePoints(plan.grid);
-    checkMemory(o, plan.points.size());
     return plan;
 }
 
-std::vector<Probe> bakeProbes(const vk::Device& device, const Scene& scene, Baker& baker,
-                              const ProbePlan& plan, uint32_t samples, float reflectivity) {
-    const PatchSet& patches = baker.patches();
-    const LampSet lamps = buildLamps(scene, patches.scene.mesh, {.samples = kProbeLampSamples, .sky = false});
-    const ProbeLinks links = traceProbes(device, patches, lamps, plan.points,
-                                         {.samples = samples > 0 ? samples : kDefaultProbeSamples,
-                                          .tracer = parseTracerKind(baker.tracer().name())});
-    const std::vector<glm::vec4> radiance = patchRadiance(patches, baker.solver().light(), reflectivity);
-    std::vector<Probe> probes = gatherProbes(
-        links,
-        {.radiance = radiance, .sky = scene.sky.shines() ? &scene.sky : nullptr, .lamps = lamps.lamps});
-    size_t inside = 0;
-    for (const Probe& probe : probes)
-        inside += probe.inside() ? 1 : 0;
-    spdlog::info("{} probes, {} of them inside walls, {:.3g} Mrays", probes.size(), inside,
-                 static_cast<double>(links.rays) * 1e-6);
-    return probes;
-}
-
-void writeProbes(const std::string& path, const ProbePlan& plan, const std::vector<Probe>& probes) {
-    nlohmann::ordered_json json = {{"version", RELUME_VERSION},
-                                   {"quantity", "radiance"},
-                                   {"unit", "cd/m^2"},
-                                   {"basis",
-                                    "real spherical harmonics, bands 0 to 2: 1, y, z, x, xy, yz, 3z^2-1, xz, "
-                                    "x^2-y^2, orthonormal, Y up"}};
-    if (plan.isGrid) {
-        const glm::uvec3& n = plan.grid.counts;
-        json["grid"] = {{"first", vectorJson(plan.grid.first)},
-                        {"spacing", plan.grid.spacing},
-                        {"counts", {n.x, n.y, n.z}},
-                        {"order", "x fastest, then y, then z"}};
-    }
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Probe& probe : probes) {
-        nlohmann::ordered_json coefficients = nlohmann::ordered_json::array();
-        for (const glm::dvec3& c : probe.radiance)
-            coefficients.push_back(vectorJson(c));
-        list.push_back({{"position", vectorJson(probe.position)},
-                        {"inside", probe.inside()},
-                        {"backs", probe.backs},
-                        {"coefficients", std::move(coefficients)}});
-    }
-    json["probes"] = std::move(list);
-    writeFileAtomically(path, json.dump(1) + "\n");
-    spdlog::info("wrote {}", path);
+ProbeExtent probeExtent(const ProbeOptions& options, const ProbePlan& plan, const Scene& scene, bool layers) {
+    ProbeExtent extent{.count = static_cast<uint32_t>(plan.points.size()),
+                       .samples = options.samplesOrDefault()};
+    for (const shader::Lamp& lamp : lampsOf(scene, false, {.samples = kProbeLampSamples, .unit = true}))
+        extent.targets += lamp.samples;
+    if (layers) extent.lights = static_cast<uint32_t>(std::max<size_t>(lightSources(scene).size(), 1));
+    return extent;
 }
 
 } // namespace relume

@@ -21,6 +21,8 @@ struct ProbeOptions {
     std::string output;          // .json; "": not given
 
     bool wanted() const { return spacing > 0 || !at.empty(); }
+    /// Returns the directions on each face.
+    uint32_t samplesOrDefault() const;
 };
 
 void addProbeOptions(CLI::App& command, ProbeOptions& options);
@@ -36,11 +38,7 @@ struct ProbePlan {
 /// Plans a grid within the bounds of the scene's triangles, or single places. Throws UsageError.
 ProbePlan planProbes(const ProbeOptions& options, const WorldMesh& mesh);
 
-/// Traces and gathers the probes of a finished bake. Throws Error.
-std::vector<Probe> bakeProbes(const vk::Device& device, const Scene& scene, Baker& baker,
-                              const ProbePlan& plan, uint32_t samples, float reflectivity);
-
-/// Writes them as JSON under a temporary name that is then changed. Throws Error.
-void writeProbes(const std::string& path, const ProbePlan& plan, const std::vector<Probe>& probes);
+/// Returns what these probes take in a bake of the scene: `layers` tells whether lights are told apart.
+ProbeExtent probeExtent(const ProbeOptions& options, const ProbePlan& plan, const Scene& scene, bool layers);
 
 } // namespace relume

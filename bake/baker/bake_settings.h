@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bake/probes/probe_links.h"
 #include "bake/solver/solver.h"
 #include "bake/trace/make_tracer.h"
 #include "bake/trace/voxel_map.h"
@@ -12,6 +13,7 @@ struct BakeSettings {
     TracerKind tracer = TracerKind::Auto;
     VoxelSettings voxels;  // of the voxel tracer; a ratio above 0 mixes it with `tracer`
     SolverSettings solver; // solver.transport.rtrad makes the whole bake follow RTRad
+    ProbeExtent probes;    // that are baked at its end, for which memory is left
 };
 
 } // namespace relume

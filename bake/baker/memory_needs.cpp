@@ -7,6 +7,7 @@
 #include "bake/baker/make_solver.h"
 #include "bake/baker/object_mover.h"
 #include "bake/pairs/pair_memory.h"
+#include "bake/probes/probe_light.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/surface/surface_colours.h"
 
@@ -26,6 +27,21 @@ bool tracesOnHost(const BakeSettings& settings, bool software) {
     return software && (settings.tracer == TracerKind::Auto || settings.tracer == TracerKind::Embree);
 }
 
+// Probes trace the same triangles once more. A software device's memory also has the light that they see and
+// the copies of patches and triangles that their tracer is built from.
+uint64_t probeNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver,
+                    uint64_t tables) {
+    const ProbeExtent& probes = settings.probes;
+    if (probes.count == 0) return 0;
+    const uint64_t triangles = scene.triangles * kTriangleBytes;
+    uint64_t bytes = probeTracerBytes(probes, solver.patches()) + triangles;
+    if (!tracesOnHost(settings, solver.software)) bytes += tables;
+    if (!solver.software) return bytes;
+    const uint64_t lights = std::min<uint64_t>(probes.lights, probeLightsAtOnce(solver.patches()));
+    return bytes + triangles + tables +
+           solver.patches() * (sizeof(shader::Patch) + lights * sizeof(glm::vec4));
+}
+
 } // namespace
 
 SceneExtent extentOf(const Scene& scene, uint64_t triangles) {
@@ -42,7 +58,7 @@ bool usesVoxels(const BakeSettings& settings) {
 }
 
 uint64_t MemoryNeeds::total() const {
-    return std::max(cit, surface + trace + std::max(inside, solver + edits) + host);
+    return std::max(cit, surface + trace + std::max(inside, solver + edits + probes) + host);
 }
 
 MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver) {
@@ -63,6 +79,7 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
                                 startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount) : 0);
     needs.solver = solverBytes(solver, settings.solver);
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
+    needs.probes = probeNeeds(settings, scene, solver, tables);
     if (solver.software)
         needs.host = kHostBytes * solver.patches() + pairSenderBytes(solver, settings.solver);
     return needs;

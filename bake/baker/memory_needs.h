@@ -22,8 +22,9 @@ struct MemoryNeeds {
     uint64_t trace = 0;   // the tracer's tables and voxels
     uint64_t inside = 0;  // of the search for patches inside something, gone before the solver comes
     uint64_t solver = 0;
-    uint64_t edits = 0; // to follow edits of colours
-    uint64_t host = 0;  // a software device's memory is the host's, which holds much of this once more
+    uint64_t edits = 0;  // to follow edits of colours
+    uint64_t probes = 0; // with a tracer of their own, beside all that stays
+    uint64_t host = 0;   // a software device's memory is the host's, which holds much of this once more
 
     /// Returns the most that is taken at a time.
     uint64_t total() const;

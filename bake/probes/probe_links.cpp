@@ -1,5 +1,6 @@
 #include "bake/probes/probe_links.h"
 
+#include "bake/probes/probe_lamps.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -7,12 +8,9 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 namespace relume {
-namespace shader {
-#include "shaders/lib/light/sky_place.glsl"
-} // namespace shader
-
 namespace {
 
 using shader::kChunk;
@@ -36,103 +34,103 @@ Patch faceOf(const glm::vec3& point, uint32_t number) {
     return patch;
 }
 
-// One ray to an analytic light, and the light that it brings if nothing is in between.
-struct LampRay {
-    glm::vec3 target{0.0f};
-    glm::vec3 direction{0.0f}; // unit
-    float lux = 0;             // per unit of the light's colour, on a surface that faces it
-};
+// So much memory the links of a batch take, unless the fewest probes take more [bytes]: they are traced and
+// gathered in a tenth of a second on an ordinary machine.
+constexpr uint64_t kLinkBytes = 8u << 20;
 
-// Samples a light seen from a probe: as shader::lampSample does, but without the cosine of a receiver.
-LampRay sampleLamp(const Lamp& lamp, const glm::vec3& point, uint32_t probe, uint32_t sample, float reach) {
-    const glm::vec2 u =
-        shader::sobolPoint(shader::replicateIndex(sample), shader::lampSeed(lamp, probe, sample));
-    LampRay ray;
-    if (lamp.type == shader::kLampRectangle || lamp.type == shader::kLampDisc) {
-        float area = glm::length(glm::cross(lamp.edgeU, lamp.edgeV));
-        ray.target = shader::rectangleCorner(lamp, u.x, u.y);
-        if (lamp.type == shader::kLampDisc) {
-            const glm::vec3 c = shader::cosineDirection(u);
-            ray.target = lamp.position + lamp.radius * (c.x * lamp.edgeU + c.y * lamp.edgeV);
-            area = std::numbers::pi_v<float> * lamp.radius * lamp.radius;
-        }
-        const glm::vec3 d = ray.target - point;
-        const float d2 = std::max(glm::dot(d, d), shader::kNearestLamp2);
-        ray.direction = d / std::sqrt(d2);
-        ray.lux = area * std::max(-glm::dot(lamp.axis, ray.direction), 0.0f) / d2;
-        ray.target += shader::kLampGap * (point - ray.target);
-        return ray;
-    }
-    Patch patch{};
-    patch.position = point;
-    patch.normal = patch.shading = lamp.type == shader::kLampSun ? -lamp.axis : glm::vec3(0, 1, 0);
-    const glm::vec3 away = lamp.position - point;
-    if (lamp.type != shader::kLampSun && glm::dot(away, away) > 0.0f)
-        patch.normal = patch.shading = glm::normalize(away);
-    const shader::LampSample s = shader::lampSample(lamp, patch, point, u, reach);
-    ray.target = s.target;
-    const glm::vec3 d = s.target - point;
-    const float length = glm::length(d);
-    if (!(length > 0.0f)) return ray;
-    ray.direction = d / length;
-    const float cosine = glm::dot(patch.shading, ray.direction);
-    if (cosine > 0.0f) ray.lux = std::numbers::pi_v<float> * s.factor / cosine;
-    return ray;
+uint64_t paddedFaces(uint64_t probes) {
+    return (probes * kProbeFaces + kChunk - 1) / kChunk * kChunk;
 }
 
-// The tracer with what it needs: patches of the scene, whole chunks of them, and the probes' faces behind.
-class ProbeTracer {
+} // namespace
+
+static_assert(kProbeStride * kProbeFaces % shader::kChunk == 0);
+
+/// Holds the tracer with what it needs: patches of the scene, whole chunks of them, and the probes' faces
+/// behind.
+class ProbeTracer::Impl {
 public:
-    ProbeTracer(const vk::Device& device, const PatchSet& patches, const ProbeDesc& desc, ProbeLinks& result)
-        : device_(device), result_(result), scene_(patches.scene), firstChunk_(patches.chunkCount()),
-          commands_(device) {
-        const size_t faces = result.points.size() * kProbeFaces;
-        const size_t padded = (faces + kChunk - 1) / kChunk * kChunk;
+    Impl(const vk::Device& device, const PatchSet& patches, LampSet lamps, std::vector<glm::vec3> points,
+         const ProbeDesc& desc)
+        : device_(device), samples_(desc.samples), points_(std::move(points)), lamps_(std::move(lamps)),
+          scene_(patches.scene), sceneChunks_(patches.chunkCount()), commands_(device) {
+        const size_t faces = points_.size() * kProbeFaces, padded = paddedFaces(points_.size());
         for (size_t i = 0; i < padded; ++i) {
             const size_t face = std::min(i, faces - 1);
-            scene_.patches.push_back(faceOf(result.points[face / kProbeFaces], static_cast<uint32_t>(face)));
+            scene_.patches.push_back(faceOf(points_[face / kProbeFaces], static_cast<uint32_t>(face)));
             scene_.patchChart.push_back(kNoChart);
         }
-        chunks_ = static_cast<uint32_t>(padded / kChunk);
         patches_ = vk::makeBuffer(device, scene_.patches, "probes' patches");
         tracer_ = makeTracer(desc.tracer, device, scene_, patches_);
+        for (const Lamp& lamp : lamps_.lamps)
+            targets_ += lamp.samples;
     }
 
-    void links() {
-        const uint64_t perChunk = uint64_t{result_.samples} * kChunk;
-        const uint32_t most = batch(perChunk * sizeof(uint32_t));
+    ProbeLinks trace(uint32_t first, uint32_t count) {
+        const auto begin = points_.begin() + first;
+        ProbeLinks result{.first = first, .points = {begin, begin + count}, .samples = samples_};
+        result.lamps = lamps_.lamps;
+        result.targets = targets_;
+        result.links.resize(size_t{count} * kProbeFaces * samples_);
+        result.seen.resize(size_t{count} * targets_);
+        traceLinks(result);
+        if (targets_ > 0) traceTargets(result);
+        result.rays = result.links.size() + result.seen.size();
+        return result;
+    }
+
+private:
+    /// Some chunks of the faces of the probes that are traced now.
+    struct Batch {
+        uint32_t first = 0, count = 0; // counted from the first face of these probes
+    };
+
+    static uint32_t chunksOf(const ProbeLinks& links) {
+        return static_cast<uint32_t>(paddedFaces(links.points.size()) / kChunk);
+    }
+
+    static uint32_t batchOf(uint64_t bytesPerChunk, uint32_t chunks) {
+        return static_cast<uint32_t>(std::clamp<uint64_t>(kBatchBytes / bytesPerChunk, 1, chunks));
+    }
+
+    uint32_t chunkInScene(const ProbeLinks& links, const Batch& batch) const {
+        return sceneChunks_ + links.first / kProbeStride * (kProbeStride * kProbeFaces / kChunk) +
+               batch.first;
+    }
+
+    void traceLinks(ProbeLinks& result) {
+        const uint64_t perChunk = uint64_t{samples_} * kChunk;
+        const uint32_t chunks = chunksOf(result), most = batchOf(perChunk * sizeof(uint32_t), chunks);
         const vk::Buffer links(device_, {.size = most * perChunk * sizeof(uint32_t),
                                          .memory = vk::Memory::Host,
                                          .name = "probes' links"});
-        const size_t faces = result_.points.size() * kProbeFaces;
-        result_.links.resize(faces * result_.samples);
-        for (uint32_t first = 0; first < chunks_; first += most) {
-            const uint32_t count = std::min(most, chunks_ - first);
+        const size_t faces = result.points.size() * kProbeFaces;
+        for (Batch batch{0, most}; batch.first < chunks; batch.first += most) {
+            batch.count = std::min(most, chunks - batch.first);
             VkCommandBuffer cmd = commands_.begin();
-            tracer_->closest(cmd, {.firstChunk = firstChunk_ + first,
-                                   .chunkCount = count,
+            tracer_->closest(cmd, {.firstChunk = chunkInScene(result, batch),
+                                   .chunkCount = batch.count,
                                    .firstSample = 0,
-                                   .sampleCount = result_.samples,
+                                   .sampleCount = samples_,
                                    .links = &links});
             vk::hostBarrier(cmd);
             commands_.run();
             const auto* from = static_cast<const uint32_t*>(links.mapped());
-            for (size_t i = size_t{first} * kChunk; i < std::min(faces, size_t{first + count} * kChunk);
-                 ++i) {
-                const size_t local = i - size_t{first} * kChunk;
-                for (uint32_t k = 0; k < result_.samples; ++k)
-                    result_.links[i * result_.samples + k] =
-                        from[(local / kChunk * result_.samples + k) * kChunk + local % kChunk];
+            const size_t begin = size_t{batch.first} * kChunk;
+            for (size_t i = begin; i < std::min(faces, begin + size_t{batch.count} * kChunk); ++i) {
+                const size_t local = i - begin;
+                for (uint32_t k = 0; k < samples_; ++k)
+                    result.links[i * samples_ + k] =
+                        from[(local / kChunk * samples_ + k) * kChunk + local % kChunk];
             }
         }
-        result_.rays += faces * result_.samples;
     }
 
-    /// Rays to lights start at the first face of each probe.
-    void targets(const LampSet& lamps) {
-        const uint32_t words = (result_.targets + kWordBits - 1) / kWordBits;
-        const uint64_t perChunk = uint64_t{result_.targets} * kChunk;
-        const uint32_t most = batch(perChunk * sizeof(glm::vec4));
+    // Rays to lights start at the first face of each probe.
+    void traceTargets(ProbeLinks& result) {
+        const uint32_t words = (targets_ + kWordBits - 1) / kWordBits;
+        const uint64_t perChunk = uint64_t{targets_} * kChunk;
+        const uint32_t chunks = chunksOf(result), most = batchOf(perChunk * sizeof(glm::vec4), chunks);
         std::vector<glm::vec4> wanted(most * perChunk);
         const vk::Buffer targets(device_, {.size = wanted.size() * sizeof(glm::vec4),
                                            .memory = vk::Memory::Host,
@@ -142,76 +140,79 @@ public:
                                         .name = "probes' bits"});
         const vk::Buffer rays =
             vk::makeBuffer(device_, std::vector<uint32_t>(shader::kRayCounters), "probes' rays");
-        result_.seen.resize(result_.points.size() * result_.targets);
-        for (uint32_t first = 0; first < chunks_; first += most) {
-            const uint32_t count = std::min(most, chunks_ - first);
-            std::fill(wanted.begin(), wanted.end(), glm::vec4(0.0f));
-            forProbes(first, count, [&](size_t probe, size_t local) {
-                uint32_t target = 0;
-                for (const Lamp& lamp : lamps.lamps)
-                    for (uint32_t k = 0; k < lamp.samples; ++k, ++target) {
-                        const LampRay ray = sampleLamp(lamp, result_.points[probe],
-                                                       static_cast<uint32_t>(probe), k, lamps.reach);
-                        wanted[(local / kChunk * result_.targets + target) * kChunk + local % kChunk] =
-                            glm::vec4(ray.target, ray.lux > 0.0f ? 1.0f : 0.0f);
-                    }
-            });
+        for (Batch batch{0, most}; batch.first < chunks; batch.first += most) {
+            batch.count = std::min(most, chunks - batch.first);
+            fillTargets(result, batch, wanted);
             std::memcpy(targets.mapped(), wanted.data(), wanted.size() * sizeof(glm::vec4));
             VkCommandBuffer cmd = commands_.begin();
-            tracer_->segments(cmd, {.firstChunk = firstChunk_ + first,
-                                    .chunkCount = count,
-                                    .targetCount = result_.targets,
+            tracer_->segments(cmd, {.firstChunk = chunkInScene(result, batch),
+                                    .chunkCount = batch.count,
+                                    .targetCount = targets_,
                                     .targets = &targets,
                                     .bits = &bits,
                                     .rays = &rays});
             vk::hostBarrier(cmd);
             commands_.run();
             const auto* from = static_cast<const uint32_t*>(bits.mapped());
-            forProbes(first, count, [&](size_t probe, size_t local) {
-                for (uint32_t t = 0; t < result_.targets; ++t) {
+            forProbes(result, batch, [&](size_t probe, size_t local) {
+                for (uint32_t t = 0; t < targets_; ++t) {
                     const uint32_t word =
                         from[(local / kChunk * words + t / kWordBits) * kChunk + local % kChunk];
-                    result_.seen[probe * result_.targets + t] = word >> t % kWordBits & 1u;
+                    result.seen[probe * targets_ + t] = word >> t % kWordBits & 1u;
                 }
             });
         }
-        result_.rays += result_.seen.size();
     }
 
-private:
-    uint32_t batch(uint64_t bytesPerChunk) const {
-        return static_cast<uint32_t>(std::clamp<uint64_t>(kBatchBytes / bytesPerChunk, 1, chunks_));
+    void fillTargets(const ProbeLinks& result, const Batch& batch, std::vector<glm::vec4>& wanted) const {
+        std::fill(wanted.begin(), wanted.end(), glm::vec4(0.0f));
+        forProbes(result, batch, [&](size_t probe, size_t local) {
+            const uint32_t number = result.first + static_cast<uint32_t>(probe);
+            uint32_t target = 0;
+            for (const Lamp& lamp : lamps_.lamps)
+                for (uint32_t k = 0; k < lamp.samples; ++k, ++target) {
+                    const ProbeLampRay ray =
+                        sampleProbeLamp(lamp, result.points[probe], number, k, lamps_.reach);
+                    wanted[(local / kChunk * targets_ + target) * kChunk + local % kChunk] =
+                        glm::vec4(ray.target, ray.lux > 0.0f ? 1.0f : 0.0f);
+                }
+        });
     }
 
     // Calls f(probe, its first face's place in the batch) for probes whose first face is in these chunks.
     template<typename F>
-    void forProbes(uint32_t first, uint32_t count, const F& f) const {
-        const size_t begin = size_t{first} * kChunk, end = begin + size_t{count} * kChunk;
+    static void forProbes(const ProbeLinks& links, const Batch& batch, const F& f) {
+        const size_t begin = size_t{batch.first} * kChunk, end = begin + size_t{batch.count} * kChunk;
         for (size_t probe = (begin + kProbeFaces - 1) / kProbeFaces;
-             probe < result_.points.size() && probe * kProbeFaces < end; ++probe)
+             probe < links.points.size() && probe * kProbeFaces < end; ++probe)
             f(probe, probe * kProbeFaces - begin);
     }
 
     const vk::Device& device_;
-    ProbeLinks& result_;
+    uint32_t samples_, targets_ = 0;
+    std::vector<glm::vec3> points_;
+    LampSet lamps_;
     TraceScene scene_;
-    uint32_t firstChunk_, chunks_ = 0;
+    uint32_t sceneChunks_;
     vk::Commands commands_;
     vk::Buffer patches_;
     std::unique_ptr<Tracer> tracer_;
 };
 
-glm::vec3 skyRadiance(const Sky& sky, const glm::vec3& direction) {
-    if (sky.pixels.empty()) return sky.radiance;
-    const glm::vec2 place = shader::skyPlace(direction, sky.rotation);
-    const uint32_t row =
-        std::min(static_cast<uint32_t>(place.y * static_cast<float>(sky.height)), sky.height - 1);
-    const uint32_t column =
-        std::min(static_cast<uint32_t>(place.x * static_cast<float>(sky.width)), sky.width - 1);
-    return sky.radiance * sky.pixels[size_t{row} * sky.width + column];
+ProbeTracer::ProbeTracer(const vk::Device& device, const PatchSet& patches, LampSet lamps,
+                         std::vector<glm::vec3> points, const ProbeDesc& desc) {
+    ASSERT(!points.empty());
+    const vk::MemoryOwner owner("probes");
+    impl_ = std::make_unique<Impl>(device, patches, std::move(lamps), std::move(points), desc);
 }
 
-} // namespace
+ProbeTracer::~ProbeTracer() = default;
+
+ProbeLinks ProbeTracer::trace(uint32_t first, uint32_t count) {
+    ASSERT(first % kProbeStride == 0);
+    const vk::MemoryOwner owner("probes");
+    return impl_->trace(first, count);
+}
 
 glm::vec3 probeDirection(uint32_t probe, uint32_t face, uint32_t sample) {
     const Patch patch = faceOf(glm::vec3(0.0f), probe * kProbeFaces + face);
@@ -223,55 +224,36 @@ double probeSolidAngle(const glm::vec3& d, uint32_t samples) {
     return std::numbers::pi / (samples * sum);
 }
 
+LampSet probeLamps(const Scene& scene, const WorldMesh& mesh) {
+    return buildLamps(scene, mesh, {.samples = kProbeLampSamples, .sky = false, .unit = true});
+}
+
+uint32_t probeBatch(uint32_t samples) {
+    const uint64_t perStride = uint64_t{kProbeStride} * kProbeFaces * samples * sizeof(uint32_t);
+    return static_cast<uint32_t>(std::max<uint64_t>(kLinkBytes / perStride, 1)) * kProbeStride;
+}
+
 ProbeLinks traceProbes(const vk::Device& device, const PatchSet& patches, const LampSet& lamps,
                        std::vector<glm::vec3> points, const ProbeDesc& desc) {
-    ProbeLinks result;
-    result.points = std::move(points);
-    result.samples = desc.samples;
-    for (const Lamp& lamp : lamps.lamps)
-        result.targets += lamp.samples;
-    if (result.points.empty()) return result;
-    ProbeTracer tracer(device, patches, desc, result);
-    tracer.links();
-    if (result.targets > 0) tracer.targets(lamps);
-    return result;
+    if (points.empty()) return {.samples = desc.samples};
+    const auto count = static_cast<uint32_t>(points.size());
+    return ProbeTracer(device, patches, lamps, std::move(points), desc).trace(0, count);
 }
 
-std::vector<Probe> gatherProbes(const ProbeLinks& links, const ProbeLight& light) {
-    std::vector<Probe> probes(links.points.size());
-    for (uint32_t p = 0; p < probes.size(); ++p) {
-        Probe& probe = probes[p];
-        probe.position = links.points[p];
-        const uint32_t* link = links.links.data() + size_t{p} * kProbeFaces * links.samples;
-        for (uint32_t face = 0; face < kProbeFaces; ++face)
-            for (uint32_t k = 0; k < links.samples; ++k, ++link) {
-                const glm::vec3 d = probeDirection(p, face, k);
-                const double solidAngle = probeSolidAngle(d, links.samples);
-                if (*link < shader::kLinkFirstSpecial)
-                    addLight(probe.radiance, d, solidAngle * glm::dvec3(light.radiance[*link]));
-                else if (*link == shader::kLinkBack)
-                    probe.backs += solidAngle / (4.0 * std::numbers::pi);
-                else if (shader::linkIsSky(*link) && light.sky)
-                    addLight(probe.radiance, d, solidAngle * glm::dvec3(skyRadiance(*light.sky, d)));
-            }
-        uint32_t target = 0;
-        for (const Lamp& lamp : light.lamps)
-            for (uint32_t k = 0; k < lamp.samples; ++k, ++target) {
-                if (!links.seen[size_t{p} * links.targets + target]) continue;
-                const LampRay ray = sampleLamp(lamp, probe.position, p, k, 1.0f);
-                addLight(probe.radiance, ray.direction,
-                         double{ray.lux} / lamp.samples * glm::dvec3(lamp.color));
-            }
-    }
-    return probes;
-}
-
-std::vector<glm::vec4> patchRadiance(const PatchSet& patches, const std::vector<glm::vec4>& lighting,
-                                     float reflectivity) {
-    std::vector<glm::vec4> radiance(patches.emission);
-    for (size_t i = 0; i < radiance.size(); ++i)
-        radiance[i] += reflectivity * patches.albedo[i] * lighting[i];
-    return radiance;
+uint64_t probeTracerBytes(const ProbeExtent& extent, uint64_t patches) {
+    if (extent.count == 0) return 0;
+    const uint64_t chunks =
+        paddedFaces(std::min<uint64_t>(extent.count, probeBatch(extent.samples))) / kChunk;
+    const auto batch = [&](uint64_t perChunk) {
+        return std::clamp<uint64_t>(kBatchBytes / perChunk, 1, chunks) * perChunk;
+    };
+    const uint64_t own = (patches + paddedFaces(extent.count)) * sizeof(Patch);
+    const uint64_t links = batch(uint64_t{extent.samples} * kChunk * sizeof(uint32_t));
+    if (extent.targets == 0) return own + links;
+    // Links are gone when rays go to lights.
+    const uint64_t targets = batch(uint64_t{extent.targets} * kChunk * sizeof(glm::vec4));
+    constexpr uint64_t kSmall = 4096; // bits are no more than a hundredth of their targets, and counters
+    return own + std::max(links, targets + targets / 64 + kSmall);
 }
 
 } // namespace relume

@@ -1,5 +1,5 @@
 // Light probes against closed forms, against the lightmap and against rays of Embree's own.
-#include "bake/probes/probe_links.h"
+#include "bake/probes/probe_light.h"
 #include "bake/trace/embree_api.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -22,23 +23,28 @@ public:
     ProbedBake(const Scene& scene, const BakeDesc& desc) : scene_(scene), baker_(makeBaker(scene, desc)) {
         while (!baker_->solver().done())
             baker_->solver().step();
-        radiance_ = patchRadiance(baker_->patches(), baker_->solver().light(), 1.0f);
+        light_ = probeLight(scene, baker_->patches(), lightSources(scene), baker_->solver().light(), 1.0f);
     }
-    std::vector<Probe> probes(std::vector<glm::vec3> points, TracerKind tracer, uint32_t samples = 4096) {
-        const LampSet lamps = buildLamps(scene_, baker_->patches().scene.mesh, {.samples = 64, .sky = false});
-        const ProbeLinks links = traceProbes(testDevice(), baker_->patches(), lamps, std::move(points),
-                                             {.samples = samples, .tracer = tracer});
-        return gatherProbes(links, {.radiance = radiance_,
-                                    .sky = scene_.sky.shines() ? &scene_.sky : nullptr,
-                                    .lamps = lamps.lamps});
+    std::vector<Probe> probes(const std::vector<glm::vec3>& points, TracerKind tracer,
+                              uint32_t samples = 4096) {
+        const ProbeLinks links =
+            traceProbes(testDevice(), baker_->patches(), probeLamps(scene_, baker_->patches().scene.mesh),
+                        points, {.samples = samples, .tracer = tracer});
+        WorkerPool& pool = testDevice().workers();
+        const std::vector<Harmonics> radiance = gatherProbes(pool, links, {&light_, 1}).at(0);
+        const std::vector<double> backs = probeBacks(pool, links);
+        std::vector<Probe> probes;
+        for (size_t i = 0; i < points.size(); ++i)
+            probes.push_back({points[i], radiance[i], backs[i]});
+        return probes;
     }
     Baker& baker() { return *baker_; }
-    const std::vector<glm::vec4>& radiance() const { return radiance_; }
+    const std::vector<glm::vec4>& radiance() const { return light_.radiance; }
 
 private:
     const Scene& scene_;
     std::unique_ptr<Baker> baker_;
-    std::vector<glm::vec4> radiance_;
+    ProbeLight light_;
 };
 
 // The harmonics of what so many even directions of Embree's single rays meet.
@@ -202,6 +208,33 @@ TEST(Probes, SeeBacksOfWalls) {
         const std::vector<Probe> probes = bake.probes({{0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, -0.001f}}, tracer);
         EXPECT_EQ(probes.at(0).backs, 0.0);
         EXPECT_NEAR(probes.at(1).backs, 0.5, 0.01);
+    }
+}
+
+// Where a batch of probes begins decides nothing, nor does what else is traced with them.
+TEST(Probes, AreTheSameInBatches) {
+    SceneMaker maker(32);
+    maker.box({0, 0, 0}, {kX, kY, kZ}, maker.material(0.5f, 1.0f), 4);
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {0.5f, 0.9f, 0.5f}, 8.0f, "lamp"));
+    scene.lights.back().radius = 0.2f;
+    const auto baker = makeBaker(scene, {.size = maker.size()});
+    std::vector<glm::vec3> points;
+    for (uint32_t i = 0; i < 2 * kProbeStride + 5; ++i)
+        points.emplace_back(0.01f * static_cast<float>(i + 1), 0.3f, 0.4f);
+    const LampSet lamps = probeLamps(scene, baker->patches().scene.mesh);
+    for (const TracerKind kind : tracersOfTestDevice()) {
+        const ProbeDesc desc{.samples = 64, .tracer = kind};
+        ProbeTracer tracer(testDevice(), baker->patches(), lamps, points, desc);
+        const ProbeLinks all = tracer.trace(0, static_cast<uint32_t>(points.size()));
+        const ProbeLinks some = tracer.trace(2 * kProbeStride, 5);
+        const size_t before = 2 * kProbeStride;
+        EXPECT_TRUE(std::equal(some.links.begin(), some.links.end(), all.linksOf(before)))
+            << tracerName(kind);
+        EXPECT_TRUE(std::equal(some.seen.begin(), some.seen.end(),
+                               all.seen.begin() + static_cast<std::ptrdiff_t>(before * all.targets)));
+        EXPECT_EQ(all.targets, kProbeLampSamples);
+        EXPECT_NE(std::count(all.seen.begin(), all.seen.end(), 1), 0);
     }
 }
 

@@ -75,7 +75,7 @@ const OptionNames kTexts = {
     "--device",    "--resume",    "--bake",   "--checkpoint", "--lightmap",  "--write-scene",
     "--set",       "--move",      "--rotate", "--aim",        "--add",       "--duplicate",
     "--delete",    "--hide",      "--show",   "--mute",       "--solo",      "--pictures",
-    "--plot-rays", "--reference", "--layers", "--probes-out"};
+    "--plot-rays", "--reference", "--layers", "--probes-out", "--probes-in"};
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {

@@ -1,7 +1,9 @@
 #include "assets/base/error.h"
+#include "assets/base/watch.h"
 #include "bake/probes/probe_grid.h"
-#include "bake/probes/probe_links.h"
+#include "bake/probes/probe_light.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -75,18 +77,109 @@ TEST(ProbeGrids, RefuseTooManyAndNameASpacingThatFits) {
     EXPECT_THROW(planProbeGrid({1, 1, 1}, {1, 1, 1}, 1.0f), UsageError);
 }
 
+/// A probe that sees nothing but these links.
+ProbeLinks uniformLinks(uint32_t link) {
+    ProbeLinks links{.points = {glm::vec3(0.0f)}, .samples = 1024};
+    links.links.assign(kProbeFaces * links.samples, link);
+    return links;
+}
+
 // One patch is all that is seen, so all coefficients but the first vanish; a link to a back brings no light.
 TEST(ProbeLight, LinksBringWhatPatchesSend) {
-    ProbeLinks links{.points = {glm::vec3(0.0f)}, .samples = 1024};
-    links.links.assign(kProbeFaces * links.samples, 0);
-    const std::vector<glm::vec4> radiance = {glm::vec4(2, 3, 4, 0)};
-    const Probe lit = gatherProbes(links, {.radiance = radiance}).at(0);
-    EXPECT_NEAR(lit.radiance[0].y, 3.0 * std::sqrt(4.0 * kPi), 0.003 * lit.radiance[0].y);
-    EXPECT_FALSE(lit.inside());
-    links.links.assign(links.links.size(), shader::kLinkBack);
-    const Probe dark = gatherProbes(links, {.radiance = radiance}).at(0);
-    EXPECT_TRUE(dark.inside());
-    EXPECT_EQ(dark.radiance[0].y, 0.0);
+    WorkerPool pool(2);
+    const std::array<ProbeLight, 2> lights = {ProbeLight{.radiance = {glm::vec4(2, 3, 4, 0)}},
+                                              ProbeLight{.radiance = {glm::vec4(0, 6, 0, 0)}}};
+    const ProbeLinks patch = uniformLinks(0);
+    const auto lit = gatherProbes(pool, patch, lights);
+    ASSERT_EQ(lit.size(), 2u);
+    const double first = 3.0 * std::sqrt(4.0 * kPi);
+    EXPECT_NEAR(lit[0].at(0)[0].y, first, 0.003 * first);
+    EXPECT_NEAR(lit[1].at(0)[0].y, 2.0 * lit[0][0][0].y, 1e-9);
+    EXPECT_EQ(lit[1].at(0)[0].x, 0.0);
+    EXPECT_EQ(probeBacks(pool, patch).at(0), 0.0);
+    const ProbeLinks back = uniformLinks(shader::kLinkBack);
+    EXPECT_NEAR(probeBacks(pool, back).at(0), 1.0, 0.003);
+    EXPECT_EQ(gatherProbes(pool, back, lights).at(0).at(0)[0].y, 0.0);
+}
+
+TEST(ProbeLight, TheSkyShinesWhereNothingIsMetForLightsThatHaveIt) {
+    WorkerPool pool(1);
+    Sky sky;
+    sky.radiance = glm::vec3(7.0f); // a light's own weight counts
+    const std::array<ProbeLight, 2> lights = {ProbeLight{.sky = &sky, .skyRadiance = {1, 2, 3}},
+                                              ProbeLight{}};
+    const auto lit = gatherProbes(pool, uniformLinks(shader::kLinkSky), lights);
+    EXPECT_NEAR(lit[0].at(0)[0].z, 3.0 * std::sqrt(4.0 * kPi), 0.03);
+    EXPECT_EQ(lit[1].at(0)[0].z, 0.0);
+}
+
+TEST(ProbeLight, IsTheSameOnAnyNumberOfThreads) {
+    ProbeLinks links{.points = std::vector<glm::vec3>(40, glm::vec3(0.0f)), .samples = 16};
+    links.first = 64;
+    for (size_t i = 0; i < links.points.size() * kProbeFaces * links.samples; ++i)
+        links.links.push_back(i % 7 == 0 ? shader::kLinkBack : static_cast<uint32_t>(i % 3));
+    const std::array<ProbeLight, 1> light = {
+        ProbeLight{.radiance = {glm::vec4(2, 3, 4, 0), glm::vec4(0.1f), glm::vec4(7, 0, 1, 0)}}};
+    WorkerPool one(1), three(3);
+    EXPECT_EQ(gatherProbes(one, links, light), gatherProbes(three, links, light));
+    EXPECT_EQ(probeBacks(one, links), probeBacks(three, links));
+}
+
+// A mesh light is seen by what its patches send for its weight; others of the same material stay dark.
+TEST(ProbeLight, MeshLightsAreSeenWithTheirOwnWeight) {
+    Scene scene;
+    scene.lights.resize(2);
+    PatchSet patches;
+    patches.albedo.assign(3, glm::vec4(0.5f));
+    patches.emissionPattern = {glm::vec4(1.0f), glm::vec4(0.5f), glm::vec4(1.0f)};
+    patches.instance = {0, 0, 1};
+    patches.material = {4, 4, 4};
+    const std::vector<glm::vec4> lighting(3, glm::vec4(2.0f));
+    const std::array<LightSource, 2> sources = {
+        LightSource{{LightKey::Kind::Emitter, 0, 4}, "plate", glm::vec3(10.0f)},
+        LightSource{{LightKey::Kind::Lamp, 1, 0}, "bulb", glm::vec3(3.0f)}};
+    const ProbeLight light = probeLight(scene, patches, sources, lighting, 0.8f);
+    ASSERT_EQ(light.radiance.size(), 3u);
+    EXPECT_FLOAT_EQ(light.radiance[0].x, 10.8f);
+    EXPECT_FLOAT_EQ(light.radiance[1].x, 5.8f);
+    EXPECT_FLOAT_EQ(light.radiance[2].x, 0.8f);
+    EXPECT_EQ(light.lamps, (std::vector<glm::vec3>{glm::vec3(0.0f), glm::vec3(3.0f)}));
+    EXPECT_EQ(light.sky, nullptr);
+}
+
+/// Ends a job when it is told of it for the second time.
+class Stop final : public Watch {
+public:
+    void hear(const char*, double) override {
+        if (++heard == 2) throw Error("stopped");
+    }
+    int heard = 0;
+};
+
+TEST(ProbeLight, AWatchEndsTheGather) {
+    WorkerPool pool(1);
+    ProbeLinks links{.points = std::vector<glm::vec3>(40, glm::vec3(0.0f)), .samples = 8};
+    links.links.assign(40 * kProbeFaces * links.samples, 0);
+    const std::array<ProbeLight, 1> light = {ProbeLight{.radiance = {glm::vec4(1.0f)}}};
+    Stop stop;
+    const WatchScope scope(stop);
+    EXPECT_THROW((void)gatherProbes(pool, links, light), Error);
+}
+
+TEST(ProbeMemory, IsBoundedForAnyNumberOfProbes) {
+    constexpr uint64_t kPatches = 1000, kMega = 1u << 20;
+    EXPECT_EQ(probeTracerBytes({.count = 0}, kPatches), 0u);
+    const uint64_t few = probeTracerBytes({.count = 1}, kPatches);
+    const uint64_t many =
+        probeTracerBytes({.count = kMostProbes, .samples = 16384, .targets = 640}, kPatches);
+    EXPECT_LT(few, many);
+    EXPECT_LT(many, 64 * kMega);
+    for (const uint32_t samples : {8u, 4096u, 16384u}) {
+        EXPECT_EQ(probeBatch(samples) % kProbeStride, 0u);
+        EXPECT_LE(uint64_t{probeBatch(samples)} * kProbeFaces * samples * sizeof(uint32_t), 13 * kMega);
+    }
+    EXPECT_EQ(probeLightsAtOnce(uint64_t{1} << 40), 1u);
+    EXPECT_GT(probeLightsAtOnce(0), 1u);
 }
 
 } // namespace
