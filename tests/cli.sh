@@ -192,6 +192,7 @@ expectUsageError mix layers.exr -o out.png --layers-out
 expectUsageError mix layers.exr --probes-out out.json # no probes to weigh
 expectUsageError mix layers.exr -o out.exr --probes-in probes.json # they go nowhere
 expectUsageError mix layers.exr --probes-in probes.json --probes-out out.txt
+expectUsageError bake room.glb -o room.exr --probe-at 1,2,3 --probes-out probes.ktx2 # no grid
 expectWorldError missing.exr mix missing.exr -o out.exr
 expectWorldError nosuchfolder mix missing.exr -o nosuchfolder/out.exr
 expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp

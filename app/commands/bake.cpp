@@ -5,6 +5,7 @@
 #include "app/offline/layer_file.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/probe_bake.h"
+#include "app/offline/probe_files.h"
 #include "app/offline/progress.h"
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"

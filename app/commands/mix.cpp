@@ -1,7 +1,7 @@
 #include "app/commands/command.h"
 #include "app/offline/command_files.h"
 #include "app/offline/light_mix.h"
-#include "app/offline/probe_set.h"
+#include "app/offline/probe_files.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
@@ -28,7 +28,7 @@ MixDesc resolve(const MixOptions& options) {
         throw UsageError("--probes-out: there are no probes to weigh: add --probes-in FILE.json");
     if (!options.probesIn.empty() && options.probesOut.empty())
         throw UsageError("--probes-in: nothing says where the weighed probes go: add --probes-out FILE");
-    if (!options.probesOut.empty()) checkProbeName("--probes-out", options.probesOut);
+    if (!options.probesOut.empty()) probeFormOf("--probes-out", options.probesOut);
     if (options.layersOut && !options.output.ends_with(".exr"))
         throw UsageError("--layers-out: layers are kept in OpenEXR only: give -o a name that ends in .exr");
     MixDesc desc;
@@ -145,7 +145,8 @@ void addMixCommand(CLI::App& app) {
         ->add_option("--probes-in", options->probesIn,
                      "Light probes of the same bake, by 'relume bake --layers --probes', to be weighed alike")
         ->type_name("PROBES.json");
-    command->add_option("--probes-out", options->probesOut, "The weighed probes, .json")->type_name("FILE");
+    command->add_option("--probes-out", options->probesOut, "The weighed probes, .json, .three.json or .ktx2")
+        ->type_name("FILE");
     command->add_flag("--list", options->list, "Print the lights, as they are mixed");
     command->add_flag("--layers-out", options->layersOut, "Write the layers too, with their new weights");
     command->add_flag("--half", options->half, "16-bit floats in an .exr");

@@ -1,6 +1,7 @@
 #include "app/offline/probe_options.h"
 
-#include "app/offline/probe_set.h"
+#include "app/offline/probe_files.h"
+#include "app/offline/probe_forms.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -48,7 +49,9 @@ void addProbeOptions(CLI::App& command, ProbeOptions& o) {
         .add_option("--probe-samples", o.samples,
                     "Rays on each of the six sides of a probe, a multiple of 8 (default: 4096)")
         ->check(wholeFrom(8, kMostProbeSamples));
-    command.add_option("--probes-out", o.output, "Write the light probes to this .json");
+    command.add_option(
+        "--probes-out", o.output,
+        "Write the light probes to this .json, or for an engine: .three.json, or .ktx2 for Bevy");
 }
 
 void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool radianceWanted) {
@@ -65,7 +68,9 @@ void checkProbeOptions(const ProbeOptions& o, const BakeSettings& bake, bool rad
         typedPlace(place);
     if (o.output.empty())
         throw UsageError("--probes: nothing says where they go: add --probes-out FILE.json");
-    checkProbeName("--probes-out", o.output);
+    if (probeFormOf("--probes-out", o.output) == ProbeForm::Bevy && !o.at.empty())
+        throw UsageError("--probes-out: '" + o.output +
+                         "' is a volume, which needs a grid: take --probes SPACING, or .json");
     if (o.samples % 8 != 0)
         throw UsageError(
             fmt::format("--probe-samples {}: take a multiple of 8 up to {}", o.samples, kMostProbeSamples));
@@ -97,6 +102,9 @@ ProbePlan planProbes(const ProbeOptions& o, const WorldMesh& mesh) {
     plan.isGrid = true;
     plan.grid = planProbeGrid(low, high, static_cast<float>(o.spacing));
     plan.points = probePoints(plan.grid);
+    if (probeFormOf("--probes-out", o.output) == ProbeForm::Bevy)
+        if (const std::string problem = volumeProblem(plan.grid); !problem.empty())
+            throw UsageError(fmt::format("--probes {}: {}", o.spacing, problem));
     return plan;
 }
 

@@ -2,9 +2,6 @@
 
 #include "app/offline/light_mix.h"
 #include "assets/base/error.h"
-#include "assets/base/file_read.h"
-#include "assets/base/file_write.h"
-#include "assets/base/log.h"
 #include "assets/base/warnings.h"
 
 #include <algorithm>
@@ -17,9 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Larger files are none of ours: so much is the largest grid with the light of some hundred lights.
-constexpr uint64_t kMostFileBytes = uint64_t{4} << 30;
-
 // Returns the number that has the same text as the float, in place of a dozen more digits.
 double shortNumber(float v) {
     return std::stod(fmt::format("{}", v));
@@ -27,12 +21,6 @@ double shortNumber(float v) {
 
 Json triple(const glm::vec3& v) {
     return {shortNumber(v.x), shortNumber(v.y), shortNumber(v.z)};
-}
-
-bool isFinite(const Harmonics& harmonics) {
-    return std::all_of(harmonics.begin(), harmonics.end(), [](const glm::dvec3& c) {
-        return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
-    });
 }
 
 // The numbers are most of the text, so they are written with no more digits than light has that is known to a
@@ -202,11 +190,13 @@ void weighLike(ProbeSet& set, const LayeredImage& image) {
     sumLayers(set);
 }
 
-std::string probesJson(const ProbeSet& set, const std::string& path) {
-    const auto requireFiniteLight = [&](const Harmonics& harmonics) {
-        if (!isFinite(harmonics))
+void requireFiniteLight(const Harmonics& radiance, const std::string& path) {
+    for (const glm::dvec3& c : radiance)
+        if (!std::isfinite(c.x) || !std::isfinite(c.y) || !std::isfinite(c.z))
             throw Error(path + ": a probe's light is not finite: make the lights of the scene darker");
-    };
+}
+
+std::string probesJson(const ProbeSet& set, const std::string& path) {
     std::string text =
         opened({{"version", RELUME_VERSION},
                 {"quantity", "radiance"},
@@ -224,7 +214,7 @@ std::string probesJson(const ProbeSet& set, const std::string& path) {
     text += ",\n\"probes\":[";
     for (size_t p = 0; p < set.probes.size(); ++p) {
         const Probe& probe = set.probes[p];
-        requireFiniteLight(probe.radiance);
+        requireFiniteLight(probe.radiance, path);
         const Json head = {
             {"position", triple(probe.position)}, {"inside", probe.inside()}, {"backs", probe.backs}};
         text += p > 0 ? ",\n " : "\n ";
@@ -239,7 +229,7 @@ std::string probesJson(const ProbeSet& set, const std::string& path) {
         text += opened(layerHead(layer.light));
         text += ",\"coefficients\":[";
         for (size_t p = 0; p < layer.radiance.size(); ++p) {
-            requireFiniteLight(layer.radiance[p]);
+            requireFiniteLight(layer.radiance[p], path);
             text += p > 0 ? ",\n  " : "\n  ";
             text += coefficientsText(layer.radiance[p]);
         }
@@ -269,25 +259,6 @@ ProbeSet parseProbes(const std::string& text, const std::string& path) {
         for (const Json& layer : reader.list(json, "layers", "the file"))
             set.layers.push_back(probeLayerOf(reader, layer, probes.size()));
     return set;
-}
-
-ProbeSet readProbes(const std::string& path) {
-    RegularFile file(path, "name a file that 'relume bake --probes-out' wrote");
-    if (file.size() > kMostFileBytes)
-        throw Error(path +
-                    ": is too large for light probes: take a file that 'relume bake --probes-out' wrote");
-    std::string text(file.size(), '\0');
-    file.read(text.data(), text.size());
-    return parseProbes(text, path);
-}
-
-void checkProbeName(const std::string& option, const std::string& path) {
-    if (!path.ends_with(".json")) throw UsageError(option + ": '" + path + "' does not end in .json");
-}
-
-void writeProbes(const std::string& path, const ProbeSet& set) {
-    writeFileAtomically(path, probesJson(set, path));
-    spdlog::info("wrote {}", path);
 }
 
 } // namespace relume

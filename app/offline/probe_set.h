@@ -28,16 +28,12 @@ void sumLayers(ProbeSet& set);
 /// the lights differ, as those of two bakes may, or there are no layers.
 void weighLike(ProbeSet& set, const LayeredImage& image);
 
-/// Returns them as JSON text. Throws Error for light that is not finite, named by the file it was for.
+/// Throws Error, which begins with the path, where a probe's light is not finite.
+void requireFiniteLight(const Harmonics& radiance, const std::string& path);
+
+/// Returns them as JSON text. Throws Error for light that is not finite; `path` names the file.
 std::string probesJson(const ProbeSet& set, const std::string& path);
 /// Reads such text. Throws Error, which begins with the path, where anything is missing or odd.
 ProbeSet parseProbes(const std::string& text, const std::string& path);
-ProbeSet readProbes(const std::string& path);
-
-/// Throws UsageError where no form of probes goes with the file's name; `option` named it.
-void checkProbeName(const std::string& option, const std::string& path);
-/// Writes them in the form that the file's name asks for, under a temporary name that is then changed. Throws
-/// Error.
-void writeProbes(const std::string& path, const ProbeSet& set);
 
 } // namespace relume

@@ -168,12 +168,13 @@ std::string unpacked(const std::string& bytes, size_t at, size_t length, size_t 
 } // namespace
 
 std::string encodeKtx2(const FloatImage& image, const Ktx2Desc& desc, const std::string& name) {
-    ASSERT(image.width > 0 && image.height > 0);
+    ASSERT(image.width > 0 && image.height > 0 && desc.depth > 0 && image.height % desc.depth == 0);
     const std::string texels = texelsOf(image, desc.format, name);
     const std::string level = desc.zstd ? packed(texels) : texels;
     const std::string descriptor = descriptorOf(desc.format);
     std::string pairs; // in the order of their keys
-    putPair(pairs, std::string("KTXorientation\0rd", 17));
+    putPair(pairs,
+            desc.depth > 1 ? std::string("KTXorientation\0ruo", 18) : std::string("KTXorientation\0rd", 17));
     putPair(pairs, std::string("KTXwriter\0Relume", 16));
 
     const size_t descriptorAt = kHeaderBytes + kLevelBytes, pairsAt = descriptorAt + descriptor.size();
@@ -185,7 +186,8 @@ std::string encodeKtx2(const FloatImage& image, const Ktx2Desc& desc, const std:
     words[kWordFormat] = static_cast<uint32_t>(desc.format);
     words[kWordTypeSize] = desc.format == Ktx2Format::Half ? 2 : 4;
     words[kWordWidth] = image.width;
-    words[kWordHeight] = image.height;
+    words[kWordHeight] = image.height / desc.depth;
+    words[kWordDepth] = desc.depth > 1 ? desc.depth : 0;
     words[kWordFaces] = words[kWordLevels] = 1;
     words[kWordScheme] = desc.zstd ? kZstandard : kNoSupercompression;
     for (const uint32_t word : words)

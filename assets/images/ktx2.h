@@ -15,12 +15,14 @@ enum class Ktx2Format : uint32_t {
 
 struct Ktx2Desc {
     Ktx2Format format = Ktx2Format::Half;
-    bool zstd = true; // supercompressed by Zstandard
+    bool zstd = true;   // supercompressed by Zstandard
+    uint32_t depth = 1; // slices of a 3D texture, one beneath another in the image; 1: a 2D picture
 };
 
 /// Returns R, G and B of an image as a KTX 2.0 file [Khronos, KTX File Format Specification 2.0]: one level,
-/// linear Rec. 709, row 0 on top. Values beyond the format's range are cut with a warning, which names the
-/// image `name`. Equal images give equal bytes. Throws Error without these channels.
+/// linear Rec. 709, row 0 on top, in a 3D texture at the bottom. Values beyond the format's range are cut
+/// with a warning, which names the image `name`. Equal images give equal bytes. Throws Error without these
+/// channels.
 std::string encodeKtx2(const FloatImage& image, const Ktx2Desc& desc, const std::string& name);
 
 /// Returns R, G and B of the first level of such a file, in one of the two formats above. Throws

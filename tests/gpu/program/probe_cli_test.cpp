@@ -1,5 +1,5 @@
 // Light probes by the program itself: baked with layers, weighed anew, and ended by Ctrl-C.
-#include "app/offline/probe_set.h"
+#include "app/offline/probe_files.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"

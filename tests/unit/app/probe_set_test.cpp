@@ -1,6 +1,6 @@
 // Light probes: what is asked for, and the file that they are in.
 #include "app/offline/probe_options.h"
-#include "app/offline/probe_set.h"
+#include "app/offline/probe_files.h"
 #include "assets/base/error.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
@@ -197,6 +197,8 @@ TEST(ProbePlans, WhatContradictsItselfIsRefused) {
     expectUsage([&] { check(asked(1, {}, "p.txt")); }, "'p.txt'");
     for (const char* place : {"1,2", "1,2,3,4", "a,b,c", "", "nan,0,0", "1e30,0,0"})
         expectUsage([&] { check(asked(0, {place})); }, std::string("'") + place + "' is no place");
+    expectUsage([&] { check(asked(0, {"1,2,3"}, "p.ktx2")); }, "needs a grid");
+    EXPECT_NO_THROW(check(asked(0, {"1,2,3"}, "p.three.json")));
     ProbeOptions odd = asked(1);
     odd.samples = 12;
     expectUsage([&] { check(odd); }, "a multiple of 8");
@@ -230,6 +232,9 @@ TEST(ProbePlans, LayGridsInTheScenesBounds) {
         },
         "has no size");
     expectUsage([&] { (void)planProbes(asked(1), meshOf({})); }, "has no size");
+    const WorldMesh hall = meshOf({{0, 0, 0}, {3000, 0, 0}, {3000, 1, 1}});
+    EXPECT_EQ(planProbes(asked(1), hall).points.size(), 3000u);
+    expectUsage([&] { (void)planProbes(asked(1, {}, "p.ktx2"), hall); }, "has an edge above 2048");
     const ProbePlan single = planProbes(asked(0, {"1,2,3", "4,5,6"}), mesh);
     EXPECT_FALSE(single.isGrid);
     EXPECT_EQ(single.points.at(1), glm::vec3(4, 5, 6));

@@ -50,6 +50,22 @@ TEST(Ktx2, HalfFloatsComeBackAsHalvesWithAndWithoutZstandard) {
     }
 }
 
+// The header of a 3D texture says so, and its texels are those of the picture that has its slices below each
+// other.
+TEST(Ktx2, SlicesOfA3dTextureLieOneBeneathAnother) {
+    const FloatImage image = coloredNoise(5, 12);
+    const std::string flat = encodeKtx2(image, {.zstd = false}, "a");
+    const std::string solid = encodeKtx2(image, {.zstd = false, .depth = 3}, "a");
+    EXPECT_EQ(word(flat, 24), 12u);
+    EXPECT_EQ(word(flat, 28), 0u);
+    EXPECT_EQ(word(solid, 20), 5u);
+    EXPECT_EQ(word(solid, 24), 4u);
+    EXPECT_EQ(word(solid, 28), 3u);
+    constexpr size_t kTexels = 5 * 12 * 8;
+    EXPECT_EQ(solid.substr(solid.size() - kTexels), flat.substr(flat.size() - kTexels));
+    EXPECT_THROW((void)decodeKtx2(solid, "a", kEnough), std::runtime_error) << "no picture is made of it";
+}
+
 TEST(Ktx2, SharedExponentsAreOffByHalfAStepOfTheBrightestChannel) {
     const FloatImage image = coloredNoise(31, 17);
     const FloatImage back =
