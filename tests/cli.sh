@@ -90,6 +90,10 @@ done
 expectUsageError bake room.glb # no -o
 expectUsageError bake room.glb -o room.exr --size many
 expectUsageError bake room.glb -o room.exr --half=nan
+expectRefusal "error: --compression: 'dwaa' is not allowed: choose none, rle, zips, zip or piz" \
+    bake room.glb -o room.exr --compression dwaa
+expectRefusal "error: --compression zip: is of OpenEXR only: leave it out, or give the lightmap a name that ends in .exr" \
+    bake room.glb -o room.png --compression zip
 expectRefusal "error: --density: '-1' is not allowed: give a number above 0, at most 1000000" \
     bake room.glb -o room.exr --density -1
 expectRefusal "error: --window: '-1' is not allowed: choose 1, 2, 4, 8, 16 or 32" bake room.glb -o room.exr --window -1
@@ -193,6 +197,7 @@ expectUsageError mix layers.exr --probes-out out.json # no probes to weigh
 expectUsageError mix layers.exr -o out.exr --probes-in probes.json # they go nowhere
 expectUsageError mix layers.exr --probes-in probes.json --probes-out out.txt
 expectUsageError bake room.glb -o room.exr --probe-at 1,2,3 --probes-out probes.ktx2 # no grid
+expectUsageError mix layers.exr -o out.png --compression none
 expectWorldError missing.exr mix missing.exr -o out.exr
 expectWorldError nosuchfolder mix missing.exr -o nosuchfolder/out.exr
 expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp

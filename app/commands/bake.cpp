@@ -2,6 +2,7 @@
 #include "app/offline/bake_checkpoints.h"
 #include "app/offline/bake_statistics.h"
 #include "app/offline/command_files.h"
+#include "app/offline/compression_option.h"
 #include "app/offline/layer_file.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/probe_bake.h"
@@ -93,13 +94,15 @@ void bake(BakeOptions o) {
     const SolverProgress& progress = baker.solver().progress();
     addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
+    const ExrCompression compression = compressionOf(o.files.compression);
     if (o.layers.on)
         writeLayers(o.files.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
-                    type);
+                    type, compression);
     else
-        writeImage(o.files.output, image, type);
+        writeImage(o.files.output, image, type, compression);
     if (!o.files.picture.empty()) writeImage(o.files.picture, image);
-    if (!o.files.errorMap.empty()) writeImage(o.files.errorMap, baker.errorMap());
+    if (!o.files.errorMap.empty())
+        writeImage(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
     if (o.probes.wanted()) writeProbes(o.probes.output, probes);
     if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
 

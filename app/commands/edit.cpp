@@ -3,6 +3,7 @@
 #include "app/edit/edit_options.h"
 #include "app/offline/bake_edits.h"
 #include "app/offline/command_files.h"
+#include "app/offline/compression_option.h"
 #include "app/text/option_checks.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
@@ -57,6 +58,7 @@ void addOptionsOfBake(CLI::App& command, BakeOptions& bake) {
         ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     addMachineOptions(command, bake);
     addLayerMemory(command, bake);
+    addCompressionOption(command, bake.files.compression);
     for (CLI::Option* option : command.get_options())
         if (std::find(before.begin(), before.end(), option) == before.end()) option->needs(output);
 }

@@ -1,5 +1,6 @@
 #include "app/commands/command.h"
 #include "app/offline/command_files.h"
+#include "app/offline/compression_option.h"
 #include "app/offline/light_mix.h"
 #include "app/offline/probe_files.h"
 #include "assets/base/error.h"
@@ -16,7 +17,7 @@ namespace relume {
 namespace {
 
 struct MixOptions {
-    std::string layers, output, probesIn, probesOut;
+    std::string layers, output, compression, probesIn, probesOut;
     std::vector<std::string> sets, muted, solo;
     bool list = false, layersOut = false, half = false;
 };
@@ -31,6 +32,7 @@ MixDesc resolve(const MixOptions& options) {
     if (!options.probesOut.empty()) probeFormOf("--probes-out", options.probesOut);
     if (options.layersOut && !options.output.ends_with(".exr"))
         throw UsageError("--layers-out: layers are kept in OpenEXR only: give -o a name that ends in .exr");
+    checkCompression(options.compression, {options.output});
     MixDesc desc;
     for (const std::string& text : options.sets) {
         try {
@@ -80,10 +82,11 @@ ProbeSet weighedProbes(const MixOptions& options, const LayeredImage& image) {
 void writeSum(const MixOptions& options, const LayeredImage& image) {
     requireFinite(image.composite, options.output);
     const ExrType type = options.half ? ExrType::Half : ExrType::Float;
+    const ExrCompression compression = compressionOf(options.compression);
     if (options.layersOut)
-        writeLayeredExr(options.output, image, type);
+        writeLayeredExr(options.output, image, type, compression);
     else
-        writeImage(options.output, image.composite, type);
+        writeImage(options.output, image.composite, type, compression);
     spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
 }
 
@@ -150,6 +153,7 @@ void addMixCommand(CLI::App& app) {
     command->add_flag("--list", options->list, "Print the lights, as they are mixed");
     command->add_flag("--layers-out", options->layersOut, "Write the layers too, with their new weights");
     command->add_flag("--half", options->half, "16-bit floats in an .exr");
+    addCompressionOption(*command, options->compression);
     command->callback([options] { runMix(*options); });
 }
 

@@ -1,6 +1,7 @@
 #include "app/offline/bake_edits.h"
 
 #include "app/offline/bake_checkpoints.h"
+#include "app/offline/compression_option.h"
 #include "app/offline/layer_file.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/progress.h"
@@ -39,11 +40,13 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     FloatImage image = baker.lightmap(request.lightmap);
     addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap,
                           baker.solver().progress());
+    const ExrCompression compression = compressionOf(options.files.compression);
     if (options.layers.on)
         writeLayers(options.files.output,
-                    layeredImage(baker, prepared.scene, request.lightmap, image.attributes), ExrType::Float);
+                    layeredImage(baker, prepared.scene, request.lightmap, image.attributes), ExrType::Float,
+                    compression);
     else
-        writeImage(options.files.output, image, ExrType::Float);
+        writeImage(options.files.output, image, ExrType::Float, compression);
     spdlog::info("wrote {}", options.files.output);
     failOnValidation(device.validationMessages());
 }

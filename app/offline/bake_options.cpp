@@ -2,6 +2,7 @@
 
 #include "app/edit/choice_options.h"
 #include "app/edit/furnishing_options.h"
+#include "app/offline/compression_option.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "bake/links/link_solver.h"
@@ -255,6 +256,7 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
         ->check(numberFrom(1e-6, 1.0))
         ->needs(layers);
     command.add_flag("--half", o.files.half, "Write 16-bit floats");
+    addCompressionOption(command, o.files.compression);
     addCheckpointOptions(command, o.checkpoint);
     addProbeOptions(command, o.probes);
     command.add_option("--json", o.files.json, "Write statistics to this file, - for standard output");
@@ -294,6 +296,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--layers: layers are kept in OpenEXR only: give -o a name that ends in .exr");
     if (o.layers.on && o.lightmap.quantity == "radiance")
         throw UsageError("--layers: of lighting only, as radiance is no sum of lights: leave out --quantity");
+    checkCompression(o.files.compression, {o.files.output, o.files.errorMap});
     BakeRequest request;
     request.prepare = {.path = o.files.scene,
                        .choice = o.files.choice,

@@ -21,8 +21,9 @@ constexpr float kRtradReflectivity = 0.9f; // of RTRad's preset, unless told oth
 /// The files that a bake reads and writes; "": not given.
 struct BakeFiles {
     std::string scene, output, picture, errorMap, json, sceneOut;
-    bool half = false; // the output, if it is an .exr
-    GltfChoice choice; // of the scene
+    bool half = false;       // the output, if it is an .exr
+    std::string compression; // of the files that are .exr; "": not given
+    GltfChoice choice;       // of the scene
 };
 
 /// The patches that the lightmap has.

@@ -75,8 +75,9 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
     return image;
 }
 
-void writeLayers(const std::string& path, const LayeredImage& image, ExrType type) {
-    writeLayeredExr(path, image, type);
+void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,
+                 ExrCompression compression) {
+    writeLayeredExr(path, image, type, compression);
     for (const LayeredImage::Layer& layer : image.layers) {
         const auto error = layer.attributes.find("relume:error");
         spdlog::info("layer '{}': {}", layer.name,

@@ -22,7 +22,8 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
                           const std::map<std::string, std::string>& attributes);
 
 /// Writes the image by writeLayeredExr, and a line to the log about each layer.
-void writeLayers(const std::string& path, const LayeredImage& image, ExrType type);
+void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,
+                 ExrCompression compression);
 
 /// Returns the reason of each layer that does not show the scene as it is, one line each.
 std::vector<std::string> staleReasons(const LayerSolver& solver);

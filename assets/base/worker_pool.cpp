@@ -5,9 +5,7 @@
 
 namespace relume {
 
-namespace {
-
-uint32_t defaultThreads() {
+uint32_t WorkerPool::defaultSize() {
     if (const char* text = std::getenv("RELUME_THREADS")) {
         const long count = std::strtol(text, nullptr, 10);
         if (count > 0) return static_cast<uint32_t>(std::min(count, 1024L));
@@ -15,10 +13,8 @@ uint32_t defaultThreads() {
     return std::max(1u, std::thread::hardware_concurrency());
 }
 
-} // namespace
-
 WorkerPool::WorkerPool(uint32_t threads) {
-    const uint32_t own = (threads > 0 ? threads : defaultThreads()) - 1;
+    const uint32_t own = (threads > 0 ? threads : defaultSize()) - 1;
     for (uint32_t i = 0; i < own; ++i)
         threads_.emplace_back([this] { serve(); });
 }

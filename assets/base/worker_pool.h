@@ -24,6 +24,9 @@ public:
     WorkerPool(const WorkerPool&) = delete;
     WorkerPool& operator=(const WorkerPool&) = delete;
 
+    /// Returns how many threads a pool of 0 has. Libraries that bring threads of their own get as many.
+    static uint32_t defaultSize();
+
     uint32_t size() const { return static_cast<uint32_t>(threads_.size()) + 1; }
     /// Calls work(i) for each i in 0..count - 1, in any order and on any thread, and returns when all are
     /// done. Throws the first thing that work threw; then not every index may have come.

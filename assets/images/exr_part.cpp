@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
 #include "assets/base/log.h"
+#include "assets/base/worker_pool.h"
 
 #include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
@@ -14,7 +15,6 @@
 #include <filesystem>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 namespace relume::exr {
 
@@ -82,11 +82,28 @@ namespace {
 std::mutex threadsMutex;
 int threadUsers = 0;
 
+Imf::Compression codecOf(ExrCompression compression) {
+    switch (compression) {
+    case ExrCompression::None:
+        return Imf::NO_COMPRESSION;
+    case ExrCompression::Rle:
+        return Imf::RLE_COMPRESSION;
+    case ExrCompression::Zips:
+        return Imf::ZIPS_COMPRESSION;
+    case ExrCompression::Zip:
+        return Imf::ZIP_COMPRESSION;
+    case ExrCompression::Piz:
+        return Imf::PIZ_COMPRESSION;
+    }
+    ASSERT(false);
+    return Imf::ZIP_COMPRESSION;
+}
+
 } // namespace
 
 ExrThreads::ExrThreads() {
     const std::lock_guard lock(threadsMutex);
-    if (threadUsers++ == 0) Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+    if (threadUsers++ == 0) Imf::setGlobalThreadCount(int(WorkerPool::defaultSize()));
 }
 
 ExrThreads::~ExrThreads() {
@@ -95,13 +112,13 @@ ExrThreads::~ExrThreads() {
 }
 
 int ExrThreads::rows() {
-    constexpr int kRowsAtATime = 16, kLeast = 4; // rows, and how many times that
+    constexpr int kRowsAtATime = 32, kLeast = 4; // rows, and how many times that
     return kRowsAtATime * std::max(kLeast, 2 * Imf::globalThreadCount());
 }
 
-Imf::Header headerOf(const FloatImage& image, ExrType type) {
+Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compression) {
     Imf::Header header(int(image.width), int(image.height));
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = codecOf(compression);
     for (const auto& [name, value] : image.attributes)
         header.insert(name, Imf::StringAttribute(value));
     for (const std::string& channel : image.channels)

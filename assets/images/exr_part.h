@@ -52,7 +52,7 @@ void checkPixels(const std::string& path, uint64_t width, uint64_t height, uint6
 FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t mostPixels);
 
 /// Returns the header that an image is written with.
-Imf::Header headerOf(const FloatImage& image, ExrType type);
+Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compression);
 
 /// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
 /// claims and the file does not have costs none.
@@ -81,16 +81,16 @@ FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
 /// Rounds to half and cuts what is beyond its range; `cut` counts that.
 std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
 
-/// As long as it lives, OpenEXR files that are made compress on all cores. There are no threads afterwards:
-/// they would rest all the time, and a process that forks would wait for them. The bytes of a file are the
-/// same.
+/// As long as it lives, OpenEXR files that are made compress on as many threads as a WorkerPool has. There
+/// are no threads afterwards: they would rest all the time, and a process that forks would wait for them. The
+/// bytes of a file are the same.
 class ExrThreads {
 public:
     ExrThreads();
     ~ExrThreads();
     ExrThreads(const ExrThreads&) = delete;
     ExrThreads& operator=(const ExrThreads&) = delete;
-    /// Returns how many rows keep all cores busy: OpenEXR's ZIP compresses 16 at a time.
+    /// Returns how many rows keep all cores busy: OpenEXR compresses up to 32 at a time.
     static int rows();
 };
 

@@ -21,10 +21,24 @@ struct FloatImage {
 
 enum class ExrType { Float, Half };
 
+/// How an OpenEXR file is compressed: those of its ways that keep every bit. Which is quicker and which
+/// smaller is in tests/bench/measured.md.
+enum class ExrCompression {
+    None,
+    Rle,  // runs of equal bytes
+    Zips, // DEFLATE, row by row
+    Zip,  // DEFLATE, 16 rows at a time
+    Piz,  // wavelets, 32 rows at a time
+};
+constexpr ExrCompression kExrCompression = ExrCompression::Zip; // where nobody says which
+
 /// Applies the exact transfer function of sRGB [IEC 61966-2-1]; values outside [0, 1] follow the same curve,
 /// mirrored below 0.
 double srgbFromLinear(double linear);
 double linearFromSrgb(double encoded);
+/// Returns floor(255 srgbFromLinear(x) + 0.5) of x = linear clamped to [0, 1], what a picture of 8 bits has;
+/// 0 for NaN.
+uint8_t srgbByte(float linear);
 
 /// These are 32768^2 pixels; a header that claims more is that of a broken file.
 constexpr uint64_t kMostImagePixels = uint64_t(1) << 30;

@@ -3,27 +3,26 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/base/worker_pool.h"
 #include "assets/images/exr_check.h"
 #include "assets/images/exr_part.h"
 #include "assets/images/ktx2.h"
 #include "assets/images/png_check.h"
+#include "assets/images/png_write.h"
 #include "assets/images/radiance_hdr.h"
 
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 
-// These are our own static copies; other libraries carry theirs under the same names.
+// This is our own static copy; other libraries carry theirs under the same names.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_NO_STDIO
 #include <stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb_image_write.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -61,12 +60,13 @@ FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t m
     return exr::readPart(file, path, mostPixels);
 }
 
-std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type) {
+std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type,
+                      ExrCompression compression) {
     exr::MemoryOutput stream(path.c_str());
     size_t cut = 0;
     {
         const exr::ExrThreads threads;
-        Imf::OutputFile file(stream, exr::headerOf(image, type));
+        Imf::OutputFile file(stream, exr::headerOf(image, type, compression));
         exr::writePart(file, image, type, cut);
     } // its destructor writes the table of lines
     exr::warnAboutCut(path, cut);
@@ -135,33 +135,31 @@ FloatImage readImage(const std::string& path, uint64_t mostPixels) {
 }
 
 std::string encodeSrgb(const FloatImage& image, const std::string& name) {
-    std::string pixels(size_t(image.width) * image.height * 3, '\0');
+    std::array<const std::vector<float>*, 3> planes{};
     for (size_t c = 0; c < 3; ++c) {
         const std::string channel(1, "RGB"[c]);
-        const std::vector<float>* plane = image.find(channel);
-        if (!plane) throw Error(name + ": the image has no channel " + channel + ": write .exr instead");
-        for (size_t i = 0; i < plane->size(); ++i) {
-            const float v = (*plane)[i];
-            const double clamped = v > 0.0f ? std::min(1.0, double(v)) : 0.0; // NaN becomes 0
-            pixels[3 * i + c] =
-                char(static_cast<unsigned char>(std::floor(255.0 * srgbFromLinear(clamped) + 0.5)));
-        }
+        planes[c] = image.find(channel);
+        if (!planes[c]) throw Error(name + ": the image has no channel " + channel + ": write .exr instead");
     }
+    std::string pixels(size_t(image.width) * image.height * 3, '\0');
+    constexpr uint32_t kRows = 64; // that a thread encodes at a time
+    const uint32_t portions = (image.height + kRows - 1) / kRows;
+    WorkerPool pool(std::min(std::max(portions, 1u), WorkerPool::defaultSize()));
+    pool.run(portions, [&](uint32_t portion) {
+        const size_t first = size_t{portion} * kRows * image.width;
+        const size_t end = std::min(first + size_t{kRows} * image.width, pixels.size() / 3);
+        for (size_t i = first; i < end; ++i)
+            for (size_t c = 0; c < 3; ++c)
+                pixels[3 * i + c] = char(srgbByte((*planes[c])[i]));
+    });
     return pixels;
 }
 
 std::string encodePng(const FloatImage& image, const std::string& name) {
-    const std::string pixels = encodeSrgb(image, name);
-    std::string bytes;
-    const auto append = [](void* context, void* data, int size) {
-        static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
-    };
-    if (!stbi_write_png_to_func(append, &bytes, int(image.width), int(image.height), 3, pixels.data(), 0))
-        throw Error(name + ": cannot be encoded as PNG: write .exr instead");
-    return bytes;
+    return writePng(encodeSrgb(image, name), image.width, image.height, 3, name);
 }
 
-void writeImage(const std::string& path, const FloatImage& image, ExrType type) {
+void writeImage(const std::string& path, const FloatImage& image, ExrType type, ExrCompression compression) {
     ASSERT(image.width > 0 && image.height > 0 && image.channels.size() == image.planes.size());
     for (const std::vector<float>& plane : image.planes)
         ASSERT(plane.size() == size_t(image.width) * image.height);
@@ -170,7 +168,7 @@ void writeImage(const std::string& path, const FloatImage& image, ExrType type) 
         bytes = encodePng(image, path);
     } else {
         try {
-            bytes = encodeExr(path, image, type);
+            bytes = encodeExr(path, image, type, compression);
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const Error&) { // of who watches

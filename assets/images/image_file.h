@@ -16,7 +16,8 @@ FloatImage readImage(const std::string& path, uint64_t mostPixels = kMostImagePi
 /// temporary name in the same folder first and is renamed, so an existing one is replaced whole or not at
 /// all. Equal images give equal bytes. ExrType::Half cuts values beyond its range (65504) with a warning.
 /// Throws Error.
-void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float);
+void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
+                ExrCompression compression = kExrCompression);
 
 /// Returns R, G and B of each pixel as writeImage writes them to a .png: 8 bits, sRGB encoded. Throws Error,
 /// naming the image `name`, without these channels.

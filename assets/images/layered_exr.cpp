@@ -38,11 +38,11 @@ std::string uniqueName(const std::string& name, std::set<std::string>& taken) {
     return unique;
 }
 
-std::vector<Imf::Header> headersOf(const LayeredImage& image, ExrType type) {
+std::vector<Imf::Header> headersOf(const LayeredImage& image, ExrType type, ExrCompression compression) {
     std::set<std::string> taken;
     std::vector<Imf::Header> headers;
     const auto add = [&](const FloatImage& part, const std::string& name) -> Imf::Header& {
-        Imf::Header& header = headers.emplace_back(exr::headerOf(part, type));
+        Imf::Header& header = headers.emplace_back(exr::headerOf(part, type, compression));
         header.setName(uniqueName(name, taken));
         header.setType(Imf::SCANLINEIMAGE);
         return header;
@@ -58,8 +58,9 @@ std::vector<Imf::Header> headersOf(const LayeredImage& image, ExrType type) {
     return headers;
 }
 
-std::string encode(const std::string& path, const LayeredImage& image, ExrType type) {
-    const std::vector<Imf::Header> headers = headersOf(image, type);
+std::string encode(const std::string& path, const LayeredImage& image, ExrType type,
+                   ExrCompression compression) {
+    const std::vector<Imf::Header> headers = headersOf(image, type, compression);
     exr::MemoryOutput stream(path.c_str());
     size_t cut = 0;
     {
@@ -148,14 +149,15 @@ std::string oneLine(std::string text) {
 
 } // namespace
 
-void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type) {
+void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type,
+                     ExrCompression compression) {
     for (const LayeredImage::Layer& layer : image.layers)
         ASSERT(layer.image.width == image.composite.width && layer.image.height == image.composite.height);
     checkWritable(path);
     if (!path.ends_with(".exr")) throw Error(path + ": layers are kept in OpenEXR only: give a name in .exr");
     std::string bytes;
     try {
-        bytes = encode(path, image, type);
+        bytes = encode(path, image, type, compression);
     } catch (const Error&) { // of who watches
         throw;
     } catch (const std::bad_alloc&) {

@@ -36,9 +36,10 @@ struct LayeredImage {
 };
 
 /// Writes an OpenEXR file of several parts: the composite, which readers of one image take, then one part per
-/// layer, named as the layer is, with the attributes relume:name and relume:weight. It compresses with ZIP
-/// and writes by a temporary name, as writeImage does. Equal images give equal bytes. Throws Error.
-void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float);
+/// layer, named as the layer is, with the attributes relume:name and relume:weight. It is written
+/// by a temporary name, as writeImage does. Equal images give equal bytes. Throws Error.
+void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float,
+                     ExrCompression compression = kExrCompression);
 
 /// Reads a file that writeLayeredExr wrote. Throws Error where it has no layers, parts are missing or differ
 /// in size, a channel or a weight is missing or a weight is not finite.

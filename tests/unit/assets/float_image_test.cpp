@@ -80,6 +80,47 @@ TEST_F(FloatImageTest, KeepsFloatsBitByBit) {
         EXPECT_EQ(std::memcmp(read.planes[c].data(), image.planes[c].data(), 35 * sizeof(float)), 0);
 }
 
+constexpr std::array<ExrCompression, 5> kCompressions = {ExrCompression::None, ExrCompression::Rle,
+                                                         ExrCompression::Zips, ExrCompression::Zip,
+                                                         ExrCompression::Piz};
+
+TEST_F(FloatImageTest, EveryCompressionKeepsEveryBit) {
+    FloatImage image = ramp(70, 67); // no whole number of rows that are packed together
+    std::mt19937 random(7);
+    for (std::vector<float>& plane : image.planes)
+        for (size_t i = 0; i < plane.size(); i += 3)
+            plane[i] = float(random()) * 1e-7f;
+    image.planes[0][3] = std::numeric_limits<float>::quiet_NaN();
+    image.planes[1][4] = -std::numeric_limits<float>::infinity();
+    image.planes[2][5] = -1e-40f;
+    const std::string key("compression\0compression\0\1\0\0\0", 28);
+    for (size_t i = 0; i < kCompressions.size(); ++i) {
+        writeImage(at("a.exr"), image, ExrType::Float, kCompressions[i]);
+        const FloatImage read = readImage(at("a.exr"));
+        ASSERT_EQ(read.channels, image.channels);
+        for (size_t c = 0; c < 4; ++c)
+            EXPECT_EQ(std::memcmp(read.planes[c].data(), image.planes[c].data(), 70 * 67 * sizeof(float)), 0)
+                << i;
+        const std::string bytes = bytesOf(at("a.exr"));
+        const size_t place = bytes.find(key);
+        ASSERT_NE(place, std::string::npos);
+        EXPECT_EQ(size_t(bytes[place + key.size()]), i); // OpenEXR numbers them likewise
+    }
+}
+
+TEST_F(FloatImageTest, CompressedFilesOfSmoothImagesAreSmaller) {
+    const FloatImage image = ramp(64, 64);
+    writeImage(at("none.exr"), image, ExrType::Half, ExrCompression::None);
+    for (const ExrCompression compression :
+         {ExrCompression::Zips, ExrCompression::Zip, ExrCompression::Piz}) {
+        writeImage(at("a.exr"), image, ExrType::Half, compression);
+        EXPECT_LT(fs::file_size(at("a.exr")), fs::file_size(at("none.exr")) * 9 / 10);
+    }
+    writeImage(at("default.exr"), image, ExrType::Half);
+    writeImage(at("zip.exr"), image, ExrType::Half, ExrCompression::Zip);
+    EXPECT_EQ(bytesOf(at("default.exr")), bytesOf(at("zip.exr")));
+}
+
 TEST_F(FloatImageTest, RoundsToHalfAndCutsWhatDoesNotFit) {
     FloatImage image = ramp(40, 33);
     image.planes[0][0] = 1e6f;
@@ -95,6 +136,30 @@ TEST_F(FloatImageTest, RoundsToHalfAndCutsWhatDoesNotFit) {
     }
     writeImage(at("b.exr"), image);
     EXPECT_LT(fs::file_size(at("a.exr")), fs::file_size(at("b.exr")));
+}
+
+// Bytes are looked up; they must be those of the formula, above all where one turns into the next.
+TEST(SrgbByte, IsWhatTheTransferFunctionGives) {
+    const auto formula = [](float v) {
+        return uint8_t(std::floor(255.0 * srgbFromLinear(v > 0.0f ? std::min(1.0, double(v)) : 0.0) + 0.5));
+    };
+    for (const float v :
+         {0.0f, -0.0f, -1.0f, 1e-45f, 0.0031308f, 1.0f, 1e30f, std::numeric_limits<float>::infinity(),
+          -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
+        EXPECT_EQ(srgbByte(v), formula(v)) << v;
+    for (int k = 1; k <= 255; ++k) {
+        float v = float(linearFromSrgb((k - 0.5) / 255.0));
+        for (int i = 0; i < 200; ++i)
+            v = std::nextafter(v, 0.0f);
+        for (int i = 0; i < 400; ++i, v = std::nextafter(v, 2.0f))
+            ASSERT_EQ(srgbByte(v), formula(v)) << v;
+    }
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> values(-0.1f, 1.1f);
+    for (int i = 0; i < 100000; ++i) {
+        const float v = values(random);
+        ASSERT_EQ(srgbByte(v), formula(v)) << v;
+    }
 }
 
 TEST_F(FloatImageTest, GivesEqualBytesForEqualImages) {

@@ -5,6 +5,7 @@
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 
+#include <ImfCompression.h>
 #include <ImfHeader.h>
 #include <ImfMultiPartInputFile.h>
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -77,6 +79,27 @@ TEST_F(LayeredExrTest, ReturnsWhatWasWritten) {
     writeLayeredExr(at("b.exr"), read);
     EXPECT_EQ(bytesOf(at("a.exr")), bytesOf(at("b.exr")));
     EXPECT_EQ(folder_.files().size(), 2u);
+}
+
+TEST_F(LayeredExrTest, EveryPartIsCompressedAsAskedFor) {
+    const LayeredImage image = threeLayers();
+    for (const auto& [compression, wanted] : {std::pair(ExrCompression::None, Imf::NO_COMPRESSION),
+                                              {ExrCompression::Rle, Imf::RLE_COMPRESSION},
+                                              {ExrCompression::Zips, Imf::ZIPS_COMPRESSION},
+                                              {ExrCompression::Zip, Imf::ZIP_COMPRESSION},
+                                              {ExrCompression::Piz, Imf::PIZ_COMPRESSION}}) {
+        writeLayeredExr(at("a.exr"), image, ExrType::Float, compression);
+        const LayeredImage read = readLayeredExr(at("a.exr"));
+        EXPECT_EQ(read.composite.planes, image.composite.planes);
+        const Imf::MultiPartInputFile file(at("a.exr").c_str());
+        ASSERT_EQ(file.parts(), 4);
+        for (int p = 0; p < 4; ++p) {
+            EXPECT_EQ(file.header(p).compression(), wanted);
+            if (p == 0) continue;
+            const size_t layer = size_t(p) - 1;
+            EXPECT_EQ(read.layers[layer].image.planes, image.layers[layer].image.planes);
+        }
+    }
 }
 
 TEST_F(LayeredExrTest, ReadersOfOneImageGetTheComposite) {

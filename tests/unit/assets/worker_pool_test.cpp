@@ -1,7 +1,10 @@
 #include "assets/base/worker_pool.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -20,6 +23,19 @@ TEST(WorkerPool, doesEverythingOnceHoweverOftenItIsUsed) {
                 EXPECT_EQ(times, 1u);
         }
     }
+}
+
+TEST(WorkerPool, theEnvironmentSaysHowManyThreadsThereAre) {
+    const char* before = std::getenv("RELUME_THREADS");
+    const std::string old = before ? before : "";
+    setenv("RELUME_THREADS", "3", 1);
+    EXPECT_EQ(WorkerPool::defaultSize(), 3u);
+    EXPECT_EQ(WorkerPool(0).size(), 3u);
+    for (const char* wrong : {"0", "-2", "many", ""}) {
+        setenv("RELUME_THREADS", wrong, 1);
+        EXPECT_EQ(WorkerPool::defaultSize(), std::max(1u, std::thread::hardware_concurrency())) << wrong;
+    }
+    before ? setenv("RELUME_THREADS", old.c_str(), 1) : unsetenv("RELUME_THREADS");
 }
 
 TEST(WorkerPool, loopsMayRunBesideEachOther) {
