@@ -100,15 +100,15 @@ TEST(ProbeForms, ThreesProbesShineAsOurs) {
     ProbeSet set = evenGrid({2, 1, 1});
     addLight(set.probes[1].radiance, glm::normalize(glm::dvec3(1, 2, -3)), {5, 6, 7});
     set.probes[1].backs = 0.75;
-    const nlohmann::json json = nlohmann::json::parse(threeProbes(set, "p.three.json"));
-    EXPECT_EQ(json["object"]["type"], "Group");
-    EXPECT_EQ(json["object"]["userData"]["grid"]["counts"], (std::vector<int>{2, 1, 1}));
-    const nlohmann::json& probe = json["object"]["children"].at(1);
+    const nlohmann::json made = nlohmann::json::parse(threeProbes(set, "p.three.json"));
+    EXPECT_EQ(made["object"]["type"], "Group");
+    EXPECT_EQ(made["object"]["userData"]["grid"]["counts"], (std::vector<int>{2, 1, 1}));
+    const nlohmann::json& probe = made["object"]["children"].at(1);
     EXPECT_EQ(probe["type"], "LightProbe");
     EXPECT_EQ(probe["userData"]["inside"], true);
     EXPECT_FLOAT_EQ(probe["matrix"].at(12).get<float>(), 1.0f);
     EXPECT_FLOAT_EQ(probe["matrix"].at(14).get<float>(), 1.5f);
-    EXPECT_NE(probe["uuid"], json["object"]["children"].at(0)["uuid"]);
+    EXPECT_NE(probe["uuid"], made["object"]["children"].at(0)["uuid"]);
     const auto sh = probe["sh"].get<std::vector<double>>();
     ASSERT_EQ(sh.size(), 27u);
     for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), {0, -1, 0}, {1, 2, 3}, {-3, 1, -2}, {0, 0, 1}}) {
