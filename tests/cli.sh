@@ -211,6 +211,9 @@ expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.obj import missing.obj -o out.glb
 expectWorldError missing.obj info missing.obj
 expectWorldError missing.glb bench trace missing.glb
+expectWorldError missing.glb bench trace missing.glb --whole
+expectUsageError bench trace missing.glb --samples 16 # of --whole
+expectUsageError bench trace missing.glb --whole --error 2
 expectWorldError missing.glb bench methods missing.glb --html report.html
 expectWorldError missing.glb bench edits missing.glb
 expectWorldError missing.glb bench quality missing.glb

@@ -1,3 +1,5 @@
+#include "app/commands/run_bake.h"
+
 #include "app/commands/command.h"
 #include "app/offline/bake_checkpoints.h"
 #include "app/offline/bake_statistics.h"
@@ -10,24 +12,19 @@
 #include "app/offline/progress.h"
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"
-#include "assets/base/clock.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/base/phase_clock.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/image_file.h"
 #include "shaders/shader_library.h"
 
-#include <ctime>
+#include <future>
 #include <memory>
 #include <optional>
 
 namespace relume {
 namespace {
-
-// Returns the CPU time of all threads, the drivers' too [s].
-double cpuSeconds() {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 void checkFiles(const BakeOptions& o) {
     CommandFiles()
@@ -44,12 +41,23 @@ void checkFiles(const BakeOptions& o) {
         .check();
 }
 
-void bake(BakeOptions o) {
-    const auto start = Clock::now();
-    const InterruptGuard guard;
-    BakeRequest request = resolveBakeOptions(o);
-    checkFiles(o);
-    o.solve.method = methodName(request.bake.solver.method);
+// Makes the device while the scene is read, since drivers take long to start and hardly a core. Where the
+// scene is bad, that is told; what is wrong with the device is told by get().
+class DeviceStart {
+public:
+    explicit DeviceStart(const MachineOptions& machine)
+        : device_(std::async(std::launch::async, [&machine] {
+              return std::make_unique<const vk::Device>(
+                  vk::Device::Desc{.select = machine.device, .validation = machine.validate});
+          })) {}
+    /// Waits for the device; throws Error where there is none.
+    std::unique_ptr<const vk::Device> get() { return device_.get(); }
+
+private:
+    std::future<std::unique_ptr<const vk::Device>> device_;
+};
+
+void checkOutputs(const BakeOptions& o) {
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.files.output, uint64_t{o.patches.size} * o.patches.size * kBytesPerTexel);
     if (!o.files.picture.empty()) checkWritable(o.files.picture);
@@ -57,41 +65,13 @@ void bake(BakeOptions o) {
     if (!o.files.sceneOut.empty()) checkFileWritable(o.files.sceneOut, 0);
     if (!o.probes.output.empty()) checkFileWritable(o.probes.output, 0);
     if (!o.files.json.empty() && o.files.json != "-") checkFileWritable(o.files.json, 0);
-    if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
-    BakeCheckpoints checkpoints(o);
+}
 
-    std::optional<PhaseProgress> phase(std::in_place, true);
-    PreparedScene prepared = prepareScene(request.prepare);
-    if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
-    ProbePlan probePlan;
-    if (o.probes.wanted()) {
-        probePlan = planProbes(o.probes, prepared.mesh);
-        request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);
-    }
-    stopIfInterrupted();
-    const auto deviceStart = Clock::now();
-    const vk::Device device({.select = o.machine.device, .validation = o.machine.validate});
-    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
-    const double deviceSeconds = secondsSince(deviceStart);
-
-    const double cpuStart = cpuSeconds();
-    Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
-    spdlog::info("{} patches", baker.patches().count);
-    warnIfDark(prepared.scene, baker.patches());
-    checkpoints.begin(baker, prepared.scene, request.bake, device.info());
-    phase.reset();
-    solve(baker.solver(), request.bake.solver, checkpoints);
-    phase.emplace(false);
-    const auto probesStart = Clock::now();
-    ProbeSet probes;
-    if (o.probes.wanted())
-        probes = bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samplesOrDefault(),
-                            request.bake.solver.transport.reflectivity);
-    // From here on files are written, and all of them: what Ctrl-C ends before has written nothing.
-    const auto writeStart = Clock::now();
+// Writes the lightmap and the maps that go with it. Returns the CPU time when the lightmap was made.
+double writeMaps(const BakeOptions& o, const BakeRequest& request, const PreparedScene& prepared,
+                 const Baker& baker, const SolverProgress& progress) {
     FloatImage image = baker.lightmap(request.lightmap);
-    const double bakeCpuSeconds = cpuSeconds() - cpuStart;
-    const SolverProgress& progress = baker.solver().progress();
+    const double made = cpuSeconds();
     addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(o.files.compression);
@@ -103,40 +83,99 @@ void bake(BakeOptions o) {
     if (!o.files.picture.empty()) writeImage(o.files.picture, image);
     if (!o.files.errorMap.empty())
         writeImage(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
-    if (o.probes.wanted()) writeProbes(o.probes.output, probes);
-    if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
+    return made;
+}
 
-    spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}", o.solve.method,
-                 isPairMethod(request.bake.solver.method)
-                     ? fmt::format("{} passes", progress.passes)
-                     : fmt::format("{} directions per patch", progress.samples),
+void logSolver(Method method, const SolverProgress& progress) {
+    spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
+                 methodName(method),
+                 isPairMethod(method) ? fmt::format("{} passes", progress.passes)
+                                      : fmt::format("{} directions per patch", progress.samples),
                  static_cast<double>(progress.rays) * 1e-6, progress.seconds,
                  static_cast<double>(progress.rays) * 1e-6 / progress.seconds, progress.error);
-    spdlog::info("wrote {} ({} in all)", o.files.output, formatDuration(secondsSince(start)));
-    failOnValidation(device.validationMessages());
-    if (o.files.json.empty()) return;
-    std::vector<PhaseTime> phases = {
-        {"load", prepared.loadSeconds}, {"atlas", prepared.atlasSeconds}, {"device", deviceSeconds}};
-    phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
-    phases.push_back({"solve", progress.seconds});
-    if (o.probes.wanted())
-        phases.push_back({"probes", std::chrono::duration<double>(writeStart - probesStart).count()});
-    phases.push_back({"write", secondsSince(writeStart)});
-    writeStatistics(o.files.json, {.options = o,
-                                   .prepared = prepared,
-                                   .baker = baker,
-                                   .device = device.info(),
-                                   .phases = phases,
-                                   .bakeCpuSeconds = bakeCpuSeconds});
 }
 
 } // namespace
+
+WholeBake runBake(BakeOptions o, double startSeconds) {
+    const auto start = Clock::now();
+    const double startCpu = startSeconds > 0 ? 0.0 : cpuSeconds();
+    std::vector<PhaseTime> phases;
+    if (startSeconds > 0) phases.push_back({"start", startSeconds, cpuSeconds()});
+    PhaseClock clock(phases);
+    const InterruptGuard guard;
+    BakeRequest request = resolveBakeOptions(o);
+    checkFiles(o);
+    o.solve.method = methodName(request.bake.solver.method);
+    checkOutputs(o);
+    if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
+    BakeCheckpoints checkpoints(o);
+
+    std::optional<PhaseProgress> phase(std::in_place, true);
+    DeviceStart deviceStart(o.machine);
+    PreparedScene prepared = prepareScene(request.prepare);
+    phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
+    if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
+    ProbePlan probePlan;
+    if (o.probes.wanted()) {
+        probePlan = planProbes(o.probes, prepared.mesh);
+        request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);
+    }
+    stopIfInterrupted();
+    clock.restart();
+    const std::unique_ptr<const vk::Device> owned = deviceStart.get();
+    const vk::Device& device = *owned;
+    spdlog::info("device: {} ({})", device.info().name, device.info().driver);
+    clock.end("device");
+
+    const double cpuStart = cpuSeconds();
+    Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
+    phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
+    spdlog::info("{} patches", baker.patches().count);
+    warnIfDark(prepared.scene, baker.patches());
+    checkpoints.begin(baker, prepared.scene, request.bake, device.info());
+    phase.reset();
+    clock.restart();
+    solve(baker.solver(), request.bake.solver, checkpoints);
+    clock.end("solve");
+    phase.emplace(false);
+    ProbeSet probes;
+    if (o.probes.wanted()) {
+        probes = bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samplesOrDefault(),
+                            request.bake.solver.transport.reflectivity);
+        clock.end("probes");
+    }
+    // From here on files are written, and all of them: what Ctrl-C ends before has written nothing.
+    const SolverProgress& progress = baker.solver().progress();
+    const double bakeCpuSeconds = writeMaps(o, request, prepared, baker, progress) - cpuStart;
+    if (o.probes.wanted()) writeProbes(o.probes.output, probes);
+    if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
+    clock.end("write");
+
+    logSolver(request.bake.solver.method, progress);
+    spdlog::info("wrote {} ({} in all)", o.files.output, formatDuration(secondsSince(start)));
+    failOnValidation(device.validationMessages());
+    addOther(phases, startSeconds + secondsSince(start), cpuSeconds() - startCpu);
+    const WholeBake whole{.tracer = baker.tracer().name(),
+                          .size = baker.patches().scene.size,
+                          .patches = baker.patches().count,
+                          .triangles = baker.patches().scene.mesh.triangleCount(),
+                          .phases = phases};
+    if (!o.files.json.empty())
+        writeStatistics(o.files.json, {.options = o,
+                                       .prepared = prepared,
+                                       .baker = baker,
+                                       .device = device.info(),
+                                       .phases = phases,
+                                       .bakeCpuSeconds = bakeCpuSeconds});
+    return whole;
+}
 
 void addBakeCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bake", "Bake a scene's radiosity lightmap");
     auto options = std::make_shared<BakeOptions>();
     addBakeOptions(*command, *options);
-    command->callback([options] { bake(*options); });
+    command->callback([options] { runBake(*options, processSeconds()); });
 }
 
 } // namespace relume

@@ -1,5 +1,6 @@
 #include "app/bench/trace_bench.h"
 #include "app/commands/command.h"
+#include "app/commands/run_bake.h"
 #include "app/edit/choice_options.h"
 #include "app/edit/prepare.h"
 #include "app/offline/bake_options.h"
@@ -7,8 +8,12 @@
 #include "app/text/option_checks.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/base/passing_folder.h"
+#include "assets/base/phase_clock.h"
+#include "bake/links/link_solver.h"
 #include "bake/trace/make_tracer.h"
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -23,6 +28,9 @@ struct BenchOptions {
     std::vector<std::string> tracers;
     std::vector<uint32_t> sizes = {128, 256};
     TraceBenchDesc bench;
+    bool whole = false;
+    double error = 0;     // of a whole bake; 0: not given
+    uint32_t samples = 0; // of a whole bake; 0: what the error needs
 };
 
 std::vector<TracerKind> tracersOf(const BenchOptions& o, const vk::DeviceInfo& info) {
@@ -40,9 +48,45 @@ std::vector<TracerKind> tracersOf(const BenchOptions& o, const vk::DeviceInfo& i
     return kinds;
 }
 
+void writeReport(const std::string& path, const nlohmann::ordered_json& report) {
+    // A file name need not be UTF-8.
+    const std::string text =
+        report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    if (path == "-")
+        std::cout << text << std::flush;
+    else
+        writeFileAtomically(path, text);
+}
+
+// Bakes the scene as `relume bake` does, into a folder for the time being, and tells how long each part took.
+void benchWhole(const BenchOptions& o) {
+    const PassingFolder folder(std::filesystem::temp_directory_path(), "relume_whole_");
+    nlohmann::ordered_json results = nlohmann::ordered_json::array();
+    double start = processSeconds();
+    for (uint32_t size : o.sizes)
+        for (const std::string& tracer : o.tracers.empty() ? std::vector<std::string>{"auto"} : o.tracers) {
+            BakeOptions bake;
+            bake.files.scene = o.scene;
+            bake.files.choice = o.choice;
+            bake.files.output = folder.file("lightmap.exr");
+            bake.patches.size = size;
+            bake.machine.device = o.device;
+            bake.machine.tracer = tracer;
+            bake.solve.error = o.error;
+            bake.links.samples = o.samples;
+            const WholeBake whole = runBake(bake, start);
+            start = 0; // the first bake had it
+            if (o.json != "-") std::cout << wholeTable(whole) << std::endl;
+            results.push_back(wholeJson(whole));
+        }
+    if (!o.json.empty())
+        writeReport(o.json, {{"version", RELUME_VERSION}, {"scene", o.scene}, {"whole", results}});
+}
+
 void benchTrace(const BenchOptions& o) {
     CommandFiles().readsScene("SCENE", o.scene).writes("--json", o.json).check();
     if (!o.json.empty() && o.json != "-") checkFileWritable(o.json, 0);
+    if (o.whole) return benchWhole(o);
     std::vector<PreparedScene>
         scenes; // loaded before anything is printed: a bad file leaves one line, its error
     for (uint32_t size : o.sizes)
@@ -83,18 +127,11 @@ void benchTrace(const BenchOptions& o) {
         }
     }
     if (o.json.empty()) return;
-    const nlohmann::ordered_json report = {{"version", RELUME_VERSION},
-                                           {"scene", o.scene},
-                                           {"device", device.info().name},
-                                           {"driver", device.info().driver},
-                                           {"results", results}};
-    // A file name need not be UTF-8.
-    const std::string text =
-        report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-    if (o.json == "-")
-        std::cout << text << std::flush;
-    else
-        writeFileAtomically(o.json, text);
+    writeReport(o.json, {{"version", RELUME_VERSION},
+                         {"scene", o.scene},
+                         {"device", device.info().name},
+                         {"driver", device.info().driver},
+                         {"results", results}});
 }
 
 } // namespace
@@ -125,6 +162,16 @@ void addBenchCommand(CLI::App& app) {
     trace->add_option("--batch-ms", options->bench.batchMs, "Aim of one submit")
         ->capture_default_str()
         ->check(numberFrom(0.1, 45.0));
+    CLI::Option* whole = trace->add_flag("--whole", options->whole,
+                                         "Bake the scene instead, and tell how long each part of the whole "
+                                         "process takes, from its start to the "
+                                         "written lightmap");
+    trace->add_option("--error", options->error, "With --whole: bake until the error is below this (0.01)")
+        ->check(numberFrom(1e-6, 1.0))
+        ->needs(whole);
+    trace->add_option("--samples", options->samples, "With --whole: directions per patch, whatever the error")
+        ->check(wholeFrom(1, LinkSolver::kMaxSamples))
+        ->needs(whole);
     trace->add_option("--json", options->json, "Write the results to this file, - for standard output");
     trace->callback([options] { benchTrace(*options); });
 }

@@ -1,7 +1,6 @@
 #include "app/edit/prepare.h"
 
 #include "assets/atlas/unwrap.h"
-#include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/foreign/load_scene.h"
@@ -74,23 +73,24 @@ void furnishLight(PreparedScene& prepared, const Furnishing& furnishing) {
 
 PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead) {
     PreparedScene result;
-    const auto start = Clock::now();
+    PhaseClock clock(result.phases);
     result.scene = loadScene(desc.path, desc.choice);
-    result.loadSeconds = secondsSince(start);
+    clock.end("load");
     warn(result.scene.warnings);
     requireArea(result.scene);
     if (whenRead && desc.furnishing.unwrap && countUnmapped(result.scene) > 0) whenRead(result.scene);
 
-    const auto atlasStart = Clock::now();
+    clock.restart();
     result.size = sizeOf(result.scene, desc);
     furnishUvs(result, desc);
+    clock.end("unwrap");
     result.atlas = buildAtlas(result.scene, result.size, desc.furnishing.unwrap);
     warn(result.atlas.warnings);
     const size_t before = result.scene.warnings.size();
     result.mesh = flatten(result.scene, result.atlas);
     warn(result.scene.warnings, before);
     if (!desc.edited) furnishLight(result, desc.furnishing);
-    result.atlasSeconds = secondsSince(atlasStart);
+    clock.end("atlas");
     return result;
 }
 

@@ -2,10 +2,12 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/unwrap_memory.h"
 #include "assets/atlas/world_mesh.h"
+#include "assets/base/phase_clock.h"
 #include "assets/gltf/gltf.h"
 
 namespace relume {
@@ -26,10 +28,10 @@ struct PreparedScene {
     Scene scene;
     LightmapAtlas atlas;
     WorldMesh mesh;
-    uint32_t size = 0;     // lightmap edge that the atlas is made for [texels]
-    std::string madeUvs;   // says which lightmap UVs were made, "" for none
-    std::string madeLight; // says what preview light was added, "" for none
-    double loadSeconds = 0, atlasSeconds = 0;
+    uint32_t size = 0;             // lightmap edge that the atlas is made for [texels]
+    std::string madeUvs;           // says which lightmap UVs were made, "" for none
+    std::string madeLight;         // says what preview light was added, "" for none
+    std::vector<PhaseTime> phases; // load, unwrap, atlas
 };
 
 struct PrepareDesc {

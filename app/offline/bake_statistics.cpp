@@ -43,13 +43,16 @@ Json layersJson(const LayerSolver& solver) {
 
 void writeStatistics(const std::string& path, const BakeStatistics& s) {
     const SolverProgress& p = s.baker.solver().progress();
-    Json seconds;
-    double total = 0;
+    Json seconds, cpu;
+    double total = 0, totalCpu = 0;
     for (const PhaseTime& phase : s.phases) {
         seconds[phase.name] = phase.seconds;
+        cpu[phase.name] = phase.cpuSeconds;
         total += phase.seconds;
+        totalCpu += phase.cpuSeconds;
     }
     seconds["total"] = total;
+    cpu["total"] = totalCpu;
     const VoxelSettings voxels = resolveVoxels(s.options);
     Json json = {{"version", RELUME_VERSION},
                  {"scene", s.options.files.scene},
@@ -84,6 +87,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                  {"gatherSeconds", p.gatherSeconds},
                  {"passSeconds", p.passSeconds},
                  {"seconds", seconds},
+                 {"cpuSeconds", cpu},
                  {"bakeCpuSeconds", s.bakeCpuSeconds},
                  {"atlas", atlasJson(s.prepared)}};
     if (s.baker.layers()) json["layers"] = layersJson(*s.baker.layers());

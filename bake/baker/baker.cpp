@@ -13,7 +13,6 @@
 #include "bake/vk/commands.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace relume {
 namespace {
@@ -21,20 +20,6 @@ namespace {
 constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
 // A bake may take this share of the free memory: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
-
-class PhaseClock {
-public:
-    explicit PhaseClock(std::vector<PhaseTime>& phases) : phases_(phases) {}
-    void end(const char* name) {
-        const auto now = std::chrono::steady_clock::now();
-        phases_.push_back({name, std::chrono::duration<double>(now - start_).count()});
-        start_ = now;
-    }
-
-private:
-    std::vector<PhaseTime>& phases_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 } // namespace
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "assets/base/phase_clock.h"
 #include "bake/baker/bake_settings.h"
 #include "bake/baker/edit_decision.h"
 #include "bake/baker/make_solver.h"
@@ -18,12 +19,6 @@ namespace relume {
 
 struct ObjectMove;
 class ObjectMover;
-
-/// The seconds of one named phase.
-struct PhaseTime {
-    std::string name;
-    double seconds = 0;
-};
 
 /// Counts over all moves of objects that a bake has followed.
 struct MoveCounters {

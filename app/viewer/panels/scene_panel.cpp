@@ -61,8 +61,9 @@ void ScenePanel::drawStatistics(const LoadedScene& scene) {
             ui::row("Coverage", fmt::format("{:.1f} %", 100.0 * info_->statistics.coverage));
             ui::row("Density", fmt::format("{:.4g} texels/m", info_->statistics.texelDensityMean));
         }
-        ui::row("Loaded in", fmt::format("{:.2f} s, atlas {:.2f} s", scene.prepared.loadSeconds,
-                                         scene.prepared.atlasSeconds));
+        const std::vector<PhaseTime>& phases = scene.prepared.phases;
+        ui::row("Loaded in", fmt::format("{:.2f} s, atlas {:.2f} s", secondsOf(phases, "load"),
+                                         secondsOf(phases, "unwrap") + secondsOf(phases, "atlas")));
         ImGui::EndTable();
     }
     if (!info_) return;

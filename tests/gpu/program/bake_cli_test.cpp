@@ -173,6 +173,32 @@ TEST_F(BakeCommand, HalfAndPng) {
     EXPECT_EQ(bytesOf(path("map.png")).substr(1, 3), "PNG");
 }
 
+// bench trace --whole does what bake does, and its parts sum up.
+TEST_F(BakeCommand, AWholeBakeIsToldPartByPart) {
+    const ProcessResult r = runRelume({"bench", "trace", scene_, "--whole", "--sizes", "32,64", "--samples",
+                                       "16", "--json", path("whole.json")});
+    ASSERT_EQ(r.status, 0) << r.err;
+    expectFiles({"whole.json"});
+    EXPECT_NE(r.out.find("all but solve"), std::string::npos) << r.out;
+    const auto json = nlohmann::json::parse(bytesOf(path("whole.json")));
+    ASSERT_EQ(json["whole"].size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        const auto& whole = json["whole"][i];
+        EXPECT_EQ(whole["size"], i == 0 ? 32 : 64);
+        EXPECT_GT(whole["patches"], 0);
+        const auto& seconds = whole["seconds"];
+        EXPECT_EQ(seconds.contains("start"), i == 0); // the process starts but once
+        for (const char* phase : {"load", "unwrap", "atlas", "device", "cit", "patches", "tracer", "validity",
+                                  "solver set-up", "solve", "write", "other"})
+            EXPECT_TRUE(seconds.contains(phase)) << phase;
+        double sum = 0;
+        for (const auto& [phase, value] : seconds.items())
+            if (phase != "sum" && phase != "all but solve") sum += double(value);
+        EXPECT_NEAR(sum, seconds["sum"], 1e-9);
+        EXPECT_NEAR(sum - double(seconds["solve"]), seconds["all but solve"], 1e-9);
+    }
+}
+
 TEST_F(BakeCommand, StatisticsNameEverything) {
     const ProcessResult r = bake({"-o", path("map.exr"), "--passes", "2", "--json", path("map.json")});
     ASSERT_EQ(r.status, 0) << r.err;
@@ -188,9 +214,19 @@ TEST_F(BakeCommand, StatisticsNameEverything) {
     EXPECT_EQ(json["triangles"], 12);
     EXPECT_EQ(json["passSeconds"].size(), 2u);
     EXPECT_GT(json["pairs"], 2u * 1000u * 1000u);
-    for (const char* phase : {"load", "cit", "solve", "write", "total"}) {
+    for (const char* phase : {"start", "load", "cit", "solve", "write", "total"}) {
         ASSERT_TRUE(json["seconds"].contains(phase)) << phase;
         EXPECT_GT(json["seconds"][phase], 0.0) << phase;
+    }
+    for (const char* kind :
+         {"seconds", "cpuSeconds"}) { // with what is in no part, they are the whole process
+        double sum = 0;
+        for (const auto& [phase, value] : json[kind].items()) {
+            EXPECT_GE(value, 0.0) << phase;
+            if (phase != "total") sum += double(value);
+        }
+        EXPECT_TRUE(json[kind].contains("other"));
+        EXPECT_NEAR(sum, json[kind]["total"], 1e-9);
     }
     // The numbers go to standard output, and nothing else does.
     const ProcessResult toOut = bake({"-o", path("map.exr"), "--passes", "1", "--json", "-"});

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "app/bench/whole_report.h"
+#include "app/offline/bake_options.h"
+
+namespace relume {
+
+/// Does all that `relume bake` does and returns how long each part took. startSeconds is what had passed of
+/// this process before [s], 0: not of interest. Throws Error and UsageError.
+WholeBake runBake(BakeOptions options, double startSeconds);
+
+} // namespace relume
