@@ -64,12 +64,14 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
     ASSERT(baker.layers() != nullptr);
     const LayerSolver& solver = *baker.layers();
     LayeredImage image;
+    LightmapDesc each = desc;
+    each.pool = &baker.workers();
     image.composite = baker.lightmap(desc);
     image.composite.attributes = attributes;
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         LayeredImage::Layer part = layerWithoutImage(scene, *layer);
         const Layer* shown = layer->shown();
-        part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), desc);
+        part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), each);
         image.layers.push_back(std::move(part));
     }
     return image;

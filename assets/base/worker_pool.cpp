@@ -1,5 +1,7 @@
 #include "assets/base/worker_pool.h"
 
+#include "assets/base/watch.h"
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -77,6 +79,22 @@ void WorkerPool::run(uint32_t count, const std::function<void(uint32_t)>& work) 
     open_.remove(&loop);
     loop.left.wait(lock, [&] { return loop.helpers == 0; });
     if (loop.failure) std::rethrow_exception(loop.failure);
+}
+
+void runWatched(WorkerPool* pool, const char* phase, uint32_t count,
+                const std::function<void(uint32_t)>& work) {
+    constexpr uint32_t kEach =
+        4; // for each thread: nobody waits long for the last one, and the watch neither
+    const uint32_t portion = kEach * (pool ? pool->size() : 1u);
+    for (uint32_t first = 0; first < count; first += std::min(portion, count - first)) {
+        tellWatch(phase, double(first) / count);
+        const uint32_t end = first + std::min(portion, count - first);
+        if (pool)
+            pool->run(end - first, [&](uint32_t i) { work(first + i); });
+        else
+            for (uint32_t i = first; i < end; ++i)
+                work(i);
+    }
 }
 
 } // namespace relume

@@ -54,4 +54,9 @@ private:
     std::vector<std::thread> threads_;
 };
 
+/// Does as pool->run() does; nullptr: on this thread alone. Between portions this thread's watch hears how
+/// far the loop is, and what it throws ends the loop.
+void runWatched(WorkerPool* pool, const char* phase, uint32_t count,
+                const std::function<void(uint32_t)>& work);
+
 } // namespace relume

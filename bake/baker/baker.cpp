@@ -79,7 +79,9 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Worl
         clock.end("cit");
         onPhase("patches");
         patches_ = buildPatches(scene, std::move(mesh), group,
-                                {.reflectivity = settings.solver.transport.reflectivity, .rtrad = rtrad});
+                                {.reflectivity = settings.solver.transport.reflectivity,
+                                 .rtrad = rtrad,
+                                 .pool = &device.workers()});
     }
     if (patches_.clampedAlbedo > 0) {
         spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
@@ -239,6 +241,7 @@ std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas* atlas) {
 FloatImage Baker::lightmap(LightmapDesc desc) const {
     desc.rtrad = settings_.solver.transport.rtrad;
     desc.reflectivity = settings_.solver.transport.reflectivity;
+    desc.pool = &workers();
     return makeLightmap(patches_, solver_.solver->light(), desc);
 }
 
@@ -249,7 +252,7 @@ FloatImage Baker::errorMap() const {
     std::vector<glm::vec4> grey;
     for (float e : errors)
         grey.emplace_back(e, e, e, 1.0f);
-    return makeLightmap(patches_, grey, {.quantity = Quantity::Lighting, .sew = false});
+    return makeLightmap(patches_, grey, {.sew = false, .pool = &workers()});
 }
 
 } // namespace relume

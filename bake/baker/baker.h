@@ -64,6 +64,8 @@ public:
     Tracer& tracer() { return *tracer_; }
     /// Returns the tracer's name and why it was taken: "embree (software device)".
     const std::string& tracerChoice() const { return tracerChoice_; }
+    /// Returns the device's pool of threads, for what is done with the bake's results on the CPU.
+    WorkerPool& workers() const { return device_.workers(); }
     const PatchSet& patches() const { return patches_; }
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "assets/base/clock.h"
+#include "assets/base/worker_pool.h"
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
 #include "bake/surface/patch_cover.h"
@@ -70,24 +71,31 @@ private:
     void ask(std::span<const uint32_t> which, ChunkRange range, uint32_t places,
              const std::function<glm::vec2(uint32_t)>& placeOf) {
         auto* const targets = targets_.as<glm::vec4>();
-        std::fill_n(targets, size_t{range.count} * places * kChunk, glm::vec4(0.0f));
-        std::vector<uint32_t> here; // bits that need no ray, of each patch
-        here.reserve(which.size());
-        for (const uint32_t patch : which) {
+        WorkerPool& pool = search_.device.workers();
+        const size_t perChunk = size_t{places} * kChunk;
+        pool.run(range.count,
+                 [&](uint32_t chunk) { std::fill_n(targets + chunk * perChunk, perChunk, glm::vec4(0.0f)); });
+        std::vector<uint32_t> here(which.size(), 0); // bits that need no ray, of each patch
+        const auto aim = [&](size_t index) {
+            const uint32_t patch = which[index];
             const shader::Patch& p = search_.patches.scene.patches[patch];
             const shader::PatchCover& cover = search_.patches.covers[patch];
             const float near = kHere * (glm::length(cover.du) + glm::length(cover.dv));
             const size_t chunk = patch / kChunk - range.first;
-            here.push_back(0);
             for (uint32_t k = 0; k < places; ++k) {
                 const glm::vec3 way = shader::coverWay(cover, placeOf(k));
                 if (glm::length(way) <= near)
-                    here.back() |= 1u << k;
+                    here[index] |= 1u << k;
                 else
-                    targets[(chunk * places + k) * kChunk + patch % kChunk] =
+                    targets[chunk * perChunk + size_t{k} * kChunk + patch % kChunk] =
                         glm::vec4(p.position + way + p.offset * p.normal, 1.0f);
             }
-        }
+        };
+        constexpr size_t kPortion = 512; // patches that a thread looks at, at a time
+        pool.run(static_cast<uint32_t>((which.size() + kPortion - 1) / kPortion), [&](uint32_t portion) {
+            for (size_t i = portion * kPortion; i < std::min(which.size(), (portion + 1) * kPortion); ++i)
+                aim(i);
+        });
         const bool records = search_.tracer.records();
         VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
         search_.tracer.segments(cmd, {.firstChunk = range.first,

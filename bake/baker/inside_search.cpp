@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "assets/base/clock.h"
+#include "assets/base/worker_pool.h"
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
 #include "bake/vk/commands.h"
@@ -17,9 +18,10 @@ constexpr double kInsideBatchMs = 20.0;
 // A batch has at most so many chunks, whose links are 8 MiB. On a device that does a billion rays a second
 // these are 2 ms.
 constexpr uint32_t kMostInsideChunks = 1024;
-// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
-// needed.
-constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
+// In closed rooms all of half the directions meet fronts, which settles it. Outdoors a patch of which 20
+// directions met no back cannot get two in five any more.
+constexpr uint32_t kFirstSamples = 16, kMoreSamples = 4;
+constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
 
 /// The backs and sky that the directions of one patch have met so far.
 struct Met {
@@ -76,14 +78,24 @@ private:
             commands_.run();
         }
         const auto* link = static_cast<const uint32_t*>(links_.mapped());
+        std::vector<uint32_t> traced; // chunks of the batch, in the order of their links
         for (const ChunkRange& range : ranges)
-            for (uint32_t chunk = range.first - first_; chunk < range.first - first_ + range.count; ++chunk)
-                for (uint32_t k = 0; k < samples; ++k)
-                    for (uint32_t i = 0; i < kChunk; ++i, ++link) {
-                        Met& met = met_[size_t{chunk} * kChunk + i];
-                        met.backs = static_cast<uint16_t>(met.backs + (*link == shader::kLinkBack));
-                        met.sky = static_cast<uint16_t>(met.sky + shader::linkIsSky(*link));
-                    }
+            for (uint32_t chunk = 0; chunk < range.count; ++chunk)
+                traced.push_back(range.first - first_ + chunk);
+        const auto count = static_cast<uint32_t>(traced.size());
+        search_.device.workers().run((count + kChunksAtATime - 1) / kChunksAtATime, [&](uint32_t portion) {
+            const uint32_t end = std::min(count, (portion + 1) * kChunksAtATime);
+            for (uint32_t k = portion * kChunksAtATime; k < end; ++k)
+                countMet(&met_[size_t{traced[k]} * kChunk], link + size_t{k} * samples * kChunk, samples);
+        });
+    }
+
+    static void countMet(Met* met, const uint32_t* link, uint32_t samples) {
+        for (uint32_t k = 0; k < samples; ++k)
+            for (uint32_t i = 0; i < kChunk; ++i, ++link) {
+                met[i].backs = static_cast<uint16_t>(met[i].backs + (*link == shader::kLinkBack));
+                met[i].sky = static_cast<uint16_t>(met[i].sky + shader::linkIsSky(*link));
+            }
     }
 
     /// Returns those of these chunks of which a patch could still turn out to lie inside something.

@@ -204,7 +204,8 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
         if ((texels_[slot] & kHome) != 0) triangle[at] = group.triangle[at];
     }
     group.triangle = std::move(triangle);
-    part.patches = buildPatches(on_.scene, std::move(mesh), group, {.part = true});
+    part.patches =
+        buildPatches(on_.scene, std::move(mesh), group, {.part = true, .pool = &on_.device.workers()});
     if (part.patches.count != part.slots.size()) return {};
     for (uint32_t i = 0; i < part.patches.count; ++i) {
         const uint32_t texel = part.patches.scene.patches[i].flags >> 8;

@@ -1,9 +1,10 @@
 #include "bake/output/lightmap.h"
 
 #include "assets/base/error.h"
-#include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 #include "assets/images/finite_image.h"
 
+#include <algorithm>
 #include <array>
 
 namespace relume {
@@ -52,21 +53,28 @@ bool fromNeighbours(const Planes& image, uint32_t x, uint32_t y, bool darkest, g
     return true;
 }
 
-void sewSeams(Planes& image, uint32_t rings, bool darkest) {
+constexpr uint32_t kRows = 16; // that a thread works on at a time
+
+// Each ring is found whole before any of it is filled, so that it is open who finds which part.
+void sewSeams(Planes& image, const LightmapDesc& desc) {
+    const uint32_t rings = desc.rtrad ? 1 : desc.dilate, portions = (image.size + kRows - 1) / kRows;
     for (uint32_t ring = 0; ring < rings; ++ring) {
-        std::vector<Fill> fills;
-        WatchedLoop loop("seams", image.size, 16);
-        for (uint32_t y = 0; y < image.size; ++y, loop.step()) {
-            for (uint32_t x = 0; x < image.size; ++x) {
-                const size_t i = size_t{y} * image.size + x;
-                Fill fill{i, {}};
-                if (image.coverage(i) == 0.0f && fromNeighbours(image, x, y, darkest, fill.color))
-                    fills.push_back(fill);
+        std::vector<std::vector<Fill>> fills(portions);
+        runWatched(desc.pool, "seams", portions, [&](uint32_t portion) {
+            for (uint32_t y = portion * kRows; y < std::min(image.size, (portion + 1) * kRows); ++y) {
+                for (uint32_t x = 0; x < image.size; ++x) {
+                    const size_t i = size_t{y} * image.size + x;
+                    Fill fill{i, {}};
+                    if (image.coverage(i) == 0.0f && fromNeighbours(image, x, y, desc.rtrad, fill.color))
+                        fills[portion].push_back(fill);
+                }
             }
-        }
-        if (fills.empty()) return;
-        for (const Fill& fill : fills)
-            image.set(fill.texel, fill.color, kFilledCoverage);
+        });
+        if (std::all_of(fills.begin(), fills.end(), [](const auto& part) { return part.empty(); })) return;
+        runWatched(desc.pool, "seams", portions, [&](uint32_t portion) {
+            for (const Fill& fill : fills[portion])
+                image.set(fill.texel, fill.color, kFilledCoverage);
+        });
     }
 }
 
@@ -82,16 +90,22 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
         image.add(channel);
     Planes planes{patches.scene.size,
                   {&image.planes[0], &image.planes[1], &image.planes[2], &image.planes[3]}};
-    for (size_t texel = 0; texel < patches.scene.texelToPatch.size(); ++texel) {
+    const size_t width = patches.scene.size, texels = patches.scene.texelToPatch.size();
+    const auto scatter = [&](size_t texel) {
         const uint32_t p = patches.scene.texelToPatch[texel];
-        if (p == shader::kNoPatch || (patches.scene.patches[p].flags & shader::kPatchSends) == 0) continue;
+        if (p == shader::kNoPatch || (patches.scene.patches[p].flags & shader::kPatchSends) == 0) return;
         glm::vec3 value(light[p]);
         if (desc.quantity == Quantity::Radiance && !desc.rtrad) {
             value = glm::vec3(patches.emission[p]) + desc.reflectivity * glm::vec3(patches.albedo[p]) * value;
         }
         planes.set(texel, value, kPatchCoverage);
-    }
-    if (desc.sew) sewSeams(planes, desc.rtrad ? 1 : desc.dilate, desc.rtrad);
+    };
+    runWatched(desc.pool, "seams", (patches.scene.size + kRows - 1) / kRows, [&](uint32_t portion) {
+        const size_t end = std::min(texels, (size_t{portion} + 1) * kRows * width);
+        for (size_t texel = size_t{portion} * kRows * width; texel < end; ++texel)
+            scatter(texel);
+    });
+    if (desc.sew) sewSeams(planes, desc);
     requireFinite(image, "the lightmap");
     return image;
 }

@@ -5,6 +5,8 @@
 
 namespace relume {
 
+class WorkerPool;
+
 enum class Quantity {
     Lighting, // irradiance / pi, no albedo [cd/m^2]: what an engine multiplies with the albedo
     Radiance, // emission + reflectivity * albedo * lighting [cd/m^2]: RTRad's lig_out
@@ -14,8 +16,9 @@ struct LightmapDesc {
     Quantity quantity = Quantity::Lighting;
     float reflectivity = 1.0f;
     bool sew = true;
-    uint32_t dilate = 4; // rings of texels filled around charts
-    bool rtrad = false;  // `light` holds RTRad's radiosity; one ring of the darkest neighbour
+    uint32_t dilate = 4;        // rings of texels filled around charts
+    bool rtrad = false;         // `light` holds RTRad's radiosity; one ring of the darkest neighbour
+    WorkerPool* pool = nullptr; // where it is made; nullptr: on this thread alone
 };
 
 /// Scatters the patches' light [one vec4 each] to their texels and fills seams (SewSeams): texels beside a

@@ -1,5 +1,7 @@
 #include "bake/surface/patch_cover.h"
 
+#include "assets/base/worker_pool.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +15,7 @@ using shader::kCoverWhole;
 using shader::kNoPatch;
 
 constexpr uint32_t kCells = kCoverEdge * kCoverEdge;
+constexpr uint32_t kBandRows = 8; // that a thread works on at a time
 constexpr uint32_t kRim = (1u << kRimPlaces) - 1;
 // Edges are shortened by this share on both sides: what lies on the very edge of a texel may lie in a wall
 // that stands there.
@@ -55,35 +58,72 @@ public:
         set_.covers.assign(set.scene.patches.size(), shader::PatchCover{});
     }
 
-    void run() {
-        const WorldMesh& mesh = set_.scene.mesh;
-        for (uint32_t t = 0; t < mesh.opaqueCount; ++t)
-            if (mesh.chart[t] != kNoChart) cover(t);
-        const auto whole = static_cast<float>(shader::kCoverPlaces);
+    // Texels are worked on in bands of rows, each by one thread, so that nobody else writes to their covers.
+    // What triangles add to a cover does not depend on their order.
+    void run(WorkerPool* pool) {
         const TexelWindow& w = group_.window;
-        for (uint32_t y = w.row; y < w.row + w.rows; ++y) {
-            for (uint32_t x = w.column; x < w.column + w.columns; ++x) {
-                const uint32_t patch = set_.scene.texelToPatch[w.index(x, y)];
-                if (patch == kNoPatch || !covers(patch)) continue;
-                const TriangleFrame& frame = frames_[ownTriangle(x, y)];
-                shader::PatchCover& c = set_.covers[patch];
-                const glm::vec2 place = placeOf(patch, ownTriangle(x, y), {x, y});
-                c.du = (1.0f - 2.0f * kInset) * frame.du;
-                c.dv = (1.0f - 2.0f * kInset) * frame.dv;
-                c.place = static_cast<uint32_t>(std::lround(place.x * whole)) |
-                          static_cast<uint32_t>(std::lround(place.y * whole)) << 16;
-                if (c.cells == kCoverCells && rims_[patch] == kRim) c.cells |= kCoverWhole;
-            }
-        }
-        set_.coverCells.clear();
-        for (const shader::PatchCover& c : set_.covers)
-            set_.coverCells.push_back(c.cells);
-        set_.reach.clear();
-        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk)
-            set_.reach.push_back(chunkReach(set_, chunk));
+        const uint32_t bands = (w.rows + kBandRows - 1) / kBandRows;
+        const std::vector<std::vector<uint32_t>> triangles = trianglesOfBands(bands);
+        set_.coverCells.assign(set_.covers.size(), 0);
+        runWatched(pool, "patches", bands, [&](uint32_t band) {
+            const Rows rows{w.row + band * kBandRows, w.row + std::min(w.rows, (band + 1) * kBandRows) - 1};
+            for (const uint32_t t : triangles[band])
+                cover(t, rows);
+            for (uint32_t y = rows.first; y <= rows.last; ++y)
+                for (uint32_t x = w.column; x < w.column + w.columns; ++x)
+                    finish({x, y});
+        });
+        set_.reach.assign(set_.chunkCount(), 0.0f);
+        constexpr uint32_t kChunks = 256; // that a thread works on at a time
+        runWatched(pool, "patches", (set_.chunkCount() + kChunks - 1) / kChunks, [&](uint32_t portion) {
+            const uint32_t end = std::min(set_.chunkCount(), (portion + 1) * kChunks);
+            for (uint32_t chunk = portion * kChunks; chunk < end; ++chunk)
+                set_.reach[chunk] = chunkReach(set_, chunk);
+        });
     }
 
 private:
+    struct Rows {
+        uint32_t first = 0, last = 0; // of the lightmap
+    };
+
+    // Returns the triangles that may cover texels of each band of rows, ascending.
+    std::vector<std::vector<uint32_t>> trianglesOfBands(uint32_t bands) const {
+        const WorldMesh& mesh = set_.scene.mesh;
+        const TexelWindow& w = group_.window;
+        std::vector<std::vector<uint32_t>> result(bands);
+        for (uint32_t t = 0; t < mesh.opaqueCount; ++t) {
+            if (mesh.chart[t] == kNoChart) continue;
+            const glm::vec2* uv = &mesh.lightmapUv[size_t{t} * 3];
+            const double size = group_.size;
+            const double lo = std::floor(std::min({uv[0].y, uv[1].y, uv[2].y}) * size) - w.row,
+                         hi = std::floor(std::max({uv[0].y, uv[1].y, uv[2].y}) * size) - w.row;
+            if (!(hi >= 0) || !(lo < w.rows)) continue;
+            const auto first = static_cast<uint32_t>(std::max(lo, 0.0)) / kBandRows,
+                       last = static_cast<uint32_t>(std::min(hi, w.rows - 1.0)) / kBandRows;
+            for (uint32_t band = first; band <= last; ++band)
+                result[band].push_back(t);
+        }
+        return result;
+    }
+
+    // Completes the cover of a texel's patch, of which all triangles have been seen.
+    void finish(glm::uvec2 texel) {
+        const uint32_t patch = set_.scene.texelToPatch[group_.window.index(texel.x, texel.y)];
+        if (patch == kNoPatch || !covers(patch)) return;
+        const uint32_t own = ownTriangle(texel.x, texel.y);
+        const TriangleFrame& frame = frames_[own];
+        shader::PatchCover& c = set_.covers[patch];
+        const auto whole = static_cast<float>(shader::kCoverPlaces);
+        const glm::vec2 place = placeOf(patch, own, texel);
+        c.du = (1.0f - 2.0f * kInset) * frame.du;
+        c.dv = (1.0f - 2.0f * kInset) * frame.dv;
+        c.place = static_cast<uint32_t>(std::lround(place.x * whole)) |
+                  static_cast<uint32_t>(std::lround(place.y * whole)) << 16;
+        if (c.cells == kCoverCells && rims_[patch] == kRim) c.cells |= kCoverWhole;
+        set_.coverCells[patch] = c.cells;
+    }
+
     bool covers(uint32_t patch) const { return set_.covers[patch].cells != 0; }
     uint32_t ownTriangle(uint32_t x, uint32_t y) const {
         return group_.triangle[group_.window.index(x, y)] - 1;
@@ -116,8 +156,8 @@ private:
         return glm::vec2(place);
     }
 
-    // Adds what a triangle covers to the patches of its chart.
-    void cover(uint32_t t) {
+    // Adds what a triangle covers in these rows to the patches of its chart.
+    void cover(uint32_t t, Rows rows) {
         const TexelTriangle triangle = texelTriangle(t);
         if (!(std::abs(triangle.det) > 0)) return;
         glm::dvec2 lo = triangle.corner[0], hi = lo;
@@ -126,7 +166,7 @@ private:
             hi = glm::max(hi, c);
         }
         const TexelWindow& w = group_.window;
-        const glm::dvec2 first(w.column, w.row), last(w.column + w.columns - 1, w.row + w.rows - 1);
+        const glm::dvec2 first(w.column, rows.first), last(w.column + w.columns - 1, rows.last);
         const glm::dvec2 from = glm::max(glm::floor(lo), first), to = glm::min(glm::floor(hi), last);
         for (double y = from.y; y <= to.y; ++y)
             for (double x = from.x; x <= to.x; ++x)
@@ -182,8 +222,9 @@ private:
 
 } // namespace
 
-void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames) {
-    CoverBuilder(set, group, frames).run();
+void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames,
+               WorkerPool* pool) {
+    CoverBuilder(set, group, frames).run(pool);
 }
 
 float coverReach(const shader::PatchCover& cover) {

@@ -8,11 +8,14 @@
 
 namespace relume {
 
+class WorkerPool;
+
 /// Finds the part of its texel that each patch's surface covers: PatchSet::covers, coverCells and reach, from
 /// the patches and the triangles that they lie on. frames has one entry per triangle. A point may lie in
 /// cells where triangles of the patch's chart go on in its plane. Patches on masked triangles, backs and
-/// those of thin charts keep their own points.
-void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames);
+/// those of thin charts keep their own points. It works on the pool, or on this thread alone.
+void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames,
+               WorkerPool* pool = nullptr);
 
 /// Returns how far samples may start from the patch's own point, at most [m].
 float coverReach(const shader::PatchCover& cover);

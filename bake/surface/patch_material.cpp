@@ -1,6 +1,9 @@
 #include "bake/surface/patch_material.h"
 
+#include "assets/base/worker_pool.h"
+
 #include <algorithm>
+#include <atomic>
 
 namespace relume {
 namespace {
@@ -27,16 +30,22 @@ bool applyMaterial(PatchSet& patches, size_t patch, const Material& material) {
     return applyBaseColor(patches, patch, material);
 }
 
-void applyMaterials(PatchSet& patches, const std::vector<Material>& materials) {
+void applyMaterials(PatchSet& patches, const std::vector<Material>& materials, WorkerPool* pool) {
+    constexpr size_t kPortion = 16384; // patches
     const size_t count = patches.albedoPattern.size();
     std::vector<Material> all = materials;
     all.emplace_back(); // glTF's default material
     patches.albedo.resize(count);
     patches.emission.resize(count);
-    patches.clampedAlbedo = 0;
-    for (size_t i = 0; i < count; ++i) {
-        if (applyMaterial(patches, i, all[patches.material[i]])) ++patches.clampedAlbedo;
-    }
+    std::atomic<uint32_t> clamped{0};
+    runWatched(pool, "patches", static_cast<uint32_t>((count + kPortion - 1) / kPortion),
+               [&](uint32_t portion) {
+                   uint32_t here = 0;
+                   for (size_t i = portion * kPortion; i < std::min(count, (portion + 1) * kPortion); ++i)
+                       here += applyMaterial(patches, i, all[patches.material[i]]);
+                   clamped += here;
+               });
+    patches.clampedAlbedo = clamped;
 }
 
 } // namespace relume

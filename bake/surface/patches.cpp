@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 #include "assets/images/float_image.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/surface/patch_material.h"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace relume {
 namespace {
@@ -25,9 +27,9 @@ constexpr float kFloatError =
 // texels wide may catch one centre in each direction; where more is missing another chart was drawn over it.
 constexpr float kMaxAreaCorrection = 4.0f;
 
-// A watch hears of this phase, each time after so many triangles.
-constexpr const char* kPatchesPhase = "patches";
-constexpr unsigned kPatchesOften = 4096;
+constexpr const char* kPatchesPhase = "patches"; // that a watch hears of
+// What a thread works on at a time.
+constexpr uint32_t kTrianglesEach = 4096, kChunksEach = 256;
 
 // Everything about one patch, before it is put into its place.
 struct NewPatch {
@@ -45,17 +47,20 @@ struct ThinChart {
 class PatchBuilder {
 public:
     PatchBuilder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
-        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part) {
+        : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part),
+          pool_(desc.pool) {
         if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
         materials_.emplace_back(); // glTF's default material
         set_.scene.mesh = std::move(mesh);
         set_.scene.size = group.size;
         set_.scene.rtrad = desc.rtrad;
         const WorldMesh& m = set_.scene.mesh;
-        frames_.reserve(m.triangleCount());
-        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
-        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step())
-            frames_.push_back(triangleFrame(m, t, group.size));
+        frames_.resize(m.triangleCount());
+        texelArea_.resize(m.triangleCount());
+        inPortions(m.triangleCount(), kTrianglesEach, [&](uint32_t t) {
+            frames_[t] = triangleFrame(m, t, group.size);
+            texelArea_[t] = glm::length(glm::cross(frames_[t].du, frames_[t].dv));
+        });
         surveyCharts();
     }
 
@@ -63,30 +68,44 @@ public:
         const TexelWindow& w = group_.window;
         ASSERT(w.column % kTileTexels == 0 && w.row % kTileTexels == 0);
         set_.scene.texelToPatch.assign(w.size(), kNoPatch);
-        WatchedLoop loop(kPatchesPhase, (w.rows + kTileTexels - 1) / kTileTexels);
-        for (uint32_t y = w.row; y < w.row + w.rows; y += kTileTexels, loop.step())
-            for (uint32_t x = w.column; x < w.column + w.columns; x += kTileTexels)
-                addTile(x, y);
-        set_.count = static_cast<uint32_t>(set_.scene.patches.size());
+        const uint32_t rows = (w.rows + kTileTexels - 1) / kTileTexels; // of tiles
+        std::vector<uint32_t> firsts(size_t{rows} + 1, 0);              // patch of each
+        runWatched(pool_, kPatchesPhase, rows, [&](uint32_t row) { firsts[row + 1] = countRow(row); });
+        std::partial_sum(firsts.begin(), firsts.end(), firsts.begin());
+        set_.count = firsts[rows];
         if (set_.count == 0 && !part_) {
             throw Error("the lightmap covers no texel: its UVs are degenerate; run 'relume unwrap' or leave "
                         "out --no-unwrap");
         }
+        const uint32_t padded = (set_.count + kChunk - 1) / kChunk * kChunk;
+        resize(padded);
+        runWatched(pool_, kPatchesPhase, rows, [&](uint32_t row) { fillRow(row, firsts[row]); });
         NewPatch padding;
         padding.instance = static_cast<uint32_t>(scene_.instances.size());
-        while (set_.scene.patches.size() % kChunk != 0)
-            add(padding);
-        tellWatch(kPatchesPhase);
-        if (!rtrad_) addCovers(set_, group_, frames_);
-        applyMaterials(set_, scene_.materials);
-        tellWatch(kPatchesPhase);
-        addBounds();
+        for (uint32_t i = set_.count; i < padded; ++i)
+            put(i, padding);
+        findMiddles();
+        if (!rtrad_) addCovers(set_, group_, frames_, pool_);
+        applyMaterials(set_, scene_.materials, pool_);
+        set_.bounds.resize(set_.chunkCount());
+        inPortions(set_.chunkCount(), kChunksEach,
+                   [&](uint32_t chunk) { set_.bounds[chunk] = chunkBounds(set_, chunk); });
         addHitTriangles();
         addAlpha(); // after the hit triangles
         return std::move(set_);
     }
 
 private:
+    // Calls work(i) for each i below count, so many at a time on each thread.
+    template<class Work>
+    void inPortions(uint32_t count, uint32_t portion, const Work& work) const {
+        runWatched(pool_, kPatchesPhase, (count + portion - 1) / portion, [&](uint32_t number) {
+            const uint32_t end = std::min(count, (number + 1) * portion);
+            for (uint32_t i = number * portion; i < end; ++i)
+                work(i);
+        });
+    }
+
     // Finds how much each chart's texels must be scaled to have its area, and which charts no texel centre
     // hits.
     void surveyCharts() {
@@ -103,7 +122,7 @@ private:
         }
         for (uint32_t id : group_.triangle) {
             if (id == 0 || m.chart[id - 1] == kNoChart) continue;
-            texels[m.chart[id - 1]] += glm::length(glm::cross(frames_[id - 1].du, frames_[id - 1].dv));
+            texels[m.chart[id - 1]] += texelArea_[id - 1];
         }
         areaScale_.assign(m.chartCount, 1.0f);
         thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
@@ -118,7 +137,6 @@ private:
                         {largest[chart], static_cast<float>(area[chart])});
             }
         }
-        chartPatches_.resize(m.chartCount);
     }
 
     // Counts the window's tiles along a row.
@@ -138,43 +156,91 @@ private:
         return glm::uvec2(p);
     }
 
-    void add(const NewPatch& p) {
-        set_.scene.patches.push_back(p.patch);
-        set_.scene.patchChart.push_back(p.chart);
-        set_.edges.push_back(p.edges);
-        set_.albedoPattern.push_back(p.albedo);
-        set_.emissionPattern.push_back(p.emission);
-        set_.material.push_back(p.material);
-        set_.instance.push_back(p.instance);
+    void resize(uint32_t count) {
+        set_.scene.patches.resize(count);
+        set_.scene.patchChart.resize(count);
+        set_.edges.resize(count);
+        set_.albedoPattern.resize(count);
+        set_.emissionPattern.resize(count);
+        set_.material.resize(count);
+        set_.instance.resize(count);
     }
 
-    // Adds the patches of the tile that begins there.
-    void addTile(uint32_t firstX, uint32_t firstY) {
+    void put(uint32_t index, const NewPatch& p) {
+        set_.scene.patches[index] = p.patch;
+        set_.scene.patchChart[index] = p.chart;
+        set_.edges[index] = p.edges;
+        set_.albedoPattern[index] = p.albedo;
+        set_.emissionPattern[index] = p.emission;
+        set_.material[index] = p.material;
+        set_.instance[index] = p.instance;
+    }
+
+    // Calls work(texel, triangle) for each texel of a tile that has a patch.
+    template<class Work>
+    void overTexels(glm::uvec2 first, const Work& work) const {
         const TexelWindow& w = group_.window;
-        std::vector<NewPatch> backs;
-        for (uint32_t y = firstY; y < std::min(w.row + w.rows, firstY + kTileTexels); ++y) {
-            for (uint32_t x = firstX; x < std::min(w.column + w.columns, firstX + kTileTexels); ++x) {
+        for (uint32_t y = first.y; y < std::min(w.row + w.rows, first.y + kTileTexels); ++y)
+            for (uint32_t x = first.x; x < std::min(w.column + w.columns, first.x + kTileTexels); ++x) {
                 const uint32_t id = group_.triangle[w.index(x, y)];
-                if (id == 0 || set_.scene.mesh.chart[id - 1] == kNoChart) continue;
-                const NewPatch p = texelPatch({x, y}, id - 1);
-                const auto index = static_cast<uint32_t>(set_.scene.patches.size());
-                set_.scene.texelToPatch[w.index(x, y)] = index;
-                chartPatches_[p.chart].push_back(index);
-                add(p);
-                addBack(p, id - 1, backs);
+                if (id != 0 && set_.scene.mesh.chart[id - 1] != kNoChart) work(glm::uvec2(x, y), id - 1);
             }
-        }
-        for (const ThinChart& thin : thin_[tileOf(firstX, firstY)]) {
-            const NewPatch p = thinPatch(thin);
-            chartPatches_[p.chart].push_back(static_cast<uint32_t>(set_.scene.patches.size()));
-            add(p);
-            addBack(p, thin.triangle, backs);
-        }
-        for (const NewPatch& back : backs)
-            add(back);
+    }
+    // Calls work(first texel) for each tile of a row of tiles.
+    template<class Work>
+    void overTiles(uint32_t row, const Work& work) const {
+        const TexelWindow& w = group_.window;
+        for (uint32_t x = w.column; x < w.column + w.columns; x += kTileTexels)
+            work(glm::uvec2(x, w.row + row * kTileTexels));
     }
 
-    NewPatch texelPatch(glm::uvec2 texel, uint32_t triangle) {
+    // Counts the patches of a row of tiles.
+    uint32_t countRow(uint32_t row) const {
+        uint32_t count = 0;
+        overTiles(row, [&](glm::uvec2 tile) {
+            overTexels(tile, [&](glm::uvec2 texel, uint32_t triangle) {
+                const glm::vec4& emission = group_.emission[group_.window.index(texel.x, texel.y)];
+                count += hasBack(triangle, emission) ? 2u : 1u;
+            });
+            for (const ThinChart& thin : thin_[tileOf(tile.x, tile.y)])
+                count += hasBack(thin.triangle, thinPatch(thin).emission) ? 2u : 1u;
+        });
+        return count;
+    }
+
+    // Fills in the patches of a row of tiles, from `next` on: in each tile fronts, thin charts, backs.
+    void fillRow(uint32_t row, uint32_t next) {
+        std::vector<NewPatch> backs;
+        const auto putFront = [&](const NewPatch& p, uint32_t triangle) {
+            put(next++, p);
+            if (hasBack(triangle, p.emission)) backs.push_back(backOf(p));
+        };
+        overTiles(row, [&](glm::uvec2 tile) {
+            overTexels(tile, [&](glm::uvec2 texel, uint32_t triangle) {
+                set_.scene.texelToPatch[group_.window.index(texel.x, texel.y)] = next;
+                putFront(texelPatch(texel, triangle), triangle);
+            });
+            for (const ThinChart& thin : thin_[tileOf(tile.x, tile.y)])
+                putFront(thinPatch(thin), thin.triangle);
+            for (const NewPatch& back : backs)
+                put(next++, back);
+            backs.clear();
+        });
+    }
+
+    // Finds the patch in the middle of each chart's, which stands for triangles that have none nearby.
+    void findMiddles() {
+        std::vector<uint32_t> counts(set_.scene.mesh.chartCount, 0), seen(counts);
+        middles_.assign(counts.size(), kNoPatch);
+        for (const uint32_t chart : set_.scene.patchChart)
+            if (chart != kNoChart) ++counts[chart];
+        for (uint32_t i = 0; i < set_.scene.patchChart.size(); ++i) {
+            const uint32_t chart = set_.scene.patchChart[i];
+            if (chart != kNoChart && seen[chart]++ == counts[chart] / 2) middles_[chart] = i;
+        }
+    }
+
+    NewPatch texelPatch(glm::uvec2 texel, uint32_t triangle) const {
         const size_t at = group_.window.index(texel.x, texel.y);
         const TriangleFrame& frame = frames_[triangle];
         NewPatch p;
@@ -182,7 +248,7 @@ private:
         const float scale = areaScale_[p.chart];
         p.edges = {frame.du * std::sqrt(scale), frame.dv * std::sqrt(scale)};
         fill(p, glm::vec3(group_.pos[at]), glm::vec3(group_.nrm[at]), frame.normal,
-             glm::length(glm::cross(frame.du, frame.dv)) * scale, texel.y * group_.size + texel.x);
+             texelArea_[triangle] * scale, texel.y * group_.size + texel.x);
         p.albedo = group_.mat[at];
         p.emission = group_.emission[at];
         p.material = set_.scene.mesh.material[triangle];
@@ -192,7 +258,7 @@ private:
 
     // Makes the one patch of a chart that covers no texel centre: at the centroid of its largest triangle,
     // with the whole chart's area and the colour in the triangle's middle.
-    NewPatch thinPatch(const ThinChart& thin) {
+    NewPatch thinPatch(const ThinChart& thin) const {
         const WorldMesh& m = set_.scene.mesh;
         const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
         const glm::vec3* n = &m.normals[size_t{thin.triangle} * 3];
@@ -257,32 +323,36 @@ private:
         p.patch.flags = shader::kPatchSends | texel << 8;
     }
 
-    void addBack(const NewPatch& front, uint32_t triangle, std::vector<NewPatch>& backs) const {
+    // Tells whether there is a patch on the back, too, where the texel has this emission for a factor of 1.
+    bool hasBack(uint32_t triangle, const glm::vec4& pattern) const {
         const Material& material = materials_[set_.scene.mesh.material[triangle]];
-        const glm::vec3 emission = material.emission * glm::vec3(front.emission);
+        const glm::vec3 emission = material.emission * glm::vec3(pattern);
         const bool emits = emission.r > 0.0f || emission.g > 0.0f || emission.b > 0.0f;
-        if (rtrad_ || !material.doubleSided || !emits) return;
+        return !rtrad_ && material.doubleSided && emits;
+    }
+
+    static NewPatch backOf(const NewPatch& front) {
         NewPatch back = front;
         back.patch.normal = back.patch.shading = -front.patch.normal;
         back.patch.flags |= shader::kPatchBackSide;
         back.albedo = glm::vec4(0.0f);
         back.chart = kNoChart;
-        backs.push_back(back);
-    }
-
-    void addBounds() {
-        for (uint32_t chunk = 0; chunk < set_.chunkCount(); ++chunk)
-            set_.bounds.push_back(chunkBounds(set_, chunk));
+        return back;
     }
 
     void addHitTriangles() {
         const WorldMesh& m = set_.scene.mesh;
-        WatchedLoop loop(kPatchesPhase, m.triangleCount(), kPatchesOften);
-        for (uint32_t t = 0; t < m.triangleCount(); ++t, loop.step()) {
+        set_.scene.hitTriangles.resize(m.triangleCount());
+        inPortions(m.triangleCount(), kTrianglesEach, [&](uint32_t t) {
             const glm::vec2* uv = &m.lightmapUv[size_t{t} * 3];
-            set_.scene.hitTriangles.push_back({uv[0], uv[1], uv[2], m.chart[t], representative(t),
-                                               frames_[t].normal, materials_[m.material[t]].doubleSided});
-        }
+            set_.scene.hitTriangles[t] = {uv[0],
+                                          uv[1],
+                                          uv[2],
+                                          m.chart[t],
+                                          representative(t),
+                                          frames_[t].normal,
+                                          materials_[m.material[t]].doubleSided};
+        });
     }
 
     // Returns the patch of the triangle's chart nearest to the triangle's centre, among those within a few
@@ -290,7 +360,7 @@ private:
     uint32_t representative(uint32_t triangle) const {
         constexpr int kReach = 4; // texels
         const uint32_t chart = set_.scene.mesh.chart[triangle];
-        if (chart == kNoChart || chartPatches_[chart].empty()) return kNoPatch;
+        if (chart == kNoChart || middles_[chart] == kNoPatch) return kNoPatch;
         const glm::vec2 uv = centroidUv(triangle);
         const glm::vec2 centre = uv * static_cast<float>(group_.size);
         const auto texel = glm::ivec2(texelOf(uv));
@@ -311,7 +381,7 @@ private:
                 }
             }
         }
-        return best != kNoPatch ? best : chartPatches_[chart][chartPatches_[chart].size() / 2];
+        return best != kNoPatch ? best : middles_[chart];
     }
 
     void addAlpha() {
@@ -349,11 +419,13 @@ private:
     std::vector<Material> materials_;
     const TextureGroup& group_;
     const bool rtrad_, part_;
+    WorkerPool* const pool_;
     PatchSet set_;
-    std::vector<TriangleFrame> frames_;               // per triangle
-    std::vector<float> areaScale_;                    // per chart
-    std::vector<std::vector<ThinChart>> thin_;        // per tile
-    std::vector<std::vector<uint32_t>> chartPatches_; // per chart
+    std::vector<TriangleFrame> frames_;        // per triangle
+    std::vector<float> texelArea_;             // per triangle: of one of its texels [m^2]
+    std::vector<float> areaScale_;             // per chart
+    std::vector<std::vector<ThinChart>> thin_; // per tile
+    std::vector<uint32_t> middles_;            // per chart: the patch in the middle of its own
 };
 
 } // namespace

@@ -118,7 +118,7 @@ void SurfaceColours::recolour(const vk::Device& device, const std::vector<Materi
 
 void SurfaceColours::updateAll(const vk::Device& device, const std::vector<Material>& materials,
                                PatchSet& patches, LightBuffers& light) {
-    applyMaterials(patches, materials);
+    applyMaterials(patches, materials, &device.workers());
     vk::upload(device, light.albedo, patches.albedo.data(), patches.albedo.size() * sizeof(glm::vec4));
     vk::upload(device, light.emission, patches.emission.data(), patches.emission.size() * sizeof(glm::vec4));
     *this = SurfaceColours(materials);

@@ -1,6 +1,7 @@
 // Parts of a lightmap's texture group are held against the whole.
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/world_mesh.h"
+#include "assets/base/worker_pool.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/patches.h"
 #include "tests/gpu/bake_scene.h"
@@ -8,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -27,6 +30,12 @@ Scene groupRoom() {
 template<typename T>
 bool same(const T& a, const T& b) {
     return std::memcmp(&a, &b, sizeof(a)) == 0;
+}
+
+template<class T>
+void expectSameMemory(const std::vector<T>& a, const std::vector<T>& b, const char* what) {
+    ASSERT_EQ(a.size(), b.size()) << what;
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(T)), 0) << what;
 }
 
 } // namespace
@@ -105,6 +114,37 @@ TEST(TextureGroup, PatchesOfAWindowAreThoseOfTheWhole) {
         }
     EXPECT_GT(found, 100u);
     EXPECT_EQ(part.count, found);
+}
+
+// Patches are built on all cores; which of them does what decides nothing.
+TEST(TextureGroup, ThreadsMakeNoOtherPatches) {
+    Scene scene = groupRoom();
+    scene.materials[0].doubleSided = true; // its backs are patches, too
+    scene.materials[0].emission = glm::vec3(3.0f);
+    const WorldMesh mesh = flatten(scene, buildAtlas(scene, kGroupSize));
+    const TextureGroup group = rasterizeTextureGroup(testDevice(), scene, mesh, {.size = kGroupSize});
+    const PatchSet alone = buildPatches(scene, mesh, group, {});
+    EXPECT_TRUE(std::any_of(alone.scene.patches.begin(), alone.scene.patches.end(),
+                            [](const auto& patch) { return (patch.flags & shader::kPatchBackSide) != 0; }));
+    for (const uint32_t threads : {1u, 2u, 7u}) {
+        WorkerPool pool(threads);
+        const PatchSet shared = buildPatches(scene, mesh, group, {.pool = &pool});
+        EXPECT_EQ(shared.count, alone.count);
+        EXPECT_EQ(shared.clampedAlbedo, alone.clampedAlbedo);
+        expectSameMemory(shared.scene.patches, alone.scene.patches, "patches");
+        expectSameMemory(shared.scene.patchChart, alone.scene.patchChart, "charts");
+        expectSameMemory(shared.scene.texelToPatch, alone.scene.texelToPatch, "texels");
+        expectSameMemory(shared.scene.hitTriangles, alone.scene.hitTriangles, "triangles");
+        expectSameMemory(shared.edges, alone.edges, "edges");
+        expectSameMemory(shared.covers, alone.covers, "covers");
+        expectSameMemory(shared.coverCells, alone.coverCells, "cells");
+        expectSameMemory(shared.reach, alone.reach, "reach");
+        expectSameMemory(shared.bounds, alone.bounds, "bounds");
+        expectSameMemory(shared.albedo, alone.albedo, "albedo");
+        expectSameMemory(shared.emission, alone.emission, "emission");
+        expectSameMemory(shared.material, alone.material, "materials");
+        expectSameMemory(shared.instance, alone.instance, "instances");
+    }
 }
 
 } // namespace relume

@@ -1,6 +1,8 @@
 // SewSeams, cut into what each chunk of patches is responsible for, is held against makeLightmap, which fills
 // whole maps.
 #include "bake/output/lightmap.h"
+
+#include "assets/base/worker_pool.h"
 #include "bake/surface/seam_plan.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +97,16 @@ TEST(SeamPlan, FillsWhatMakeLightmapFills) {
             const std::vector<glm::vec4> light = randomLight(set.scene.patches.size(), 7);
             std::vector<Texel> texels(size_t{size} * size);
             follow(set, plan, all, light, texels);
-            expectSame(texels, makeLightmap(set, light, {.sew = rings > 0, .dilate = rings}));
+            const FloatImage alone = makeLightmap(set, light, {.sew = rings > 0, .dilate = rings});
+            expectSame(texels, alone);
+            for (const bool rtrad : {false, true}) { // on all cores it is the same
+                LightmapDesc desc{.sew = rings > 0, .dilate = rings, .rtrad = rtrad};
+                if (rtrad) desc.quantity = Quantity::Radiance;
+                const FloatImage whole = rtrad ? makeLightmap(set, light, desc) : alone;
+                WorkerPool pool(3);
+                desc.pool = &pool;
+                EXPECT_EQ(makeLightmap(set, light, desc).planes, whole.planes);
+            }
         }
     }
 }
