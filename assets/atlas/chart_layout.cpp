@@ -19,8 +19,15 @@ namespace {
 constexpr double kThin = 0.5;  // [texels]; a side below it needs no gutter: see layOutCharts
 constexpr double kReach = 0.5; // [texels], how far bilinear filters reach beyond a texel's edge
 constexpr double kThinnest =
-    0.125;                      // [texels]; below it float UVs of a large atlas could not tell corners apart
-constexpr double kNeedle = 8.0; // [texels]; a chart no wider may be shortened to the atlas' length
+    0.125; // [texels]; below it float UVs of a large atlas could not tell corners apart
+// A chart narrower than this ends on the centres of texels, where filters read no texel beyond: it needs no
+// gutter, and is a texel longer in place of two. Wider ones gain less than patches that lie on their surface
+// as a whole.
+constexpr double kCentred = 16.0; // [texels]
+// So far beyond the centre it ends, which rasterizers that count 1/256 texels find inside, and filters that
+// do give what lies beyond no weight that is more. [texels]
+constexpr double kBeyond = 1.0 / 256.0;
+constexpr double kNeedle = 8.0;       // [texels]; a chart no wider may be shortened to the atlas' length
 constexpr double kShortened = 1.15;   // times the atlas' length: any chart up to it may be shortened to that
 constexpr uint32_t kMostCells = 2048; // to a side: packing time grows with the fourth power of it
 constexpr uint32_t kSmall = 3;        // [texels]; charts of no longer box are turned by a quarter at most
@@ -72,14 +79,19 @@ std::optional<ChartPlace> fit(const LayoutChart& chart, const Trial& trial, bool
     const glm::dvec2 density = turned ? glm::dvec2(high, wide) : glm::dvec2(wide, high);
     const glm::dvec2 texels = chart.chart->extent * density;
     const bool needle = std::min(texels.x, texels.y) <= kNeedle;
+    const bool centred = std::min(texels.x, texels.y) < kCentred;
     ChartPlace place;
     for (int c = 0; c < 2; ++c) {
         const double extent = std::max(chart.chart->extent[c], 1e-300);
         if (!(texels[c] <= kShortened * trial.size) && !needle) return std::nullopt;
         const double whole = std::clamp(std::round(texels[c]), 1.0, double(trial.size));
-        const double side = texels[c] < 1.0 ? std::max(texels[c], kThinnest) : whole;
-        place.box[c] = static_cast<uint32_t>(whole);
-        place.inset[c] = 0.5 * (whole - std::min(side, whole));
+        const bool toCentres = centred && texels[c] >= kThin && whole < double(trial.size);
+        const double side = toCentres         ? whole + 2.0 * kBeyond
+                            : texels[c] < 1.0 ? std::max(texels[c], kThinnest)
+                                              : whole;
+        const double box = toCentres ? whole + 1.0 : whole;
+        place.box[c] = static_cast<uint32_t>(box);
+        place.inset[c] = 0.5 * (box - std::min(side, box));
         place.stretch[c] = side / extent;
     }
     return place;

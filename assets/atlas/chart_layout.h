@@ -51,11 +51,13 @@ struct ChartLayout {
 };
 
 /// Packs the charts' true shapes. No texel is touched by two charts, and none that bilinear filters read for
-/// a chart is touched or read by another one: between borders on the edges of texels there are 2 empty
-/// texels. A side shorter than half a texel needs no gutter: it lies in the middle of its texel, where
-/// filters see little of the neighbours. A side is rounded to whole texels, and one shorter than a texel
-/// stays as it is, in the middle of one. The result is the same on any number of threads. Throws Error, its
-/// message without a subject, where there are more charts than texels.
+/// a chart, with more than 1/256 of the weight, is touched or read by another one: between borders on the
+/// edges of texels there are 2 empty texels. A chart that is narrower than 16 texels ends on the centres of
+/// texels, where filters read nothing beyond: such charts lie side by side, and each covers the centres of
+/// all its texels. A side shorter than half a texel needs no gutter either: it lies in the middle of its
+/// texel, where filters see little of the neighbours. Other sides are rounded to whole texels. The result is
+/// the same on any number of threads. Throws Error, its message without a subject, where there are more
+/// charts than texels.
 ChartLayout layOutCharts(std::span<const LayoutChart> charts, const LayoutDesc& desc, WorkerPool& pool);
 
 /// Places the charts that have no place yet beside those that have one, at the density and in the aspect of

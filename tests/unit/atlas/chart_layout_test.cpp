@@ -230,6 +230,46 @@ TEST(ChartLayout, RectanglesLieOnWholeTexels) {
     }
 }
 
+TEST(ChartLayout, SmallChartsLieSideBySide) {
+    WorkerPool pool(1);
+    // 8 x 8 squares of 4 texels and one more, not of two, fill 40 x 40.
+    const std::vector<PlanarChart> charts(64, rectangle(1, 1));
+    const ChartLayout layout = layOutCharts(layoutOf(charts), {40}, pool);
+    EXPECT_EQ(expectSound(charts, layout, 40), 1.0);
+    EXPECT_EQ(layout.reserved, layout.touched);
+    for (const ChartPlace& place : layout.places) {
+        EXPECT_EQ(place.box, glm::uvec2(5));
+        const glm::dvec2 a = place.texelOf({0, 0}), b = place.texelOf({1, 1});
+        const glm::dvec2 low = glm::min(a, b) - glm::dvec2(place.corner);
+        const glm::dvec2 high = glm::max(a, b) - glm::dvec2(place.corner);
+        for (int c = 0; c < 2;
+             ++c) { // it covers the centres of its outermost texels, by no more than filters tell
+            EXPECT_LT(low[c], 0.5);
+            EXPECT_GE(low[c], 0.5 - 1.0 / 256.0 - 1e-9);
+            EXPECT_GT(high[c], 4.5);
+            EXPECT_LE(high[c], 4.5 + 1.0 / 256.0 + 1e-9);
+        }
+    }
+}
+
+TEST(ChartLayout, NarrowStripsCoverTheCentresOfTheirTexels) {
+    WorkerPool pool(1);
+    std::vector<PlanarChart> charts;
+    for (int i = 0; i < 40; ++i)
+        charts.push_back(rectangle(0.02 + 0.02 * i, 20.0)); // from far below a texel to a few
+    const ChartLayout layout = layOutCharts(layoutOf(charts), {128}, pool);
+    expectSound(charts, layout, 128);
+    for (size_t i = 0; i < charts.size(); ++i) {
+        const ChartPlace& place = layout.places[i];
+        const glm::dvec2 a = place.texelOf({0, 0}), b = place.texelOf(charts[i].extent);
+        for (int c = 0; c < 2; ++c) {
+            const double low = std::min(a[c], b[c]), high = std::max(a[c], b[c]);
+            EXPECT_LT(std::floor(low) + 0.5, high) << i;
+            EXPECT_GT(std::floor(low) + 0.5, low) << i;
+        }
+    }
+}
+
 TEST(ChartLayout, AGivenDensityIsKeptWhereItFits) {
     WorkerPool pool(0);
     const std::vector<PlanarChart> charts = randomCharts(100, 5, 0.1, 2.0);

@@ -101,8 +101,9 @@ TEST_P(UnwrappedScene, NoTexelIsTouchedTwice) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, UnwrappedScene,
                          testing::Values(Expected{"cornell_statue", 1024, 0.88},
-                                         Expected{"atrium", 1024, 0.83}, Expected{"gallery", 512, 0.80},
+                                         Expected{"atrium", 1024, 0.90}, Expected{"gallery", 512, 0.80},
                                          Expected{"octagon", 256, 0.45}, Expected{"cornell_geom", 384, 0.80},
+                                         Expected{"town", 1024, 0.90}, Expected{"raw", 1024, 0.88},
                                          Expected{"cornell_layers", 64, 0.5},
                                          Expected{"cornell_small", 128, 0.6}),
                          [](const testing::TestParamInfo<Expected>& tested) {
