@@ -29,7 +29,7 @@ CONST uint kReplicates = 4u;
 // Patch::flags, bits 0..7
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided mesh light: sends its emission, is never shown
-CONST uint kPatchThin = 4u;     // stands for a chart that covers no texel centre: shown nowhere either
+CONST uint kPatchThin = 4u;     // stands for a chart that covers no texel centre: no error counts it
 
 // These say which neighbouring patches have all their directions in common: none; those in the same place of
 // their 4 x 4 texels; those of one chunk.

@@ -13,9 +13,9 @@ constexpr uint32_t kMaxLightmapSize = 4096;
 
 /// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
 /// one entry per patch, padding included. Patches of objects that were hidden later look like padding.
-/// Besides one patch per covered texel there is one for each chart that covers no texel centre, and one for
-/// the back of every texel of a double-sided mesh light (flag kPatchBackSide); neither is in
-/// scene.texelToPatch.
+/// Besides one patch per covered texel there is one for each chart that covers no texel centre (flag
+/// kPatchThin), which scene.texelToPatch has where its texel is no other patch's, and one for the back of
+/// every texel of a double-sided mesh light (flag kPatchBackSide), which it never has.
 struct PatchSet {
     TraceScene scene;
     std::vector<shader::PatchEdges> edges;

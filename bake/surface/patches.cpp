@@ -220,8 +220,16 @@ private:
                 set_.scene.texelToPatch[group_.window.index(texel.x, texel.y)] = next;
                 putFront(texelPatch(texel, triangle), triangle);
             });
-            for (const ThinChart& thin : thin_[tileOf(tile.x, tile.y)])
-                putFront(thinPatch(thin), thin.triangle);
+            for (const ThinChart& thin : thin_[tileOf(tile.x, tile.y)]) {
+                const NewPatch p = thinPatch(thin);
+                // Where no other patch has its texel it is shown there: else neighbours would fill it, which
+                // are strangers where charts lie side by side.
+                const uint32_t texel = p.patch.flags >> 8;
+                uint32_t& shown =
+                    set_.scene.texelToPatch[group_.window.index(texel % group_.size, texel / group_.size)];
+                if (shown == kNoPatch) shown = next;
+                putFront(p, thin.triangle);
+            }
             for (const NewPatch& back : backs)
                 put(next++, back);
             backs.clear();

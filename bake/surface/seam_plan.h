@@ -26,8 +26,8 @@ struct SeamPlan {
 SeamPlan buildSeamPlan(const PatchSet& patches, uint32_t rings);
 
 /// Returns the texel that shows each patch, padding included; shader::kNoTexel where none does: for patches
-/// that send nothing because they lie inside something, back sides, patches of charts that cover no texel,
-/// and padding.
+/// that send nothing because they lie inside something, back sides, patches of charts that cover no texel
+/// centre where another patch has their texel, and padding.
 std::vector<uint32_t> shownTexels(const PatchSet& patches);
 
 } // namespace relume
