@@ -15,12 +15,13 @@ namespace {
 constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6,
                 kMeterScale = 7, kMedianDensity = 8, kExposure = 9, kUnit = 10, kRangeLow = 11,
                 kRangeHigh = 12;
-constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye = 3;
+constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye = 3, kBallEye = 3;
 constexpr GLint kSkyAhead = 0, kSkyAcross = 1, kSkyAbove = 2, kSkySize = 3, kSkyRadiance = 4,
                 kSkyRotation = 5;
 constexpr GLuint kLightmapUnit = 3;
 // These are keys of programs; those of the scene are below.
-constexpr uint32_t kSkyProgram = 1u << 29, kLineProgram = 1u << 30, kVoxelProgram = 1u << 31;
+constexpr uint32_t kBallProgram = 1u << 28, kSkyProgram = 1u << 29, kLineProgram = 1u << 30,
+                   kVoxelProgram = 1u << 31;
 
 constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
 
@@ -291,6 +292,33 @@ void SceneRenderer::drawLines(const Frame& frame, const Pass& pass) {
     glDisable(GL_BLEND);
 }
 
+void SceneRenderer::drawBalls(const Frame& frame, const Pass& pass) {
+    const View view = frame.settings.view;
+    if (frame.balls->count() == 0 || (view != View::Lit && view != View::Lighting)) return;
+    const auto tone = static_cast<uint32_t>(frame.settings.tone);
+    const bool lighting = view == View::Lighting;
+    const gl::Program& program =
+        programs_.get(kBallProgram | tone << 1 | (lighting ? 1u : 0u), [&]() -> gl::Program::Desc {
+            return {.vertex = "gl/ball.vert",
+                    .fragment = "gl/ball.frag",
+                    .definitions = {"LIGHTING=" + std::to_string(lighting ? 1 : 0),
+                                    "TONE=" + std::to_string(tone) + "u"},
+                    .name = "balls"};
+        });
+    const bool orthographic = frame.camera.halfHeight > 0.0f;
+    program.set(kViewProjection, pass.viewProjection);
+    program.set(kBallEye,
+                orthographic ? glm::vec4(-forward(frame.camera), 0.0f) : glm::vec4(frame.camera.eye, 1.0f));
+    program.set(kMeterScale, pass.meterScale);
+    program.set(kExposure, std::exp2(pass.exposure));
+    program.use();
+    constexpr GLsizei kSquare = 6;
+    glDisable(GL_CULL_FACE);
+    glBindVertexArray(empty_.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, frame.balls->balls().get());
+    glDrawArraysInstanced(GL_TRIANGLES, 0, kSquare, static_cast<GLsizei>(frame.balls->count()));
+}
+
 void SceneRenderer::render(const Frame& frame, float exposure) {
     const gl::Timer::Scope scope(timer_, "scene");
     const float aspect = static_cast<float>(picture_.width()) / static_cast<float>(picture_.height());
@@ -304,6 +332,7 @@ void SceneRenderer::render(const Frame& frame, float exposure) {
     else
         drawScene(frame, pass);
     if (frame.voxels == nullptr) {
+        if (frame.balls != nullptr) drawBalls(frame, pass);
         drawSky(frame, pass);
         drawPanes(frame, pass);
     }
@@ -331,6 +360,7 @@ SceneRenderer::Shown SceneRenderer::describe(const Frame& frame, const Target& t
     return {.scene = frame.scene.version(),
             .lines = frame.lines != nullptr ? frame.lines->version() : 0,
             .voxels = frame.voxels != nullptr ? frame.voxels->version() : 0,
+            .balls = frame.balls != nullptr ? frame.balls->version() : 0,
             .lightmap = frame.lightmap,
             .camera = frame.camera,
             .settings = frame.settings,

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "renderer/ball_draw.h"
 #include "renderer/camera.h"
 #include "renderer/draw_settings.h"
 #include "renderer/exposure_meter.h"
@@ -32,6 +33,7 @@ public:
         DrawSettings settings;
         const LineDraw* lines = nullptr;   // over the scene
         const VoxelDraw* voxels = nullptr; // in the scene's place
+        const BallDraw* balls = nullptr;   // in the scene, in views of light
     };
     struct Counts {
         uint32_t drawn = 0, culled = 0; // SceneDraws
@@ -70,7 +72,7 @@ public:
 private:
     /// Holds all that makes a picture what it is.
     struct Shown {
-        uint64_t scene = 0, lines = 0, voxels = 0; // versions
+        uint64_t scene = 0, lines = 0, voxels = 0, balls = 0; // versions
         LightmapTexture lightmap;
         ViewCamera camera;
         DrawSettings settings;
@@ -97,6 +99,7 @@ private:
     void drawSky(const Frame& frame, const Pass& pass);
     void drawVoxels(const Frame& frame, const Pass& pass);
     void drawLines(const Frame& frame, const Pass& pass);
+    void drawBalls(const Frame& frame, const Pass& pass);
     const gl::Program& sceneProgram(const Frame& frame, const SceneDraw& draw);
     void setUniforms(const gl::Program& program, const Frame& frame, const Pass& pass) const;
     const gl::Framebuffer& surface() const { return samples_ > 0 ? multisampled_ : picture_; }

@@ -13,6 +13,7 @@
 #include "app/export/export_folder.h"
 #include "app/export/web/web_page.h"
 #include "app/live/lightmap_exchange.h"
+#include "app/live/lit_ball.h"
 #include "assets/model/scene_edits.h"
 #include "bake/baker/baker.h"
 #include "bake/layers/light_groups.h"
@@ -134,6 +135,7 @@ struct BakeOrders {
     std::optional<std::vector<uint32_t>> seenTiles;
     std::optional<InspectRequest> inspect;
     std::optional<ProbeRequest> probes;
+    std::optional<BallRequest> balls;
     std::optional<uint32_t> voxels; // resolution
     std::vector<Export> exports;
     std::vector<EngineExport> engineExports;
@@ -148,6 +150,7 @@ struct BakeDesk {
     BakeStatus status;
     std::optional<InspectPaths> paths;
     std::optional<InspectVoxels> voxels;
+    std::optional<LitBalls> balls;
     std::function<void()> wake;
     const PreparedScene* held = nullptr; // the bake thread may still read it
     LightmapExchange exchange;

@@ -79,6 +79,7 @@ void BakeLoop::openDevice() {
     spdlog::info("device: {}", status_.device);
     maps_ = std::make_unique<MapPublisher>(*device_, desk_.exchange,
                                            MapSlots::Desc{.display = desc_.display, .host = desc_.host});
+    balls_.emplace(*device_);
     status_.display = maps_->choice();
     spdlog::info("display: {}", status_.display);
     report(true);
@@ -90,11 +91,11 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
     const auto something = [&] {
         const BakeOrders& o = desk_.orders;
         return o.quit || o.start || o.reset || o.abort || o.reload || o.run != BakeOrders::Run::Keep ||
-               o.batchMs || o.seenTiles || o.inspect || o.probes || o.voxels || !o.exports.empty() ||
-               !o.engineExports.empty();
+               o.batchMs || o.seenTiles || o.inspect || o.probes || o.balls || o.voxels ||
+               !o.exports.empty() || !o.engineExports.empty();
     };
     if (status_.phase != Phase::Baking) {
-        if (maps_ && maps_->owes())
+        if (maps_ && (maps_->owes() || balls_->owes()))
             desk_.news.wait_for(lock, kSlotWait, something);
         else
             desk_.news.wait(lock, something);
@@ -112,6 +113,7 @@ void BakeLoop::obey(BakeOrders& orders) {
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
     if (orders.inspect) inspect_ = *orders.inspect;
     if (orders.probes) maps_->setProbes(std::move(*orders.probes));
+    if (orders.balls) balls_->ask(std::move(*orders.balls));
     if (orders.start) prepare(*orders.start);
     if (!bake_.baker()) return;
     if (orders.reload) reloadShaders();
@@ -139,7 +141,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     begin();
     const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
     if (solverOnly) onPhase("solver set-up");
-    maps_->end();
+    endMaps();
     if (solverOnly)
         bake_.makeSolver();
     else
@@ -153,7 +155,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
 // Goes on with a bake that follows an edit. Maps begin again where texels have other patches now.
 void BakeLoop::goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore) {
     if (texelMoves() != movesBefore) {
-        maps_->end();
+        endMaps();
         beginMaps(true);
     }
     status_.bake = start.number;
@@ -183,7 +185,7 @@ void BakeLoop::reloadShaders() {
     }
     begin();
     const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
-    maps_->end();
+    endMaps();
     bake_.makeAgain(*device_);
     beginMaps(true);
     ready();
@@ -192,7 +194,7 @@ void BakeLoop::reloadShaders() {
 // Begins again from no light, with the same patches.
 void BakeLoop::reset() {
     begin();
-    maps_->end();
+    endMaps();
     bake_.makeSolver();
     beginMaps(true);
     ready();
@@ -310,8 +312,32 @@ void BakeLoop::refuseExports() {
 
 void BakeLoop::publish() {
     if (!maps_) return;
-    if (maps_->publish(inspect_)) wake();
+    const bool map = maps_->publish(inspect_);
+    if (publishBalls() || map) wake();
     status_.display = maps_->choice();
+}
+
+// Tells the light at places that the viewer looks at, where it has changed. Returns whether it did.
+bool BakeLoop::publishBalls() {
+    if (!bake_.baker() || waiting_) return false;
+    const std::function<std::vector<glm::vec4>()> light = [this] { return maps_->lightNow(); };
+    std::optional<LitBalls> balls = balls_->next({.baker = *bake_.baker(),
+                                                  .scene = bake_.level().scene,
+                                                  .settings = bake_.settings(),
+                                                  .version = maps_->lightVersion(),
+                                                  .light = light});
+    if (!balls) return false;
+    const std::lock_guard lock(desk_.mutex);
+    // What nobody took yet was traced for what is told now.
+    balls->traced = balls->traced || (desk_.balls && desk_.balls->traced);
+    desk_.balls = std::move(balls);
+    return true;
+}
+
+// Ends the maps of a bake, whose patches may go then.
+void BakeLoop::endMaps() {
+    maps_->end();
+    balls_->forget();
 }
 
 // Gives up a bake that cannot go on; what is shown stays.
@@ -325,7 +351,7 @@ void BakeLoop::fail(const std::string& message) {
 }
 
 void BakeLoop::giveUp() {
-    if (maps_) maps_->end();
+    if (maps_) endMaps();
     bake_.end();
 }
 

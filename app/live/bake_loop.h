@@ -7,6 +7,7 @@
 
 #include "app/live/bake_desk.h"
 #include "app/live/bake_meter.h"
+#include "app/live/light_balls.h"
 #include "app/live/map_publisher.h"
 #include "app/live/scene_bake.h"
 #include "assets/base/clock.h"
@@ -47,6 +48,8 @@ private:
     void exportAll();
     void refuseExports();
     void publish();
+    bool publishBalls();
+    void endMaps();
     void fail(const std::string& message);
     void giveUp();
     void report(bool always);
@@ -56,6 +59,7 @@ private:
     BakeDeviceDesc desc_;
     std::unique_ptr<vk::Device> device_;
     std::unique_ptr<MapPublisher> maps_;
+    std::optional<LightBalls> balls_;
     SceneBake bake_;
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
     std::vector<BakeOrders::Export> exports_;  // not written yet, as those of the next line

@@ -86,6 +86,10 @@ void LiveBake::askProbes(ProbeRequest request) {
     order([&](BakeOrders& orders) { orders.probes = std::move(request); });
 }
 
+void LiveBake::askBalls(BallRequest request) {
+    order([&](BakeOrders& orders) { orders.balls = std::move(request); });
+}
+
 void LiveBake::exportLightmap(BakeOrders::Export wanted) {
     order([&](BakeOrders& orders) { orders.exports.push_back(std::move(wanted)); });
 }
@@ -107,6 +111,11 @@ std::optional<InspectPaths> LiveBake::takePaths() {
 std::optional<InspectVoxels> LiveBake::takeVoxels() {
     const std::lock_guard lock(desk_->mutex);
     return std::exchange(desk_->voxels, std::nullopt);
+}
+
+std::optional<LitBalls> LiveBake::takeBalls() {
+    const std::lock_guard lock(desk_->mutex);
+    return std::exchange(desk_->balls, std::nullopt);
 }
 
 void LiveBake::setWake(std::function<void()> wake) {

@@ -48,6 +48,8 @@ public:
     void askVoxels(uint32_t resolution);
     /// Asks for layers at texels; exchange().takeProbe() answers, where each light has a layer.
     void askProbes(ProbeRequest request);
+    /// Asks for the light at places, now and whenever it changes; takeBalls() answers.
+    void askBalls(BallRequest request);
     /// Writes the lightmap as it stands; the log tells how it went.
     void exportLightmap(BakeOrders::Export wanted);
     /// Writes the level with its lightmap as it stands, as an engine reads it; the log tells how it went.
@@ -57,6 +59,7 @@ public:
     LightmapExchange& exchange() { return desk_->exchange; }
     std::optional<InspectPaths> takePaths();
     std::optional<InspectVoxels> takeVoxels();
+    std::optional<LitBalls> takeBalls();
     /// Sets what the bake thread calls whenever there is something new to see. It must be harmless at any
     /// time.
     void setWake(std::function<void()> wake);

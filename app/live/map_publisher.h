@@ -48,6 +48,8 @@ public:
 
     /// Returns the light as the solver has it now for each patch. Needs a bake.
     std::vector<glm::vec4> lightNow();
+    /// Returns the number of the light as the solver has it now. Needs a bake.
+    uint64_t lightVersion() { return askSolver().version; }
     /// Returns the bake as one looks at it, beside its light. Needs a bake.
     BakeInspection& inspection() { return running_->inspection; }
 

@@ -35,12 +35,11 @@ public:
         const Lights lights = baker_.layers() ? layerLights(set) : allLight();
         std::vector<std::vector<Harmonics>> harmonics(lights.size());
         ProbeTracer tracer(device_, baker_.patches(), probeLamps(scene_, baker_.patches().scene.mesh),
-                           plan.points,
-                           {.samples = samples, .tracer = parseTracerKind(baker_.tracer().name())});
+                           plan.points, parseTracerKind(baker_.tracer().name()));
         const size_t atOnce = probeLightsAtOnce(baker_.patches().albedo.size());
         for (size_t first = 0; first == 0 || first < lights.size(); first += atOnce)
-            bakeLights(set, tracer, probeBatch(samples), lights, first,
-                       std::min(lights.size(), first + atOnce), harmonics);
+            bakeLights(set, tracer, samples, lights, first, std::min(lights.size(), first + atOnce),
+                       harmonics);
         keep(set, std::move(harmonics));
         return set;
     }
@@ -75,14 +74,15 @@ private:
         return (static_cast<double>(first) + done * static_cast<double>(end - first)) / all;
     }
 
-    void bakeLights(ProbeSet& set, ProbeTracer& tracer, uint32_t batch, const Lights& lights, size_t first,
+    void bakeLights(ProbeSet& set, ProbeTracer& tracer, uint32_t samples, const Lights& lights, size_t first,
                     size_t end, std::vector<std::vector<Harmonics>>& harmonics) {
         std::vector<ProbeLight> made;
         for (size_t l = first; l < end; ++l)
             made.push_back(lights[l]());
         const auto count = static_cast<uint32_t>(set.probes.size());
+        const uint32_t batch = probeBatch(samples);
         for (uint32_t p = 0; p < count; p += batch) {
-            const ProbeLinks links = tracer.trace(p, std::min(batch, count - p));
+            const ProbeLinks links = tracer.trace(p, std::min(batch, count - p), samples);
             rays_ += links.rays;
             const std::vector<std::vector<Harmonics>> some = gatherProbes(
                 device_.workers(), links, made,

@@ -51,9 +51,9 @@ static_assert(kProbeStride * kProbeFaces % shader::kChunk == 0);
 class ProbeTracer::Impl {
 public:
     Impl(const vk::Device& device, const PatchSet& patches, LampSet lamps, std::vector<glm::vec3> points,
-         const ProbeDesc& desc)
-        : device_(device), samples_(desc.samples), points_(std::move(points)), lamps_(std::move(lamps)),
-          scene_(patches.scene), sceneChunks_(patches.chunkCount()), commands_(device) {
+         TracerKind kind)
+        : device_(device), points_(std::move(points)), scene_(patches.scene),
+          sceneChunks_(patches.chunkCount()), commands_(device) {
         const size_t faces = points_.size() * kProbeFaces, padded = paddedFaces(points_.size());
         for (size_t i = 0; i < padded; ++i) {
             const size_t face = std::min(i, faces - 1);
@@ -61,17 +61,33 @@ public:
             scene_.patchChart.push_back(kNoChart);
         }
         patches_ = vk::makeBuffer(device, scene_.patches, "probes' patches");
-        tracer_ = makeTracer(desc.tracer, device, scene_, patches_);
+        tracer_ = makeTracer(kind, device, scene_, patches_);
+        setLamps(std::move(lamps));
+    }
+
+    void setLamps(LampSet lamps) {
+        lamps_ = std::move(lamps);
+        targets_ = 0;
         for (const Lamp& lamp : lamps_.lamps)
             targets_ += lamp.samples;
     }
 
-    ProbeLinks trace(uint32_t first, uint32_t count) {
+    void move(uint32_t first, const std::vector<glm::vec3>& points) {
+        const size_t begin = size_t{sceneChunks_} * kChunk + size_t{first} * kProbeFaces;
+        const size_t count = points.size() * kProbeFaces;
+        for (size_t i = 0; i < count; ++i)
+            scene_.patches[begin + i] =
+                faceOf(points[i / kProbeFaces], first * kProbeFaces + static_cast<uint32_t>(i));
+        std::copy(points.begin(), points.end(), points_.begin() + first);
+        vk::upload(device_, patches_, &scene_.patches[begin], count * sizeof(Patch), begin * sizeof(Patch));
+    }
+
+    ProbeLinks trace(uint32_t first, uint32_t count, uint32_t samples) {
         const auto begin = points_.begin() + first;
-        ProbeLinks result{.first = first, .points = {begin, begin + count}, .samples = samples_};
+        ProbeLinks result{.first = first, .points = {begin, begin + count}, .samples = samples};
         result.lamps = lamps_.lamps;
         result.targets = targets_;
-        result.links.resize(size_t{count} * kProbeFaces * samples_);
+        result.links.resize(size_t{count} * kProbeFaces * samples);
         result.seen.resize(size_t{count} * targets_);
         traceLinks(result);
         if (targets_ > 0) traceTargets(result);
@@ -99,7 +115,8 @@ private:
     }
 
     void traceLinks(ProbeLinks& result) {
-        const uint64_t perChunk = uint64_t{samples_} * kChunk;
+        const uint32_t samples = result.samples;
+        const uint64_t perChunk = uint64_t{samples} * kChunk;
         const uint32_t chunks = chunksOf(result), most = batchOf(perChunk * sizeof(uint32_t), chunks);
         const vk::Buffer links(device_, {.size = most * perChunk * sizeof(uint32_t),
                                          .memory = vk::Memory::Host,
@@ -111,7 +128,7 @@ private:
             tracer_->closest(cmd, {.firstChunk = chunkInScene(result, batch),
                                    .chunkCount = batch.count,
                                    .firstSample = 0,
-                                   .sampleCount = samples_,
+                                   .sampleCount = samples,
                                    .links = &links});
             vk::hostBarrier(cmd);
             commands_.run();
@@ -119,9 +136,9 @@ private:
             const size_t begin = size_t{batch.first} * kChunk;
             for (size_t i = begin; i < std::min(faces, begin + size_t{batch.count} * kChunk); ++i) {
                 const size_t local = i - begin;
-                for (uint32_t k = 0; k < samples_; ++k)
-                    result.links[i * samples_ + k] =
-                        from[(local / kChunk * samples_ + k) * kChunk + local % kChunk];
+                for (uint32_t k = 0; k < samples; ++k)
+                    result.links[i * samples + k] =
+                        from[(local / kChunk * samples + k) * kChunk + local % kChunk];
             }
         }
     }
@@ -189,7 +206,7 @@ private:
     }
 
     const vk::Device& device_;
-    uint32_t samples_, targets_ = 0;
+    uint32_t targets_ = 0;
     std::vector<glm::vec3> points_;
     LampSet lamps_;
     TraceScene scene_;
@@ -200,18 +217,26 @@ private:
 };
 
 ProbeTracer::ProbeTracer(const vk::Device& device, const PatchSet& patches, LampSet lamps,
-                         std::vector<glm::vec3> points, const ProbeDesc& desc) {
+                         std::vector<glm::vec3> points, TracerKind kind) {
     ASSERT(!points.empty());
     const vk::MemoryOwner owner("probes");
-    impl_ = std::make_unique<Impl>(device, patches, std::move(lamps), std::move(points), desc);
+    impl_ = std::make_unique<Impl>(device, patches, std::move(lamps), std::move(points), kind);
 }
 
 ProbeTracer::~ProbeTracer() = default;
 
-ProbeLinks ProbeTracer::trace(uint32_t first, uint32_t count) {
+ProbeLinks ProbeTracer::trace(uint32_t first, uint32_t count, uint32_t samples) {
     ASSERT(first % kProbeStride == 0);
     const vk::MemoryOwner owner("probes");
-    return impl_->trace(first, count);
+    return impl_->trace(first, count, samples);
+}
+
+void ProbeTracer::move(uint32_t first, const std::vector<glm::vec3>& points) {
+    impl_->move(first, points);
+}
+
+void ProbeTracer::setLamps(LampSet lamps) {
+    impl_->setLamps(std::move(lamps));
 }
 
 glm::vec3 probeDirection(uint32_t probe, uint32_t face, uint32_t sample) {
@@ -237,7 +262,7 @@ ProbeLinks traceProbes(const vk::Device& device, const PatchSet& patches, const 
                        std::vector<glm::vec3> points, const ProbeDesc& desc) {
     if (points.empty()) return {.samples = desc.samples};
     const auto count = static_cast<uint32_t>(points.size());
-    return ProbeTracer(device, patches, lamps, std::move(points), desc).trace(0, count);
+    return ProbeTracer(device, patches, lamps, std::move(points), desc.tracer).trace(0, count, desc.samples);
 }
 
 uint64_t probeTracerBytes(const ProbeExtent& extent, uint64_t patches) {

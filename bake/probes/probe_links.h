@@ -53,11 +53,17 @@ public:
     /// Takes where all probes stand, at least one. The device must outlive it; patches and lights are copied.
     /// Throws Error.
     ProbeTracer(const vk::Device& device, const PatchSet& patches, LampSet lamps,
-                std::vector<glm::vec3> points, const ProbeDesc& desc);
+                std::vector<glm::vec3> points, TracerKind kind);
     ~ProbeTracer();
 
-    /// Returns the links of `count` probes from number `first` on, which is a multiple of kProbeStride.
-    ProbeLinks trace(uint32_t first, uint32_t count);
+    /// Returns the links of `count` probes from number `first` on, which is a multiple of kProbeStride,
+    /// by so many directions per face, a multiple of 8.
+    ProbeLinks trace(uint32_t first, uint32_t count, uint32_t samples);
+
+    /// Follow probes that stand elsewhere now, from number `first` on, and analytic lights that do: the
+    /// tracer stays as it is.
+    void move(uint32_t first, const std::vector<glm::vec3>& points);
+    void setLamps(LampSet lamps);
 
 private:
     class Impl;

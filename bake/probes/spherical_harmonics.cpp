@@ -4,12 +4,27 @@
 
 namespace relume {
 
+namespace {
+
+constexpr double kBand0 = 0.28209479177387814;   // sqrt(1 / (4 pi))
+constexpr double kBand1 = 0.48860251190291992;   // sqrt(3 / (4 pi))
+constexpr double kBand2 = 1.0925484305920792;    // sqrt(15 / (4 pi))
+constexpr double kBand2z = 0.31539156525252005;  // sqrt(5 / (16 pi))
+constexpr double kBand2xy = 0.54627421529603959; // sqrt(15 / (16 pi))
+// The cosine's factors of the three bands [Ramamoorthi and Hanrahan 2001, equation 8].
+constexpr std::array<double, 9> kCosine = {std::numbers::pi,
+                                           2.0 / 3.0 * std::numbers::pi,
+                                           2.0 / 3.0 * std::numbers::pi,
+                                           2.0 / 3.0 * std::numbers::pi,
+                                           std::numbers::pi / 4.0,
+                                           std::numbers::pi / 4.0,
+                                           std::numbers::pi / 4.0,
+                                           std::numbers::pi / 4.0,
+                                           std::numbers::pi / 4.0};
+
+} // namespace
+
 std::array<double, 9> harmonicsAt(const glm::dvec3& d) {
-    constexpr double kBand0 = 0.28209479177387814;   // sqrt(1 / (4 pi))
-    constexpr double kBand1 = 0.48860251190291992;   // sqrt(3 / (4 pi))
-    constexpr double kBand2 = 1.0925484305920792;    // sqrt(15 / (4 pi))
-    constexpr double kBand2z = 0.31539156525252005;  // sqrt(5 / (16 pi))
-    constexpr double kBand2xy = 0.54627421529603959; // sqrt(15 / (16 pi))
     return {kBand0,
             kBand1 * d.y,
             kBand1 * d.z,
@@ -28,12 +43,20 @@ void addLight(Harmonics& harmonics, const glm::dvec3& direction, const glm::dvec
 }
 
 glm::dvec3 irradiance(const Harmonics& radiance, const glm::dvec3& normal) {
-    constexpr double kPi = std::numbers::pi;
     const std::array<double, 9> values = harmonicsAt(normal);
     glm::dvec3 sum(0.0);
     for (size_t i = 0; i < values.size(); ++i)
-        sum += (i == 0 ? kPi : i < 4 ? 2.0 / 3.0 * kPi : kPi / 4.0) * values[i] * radiance[i];
+        sum += kCosine[i] * values[i] * radiance[i];
     return sum;
+}
+
+std::array<glm::vec3, 9> lightingPolynomial(const Harmonics& radiance) {
+    constexpr std::array<double, 9> kFactors = {kBand0, kBand1,  kBand1, kBand1,  kBand2,
+                                                kBand2, kBand2z, kBand2, kBand2xy};
+    std::array<glm::vec3, 9> result;
+    for (size_t i = 0; i < result.size(); ++i)
+        result[i] = glm::vec3(kCosine[i] * kFactors[i] / std::numbers::pi * radiance[i]);
+    return result;
 }
 
 } // namespace relume

@@ -23,4 +23,8 @@ void addLight(Harmonics& harmonics, const glm::dvec3& direction, const glm::dvec
 /// negative beside a strong light.
 glm::dvec3 irradiance(const Harmonics& radiance, const glm::dvec3& normal);
 
+/// Returns what 1, y, z, x, xy, yz, 3z^2 - 1, xz and x^2 - y^2 of a unit normal (x, y, z) are multiplied with
+/// to sum up to lighting = irradiance / pi [cd/m^2] on a surface that has it.
+std::array<glm::vec3, 9> lightingPolynomial(const Harmonics& radiance);
+
 } // namespace relume

@@ -43,7 +43,8 @@ bool Inspection::follow(const BakeStatus& status, const LightList& lights, doubl
         asked_ = *wanted;
         bake_.inspect(asked_);
     }
-    const bool changed = takeAnswers();
+    const bool ballsChanged = balls_.follow();
+    const bool changed = takeAnswers() || ballsChanged;
     if (bakes(status.phase) && picture_.pane().hasScene()) askBesideMaps(status, time);
     return changed;
 }

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "app/live/live_bake.h"
+#include "app/viewer/picture/probe_balls.h"
 #include "app/viewer/picture/scene_view.h"
 
 namespace relume {
@@ -11,17 +12,21 @@ namespace relume {
 std::optional<InspectRequest> inspectionOf(const ViewState& view, const LightList& lights,
                                            const std::vector<LightGroup>& groups);
 
-/// Asks the bake for what the view shows: which map, links of a patch, voxels. It tells the bake which tiles
-/// the camera sees.
+/// Asks the bake for what the view shows: which map, links of a patch, voxels, the light of places. It tells
+/// the bake which tiles the camera sees.
 class Inspection {
 public:
     /// Both arguments must outlive it.
-    Inspection(LiveBake& bake, SceneView& picture) : bake_(bake), picture_(picture) {}
+    Inspection(LiveBake& bake, SceneView& picture) : bake_(bake), picture_(picture), balls_(bake, picture) {}
 
-    /// Says that another scene came.
-    void sceneCame() { askedBake_ = 0; }
+    /// Says that a scene came, which may be the former one, `kept` as it was looked at.
+    void sceneCame(bool kept) {
+        askedBake_ = 0;
+        balls_.sceneCame(kept);
+    }
     /// Asks for what the view shows now, and takes what was answered. Returns whether the picture changed.
     bool follow(const BakeStatus& status, const LightList& lights, double time);
+    ProbeBalls& balls() { return balls_; }
     /// Tells whether a map is the one that was asked for.
     bool asksFor(const PublishedMap& map) const;
 
@@ -31,6 +36,7 @@ private:
 
     LiveBake& bake_;
     SceneView& picture_;
+    ProbeBalls balls_;
     InspectRequest asked_;
     uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
     uint32_t askedVoxels_ = 0;

@@ -100,7 +100,7 @@ std::optional<GizmoPlace> gizmoOf(const LightStage& stage) {
     const Light* light = selectedLamp(stage);
     if (light == nullptr && !stage.object) return std::nullopt;
     const glm::vec3 origin = light != nullptr ? glm::vec3(light->transform[3]) : *stage.object;
-    return GizmoPlace{stage.screen, origin, stage.view.gizmo};
+    return GizmoPlace{stage.screen, origin, stage.mode.value_or(stage.view.gizmo)};
 }
 
 std::optional<LightKey> iconAt(const LightStage& stage, const glm::vec2& point) {

@@ -17,6 +17,7 @@ struct LightStage {
     ScreenView screen;                    // in points, like all below
     std::optional<glm::vec3> object = {}; // where the gizmo of the selected object is [m]; none: it has none
     float scale = 1.0f;                   // screen coordinates in a point
+    std::optional<GizmoMode> mode = {};   // in place of the view's
 };
 
 /// Returns the selected light without geometry, or nullptr where none is selected.

@@ -17,6 +17,7 @@ void ScenePane::setScene(const LoadedScene* scene) {
     gpu_.reset(); // before the new one takes its memory
     lines_.reset();
     voxels_.reset();
+    balls_.reset();
     exposures_.clear();
     reference_.reset();
     if (scene == nullptr) return;
@@ -191,7 +192,8 @@ void ScenePane::draw(const Look& look, glm::uvec2 size) {
                      .camera = look.camera,
                      .settings = settings,
                      .lines = settings.view == View::InspectMask ? lines_.get() : nullptr,
-                     .voxels = wanted.voxels ? voxels_.get() : nullptr},
+                     .voxels = wanted.voxels ? voxels_.get() : nullptr,
+                     .balls = balls_.get()},
                     target);
     const bool same = reference_ && look.map != nullptr && reference_->radiance == look.map->radiance;
     if (look.state.wipe && same && light_ && readsLightmap(settings.view) &&

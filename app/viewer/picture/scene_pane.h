@@ -34,6 +34,10 @@ public:
     /// Sets the links of a patch, which are drawn over the scene in the view of what it sees.
     void setPaths(const InspectPaths& paths);
     void setVoxels(const InspectVoxels& voxels);
+    /// Sets balls in the scene, which views of light show; nullptr: none.
+    void setBalls(std::unique_ptr<BallDraw> balls) { balls_ = std::move(balls); }
+    /// Returns the box around all that is there.
+    const Box& bounds() const { return bounds_; }
 
     struct Look {
         const ViewCamera& camera;
@@ -94,6 +98,7 @@ private:
     Box bounds_;
     std::unique_ptr<LineDraw> lines_;
     std::unique_ptr<VoxelDraw> voxels_;
+    std::unique_ptr<BallDraw> balls_;
     gl::Framebuffer picture_;
     std::unique_ptr<Reference> reference_;
     std::unique_ptr<SceneRenderer> referenceRenderer_; // keeps its own last picture

@@ -2,9 +2,13 @@
 
 #include "app/viewer/edits/nudge.h"
 #include "app/viewer/edits/object_edits.h"
+#include "app/viewer/picture/probe_balls.h"
 
 #include <array>
+#include <limits>
 #include <utility>
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -32,7 +36,49 @@ LightStage Mover::stage() const {
         .scale = scale};
     if (const std::optional<uint32_t> selected = object())
         stage.object = pivotOf(*session_.scene(), document.edits, *selected);
+    if (holdsBall()) {
+        stage.object = *picture_.state().ball;
+        stage.mode = GizmoMode::Translate; // a ball looks the same from all sides
+    }
     return stage;
+}
+
+// Tells whether the ball has the gizmo: whatever else was selected after it takes it away.
+bool Mover::holdsBall() const {
+    const ViewState& view = picture_.state();
+    return view.ball && view.ballSelected && !view.light && view.selected < 0;
+}
+
+void Mover::selectBall() {
+    ViewState& view = picture_.state();
+    view.ballSelected = true;
+    view.selected = -1;
+    view.light.reset();
+    feedback_.sceneChanged();
+}
+
+void Mover::toggleBall() {
+    if (session_.scene() == nullptr) return feedback_.note("there is no scene to put a ball into", true);
+    ViewState& view = picture_.state();
+    view.ballSelected = false;
+    if (view.ball) {
+        view.ball.reset();
+        return feedback_.sceneChanged();
+    }
+    view.ball = picture_.pane().bounds().centre();
+    selectBall();
+}
+
+bool Mover::selectBallAt(const glm::dvec2& at, const std::optional<Pick>& behind) {
+    const ViewState& view = picture_.state();
+    if (!view.ball || !picture_.showsLights()) return false;
+    const ScreenView screen = stage().screen;
+    const ScreenRay ray = rayThrough(screen, picture_.pointAt(at));
+    const std::optional<float> distance = meetsBall(ray, *view.ball, ballRadius(picture_.pane().bounds()));
+    if (!distance || (behind && glm::distance(behind->position, ray.origin) < *distance)) return false;
+    selectBall();
+    feedback_.tell("action", "select ball");
+    return true;
 }
 
 // Returns the selected instance, where it can be seen and no analytic light is selected.
@@ -111,7 +157,9 @@ bool Mover::press(const glm::dvec2& at) {
     if (handle == GizmoHandle::None) return false;
     editing_.end(); // of whatever came before: this is a step of its own
     Document now = session_.document();
-    drag_.emplace(*place, handle, *target(now), point);
+    drag_.emplace(*place, handle,
+                  holdsBall() ? glm::translate(glm::mat4(1.0f), *picture_.state().ball) : *target(now),
+                  point);
     return true;
 }
 
@@ -132,7 +180,24 @@ std::optional<glm::mat4> Mover::onSurface(const glm::dvec2& at) const {
     return placedOn(begun, pick->position, normal, kGap * scene.geometry.bounds.diagonal());
 }
 
+// The ball is no part of the scene: where it goes is no edit.
+void Mover::dragBall(const glm::dvec2& at, bool control) {
+    glm::vec3 wanted(drag_->moved(picture_.pointAt(at), false)[3]);
+    if (control) {
+        const std::optional<Pick> pick = picture_.pick(at);
+        if (!pick) return;
+        const glm::vec3 normal =
+            placedNormalAt(*session_.scene(), session_.document().edits, pick->instance, pick->position,
+                           towardsEye(picture_.camera().camera(), pick->position));
+        wanted = pick->position + ballRadius(picture_.pane().bounds()) * normal;
+    }
+    if (wanted == *picture_.state().ball) return;
+    picture_.state().ball = wanted;
+    feedback_.sceneChanged();
+}
+
 void Mover::drag(const glm::dvec2& at, bool control) {
+    if (holdsBall()) return dragBall(at, control);
     Document next = session_.document();
     glm::mat4* transform = target(next);
     const std::string moved = name();
@@ -146,6 +211,7 @@ void Mover::drag(const glm::dvec2& at, bool control) {
 }
 
 void Mover::release() {
+    if (holdsBall()) feedback_.tell("action", "move ball");
     drag_.reset();
     editing_.end();
 }
@@ -165,6 +231,7 @@ void Mover::takeKey(const WindowEvent& key, const glm::dvec2& at, bool control) 
         break;
     case GLFW_KEY_ESCAPE:
         editing_.cancel();
+        if (holdsBall()) picture_.state().ball = glm::vec3(drag_->begin()[3]);
         feedback_.tell("action", "drag cancelled");
         return release();
     default:

@@ -19,6 +19,11 @@ public:
     Mover(const Session& session, SceneView& picture, const ShownLights& lights, Editing& editing,
           Feedback& feedback);
 
+    /// Puts the ball that is lit by its place into the scene, selected, or takes it away.
+    void toggleBall();
+    /// Selects the ball where it is seen at a point of the window, before the surface `behind`.
+    bool selectBallAt(const glm::dvec2& at, const std::optional<Pick>& behind);
+
     /// Does Nudge, HideObject or ShowObjects.
     void perform(Action action, int argument);
 
@@ -42,6 +47,9 @@ public:
 private:
     LightStage stage() const;
     std::optional<uint32_t> object() const;
+    bool holdsBall() const;
+    void selectBall();
+    void dragBall(const glm::dvec2& at, bool control);
     glm::mat4* target(Document& document) const;
     std::string name() const;
     void nudge(int direction);

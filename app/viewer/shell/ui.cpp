@@ -37,6 +37,10 @@ bool isChecked(const PanelContext& context, const Shortcut& shortcut) {
         return !context.view.exposure;
     case Action::LightIcons:
         return context.view.lightIcons;
+    case Action::ProbeBall:
+        return context.view.ball.has_value();
+    case Action::ProbeGrid:
+        return context.view.probes;
     case Action::Wipe:
         return context.view.wipe;
     case Action::Gizmo:

@@ -193,7 +193,7 @@ void Viewer::takeScene() {
         picture_.camera().setHome(camera);
     }
     files_.sceneCame();
-    inspection_.sceneCame();
+    inspection_.sceneCame(session_.sceneWasKept());
     feedback_.tell("scene", scene.prepared.scene.path);
     for (const std::string& note : session_.takeReloadNotes())
         feedback_.note(note);
@@ -221,6 +221,7 @@ void Viewer::followBake(double time) {
         feedback_.pacer().input();
     }
     if (inspection_.follow(baking_.status(), lights_.list(), time)) feedback_.sceneChanged();
+    if (const std::string told = inspection_.balls().takeTold(); !told.empty()) feedback_.tell("balls", told);
     feedback_.followExposure(picture_.pane().adapting());
     baking_.setBudget(desc_.budgetMs, !picture_.rests(time));
 }

@@ -121,6 +121,7 @@ void Viewer::onClick(const WindowEvent& event) {
     if (const std::optional<LightKey> icon = mover_.iconAt(event.at)) return lights_.select(*icon);
     ViewState& view = picture_.state();
     const std::optional<Pick> pick = picture_.pick(event.at);
+    if (mover_.selectBallAt(event.at, pick)) return lights_.selectNone();
     const size_t seen = viewIndex("seen");
     const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view.view == seen;
     if (patch && pick && pick->lightmapUv) {
@@ -166,6 +167,11 @@ void Viewer::perform(Action action, int argument) {
     case Action::LightIcons:
         view.lightIcons = !view.lightIcons;
         return;
+    case Action::ProbeBall:
+        return mover_.toggleBall();
+    case Action::ProbeGrid:
+        view.probes = !view.probes;
+        return feedback_.sceneChanged();
     case Action::ReloadShaders:
         return reloadShaders();
     case Action::Help:

@@ -67,6 +67,8 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::Reset, 0, GLFW_KEY_R, kCtrl, "Bake", "Reset"},
         {Action::Close, 0, GLFW_KEY_ESCAPE, 0, "Bake", "Close dialog or abort pass"},
         {Action::LightIcons, 0, GLFW_KEY_I, 0, "View", "Light icons"},
+        {Action::ProbeBall, 0, GLFW_KEY_O, 0, "View", "Ball lit by its place"},
+        {Action::ProbeGrid, 0, GLFW_KEY_O, kShift, "View", "Probes"},
         {Action::Wipe, 0, GLFW_KEY_B, 0, "View", "A/B wipe"},
         {Action::StoreReference, 0, GLFW_KEY_B, kShift, "View", "Store the light as B"},
         {Action::UvTexture, 0, GLFW_KEY_U, 0, "View", "As UV texture"},

@@ -38,6 +38,8 @@ enum class Action : uint8_t {
     HideObject,
     ShowObjects,
     LightIcons,
+    ProbeBall,
+    ProbeGrid,
     Wipe,
     StoreReference,
     View, // argument: of viewEntries()

@@ -24,6 +24,9 @@ struct ViewState {
     std::optional<LightKey> light; // the one that is selected
     bool lightIcons = true;
     GizmoMode gizmo = GizmoMode::Translate; // of a selected analytic light or object
+    std::optional<glm::vec3> ball;          // lit by the light of its place [m]; none: it is not there
+    bool ballSelected = false;              // it has the gizmo, unless a light or an object is selected
+    bool probes = false;                    // the grid of light probes is shown
 
     bool bare = false;   // panels, and what lies over the picture, are hidden
     bool wipe = false;   // the reference is shown left of the line

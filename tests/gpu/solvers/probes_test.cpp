@@ -224,15 +224,22 @@ TEST(Probes, AreTheSameInBatches) {
         points.emplace_back(0.01f * static_cast<float>(i + 1), 0.3f, 0.4f);
     const LampSet lamps = probeLamps(scene, baker->patches().scene.mesh);
     for (const TracerKind kind : tracersOfTestDevice()) {
-        const ProbeDesc desc{.samples = 64, .tracer = kind};
-        ProbeTracer tracer(testDevice(), baker->patches(), lamps, points, desc);
-        const ProbeLinks all = tracer.trace(0, static_cast<uint32_t>(points.size()));
-        const ProbeLinks some = tracer.trace(2 * kProbeStride, 5);
+        constexpr uint32_t kSamples = 64;
+        ProbeTracer tracer(testDevice(), baker->patches(), lamps, points, kind);
+        const ProbeLinks all = tracer.trace(0, static_cast<uint32_t>(points.size()), kSamples);
+        const ProbeLinks some = tracer.trace(2 * kProbeStride, 5, kSamples);
         const size_t before = 2 * kProbeStride;
         EXPECT_TRUE(std::equal(some.links.begin(), some.links.end(), all.linksOf(before)))
             << tracerName(kind);
         EXPECT_TRUE(std::equal(some.seen.begin(), some.seen.end(),
                                all.seen.begin() + static_cast<std::ptrdiff_t>(before * all.targets)));
+        // Those that have moved see what they would see if they had always stood there.
+        ProbeTracer moved(testDevice(), baker->patches(), {}, std::vector<glm::vec3>(points.size()), kind);
+        moved.setLamps(lamps);
+        moved.move(2 * kProbeStride, {points.begin() + 2 * kProbeStride, points.end()});
+        const ProbeLinks there = moved.trace(2 * kProbeStride, 5, kSamples);
+        EXPECT_EQ(there.links, some.links) << tracerName(kind);
+        EXPECT_EQ(there.seen, some.seen) << tracerName(kind);
         EXPECT_EQ(all.targets, kProbeLampSamples);
         EXPECT_NE(std::count(all.seen.begin(), all.seen.end(), 1), 0);
     }
