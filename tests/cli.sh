@@ -198,6 +198,10 @@ expectUsageError mix layers.exr -o out.exr --probes-in probes.json # they go now
 expectUsageError mix layers.exr --probes-in probes.json --probes-out out.txt
 expectUsageError bake room.glb -o room.exr --probe-at 1,2,3 --probes-out probes.ktx2 # no grid
 expectUsageError mix layers.exr -o out.png --compression none
+expectUsageError mix layers.exr -o out.png --join
+expectRefusal "error: mix: 2 files: name one, or add --join to put their layers into one" mix a.exr b.exr -o out.exr
+expectUsageError bake room.glb -o room.exr --lights Lamp # no --layers
+expectUsageError info room.glb --json --light-names
 expectWorldError missing.exr mix missing.exr -o out.exr
 expectWorldError nosuchfolder mix missing.exr -o nosuchfolder/out.exr
 expectWorldError missing.glb edit missing.glb -o out.glb --delete Lamp
@@ -207,6 +211,8 @@ expectWorldError missing.exr shot missing.glb -o shot.png --lightmap missing.exr
 expectWorldError nosuchfolder shot missing.glb -o nosuchfolder/shot.png
 expectWorldError nosuchfolder timelapse missing.glb -o nosuchfolder/frames
 expectWorldError missing.glb info missing.glb
+expectWorldError missing.glb info missing.glb --light-names
+expectWorldError missing.exr mix --join missing.exr other.exr -o out.exr
 expectWorldError missing.glb unwrap missing.glb -o out.glb
 expectWorldError missing.obj import missing.obj -o out.glb
 expectWorldError missing.obj info missing.obj
@@ -283,6 +289,7 @@ expectOneFile --bake SCENE edit s.glb --delete Bulb --bake hard.exr
 expectOneFile --output --bake edit s.glb --delete Bulb -o o.exr --bake o.exr
 expectOneFile --output LAYERS mix a.exr -o a.exr
 expectOneFile --probes-out --probes-in mix a.exr --probes-in p.json --probes-out p.json
+expectOneFile --output LAYERS mix --join b.exr a.exr -o a.exr
 expectOneFile --diff A compare a.png b.exr --diff a.png
 expectOneFile --diff B compare a.exr b.png --diff b.png
 expectOneFile --diff --mask compare a.exr b.exr --mask m.png --diff ./m.png

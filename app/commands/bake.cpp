@@ -3,9 +3,11 @@
 #include "app/commands/command.h"
 #include "app/offline/bake_checkpoints.h"
 #include "app/offline/bake_statistics.h"
+#include "app/offline/chosen_lights.h"
 #include "app/offline/command_files.h"
 #include "app/offline/compression_option.h"
 #include "app/offline/layer_file.h"
+#include "app/offline/layer_join.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/probe_bake.h"
 #include "app/offline/probe_files.h"
@@ -57,6 +59,17 @@ private:
     std::future<std::unique_ptr<const vk::Device>> device_;
 };
 
+// Returns the layers as they are written, marked where others are baked elsewhere.
+LayeredImage writtenLayers(const BakeOptions& o, const Baker& baker, const Scene& scene,
+                           const LightmapDesc& desc) {
+    LayeredImage image = layeredImage(baker, scene, desc);
+    fitTo(o.files.output, image, o.files.half ? ExrType::Half : ExrType::Float);
+    if (!o.layers.lights.empty())
+        noteJob(image, *baker.layers(),
+                {.lights = lightNames(scene), .fingerprint = sceneFingerprint(scene, baker.patches())});
+    return image;
+}
+
 void checkOutputs(const BakeOptions& o) {
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
     checkWritable(o.files.output, uint64_t{o.patches.size} * o.patches.size * kBytesPerTexel);
@@ -70,16 +83,19 @@ void checkOutputs(const BakeOptions& o) {
 // Writes the lightmap and the maps that go with it. Returns the CPU time when the lightmap was made.
 double writeMaps(const BakeOptions& o, const BakeRequest& request, const PreparedScene& prepared,
                  const Baker& baker, const SolverProgress& progress) {
-    FloatImage image = baker.lightmap(request.lightmap);
+    LayeredImage layers;
+    if (o.layers.on) layers = writtenLayers(o, baker, prepared.scene, request.lightmap);
+    FloatImage image = o.layers.on ? layers.composite : baker.lightmap(request.lightmap);
     const double made = cpuSeconds();
     addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(o.files.compression);
-    if (o.layers.on)
-        writeLayers(o.files.output, layeredImage(baker, prepared.scene, request.lightmap, image.attributes),
-                    type, compression);
-    else
+    if (o.layers.on) {
+        layers.composite.attributes = image.attributes;
+        writeLayers(o.files.output, layers, type, compression);
+    } else {
         writeImage(o.files.output, image, type, compression);
+    }
     if (!o.files.picture.empty()) writeImage(o.files.picture, image);
     if (!o.files.errorMap.empty())
         writeImage(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
@@ -117,6 +133,9 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
     if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
     ProbePlan probePlan;
+    if (!o.layers.lights.empty())
+        request.bake.solver.layers.lights =
+            chosenLights("--lights", o.layers.lights, lightNames(prepared.scene));
     if (o.probes.wanted()) {
         probePlan = planProbes(o.probes, prepared.mesh);
         request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);

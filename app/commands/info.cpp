@@ -1,6 +1,7 @@
 #include "app/commands/command.h"
 #include "app/edit/choice_options.h"
 #include "app/edit/scene_info.h"
+#include "app/offline/chosen_lights.h"
 #include "assets/model/light_names.h"
 #include "app/text/option_checks.h"
 #include "assets/base/warnings.h"
@@ -22,7 +23,7 @@ struct InfoOptions {
     std::string scene;
     GltfChoice choice;
     uint32_t size = 512;
-    bool json = false;
+    bool json = false, lightNames = false;
 };
 
 template<typename Vec>
@@ -214,6 +215,11 @@ void printTable(const Scene& scene, const SceneInfo& info, uint32_t size) {
 
 void runInfo(const InfoOptions& options) {
     const Scene scene = loadScene(options.scene, options.choice);
+    if (options.lightNames) {
+        for (const std::string& name : lightNames(scene))
+            std::printf("%s\n", name.c_str());
+        return;
+    }
     const SceneInfo info = inspectScene(scene, options.size);
     if (options.json)
         printJson(scene, info, options.size);
@@ -233,7 +239,13 @@ void addInfoCommand(CLI::App& app) {
     command->add_option("--size", options->size, "Lightmap edge [texels]")
         ->capture_default_str()
         ->check(wholeFrom(1, 65536));
-    command->add_flag("--json", options->json, "Print JSON instead of a table, with the atlas mapping");
+    CLI::Option* json =
+        command->add_flag("--json", options->json, "Print JSON instead of a table, with the atlas mapping");
+    command
+        ->add_flag(
+            "--light-names", options->lightNames,
+            "Print only the names of all that shines, one a line, as 'relume bake --lights' takes them")
+        ->excludes(json);
     command->callback([options] { runInfo(*options); });
 }
 

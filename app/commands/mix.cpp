@@ -1,11 +1,13 @@
 #include "app/commands/command.h"
 #include "app/offline/command_files.h"
 #include "app/offline/compression_option.h"
+#include "app/offline/layer_join.h"
 #include "app/offline/light_mix.h"
 #include "app/offline/probe_files.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
+#include "assets/base/warnings.h"
 #include "assets/images/finite_image.h"
 #include "assets/images/image_file.h"
 
@@ -17,9 +19,13 @@ namespace relume {
 namespace {
 
 struct MixOptions {
-    std::string layers, output, compression, probesIn, probesOut;
+    std::vector<std::string> layers;
+    std::string output, compression, probesIn, probesOut;
     std::vector<std::string> sets, muted, solo;
-    bool list = false, layersOut = false, half = false;
+    bool list = false, layersOut = false, half = false, join = false;
+
+    bool writesLayers() const { return layersOut || join; }
+    ExrType type() const { return half ? ExrType::Half : ExrType::Float; }
 };
 
 MixDesc resolve(const MixOptions& options) {
@@ -33,6 +39,11 @@ MixDesc resolve(const MixOptions& options) {
     if (options.layersOut && !options.output.ends_with(".exr"))
         throw UsageError("--layers-out: layers are kept in OpenEXR only: give -o a name that ends in .exr");
     checkCompression(options.compression, {options.output});
+    if (options.join && !options.output.empty() && !options.output.ends_with(".exr"))
+        throw UsageError("--join: layers are kept in OpenEXR only: give -o a name that ends in .exr");
+    if (!options.join && options.layers.size() > 1)
+        throw UsageError(fmt::format("mix: {} files: name one, or add --join to put their layers into one",
+                                     options.layers.size()));
     MixDesc desc;
     for (const std::string& text : options.sets) {
         try {
@@ -69,6 +80,23 @@ void printList(const LayeredImage& image) {
     }
 }
 
+// Reads the layers, of all files where they are to be joined.
+LayeredImage readLayers(const MixOptions& options) {
+    std::vector<LayerFile> files;
+    for (const std::string& path : options.layers)
+        files.push_back({path, readLayeredExr(path)});
+    LayeredImage image = joinLayers(std::move(files));
+    if (!options.join) return image;
+    const std::vector<std::string> missing = missingLights(image);
+    std::string names;
+    for (const std::string& name : missing)
+        names += (names.empty() ? "" : ", ") + inQuotes(name);
+    if (!missing.empty())
+        spdlog::warn("{} lights of the scene are in none of the files: {}: join the result with theirs",
+                     missing.size(), names);
+    return image;
+}
+
 ProbeSet weighedProbes(const MixOptions& options, const LayeredImage& image) {
     ProbeSet probes = readProbes(options.probesIn);
     try {
@@ -81,32 +109,34 @@ ProbeSet weighedProbes(const MixOptions& options, const LayeredImage& image) {
 
 void writeSum(const MixOptions& options, const LayeredImage& image) {
     requireFinite(image.composite, options.output);
-    const ExrType type = options.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(options.compression);
-    if (options.layersOut)
-        writeLayeredExr(options.output, image, type, compression);
+    if (options.writesLayers())
+        writeLayeredExr(options.output, image, options.type(), compression);
     else
-        writeImage(options.output, image.composite, type, compression);
+        writeImage(options.output, image.composite, options.type(), compression);
     spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
 }
 
 void runMix(const MixOptions& options) {
     const MixDesc desc = resolve(options);
-    CommandFiles()
-        .reads("LAYERS", options.layers)
-        .reads("--probes-in", options.probesIn)
+    CommandFiles files;
+    for (const std::string& path : options.layers)
+        files.reads("LAYERS", path);
+    files.reads("--probes-in", options.probesIn)
         .writes("--output", options.output)
         .writes("--probes-out", options.probesOut)
         .check();
     if (!options.output.empty()) checkWritable(options.output);
     if (!options.probesOut.empty()) checkFileWritable(options.probesOut, 0);
-    LayeredImage image = readLayeredExr(options.layers);
+    LayeredImage image = readLayers(options);
+    const std::string& first = options.layers.front();
+    if (options.writesLayers() && !options.output.empty()) roundLayers(options.output, image, options.type());
     try {
         mixLayers(image, desc);
     } catch (const UsageError&) {
         throw;
     } catch (const Error& error) {
-        throw Error(options.layers + ": " + error.what());
+        throw Error(first + ": " + error.what());
     }
     if (options.list) printList(image);
     // Both are made before either is written.
@@ -116,7 +146,7 @@ void runMix(const MixOptions& options) {
     for (const LayeredImage::Layer& layer : image.layers) {
         const std::string stale = attribute(layer, layer_attribute::kStale);
         if (!stale.empty() && layer.weight != glm::vec3(0.0f))
-            spdlog::warn("{}: stale: {}: bake it again", options.layers, stale);
+            spdlog::warn("{}: stale: {}: bake it again", first, stale);
     }
     if (!options.output.empty()) writeSum(options, image);
     if (probes) writeProbes(options.probesOut, *probes);
@@ -128,9 +158,15 @@ void addMixCommand(CLI::App& app) {
     const auto options = std::make_shared<MixOptions>();
     CLI::App* command = app.add_subcommand(
         "mix", "Weigh the lights of a lightmap anew, without a bake: intensity, colour, on/off");
-    command->add_option("layers", options->layers, "OpenEXR file that 'relume bake --layers' wrote")
+    command
+        ->add_option("layers", options->layers,
+                     "OpenEXR file that 'relume bake --layers' wrote; with --join several")
         ->required()
         ->type_name("LAYERS.exr");
+    command->add_flag(
+        "--join", options->join,
+        "Put the layers of several files into one that has the bytes of one bake: those of 'relume "
+        "bake --layers --lights', each with other lights");
     command->add_option("-o,--output", options->output, "The sum, .exr or .png")->type_name("FILE");
     const auto names = [&](const char* option, std::vector<std::string>& to, const char* help) {
         return command->add_option(option, to, help)

@@ -27,7 +27,7 @@ void exportPage(const WebDesc& desc, const std::string& name, const Scene& scene
                 const SceneBake& bake) {
     if (!bake.layers())
         throw Error(desc.path + ": not written, as the page needs a layer for each light: turn on layers");
-    const LayeredImage image = layeredImage(*bake.baker(), scene, {}, {});
+    const LayeredImage image = layeredImage(*bake.baker(), scene, {});
     writeWebPage(desc, scene, mesh, image, name);
     spdlog::info("wrote {}", desc.path);
 }

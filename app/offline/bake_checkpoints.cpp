@@ -19,6 +19,14 @@ std::string oneWord(std::string text) {
     return text;
 }
 
+// Returns the lights that a job bakes layers of, where it is one: another job's state is of other layers.
+std::string lightsOf(const BakeSettings& settings) {
+    std::string text;
+    for (const std::string& name : settings.solver.layers.lights)
+        text += (text.empty() ? " lights=" : ",") + oneWord(name);
+    return text;
+}
+
 } // namespace
 
 BakeCheckpoints::BakeCheckpoints(const BakeOptions& options)
@@ -32,7 +40,7 @@ void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings
     if (path_.empty() && !resumed_) return;
     key_.version = RELUME_VERSION;
     key_.settings =
-        describeSettings(settings) +
+        describeSettings(settings) + lightsOf(settings) +
         fmt::format(" tracer={} device={} driver={} shaders={}", baker.tracer().name(), oneWord(device.name),
                     oneWord(device.driver), shaders_.empty() ? "built-in" : oneWord(shaders_));
     key_.scene = sceneFingerprint(scene, baker.patches());

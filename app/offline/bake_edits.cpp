@@ -37,16 +37,17 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     phase.reset();
     solve(baker.solver(), request.bake.solver, none);
     phase.emplace(false);
-    FloatImage image = baker.lightmap(request.lightmap);
-    addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap,
-                          baker.solver().progress());
+    const SolverProgress& progress = baker.solver().progress();
     const ExrCompression compression = compressionOf(options.files.compression);
-    if (options.layers.on)
-        writeLayers(options.files.output,
-                    layeredImage(baker, prepared.scene, request.lightmap, image.attributes), ExrType::Float,
-                    compression);
-    else
+    if (options.layers.on) {
+        LayeredImage image = layeredImage(baker, prepared.scene, request.lightmap);
+        addLightmapAttributes(image.composite, options.files.scene, request.bake, request.lightmap, progress);
+        writeLayers(options.files.output, image, ExrType::Float, compression);
+    } else {
+        FloatImage image = baker.lightmap(request.lightmap);
+        addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap, progress);
         writeImage(options.files.output, image, ExrType::Float, compression);
+    }
     spdlog::info("wrote {}", options.files.output);
     failOnValidation(device.validationMessages());
 }

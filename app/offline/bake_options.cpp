@@ -255,6 +255,18 @@ void addBakeOptions(CLI::App& command, BakeOptions& o) {
                     "--error is about all of them together)")
         ->check(numberFrom(1e-6, 1.0))
         ->needs(layers);
+    command
+        .add_option(
+            "--lights", o.layers.lights,
+            "Bake the layers of these lights alone, as a job beside others ('relume info --light-names' "
+            "names all); 'relume mix --join' puts the files of all jobs together. The bytes are those "
+            "of one bake where each layer stops by itself: give all jobs the same --samples, with or "
+            "without --layer-error, and no --error")
+        ->type_name("NAME,...")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->needs(layers);
     command.add_flag("--half", o.files.half, "Write 16-bit floats");
     addCompressionOption(command, o.files.compression);
     addCheckpointOptions(command, o.checkpoint);

@@ -54,8 +54,9 @@ struct LinkOptions {
 
 struct LayerOptions {
     bool on = false;
-    std::string memory; // "": not given
-    double error = 0;   // 0: not given
+    std::string memory;              // "": not given
+    double error = 0;                // 0: not given
+    std::vector<std::string> lights; // as chosenLights() takes them; empty: not given
 };
 
 struct VoxelOptions {

@@ -1,8 +1,10 @@
 #include "app/offline/layer_file.h"
 
-#include "assets/model/light_names.h"
+#include "app/offline/light_mix.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/model/light_names.h"
+#include "bake/output/layer_sum.h"
 
 #include <algorithm>
 
@@ -36,6 +38,19 @@ std::string namesOf(const std::vector<LightSource>& lights) {
     return names;
 }
 
+// Returns Baker::lightmap without making all layers' images again.
+FloatImage lightmapOf(const Baker& baker, const LightmapDesc& desc,
+                      const std::vector<LayeredImage::Layer>& layers) {
+    if (layers.empty() || !baker.sumsLayers(desc)) return baker.lightmap(desc);
+    FloatImage composite = layers.front().image;
+    LayerSum sum(composite.width, composite.height);
+    for (const LayeredImage::Layer& layer : layers)
+        sum.add(layer.weight, layer.image);
+    sum.writeTo(composite);
+    requireFiniteTexels(composite);
+    return composite;
+}
+
 } // namespace
 
 LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer) {
@@ -58,23 +73,27 @@ LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer) {
     return part;
 }
 
-LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc,
-                          const std::map<std::string, std::string>& attributes) {
+LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc) {
     ASSERT(desc.quantity == Quantity::Lighting);
     ASSERT(baker.layers() != nullptr);
     const LayerSolver& solver = *baker.layers();
     LayeredImage image;
     LightmapDesc each = desc;
     each.pool = &baker.workers();
-    image.composite = baker.lightmap(desc);
-    image.composite.attributes = attributes;
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         LayeredImage::Layer part = layerWithoutImage(scene, *layer);
         const Layer* shown = layer->shown();
         part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), each);
         image.layers.push_back(std::move(part));
     }
+    image.composite = lightmapOf(baker, desc, image.layers);
     return image;
+}
+
+void fitTo(const std::string& path, LayeredImage& image, ExrType type) {
+    if (type == ExrType::Float) return;
+    roundLayers(path, image, type);
+    mixLayers(image, {});
 }
 
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -16,10 +15,13 @@ LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer);
 
 /// Returns the lightmap of a bake that has layers (Baker::layers) as it stands, light by light: each
 /// layer with its weight, light and level, and with what it does not show of the scene any more. Seams are
-/// filled as in the composite, which is the sum of the others and bears these attributes. desc.quantity must
-/// be lighting.
-LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc,
-                          const std::map<std::string, std::string>& attributes);
+/// filled as in the composite, which is Baker::lightmap: once the bake is done the sum of weight times layer.
+/// desc.quantity must be lighting.
+LayeredImage layeredImage(const Baker& baker, const Scene& scene, const LightmapDesc& desc);
+
+/// Rounds the layers to what a file of this type at `path` holds, and makes the composite their sum again. So
+/// files of the same layers have the same bytes, however many processes baked them.
+void fitTo(const std::string& path, LayeredImage& image, ExrType type);
 
 /// Writes the image by writeLayeredExr, and a line to the log about each layer.
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,

@@ -5,6 +5,7 @@
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "bake/output/layer_sum.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -81,23 +82,11 @@ void keepSummedChannels(FloatImage& image) {
 }
 
 void sum(LayeredImage& image) {
-    FloatImage& composite = image.composite;
-    keepSummedChannels(composite);
-    for (int c = 0; c < 3; ++c) {
-        const std::string channel(1, "RGB"[c]);
-        std::vector<double> total(size_t(composite.width) * composite.height);
-        for (const LayeredImage::Layer& layer : image.layers) {
-            const double weight = layer.weight[c];
-            if (weight == 0.0) continue; // such a layer is off, whatever it holds
-            const std::vector<float>& plane = *layer.image.find(channel);
-            for (size_t i = 0; i < total.size(); ++i)
-                total[i] += weight * plane[i];
-        }
-        const auto at = std::find(composite.channels.begin(), composite.channels.end(), channel);
-        std::vector<float>& plane = composite.planes[static_cast<size_t>(at - composite.channels.begin())];
-        std::transform(total.begin(), total.end(), plane.begin(),
-                       [](double v) { return static_cast<float>(v); });
-    }
+    LayerSum sum(image.composite.width, image.composite.height);
+    for (const LayeredImage::Layer& layer : image.layers)
+        sum.add(layer.weight, layer.image);
+    keepSummedChannels(image.composite);
+    sum.writeTo(image.composite);
 }
 
 } // namespace

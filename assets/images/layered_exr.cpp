@@ -168,6 +168,18 @@ void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType
     writeFileAtomically(path, bytes);
 }
 
+void roundLayers(const std::string& path, LayeredImage& image, ExrType type) {
+    if (type == ExrType::Float) return;
+    size_t cut = 0;
+    for (LayeredImage::Layer& layer : image.layers) {
+        for (std::vector<float>& plane : layer.image.planes) {
+            const std::vector<half> halves = exr::toHalf(plane, cut);
+            std::copy(halves.begin(), halves.end(), plane.begin());
+        }
+    }
+    exr::warnAboutCut(path, cut);
+}
+
 LayeredImage readLayeredExr(const std::string& path) {
     const std::string bytes = exr::readBytes(path);
     try {

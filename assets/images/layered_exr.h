@@ -41,6 +41,9 @@ struct LayeredImage {
 void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float,
                      ExrCompression compression = kExrCompression);
 
+/// Rounds the layers' pixels to what a file of this type holds; warns, naming `path`, where they are cut.
+void roundLayers(const std::string& path, LayeredImage& image, ExrType type);
+
 /// Reads a file that writeLayeredExr wrote. Throws Error where it has no layers, parts are missing or differ
 /// in size, a channel or a weight is missing or a weight is not finite.
 LayeredImage readLayeredExr(const std::string& path);

@@ -8,6 +8,7 @@
 #include "bake/baker/inside_search.h"
 #include "bake/baker/object_mover.h"
 #include "bake/layers/layer_solver.h"
+#include "bake/output/layer_sum.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/texture_group.h"
 #include "bake/vk/commands.h"
@@ -242,7 +243,20 @@ FloatImage Baker::lightmap(LightmapDesc desc) const {
     desc.rtrad = settings_.solver.transport.rtrad;
     desc.reflectivity = settings_.solver.transport.reflectivity;
     desc.pool = &workers();
-    return makeLightmap(patches_, solver_.solver->light(), desc);
+    FloatImage lightmap = makeLightmap(patches_, solver_.solver->light(), desc);
+    if (!sumsLayers(desc)) return lightmap;
+    LayerSum sum(lightmap.width, lightmap.height);
+    for (const std::unique_ptr<Layer>& layer : solver_.layers->layers())
+        if (layer->shines() && layer->shown())
+            sum.add(layer->source.weight,
+                    makeLightmap(patches_, solver_.layers->layerLight(*layer->shown()), desc));
+    sum.writeTo(lightmap);
+    requireFiniteTexels(lightmap);
+    return lightmap;
+}
+
+bool Baker::sumsLayers(const LightmapDesc& desc) const {
+    return solver_.layers && solver_.solver->done() && desc.quantity == Quantity::Lighting;
 }
 
 FloatImage Baker::errorMap() const {

@@ -70,8 +70,12 @@ public:
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }
     uint32_t invalidPatches() const { return invalid_; }
-    /// Returns the lightmap of the last finished pass.
+    /// Returns the lightmap of the last finished pass. Where sumsLayers(), it is the sum of weight times
+    /// layer (LayerSum), seams filled layer by layer: the solver's own light but for the last bits.
     FloatImage lightmap(LightmapDesc desc) const;
+    /// Tells whether each layer of a light has come to its end, and lighting is asked for, which they sum up
+    /// to.
+    bool sumsLayers(const LightmapDesc& desc) const;
     /// Returns Solver::errors() as a grey image in lighting's unit; texels beside charts stay empty. Throws
     /// Error when there is nothing to tell yet.
     FloatImage errorMap() const;

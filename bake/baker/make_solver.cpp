@@ -52,7 +52,8 @@ MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings) 
     }
     if (settings.layers.on) {
         const vk::MemoryOwner owner(kLayersOwner);
-        const std::string tooMany = layerProblem(input.scene, input.patches, complete.layers.bytes);
+        const std::string tooMany =
+            layerProblem(input.scene, input.patches, complete.layers.bytes, complete.layers.lights);
         if (!settings.layers.optional || tooMany.empty()) {
             auto layers = std::make_unique<LayerSolver>(input, complete);
             LayerSolver* const known = layers.get();

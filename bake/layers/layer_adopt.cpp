@@ -44,7 +44,8 @@ void LayerSolver::weigh() {
 
 // Returns the layers that are wanted under the surfaces and objects that are known.
 std::vector<WantedLayer> LayerSolver::wantedNow() const {
-    return wantedLayers(kit_.input.scene, mix_, layerRoom(kit_.input.patches, store_.bytes()), states_.now());
+    return wantedLayers(kit_.input.scene, mix_, layerRoom(kit_.input.patches, store_.bytes()), states_.now(),
+                        kit_.settings.layers.lights);
 }
 
 void LayerSolver::moveObjects(const ObjectMove& move) {
@@ -56,7 +57,8 @@ void LayerSolver::moveObjects(const ObjectMove& move) {
 
 void LayerSolver::adopt() {
     edited_ = false;
-    const std::string tooMany = layerProblem(kit_.input.scene, kit_.input.patches, store_.bytes());
+    const std::string tooMany =
+        layerProblem(kit_.input.scene, kit_.input.patches, store_.bytes(), kit_.settings.layers.lights);
     if (!tooMany.empty()) throw Error(tooMany);
     const SceneState before = states_.now();
     states_.note(kit_.input.scene);

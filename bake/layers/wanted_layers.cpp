@@ -35,15 +35,25 @@ bool standsIn(const LightPattern& pattern, bool isNew, const std::vector<std::un
     return among || (group && isNew);
 }
 
+// Returns the lights of the scene; with names those of them.
+std::vector<LightSource> namedSources(const Scene& scene, std::span<const std::string> names) {
+    std::vector<LightSource> sources = lightSources(scene);
+    if (names.empty()) return sources;
+    std::erase_if(sources, [&](const LightSource& source) {
+        return std::find(names.begin(), names.end(), source.name) == names.end();
+    });
+    return sources;
+}
+
 } // namespace
 
 std::vector<WantedLayer> wantedLayers(const Scene& scene, const LightMix& mix, uint64_t room,
-                                      const SceneState& state) {
+                                      const SceneState& state, std::span<const std::string> lights) {
     std::vector<WantedLayer> wanted;
     const auto weigh = [&](LightSource& source) {
         if (!mix.shines(source.key)) source.weight = glm::vec3(0.0f);
     };
-    for (LightGroup& group : groupLights(scene, lightSources(scene), room)) {
+    for (LightGroup& group : groupLights(scene, namedSources(scene, lights), room)) {
         std::vector<LightSource>& members = group.members;
         std::for_each(members.begin(), members.end(), weigh);
         if (members.empty())
@@ -89,16 +99,19 @@ uint64_t layerRoom(const PatchSet& patches, uint64_t bytes) {
     return bytes / (2 * LightBuffers::lightBytes(patches));
 }
 
-std::string layerProblem(const Scene& scene, const PatchSet& patches, uint64_t bytes) {
-    const size_t lights = lightSources(scene).size();
+std::string layerProblem(const Scene& scene, const PatchSet& patches, uint64_t bytes,
+                         std::span<const std::string> lights) {
+    const size_t count = namedSources(scene, lights).size();
     const uint64_t room = layerRoom(patches, bytes);
-    if (lights <= room || room >= kLeastRoom) return "";
-    const uint64_t needed = std::min<uint64_t>(lights, kLeastRoom) * 2 * LightBuffers::lightBytes(patches);
-    return fmt::format(
-        "layers of {} lights take {:.1f} GiB{}, {:.1f} may be taken: use a smaller lightmap, or "
-        "bake without layers",
-        lights, static_cast<double>(needed) / kGiB, lights > kLeastRoom ? " in groups" : "",
-        static_cast<double>(bytes) / kGiB);
+    const bool named = !lights.empty();
+    if (count <= room || (room >= kLeastRoom && !named)) return "";
+    const bool grouped = count > kLeastRoom && !named;
+    const uint64_t needed = (grouped ? kLeastRoom : count) * 2 * LightBuffers::lightBytes(patches);
+    return fmt::format("layers of {} lights take {:.1f} GiB{}, {:.1f} may be taken: {}", count,
+                       static_cast<double>(needed) / kGiB, grouped ? " in groups" : "",
+                       static_cast<double>(bytes) / kGiB,
+                       named ? "name fewer lights, or give more --layer-memory"
+                             : "use a smaller lightmap, or bake without layers");
 }
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,9 @@ struct WantedLayer {
 };
 
 /// Returns the layers of a scene in this state, as the switches have it: no more than there is room for, in
-/// the order of groupLights().
+/// the order of groupLights(). With names of lights (LayerSettings::lights), only those of these lights.
 std::vector<WantedLayer> wantedLayers(const Scene& scene, const LightMix& mix, uint64_t room,
-                                      const SceneState& state);
+                                      const SceneState& state, std::span<const std::string> lights = {});
 
 /// Tells whether the layer's light is to come from other layers, where nobody wants it as it is.
 bool isRegrouped(const Layer& layer, const std::vector<WantedLayer>& wanted);
@@ -43,7 +44,9 @@ StandInPlan planStandIn(const std::vector<WantedLayer>& wanted,
 /// Returns for how many layers there is room in so many bytes: each has direct light and a result.
 uint64_t layerRoom(const PatchSet& patches, uint64_t bytes);
 /// Tells in one line why so many bytes are not enough for layers of the scene's lights, not even for groups
-/// of them, and what helps; returns "" where they are enough.
-std::string layerProblem(const Scene& scene, const PatchSet& patches, uint64_t bytes);
+/// of them, and what helps; returns "" where they are enough. Lights that are named are never grouped: who
+/// shares a layer with whom would depend on who else is named.
+std::string layerProblem(const Scene& scene, const PatchSet& patches, uint64_t bytes,
+                         std::span<const std::string> lights = {});
 
 } // namespace relume

@@ -106,8 +106,12 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
             scatter(texel);
     });
     if (desc.sew) sewSeams(planes, desc);
-    requireFinite(image, "the lightmap");
+    requireFiniteTexels(image);
     return image;
+}
+
+void requireFiniteTexels(const FloatImage& lightmap) {
+    requireFinite(lightmap, "the lightmap");
 }
 
 } // namespace relume

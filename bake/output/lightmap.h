@@ -27,4 +27,7 @@ struct LightmapDesc {
 FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& light,
                         const LightmapDesc& desc);
 
+/// Throws Error where a texel of a lightmap is not finite: none is handed out so.
+void requireFiniteTexels(const FloatImage& lightmap);
+
 } // namespace relume

@@ -81,6 +81,8 @@ struct LayerSettings {
     uint64_t bytes = 0;    // for layers, at most; 0: a third of the free device memory
     bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
     double error = 0;      // that each layer is to have by itself (relRMSE); 0: none is asked for
+    // The names of the lights whose layers are made (LightSource::name), each of them by itself; empty: all.
+    std::vector<std::string> lights = {};
 };
 
 struct SolverSettings {

@@ -65,12 +65,12 @@ TEST(QualityReport, CurvesMayComeFromInfinityOrEndAtNothing) {
 TEST(QualityReport, JsonHasEveryFigure) {
     QualityReport made = report();
     made.runs[0].points[0].local99 = std::numeric_limits<double>::infinity();
-    const nlohmann::ordered_json json = qualityJson(made);
+    const nlohmann::ordered_json told = qualityJson(made);
     for (const char* name : {"version", "scene", "command", "device", "driver", "tracer", "size", "error",
                              "localError", "reference", "pictures", "interrupted"})
-        EXPECT_TRUE(json.contains(name)) << name;
-    ASSERT_EQ(json.at("runs").size(), 2u);
-    const auto& run = json.at("runs")[0];
+        EXPECT_TRUE(told.contains(name)) << name;
+    ASSERT_EQ(told.at("runs").size(), 2u);
+    const auto& run = told.at("runs")[0];
     EXPECT_EQ(run.at("mode"), "plain");
     EXPECT_NEAR(run.at("reached").at("localError20").at("rays"), 400, 1e-9);
     EXPECT_TRUE(run.at("reached").at("localError5").is_null());
@@ -82,7 +82,7 @@ TEST(QualityReport, JsonHasEveryFigure) {
     EXPECT_TRUE(point.at("local99").is_null());
     EXPECT_EQ(point.at("FLIP").size(), 2u);
     EXPECT_FALSE(run.contains("note"));
-    EXPECT_EQ(json.at("runs")[1].at("note"), "no room");
+    EXPECT_EQ(told.at("runs")[1].at("note"), "no room");
 }
 
 TEST(QualityReport, TableAndPlot) {

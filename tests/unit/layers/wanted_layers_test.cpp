@@ -329,5 +329,40 @@ TEST(LayerProblem, TellsWhatIsNeeded) {
               "layers");
 }
 
+std::string namesOf(const std::vector<WantedLayer>& wanted) {
+    std::string names;
+    for (const WantedLayer& layer : wanted)
+        names += (names.empty() ? "" : ", ") + layer.source.name;
+    return names;
+}
+
+TEST(NamedLayers, AreThoseOfTheseLightsInTheScenesOrder) {
+    const Scene scene = sceneOfLamps(5);
+    const std::vector<std::string> names = {"lamp 3", "lamp 1"};
+    const std::vector<WantedLayer> named =
+        wantedLayers(scene, {}, kRoomForAll, {.surfaces = 1, .objects = 1}, names);
+    EXPECT_EQ(namesOf(named), "lamp 1, lamp 3");
+    const std::vector<WantedLayer> all = wantedOf(scene, kRoomForAll);
+    EXPECT_EQ(named[0].pattern, all[1].pattern);
+    EXPECT_EQ(named[1].source.key, all[3].source.key);
+}
+
+TEST(NamedLayers, HaveRoomWhereThoseOfAllLightsWouldBeGrouped) {
+    const Scene scene = sceneOfLamps(9);
+    const std::vector<std::string> names = {"lamp 0", "lamp 7", "lamp 8"};
+    EXPECT_EQ(namesOf(wantedLayers(scene, {}, kRoomForTwo, {.surfaces = 1, .objects = 1}, names)),
+              "lamp 0, lamp 7, lamp 8");
+    EXPECT_EQ(namesOf(wantedOf(scene, kRoomForTwo)), "lamp 0, rest");
+}
+
+TEST(NamedLayers, AreNeverGroupedButRefused) {
+    const PatchSet patches = patchesOf(1000);
+    const std::vector<std::string> names = {"lamp 0", "lamp 1", "lamp 2", "lamp 3"};
+    EXPECT_EQ(layerProblem(sceneOfLamps(9), patches, 128'000, names), "");
+    EXPECT_EQ(layerProblem(sceneOfLamps(9), patches, 127'999, names),
+              "layers of 4 lights take 0.0 GiB, 0.0 may be taken: name fewer lights, or give more "
+              "--layer-memory");
+}
+
 } // namespace
 } // namespace relume
