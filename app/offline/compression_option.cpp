@@ -15,7 +15,7 @@ namespace relume {
 namespace {
 
 constexpr std::array<std::pair<const char*, ExrCompression>, 5> kCompressions = {{
-    {"none", ExrCompression::None},
+    {"none", ExrCompression::Off},
     {"rle", ExrCompression::Rle},
     {"zips", ExrCompression::Zips},
     {"zip", ExrCompression::Zip},

@@ -84,7 +84,7 @@ int threadUsers = 0;
 
 Imf::Compression codecOf(ExrCompression compression) {
     switch (compression) {
-    case ExrCompression::None:
+    case ExrCompression::Off:
         return Imf::NO_COMPRESSION;
     case ExrCompression::Rle:
         return Imf::RLE_COMPRESSION;

@@ -24,7 +24,7 @@ enum class ExrType { Float, Half };
 /// How an OpenEXR file is compressed: those of its ways that keep every bit. Which is quicker and which
 /// smaller is in tests/bench/measured.md.
 enum class ExrCompression {
-    None,
+    Off,  // X11 takes the word None
     Rle,  // runs of equal bytes
     Zips, // DEFLATE, row by row
     Zip,  // DEFLATE, 16 rows at a time

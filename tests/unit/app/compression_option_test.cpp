@@ -21,7 +21,7 @@ TEST(CompressionOption, EachNameIsAnotherCompression) {
         all.insert(compressionOf(typed));
     }
     EXPECT_EQ(all.size(), 5u);
-    EXPECT_EQ(compressionOf("none"), ExrCompression::None);
+    EXPECT_EQ(compressionOf("none"), ExrCompression::Off);
     EXPECT_EQ(compressionOf("piz"), ExrCompression::Piz);
     EXPECT_EQ(compressionOf(""), kExrCompression);
 }

@@ -83,7 +83,7 @@ TEST_F(LayeredExrTest, ReturnsWhatWasWritten) {
 
 TEST_F(LayeredExrTest, EveryPartIsCompressedAsAskedFor) {
     const LayeredImage image = threeLayers();
-    for (const auto& [compression, wanted] : {std::pair(ExrCompression::None, Imf::NO_COMPRESSION),
+    for (const auto& [compression, wanted] : {std::pair(ExrCompression::Off, Imf::NO_COMPRESSION),
                                               {ExrCompression::Rle, Imf::RLE_COMPRESSION},
                                               {ExrCompression::Zips, Imf::ZIPS_COMPRESSION},
                                               {ExrCompression::Zip, Imf::ZIP_COMPRESSION},
