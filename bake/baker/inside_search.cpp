@@ -18,9 +18,9 @@ constexpr double kInsideBatchMs = 20.0;
 // A batch has at most so many chunks, whose links are 8 MiB. On a device that does a billion rays a second
 // these are 2 ms.
 constexpr uint32_t kMostInsideChunks = 1024;
-// In closed rooms all of half the directions meet fronts, which settles it. Outdoors a patch of which 20
-// directions met no back cannot get two in five any more.
-constexpr uint32_t kFirstSamples = 16, kMoreSamples = 4;
+// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
+// needed. Tracers that record take eight directions at a time.
+constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
 constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
 
 /// The backs and sky that the directions of one patch have met so far.
