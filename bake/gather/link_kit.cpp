@@ -26,6 +26,7 @@ void LinkKit::reserveBack(VkDeviceSize bytes) {
 }
 
 void LinkKit::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at) {
+    ASSERT(at + bytes <= back_.size());
     vk::barrier(cmd);
     const VkBufferCopy all{0, at, bytes};
     vkCmdCopyBuffer(cmd, from.handle(), back_.handle(), 1, &all);
@@ -44,7 +45,7 @@ void LinkKit::recordRayCount(VkCommandBuffer cmd) {
 }
 
 void LinkKit::countRays() {
-    const auto* counters = back<uint32_t>();
+    const auto* counters = back<uint32_t>(0, shader::kRayCounters);
     progress.rays = std::accumulate(counters, counters + shader::kRayCounters, progress.rays);
 }
 

@@ -54,9 +54,11 @@ public:
     void reserveBack(VkDeviceSize bytes);
     /// Copies there, whose former contents are over with.
     void recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSize bytes, VkDeviceSize at = 0);
-    /// Returns what was copied to this place [bytes]; where the CPU gathers it writes there itself.
+    /// Returns `count` values of what was copied to this place [bytes], for which there must be room; where
+    /// the CPU gathers it writes there itself.
     template<typename T>
-    T* back(VkDeviceSize at = 0) const {
+    T* back(VkDeviceSize at = 0, size_t count = 1) const {
+        ASSERT(at + count * sizeof(T) <= back_.size());
         return reinterpret_cast<T*>(back_.as<uint8_t>() + at);
     }
     /// Submits and waits, with the barriers for what comes next and for the CPU.

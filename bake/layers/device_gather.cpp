@@ -62,7 +62,7 @@ void DeviceGather::recordChanges(VkCommandBuffer cmd) {
 }
 
 glm::dvec4 DeviceGather::change(uint32_t slot, uint32_t lane) const {
-    return kit_.back<glm::vec4>()[slot * bounces_.lanes() + lane];
+    return *kit_.back<glm::vec4>(uint64_t{slot * bounces_.lanes() + lane} * sizeof(glm::vec4));
 }
 
 // Reads back the sum over all chunks.
@@ -97,7 +97,7 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
     LevelSums sums;
     if (linkRounds > 0) {
         sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
-        const auto* entries = kit_.back<glm::vec3>(kSketchAt);
+        const auto* entries = kit_.back<glm::vec3>(kSketchAt, kSketchEntries);
         sums.sketch.entries.assign(entries, entries + kSketchEntries);
     }
     sums.result = *kit_.back<glm::vec4>(sizeof(shader::ResolveSums));

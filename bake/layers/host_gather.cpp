@@ -6,9 +6,16 @@
 #include <utility>
 
 namespace relume {
+namespace {
+
+constexpr uint32_t kToldSlots = 2; // LayerGather::Work::changes
+
+} // namespace
 
 HostGather::HostGather(LinkKit& kit, const ChunkSenders& senders)
-    : kit_(kit), senders_(senders), radiancePass_(kit.input.device), resolvePass_(kit.input.device) {}
+    : kit_(kit), senders_(senders), radiancePass_(kit.input.device), resolvePass_(kit.input.device) {
+    kit.reserveBack(uint64_t{kToldSlots} * kit.chunkCount() * sizeof(glm::vec4));
+}
 
 void HostGather::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) {
     const vk::Buffer& ligIn = kit_.input.light.ligIn;
@@ -39,10 +46,11 @@ void HostGather::recordGather(VkCommandBuffer cmd, const Work& work) {
 void HostGather::recordPassEnd(VkCommandBuffer cmd, const PassEnd& end) {
     LightBuffers& light = kit_.input.light;
     const uint32_t chunks = kit_.chunkCount();
-    const size_t first = size_t{end.changes.value_or(0)} * chunks; // of the changes that are told
+    // Where the changes that are told go [bytes].
+    const VkDeviceSize at = uint64_t{end.changes.value_or(0)} * chunks * sizeof(glm::vec4);
     if (end.bounce) {
         kit_.gatherPass.sendOnCpu(light, kit_.settings.transport.reflectivity, senders_.full(),
-                                  end.changes ? kit_.back<glm::vec4>() + first : nullptr);
+                                  end.changes ? kit_.back<glm::vec4>(at, chunks) : nullptr);
         return light.turn();
     }
     light.turn();
@@ -51,14 +59,15 @@ void HostGather::recordPassEnd(VkCommandBuffer cmd, const PassEnd& end) {
     if (end.changes) {
         vk::barrier(cmd);
         resolvePass_.recordChange(cmd, light, kit_.buffers);
-        kit_.recordBack(cmd, kit_.buffers.chunkSums, chunks * sizeof(glm::vec4), first * sizeof(glm::vec4));
+        kit_.recordBack(cmd, kit_.buffers.chunkSums, chunks * sizeof(glm::vec4), at);
     }
     recordSend(cmd);
 }
 
 glm::dvec4 HostGather::change(uint32_t slot, uint32_t) const {
     const uint32_t chunks = kit_.chunkCount();
-    return sumsOf(std::span<const glm::vec4>(kit_.back<glm::vec4>() + size_t{slot} * chunks, chunks));
+    return sumsOf(std::span<const glm::vec4>(
+        kit_.back<glm::vec4>(uint64_t{slot} * chunks * sizeof(glm::vec4), chunks), chunks));
 }
 
 LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkRounds, double sigma) {

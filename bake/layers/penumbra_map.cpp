@@ -43,7 +43,7 @@ void PenumbraMap::recordBack(VkCommandBuffer cmd) const {
 }
 
 bool PenumbraMap::within(size_t part) const {
-    const glm::uvec2 lights = kit_.back<glm::uvec2>(kit_.buffers.rays.size())[part];
+    const glm::uvec2 lights = kit_.back<glm::uvec2>(kit_.buffers.rays.size(), part + 1)[part];
     return (lights.x & lights.y) != 0;
 }
 

@@ -167,6 +167,20 @@ TEST(Layers, GoOnFromAState) {
     EXPECT_TRUE(sameBytes(second.light(), whole.light()));
 }
 
+// What bounces change is told chunk by chunk: of large charts there are more chunks than anything else that
+// is read back has values.
+TEST(Layers, HaveRoomForWhatManyChunksTell) {
+    constexpr uint32_t kEdge = 300; // 1,407 chunks
+    SceneMaker maker(320);
+    const TexelRect floor = maker.quad({0, 0, 0}, kX, kY, maker.material(0.5f), glm::uvec2(kEdge));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {0.5f, 0.5f, 1.0f}, 10.0f, "Lamp"));
+    Layered bake(scene, {.size = 320, .passes = 0, .method = Method::Hybrid, .samples = 16, .layers = true});
+    bake.finish();
+    EXPECT_NEAR(texel(bake.image(), floor, kEdge / 2, kEdge / 2), 10.0 / std::numbers::pi, 0.01);
+    EXPECT_LT(bake.progress().rays, uint64_t{kEdge} * kEdge * 100);
+}
+
 TEST(Layers, TellMemoryThatDoesNotDo) {
     BakeDesc desc = kQuick;
     desc.layerBytes = 1024;
