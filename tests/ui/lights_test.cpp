@@ -253,11 +253,11 @@ TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
     for (const char* name : {"Lights/Light/Preview", "Lights/Point/Preview"}) {
         viewer->mark();
         seen.push_back(look(name));
-        while (isFlat(seen.back()) && viewer->shows("preview: drawn", 60)) {
+        while (isFlat(seen.back()) && viewer->shows("preview: drawn", 240)) {
             viewer->mark();
             seen.back() = look(name);
         }
-        EXPECT_FALSE(isFlat(seen.back())) << name;
+        EXPECT_FALSE(isFlat(seen.back())) << name << ": " << viewer->output();
     }
     double off = 0;
     for (size_t i = 0; i < seen[0].size(); ++i)
