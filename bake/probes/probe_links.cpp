@@ -272,13 +272,17 @@ uint64_t probeTracerBytes(const ProbeExtent& extent, uint64_t patches) {
     const auto batch = [&](uint64_t perChunk) {
         return std::clamp<uint64_t>(kBatchBytes / perChunk, 1, chunks) * perChunk;
     };
-    const uint64_t own = (patches + paddedFaces(extent.count)) * sizeof(Patch);
+    // Tracers have a table of patches' charts beside them, which for the scene's own is counted with its
+    // tables.
+    const uint64_t faces = paddedFaces(extent.count);
+    const uint64_t own = (patches + faces) * sizeof(Patch) + faces * sizeof(uint32_t);
     const uint64_t links = batch(uint64_t{extent.samples} * kChunk * sizeof(uint32_t));
     if (extent.targets == 0) return own + links;
-    // Links are gone when rays go to lights.
+    // Links are gone when rays go to lights. A target has a bit of a word for each patch.
     const uint64_t targets = batch(uint64_t{extent.targets} * kChunk * sizeof(glm::vec4));
-    constexpr uint64_t kSmall = 4096; // bits are no more than a hundredth of their targets, and counters
-    return own + std::max(links, targets + targets / 64 + kSmall);
+    const uint64_t words = (extent.targets + kWordBits - 1) / kWordBits;
+    const uint64_t bits = targets * words * sizeof(uint32_t) / (extent.targets * sizeof(glm::vec4));
+    return own + std::max(links, targets + bits + shader::kRayCounters * sizeof(uint32_t));
 }
 
 } // namespace relume
