@@ -328,7 +328,7 @@ bool BakeLoop::publishBalls() {
                                                   .light = light});
     if (!balls) return false;
     const std::lock_guard lock(desk_.mutex);
-    // What nobody took yet was traced for what is told now.
+    // An answer that nobody took yet may have been the traced one: this one takes its place.
     balls->traced = balls->traced || (desk_.balls && desk_.balls->traced);
     desk_.balls = std::move(balls);
     return true;

@@ -14,7 +14,7 @@
 
 namespace relume {
 
-/// What is known about the balls that a viewer looks at.
+/// Holds what is known about the balls that a viewer looks at.
 struct BallFacts {
     bool wanted = false;     // there are any
     bool traced = false;     // their links are of the places, triangles and analytic lights as these are now

@@ -6,7 +6,7 @@
 
 namespace relume {
 
-/// What a file of probes is for, by its name.
+/// Tells what a file of probes is for, by its name.
 enum class ProbeForm {
     Relume, // .json: all that is known, which is read again
     Three,  // .three.json: light probes of three.js
