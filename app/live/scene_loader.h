@@ -8,7 +8,7 @@
 #include <string>
 
 #include "app/edit/prepare.h"
-#include "app/live/file_watch.h"
+#include "app/live/watch/file_watch.h"
 #include "renderer/camera.h"
 #include "renderer/scene_geometry.h"
 

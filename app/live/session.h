@@ -8,8 +8,8 @@
 
 #include "app/live/document.h"
 #include "app/live/edit_history.h"
-#include "app/live/file_news.h"
-#include "app/live/file_watch.h"
+#include "app/live/watch/file_news.h"
+#include "app/live/watch/file_watch.h"
 #include "app/live/live_bake.h"
 #include "app/live/reload.h"
 #include "app/live/scene_file.h"

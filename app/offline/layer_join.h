@@ -9,14 +9,15 @@
 
 namespace relume {
 
-/// Names the attributes that a file of some layers has beside those of a whole bake, so that files of jobs can
-/// be joined and none of another scene gets among them. A file that has all layers has none of them.
+/// Names the attributes that a file of some layers has beside those of a whole bake, so that files of jobs
+/// can be joined and none of another scene gets among them. A file that has all layers has none of them.
 namespace job_attribute {
 constexpr const char* kLights = "relume:all-lights"; // of the composite: the scene's, in order, one per line
 constexpr const char* kScene =
     "relume:scene-fingerprint"; // of the composite: all that a bake reads, hexadecimal
-// This one is of a layer and tells the error of its sum with others. Its numbers are light, variance of direct
-// and of indirect light, error, error of bounces, then the sketch of the error (bake/layers/error_sketch.h).
+// This one is of a layer and tells the error of its sum with others. Its numbers are light, variance of
+// direct and of indirect light, error, error of bounces, then the sketch of the error
+// (bake/layers/error_sketch.h).
 constexpr const char* kEstimate = "relume:estimate";
 } // namespace job_attribute
 

@@ -32,8 +32,8 @@ struct Build {
 /// taken for Latin-1.
 std::string nameOf(const aiString& name);
 
-/// This is the luminous efficacy of green light of 555 nm, by which the add-on and Blender's own glTF exporter
-/// convert, too.
+/// This is the luminous efficacy of green light of 555 nm, by which the add-on and Blender's own glTF
+/// exporter convert, too.
 inline constexpr float kLumensPerWatt = 683.0f;
 
 /// Returns by how much radiance in the file's unit becomes cd/m^2: Blender has watts, other files none.

@@ -3,7 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/foreign/foreign_files.h"
 #include "assets/foreign/named_files.h"
-#include "assets/gltf/gltf_links.h"
+#include "assets/gltf/file/gltf_links.h"
 
 #include <fmt/format.h>
 

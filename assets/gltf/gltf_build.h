@@ -11,7 +11,7 @@
 
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf.h"
-#include "assets/gltf/gltf_size.h"
+#include "assets/gltf/file/gltf_size.h"
 #include "assets/model/scene.h"
 
 namespace relume::gltf {

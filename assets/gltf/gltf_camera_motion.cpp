@@ -4,7 +4,7 @@
 #include "assets/gltf/gltf_animation.h"
 #include "assets/gltf/gltf_camera.h"
 #include "assets/gltf/gltf_check.h"
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 #include "assets/gltf/gltf_node.h"
 
 #include <spdlog/fmt/fmt.h>

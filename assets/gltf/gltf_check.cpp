@@ -2,8 +2,8 @@
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf_check_extensions.h"
-#include "assets/gltf/gltf_check_json.h"
+#include "assets/gltf/file/gltf_check_extensions.h"
+#include "assets/gltf/file/gltf_check_json.h"
 #include "assets/gltf/gltf_node.h"
 
 #include <spdlog/fmt/fmt.h>

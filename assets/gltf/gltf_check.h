@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 namespace relume::gltf {
 

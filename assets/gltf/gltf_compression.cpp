@@ -3,7 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "assets/decode/draco_stream.h"
-#include "assets/gltf/gltf_check_extensions.h"
+#include "assets/gltf/file/gltf_check_extensions.h"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -7,7 +7,7 @@
 #include "assets/gltf/gltf_material_json.h"
 #include "assets/gltf/gltf_png.h"
 #include "assets/gltf/gltf_sky_file.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 #include "assets/base/uri.h"
 #include "assets/decode/webp.h"
 #include "assets/gltf/gltf_build.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/images/png_check.h"
 
 // This is our own static copy, which is asked for the sizes of pictures only; the parser's copy decodes. glTF

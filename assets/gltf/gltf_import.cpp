@@ -7,9 +7,9 @@
 #include "assets/gltf/gltf_build.h"
 #include "assets/gltf/gltf_check.h"
 #include "assets/gltf/gltf_compression.h"
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 #include "assets/gltf/gltf_node.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/model/scene_limits.h"
 
 #include <spdlog/fmt/fmt.h>

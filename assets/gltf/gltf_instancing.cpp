@@ -1,9 +1,9 @@
 #include "assets/gltf/gltf_instancing.h"
 
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_check_extensions.h"
-#include "assets/gltf/gltf_file.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_check_extensions.h"
+#include "assets/gltf/file/gltf_file.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <spdlog/fmt/fmt.h>

@@ -1,7 +1,7 @@
 #include "assets/base/error.h"
 #include "assets/gltf/gltf_build.h"
-#include "assets/gltf/gltf_file.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_file.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/images/sky_picture.h"
 #include "assets/model/scene_limits.h"
 

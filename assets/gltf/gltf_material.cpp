@@ -1,7 +1,7 @@
 #include "assets/gltf/gltf_build.h"
 
 #include "assets/base/watch.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/model/panes.h"
 #include "assets/model/scene_limits.h"
 

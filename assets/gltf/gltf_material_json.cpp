@@ -1,7 +1,7 @@
 #include "assets/gltf/gltf_material_json.h"
 
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <algorithm>
 #include <cmath>

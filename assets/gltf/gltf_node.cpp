@@ -3,10 +3,10 @@
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf_camera.h"
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 #include "assets/gltf/gltf_instancing.h"
 #include "assets/gltf/gltf_node.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/model/scene_limits.h"
 
 #include <glm/gtc/quaternion.hpp>

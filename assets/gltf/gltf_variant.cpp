@@ -1,7 +1,7 @@
 #include "assets/gltf/gltf_build.h"
 
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -4,7 +4,7 @@
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/edit/gltf_edit_transform.h"
-#include "assets/gltf/gltf_check_extensions.h"
+#include "assets/gltf/file/gltf_check_extensions.h"
 #include "assets/gltf/gltf_instancing.h"
 
 #include <glm/gtc/quaternion.hpp>

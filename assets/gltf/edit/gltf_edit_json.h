@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 namespace relume::gltf {
 

@@ -4,7 +4,7 @@
 #include "assets/base/warnings.h"
 #include "assets/gltf/edit/gltf_edit_transform.h"
 #include "assets/gltf/gltf_light_json.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 #include "assets/model/light_names.h"
 
 #include <spdlog/fmt/fmt.h>

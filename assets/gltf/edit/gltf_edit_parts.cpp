@@ -4,7 +4,7 @@
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/edit/gltf_edit_node.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 

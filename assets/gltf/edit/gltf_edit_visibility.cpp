@@ -1,6 +1,6 @@
 #include "assets/gltf/edit/gltf_edit_visibility.h"
 
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <spdlog/fmt/fmt.h>
 

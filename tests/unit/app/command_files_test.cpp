@@ -1,7 +1,7 @@
 #include "app/offline/command_files.h"
 
 #include "assets/base/error.h"
-#include "assets/gltf/gltf_links.h"
+#include "assets/gltf/file/gltf_links.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
-#include "app/live/file_watch.h"
+#include "app/live/watch/file_watch.h"
 
 #include "assets/foreign/foreign_files.h"
 #include "assets/foreign/load_scene.h"
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 #include <chrono>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"

@@ -1,7 +1,7 @@
-#include "assets/gltf/gltf_links.h"
+#include "assets/gltf/file/gltf_links.h"
 
 #include "assets/base/uri.h"
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 #include <cstring>
 #include <filesystem>

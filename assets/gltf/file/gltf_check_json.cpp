@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_check_json.h"
+#include "assets/gltf/file/gltf_check_json.h"
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "assets/gltf/gltf_check_json.h"
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_check_json.h"
+#include "assets/gltf/file/gltf_value.h"
 
 namespace relume::gltf {
 

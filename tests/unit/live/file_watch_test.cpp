@@ -1,5 +1,5 @@
-#include "app/live/file_news.h"
-#include "app/live/file_watch.h"
+#include "app/live/watch/file_news.h"
+#include "app/live/watch/file_watch.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>

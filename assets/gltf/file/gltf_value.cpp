@@ -1,4 +1,4 @@
-#include "assets/gltf/gltf_value.h"
+#include "assets/gltf/file/gltf_value.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 namespace relume::gltf {
 

@@ -1,4 +1,4 @@
-#include "app/live/file_news.h"
+#include "app/live/watch/file_news.h"
 
 #include <array>
 #include <cerrno>

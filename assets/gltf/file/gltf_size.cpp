@@ -1,10 +1,10 @@
-#include "assets/gltf/gltf_size.h"
+#include "assets/gltf/file/gltf_size.h"
 
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
 #include "assets/base/uri.h"
 #include "assets/base/warnings.h"
-#include "assets/gltf/gltf_check_extensions.h"
+#include "assets/gltf/file/gltf_check_extensions.h"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "assets/gltf/gltf_file.h"
+#include "assets/gltf/file/gltf_file.h"
 
 namespace relume::gltf {
 
