@@ -11,28 +11,40 @@ of something that stands on it Cycles takes the mean over the texel, relume the 
 no number of samples makes these equal.
 """
 
+import json
+import math
 import os
 import sys
 import time
 
 import bpy
 import numpy
+from mathutils import Matrix
 
 if not hasattr(numpy, "bool"):
     numpy.bool = bool  # Debian 12's Blender imports glTF by a name that its numpy no longer has
 
 
+def linked(socket):
+    """Returns what feeds an input: the output that is linked to it, or None where the input's own value counts."""
+    return socket.links[0].from_socket if socket.is_linked else None
+
+
 def diffuse(material):
-    """Rebuilds an imported material as Lambert's reflection plus one-sided emission: relume's model."""
-    principled = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
-    colour = tuple(principled.inputs["Base Color"].default_value)
+    """Rebuilds an imported material as relume's model: Lambert's reflection and one-sided emission, cut out by its mask.
+    What blends with less than half is a pane, which light passes. Returns its brightest emission."""
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    principled = next(n for n in nodes if n.type == "BSDF_PRINCIPLED")
+    colour = principled.inputs["Base Color"]
+    alpha = principled.inputs["Alpha"]
     emission = tuple(principled.inputs["Emission"].default_value)
     strength = principled.inputs["Emission Strength"].default_value
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    nodes.clear()
-    output = nodes.new("ShaderNodeOutputMaterial")
+    output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
     reflection = nodes.new("ShaderNodeBsdfDiffuse")
-    reflection.inputs["Color"].default_value = colour
+    if linked(colour):
+        links.new(linked(colour), reflection.inputs["Color"])
+    else:
+        reflection.inputs["Color"].default_value = tuple(colour.default_value)
     shader = reflection.outputs["BSDF"]
     if strength > 0 and max(emission[:3]) > 0:
         light = nodes.new("ShaderNodeEmission")
@@ -48,16 +60,69 @@ def diffuse(material):
         links.new(shader, both.inputs[0])
         links.new(light.outputs["Emission"], both.inputs[1])
         shader = both.outputs["Shader"]
+    pane = material.blend_method == "BLEND" and not linked(alpha) and alpha.default_value < 0.5
+    if pane or (material.blend_method == "CLIP" and linked(alpha)):
+        nothing = nodes.new("ShaderNodeBsdfTransparent")
+        cut = nodes.new("ShaderNodeMixShader")
+        links.new(nothing.outputs["BSDF"], cut.inputs[1])
+        links.new(shader, cut.inputs[2])
+        cut.inputs[0].default_value = 0.0
+        if not pane:
+            solid = nodes.new("ShaderNodeMath")
+            solid.operation = "GREATER_THAN"
+            links.new(linked(alpha), solid.inputs[0])
+            solid.inputs[1].default_value = material.alpha_threshold
+            links.new(solid.outputs["Value"], cut.inputs[0])
+        shader = cut.outputs["Shader"]
+    nodes.remove(principled)
     links.new(shader, output.inputs["Surface"])
     return max(emission[:3]) * strength
 
 
-def shape_lamps():
-    """Gives lamps the radius that relume's extras say; the importer makes points of them."""
-    for light in bpy.data.lights:
-        own = light.get("relume")
-        if own is not None and "radius" in own:
-            light.shadow_soft_size = own["radius"]
+def scene_json(path):
+    """Returns the JSON of a GLB, whose lights have units that the importer changes."""
+    with open(path, "rb") as file:
+        head = file.read(20)
+        return json.loads(file.read(int.from_bytes(head[12:16], "little")))
+
+
+def shine(path):
+    """Gives lights what the file says, a watt of Blender's being a lumen: a point of P W has P / 4 pi cd, an area light
+    P / 4 A cd/m^2, a sun P lux. Soft extents, area lights and the sky stand in relume's extras."""
+    gltf = scene_json(path)
+    lights = gltf.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
+    for node in gltf.get("nodes", []):
+        index = node.get("extensions", {}).get("KHR_lights_punctual", {}).get("light")
+        if index is not None:
+            light, own = bpy.data.objects[node["name"]].data, lights[index].get("extras", {}).get("relume", {})
+            intensity = lights[index].get("intensity", 1.0)
+            if light.type == "SUN":
+                light.energy, light.angle = intensity, own.get("angle", 0.0)
+            else:
+                light.energy, light.shadow_soft_size = intensity * 4 * math.pi, own.get("radius", 0.0)
+        area = node.get("extras", {}).get("relume", {}).get("areaLight")
+        if area:
+            light = bpy.data.lights.new(area["name"], "AREA")
+            if area["type"] == "disc":
+                light.shape, light.size = "DISK", 2 * area["radius"]
+                extent = math.pi * area["radius"] ** 2
+            else:
+                light.shape, (light.size, light.size_y) = "RECTANGLE", area["size"]
+                extent = area["size"][0] * area["size"][1]
+            light.color = area.get("color", [1, 1, 1])
+            light.energy = 4 * extent * area.get("intensity", 1.0)
+            lamp = bpy.data.objects.new(area["name"], light)
+            # The importer turns a node without a light so that the node's -Z is +Y.
+            lamp.matrix_world = bpy.data.objects[node["name"]].matrix_world @ Matrix.Rotation(math.pi / 2, 4, "X")
+            bpy.context.collection.objects.link(lamp)
+    sky = gltf["scenes"][gltf.get("scene", 0)].get("extras", {}).get("relume", {}).get("sky")
+    if sky:
+        world = bpy.data.worlds.new("sky")
+        world.use_nodes = True
+        background = world.node_tree.nodes["Background"]
+        background.inputs["Color"].default_value = (*sky.get("color", [1, 1, 1]), 1)
+        background.inputs["Strength"].default_value = sky.get("intensity", 1.0)
+        bpy.context.scene.world = world
 
 
 def prepare(path, size):
@@ -66,9 +131,9 @@ def prepare(path, size):
     bpy.ops.import_scene.gltf(filepath=path)
     meshes = [o for o in bpy.context.scene.objects if o.type == "MESH"]
     materials = {slot.material for mesh in meshes for slot in mesh.material_slots}
+    shine(path)
     brightest = max(diffuse(material) for material in materials)
     print("cycles_bake: %d meshes, %d materials, brightest emission %g" % (len(meshes), len(materials), brightest))
-    shape_lamps()
     bpy.ops.object.select_all(action="DESELECT")
     for mesh in meshes:
         mesh.select_set(True)
@@ -94,6 +159,7 @@ def configure(bounces):
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = False
     cycles.max_bounces = cycles.diffuse_bounces = bounces
+    cycles.transparent_max_bounces = 256  # one after another of the leaves of a tree, and panes
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0  # no light is dropped for being dim
     scene.render.bake.use_pass_direct = scene.render.bake.use_pass_indirect = True
