@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareOptions {
-    std::string a, b, mask, diff;
+    std::string a, b, mask, darkBy, diff;
     std::vector<std::string> metrics; // lower case; none: all
     double pixelsPerDegree = kFlipPixelsPerDegree;
     bool json = false;
@@ -47,9 +47,10 @@ struct Measured {
     Metrics all;
     double flipMean = 0;
     LocalPercentiles local;
+    double darkBias = 0;
 };
 
-std::array<Value, 7> valuesOf(const Measured& measured) {
+std::array<Value, 8> valuesOf(const Measured& measured) {
     const Metrics& m = measured.all;
     return {{{"relrmse", "relRMSE", "RMSE / mean of B", m.relRmse},
              {"rmse", "RMSE", "root of the mean squared difference", m.rmse},
@@ -58,7 +59,8 @@ std::array<Value, 7> valuesOf(const Measured& measured) {
               measured.flipMean},
              {"local", "local", "95th percentile of |A - B| / max(B, 5 % of its median)", measured.local.p95},
              {"maximum", "maximum", "largest difference of a channel", m.maximum},
-             {"bias", "bias", "mean of A - B", m.bias}}};
+             {"bias", "bias", "mean of A - B", m.bias},
+             {"dark", "dark", "mean of A / mean of B - 1 in the darkest quarter", measured.darkBias}}};
 }
 
 /// A picture of the differences: what it shows and the value at the bright end of its ramp.
@@ -114,6 +116,7 @@ Json jsonOf(const CompareOptions& options, const Measured& measured,
     const LocalPercentiles& local = measured.local;
     Json json = {{"a", options.a}, {"b", options.b}};
     if (!options.mask.empty()) json["mask"] = options.mask;
+    if (!options.darkBy.empty()) json["darkBy"] = options.darkBy;
     for (const Value& v : valuesOf(measured))
         if (wants(options, v.option)) json[v.name] = number(v.value);
     if (wants(options, "local"))
@@ -158,6 +161,8 @@ void printTable(const CompareOptions& options, const Measured& measured,
 }
 
 void runCompare(const CompareOptions& options) {
+    if (!options.darkBy.empty() && !wants(options, "dark"))
+        throw UsageError("--dark-by: only with --metric dark, others look at all texels");
     if (!options.diff.empty()) {
         if (!options.diff.ends_with(".png"))
             throw UsageError("--diff: '" + options.diff + "' does not end in .png");
@@ -165,6 +170,7 @@ void runCompare(const CompareOptions& options) {
             .reads("A", options.a)
             .reads("B", options.b)
             .reads("--mask", options.mask)
+            .reads("--dark-by", options.darkBy)
             .writes("--diff", options.diff)
             .check();
         checkWritable(options.diff);
@@ -173,7 +179,12 @@ void runCompare(const CompareOptions& options) {
     const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImage(options.mask);
     const NamedImage mask{maskImage, options.mask};
     const ImagePair pair({a, options.a}, {b, options.b}, options.mask.empty() ? nullptr : &mask);
-    Measured measured{.all = pair.measure(), .flipMean = 0, .local = {}};
+    Measured measured{.all = pair.measure(), .flipMean = 0, .local = {}, .darkBias = 0};
+    if (wants(options, "dark")) {
+        const FloatImage byImage = options.darkBy.empty() ? FloatImage() : readImage(options.darkBy);
+        const NamedImage by{byImage, options.darkBy};
+        measured.darkBias = pair.darkBias(options.darkBy.empty() ? nullptr : &by);
+    }
     std::vector<float> flipMap, localMap;
     if (wants(options, "flip")) flipMap = pair.flipDifferences(options.pixelsPerDegree);
     if (!flipMap.empty()) measured.flipMean = pair.mean(flipMap);
@@ -210,14 +221,19 @@ void addCompareCommand(CLI::App& app) {
     for (const Value& v : valuesOf({}))
         names.emplace_back(v.option);
     command
-        ->add_option("--metric", options->metrics,
-                     "Print only these values, a line each: relrmse, rmse, dfpr, flip, local, maximum, bias")
+        ->add_option(
+            "--metric", options->metrics,
+            "Print only these values, a line each: relrmse, rmse, dfpr, flip, local, maximum, bias, dark")
         ->delimiter(',')
         ->allow_extra_args(false) // else it would take A and B
         ->transform(oneOfAnyCase(names))
         ->type_name("NAME,...");
     command->add_option("--mask", options->mask,
                         "Image of the same size: compare only where its R (or coverage) is above 0.5");
+    command->add_option(
+        "--dark-by", options->darkBy,
+        "Image of the same size that says which quarter is the darkest (default: B, whose noise "
+        "then counts as dark)");
     command->add_option(
         "--diff", options->diff,
         "Write a heat map of the differences (of what the first --metric measures) to this .png");

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -35,6 +37,9 @@ float displayed(float linear) {
 // A texel darker than this share of the median light is off relative to that share: otherwise a corner that
 // nobody can tell from black would decide how good a map is.
 constexpr double kLocalFloor = 0.05;
+
+// Dark places are those that are darker than three quarters of a map.
+constexpr double kDarkShare = 0.25;
 
 double ratio(double part, double whole) {
     if (part == 0) return 0;
@@ -206,6 +211,30 @@ LocalPercentiles ImagePair::percentiles(const std::vector<float>& localErrors) c
         if (covered_[i]) values.push_back(localErrors[i]);
     return {nearestRank(values, 0.5), nearestRank(values, 0.9), nearestRank(values, 0.95),
             nearestRank(values, 0.99)};
+}
+
+double ImagePair::darkBias(const NamedImage* by) const {
+    if (by && (by->image.width != width_ || by->image.height != height_))
+        throw Error(by->name + " is " + sizeOf(by->image) + ", the images are " + std::to_string(width_) +
+                    " x " + std::to_string(height_) + ": what is dark is told by an image of their size");
+    const Planes order = by ? planesOf(*by) : planesB_;
+    if (by) checkFinite(*by, order, covered_);
+    std::vector<std::pair<double, size_t>> texels; // how bright, which
+    texels.reserve(texels_);
+    for (size_t i = 0; i < covered_.size(); ++i)
+        if (covered_[i]) texels.emplace_back(double{order[0][i]} + order[1][i] + order[2][i], i);
+    const auto count =
+        static_cast<std::ptrdiff_t>(std::max<double>(1.0, kDarkShare * static_cast<double>(texels.size())));
+    std::nth_element(texels.begin(), texels.begin() + (count - 1), texels.end());
+    std::sort(texels.begin(), texels.begin() + count, // sums in the order of texels
+              [](const auto& one, const auto& other) { return one.second < other.second; });
+    double sumA = 0, sumB = 0;
+    for (const auto& [brightness, i] : std::span(texels).first(static_cast<size_t>(count)))
+        for (size_t c = 0; c < 3; ++c) {
+            sumA += a(i, c);
+            sumB += b(i, c);
+        }
+    return ratio(sumA - sumB, sumB);
 }
 
 double ImagePair::mean(const std::vector<float>& map) const {

@@ -72,6 +72,12 @@ public:
     std::vector<float> localErrors() const;
     /// Returns the percentiles of such a map over the texels compared; infinite ones count.
     LocalPercentiles percentiles(const std::vector<float>& localErrors) const;
+    /// Tells whether dark places are too bright (above 0) or too dark: mean(a) / mean(b) - 1 over the quarter
+    /// of the texels compared, at least one, in which `by` is darkest, by its mean of R, G and B; texels that
+    /// are equally dark count in their order. Infinite where only b is black. Without `by` b itself says what
+    /// is dark, and then the quarter holds what its noise made dark: the result is too large. An image of the
+    /// same place with other noise is free of that. Throws Error as the constructor does.
+    double darkBias(const NamedImage* by = nullptr) const;
     /// Returns the mean of such a map over the texels compared.
     double mean(const std::vector<float>& map) const;
 

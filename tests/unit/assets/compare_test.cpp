@@ -77,6 +77,33 @@ TEST_F(CompareTest, PrintsJson) {
     EXPECT_TRUE(black.at("relRMSE").is_null());
 }
 
+// B says by its noise that the left column is dark; another image that the right one is.
+TEST_F(CompareTest, TellsTheBiasOfTheDarkestQuarter) {
+    const auto columns = [&](const std::string& name, const std::vector<float>& values) {
+        FloatImage picture{4, 2, {}, {}, {}};
+        for (const char* channel : {"R", "G", "B"}) {
+            std::vector<float>& plane = picture.add(channel);
+            for (size_t i = 0; i < plane.size(); ++i)
+                plane[i] = values[i % 4];
+        }
+        writeImage(folder_.path(name), picture);
+        return folder_.path(name);
+    };
+    const std::string a = columns("a.exr", {0.3f, 0.5f, 0.5f, 0.5f}),
+                      b = columns("b.exr", {0.2f, 0.5f, 0.5f, 0.4f});
+    const std::string by = columns("by.exr", {0.9f, 0.5f, 0.5f, 0.1f});
+    EXPECT_NEAR(std::stod(compare(a + " " + b + " --metric dark").output), 0.5, 1e-6);
+    EXPECT_NEAR(std::stod(compare(a + " " + b + " --metric dark --dark-by " + by).output), 0.25, 1e-6);
+    EXPECT_EQ(compare(a + " " + b + " --metric bias --dark-by " + by).status, 2);
+    const Outcome other = compare(a + " " + b + " --dark-by " + image("small.exr", 2, 0.5f));
+    EXPECT_EQ(other.status, 1);
+    EXPECT_NE(other.errors.find("small.exr is 2 x 2, the images are 4 x 2"), std::string::npos)
+        << other.errors;
+    const auto told = nlohmann::json::parse(compare("--json " + a + " " + b + " --dark-by " + by).output);
+    EXPECT_NEAR(told.at("dark").get<double>(), 0.25, 1e-6);
+    EXPECT_EQ(told.at("darkBy"), by);
+}
+
 TEST_F(CompareTest, ComparesPngWithExr) {
     const std::string png = image("a.png", 4, 0.5f), exr = image("b.exr", 4, 0.5f);
     const auto told = nlohmann::json::parse(compare("--json " + png + " " + exr).output);
