@@ -303,7 +303,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
                          const Work& work) const {
     const uint32_t reach = buffers.rows ? smoothingReach(work.sigma) : 0;
     const float perReplicate = static_cast<float>(work.samples) / static_cast<float>(kReplicates);
-    const shader::SmoothPush push{
+    shader::SmoothPush push{
         .patches = light.patches.address(),
         .patchChart = buffers.patchChart.address(),
         .texelToPatch = buffers.texelToPatch.address(),
@@ -315,7 +315,8 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .distances = buffers.distances ? buffers.distances.address() : 0,
         .scales = work.scaled ? buffers.scales.address() : 0,
         .local = work.local ? buffers.local.address() : 0,
-        .chunkCount = light.chunkCount,
+        .firstChunk = 0,
+        .chunkCount = 0,
         .patchCount = light.chunkCount * kChunk,
         .size = work.size,
         .reach = reach,
@@ -327,11 +328,20 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         vkCmdFillBuffer(cmd, buffers.local.handle(), 0, VK_WHOLE_SIZE, 0);
         vk::barrier(cmd);
     }
+    const std::array<ChunkRange, 1> all = {ChunkRange{0, light.chunkCount}};
+    const auto dispatch = [&](const vk::ComputeProgram& program,
+                              const std::optional<std::span<const ChunkRange>>& ranges) {
+        for (const ChunkRange& range : ranges.value_or(std::span<const ChunkRange>(all))) {
+            push.firstChunk = range.first;
+            push.chunkCount = range.count;
+            dispatchChunks(program, cmd, push, range.count);
+        }
+    };
     if (reach > 0) {
-        dispatchChunks(smooth_, cmd, push, light.chunkCount);
+        dispatch(smooth_, work.rows);
         vk::barrier(cmd);
     }
-    dispatchChunks(resolve_, cmd, push, light.chunkCount);
+    dispatch(resolve_, work.chunks);
 }
 
 } // namespace relume

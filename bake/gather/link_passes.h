@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "assets/base/worker_pool.h"
@@ -152,6 +153,9 @@ public:
         bool scaled = false;              // chunks have as many samples as LinkBuffers::scales say
         bool local = false;               // makes LinkBuffers::local
         float floor = 0;                  // as of SmoothPush
+        // The chunks that are smoothed along rows, and those that the result is made of, which read no other
+        // ones' rows; nothing: all.
+        std::optional<std::span<const ChunkRange>> rows = {}, chunks = {};
     };
     /// Makes result, and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
