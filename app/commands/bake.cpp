@@ -2,6 +2,7 @@
 
 #include "app/commands/command.h"
 #include "app/offline/bake_checkpoints.h"
+#include "app/offline/bake_settings.h"
 #include "app/offline/bake_statistics.h"
 #include "app/offline/chosen_lights.h"
 #include "app/offline/command_files.h"
@@ -12,6 +13,7 @@
 #include "app/offline/probe_bake.h"
 #include "app/offline/probe_files.h"
 #include "app/offline/progress.h"
+#include "app/offline/rank_work.h"
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"
 #include "assets/base/file_write.h"
@@ -49,8 +51,8 @@ class DeviceStart {
 public:
     explicit DeviceStart(const MachineOptions& machine)
         : device_(std::async(std::launch::async, [&machine] {
-              return std::make_unique<const vk::Device>(
-                  vk::Device::Desc{.select = machine.device, .validation = machine.validate});
+              return std::make_unique<const vk::Device>(vk::Device::Desc{
+                  .select = machine.device, .turn = machine.turn, .validation = machine.validate});
           })) {}
     /// Waits for the device; throws Error where there is none.
     std::unique_ptr<const vk::Device> get() { return device_.get(); }
@@ -102,6 +104,12 @@ double writeMaps(const BakeOptions& o, const BakeRequest& request, const Prepare
     return made;
 }
 
+// Returns what all ranks must have alike.
+std::string describeBake(const BakeSettings& settings, uint32_t triangles, const vk::DeviceInfo& device) {
+    return fmt::format("{} triangles on '{}' ({}), version {} {}", triangles, device.name, device.driver,
+                       RELUME_VERSION, describeSettings(settings));
+}
+
 void logSolver(Method method, const SolverProgress& progress) {
     spdlog::info("{}: {}, {:.3g} Mrays in {:.2f} s ({:.1f} Mrays/s), remaining error {:.2g}",
                  methodName(method),
@@ -113,7 +121,7 @@ void logSolver(Method method, const SolverProgress& progress) {
 
 } // namespace
 
-WholeBake runBake(BakeOptions o, double startSeconds) {
+WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     const auto start = Clock::now();
     const double startCpu = startSeconds > 0 ? 0.0 : cpuSeconds();
     std::vector<PhaseTime> phases;
@@ -121,13 +129,15 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     PhaseClock clock(phases);
     const InterruptGuard guard;
     BakeRequest request = resolveBakeOptions(o);
+    checkSharedBake(request, ranks.count());
+    request.bake.ranks = &ranks;
     checkFiles(o);
     o.solve.method = methodName(request.bake.solver.method);
-    checkOutputs(o);
+    if (ranks.speaks()) checkOutputs(o);
     if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
-    BakeCheckpoints checkpoints(o);
+    BakeCheckpoints checkpoints(o, ranks);
 
-    std::optional<PhaseProgress> phase(std::in_place, true);
+    std::optional<PhaseProgress> phase(std::in_place, ranks.alone());
     DeviceStart deviceStart(o.machine);
     PreparedScene prepared = prepareScene(request.prepare);
     phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
@@ -148,6 +158,7 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     clock.end("device");
 
     const double cpuStart = cpuSeconds();
+    requireAlike(ranks, describeBake(request.bake, prepared.mesh.triangleCount(), device.info()));
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     spdlog::info("{} patches", baker.patches().count);
@@ -155,9 +166,11 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     checkpoints.begin(baker, prepared.scene, request.bake, device.info());
     phase.reset();
     clock.restart();
-    solve(baker.solver(), request.bake.solver, checkpoints);
+    solve(baker.solver(), request.bake.solver, checkpoints, ranks);
     clock.end("solve");
     phase.emplace(false);
+    if (!ranks.alone()) baker.solver().light(); // which the first rank has from all others then
+    if (!ranks.speaks()) return {};
     ProbeSet probes;
     if (o.probes.wanted()) {
         probes = bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samplesOrDefault(),
@@ -194,7 +207,11 @@ void addBakeCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bake", "Bake a scene's radiosity lightmap");
     auto options = std::make_shared<BakeOptions>();
     addBakeOptions(*command, *options);
-    command->callback([options] { runBake(*options, processSeconds()); });
+    command->callback([options] {
+        const Launch launch = launchOfProcess();
+        options->machine.turn = launch.localRank;
+        runOnRanks(launch, [&](Ranks& ranks) { runBake(*options, processSeconds(), ranks); });
+    });
 }
 
 } // namespace relume

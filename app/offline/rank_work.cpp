@@ -1,0 +1,67 @@
+#include "app/offline/rank_work.h"
+
+#include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "bake/ranks/mpi_ranks.h"
+
+#include <algorithm>
+
+namespace relume {
+namespace {
+
+void silence() {
+    spdlog::set_level(spdlog::level::off);
+}
+
+} // namespace
+
+void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work) {
+    if (!launch.several()) return work(oneProcess());
+    const std::unique_ptr<Ranks> ranks = startMpi(launch);
+    try {
+        work(*ranks);
+        ranks->finish();
+    } catch (const OtherRankFailed& failed) {
+        silence();
+        throw Error(failed.what());
+    } catch (...) {
+        if (!ranks->fail())
+            silence();
+        else if (!ranks->speaks())
+            spdlog::set_level(spdlog::level::err);
+        throw;
+    }
+}
+
+void checkSharedBake(const BakeRequest& request, uint32_t ranks) {
+    if (ranks == 1) return;
+    const SolverSettings& solver = request.bake.solver;
+    const std::string mend = fmt::format(": {} processes cannot share it, start it without mpirun", ranks);
+    if (isPairMethod(solver.method))
+        throw UsageError(
+            fmt::format("--method {}{}, or take hybrid or directional", methodName(solver.method), mend));
+    if (solver.layers.on)
+        throw UsageError("--layers" + mend + ", or bake lights as jobs (--lights) and join them");
+    if (solver.links.indirectScale > 1)
+        throw UsageError(fmt::format("--indirect-scale {}{}", solver.links.indirectScale, mend));
+}
+
+void requireAlike(Ranks& ranks, const std::string& what) {
+    if (ranks.alone()) return;
+    constexpr size_t kBytes = 1024; // of what a rank says
+    std::string own = what.substr(0, kBytes);
+    own.resize(kBytes, '\0');
+    std::string all(kBytes * ranks.count(), '\0');
+    const std::vector<uint64_t> sizes(ranks.count(), kBytes);
+    ranks.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), sizes);
+    for (uint32_t rank = 1; rank < ranks.count(); ++rank) {
+        const std::string first = all.substr(0, kBytes), other = all.substr(rank * kBytes, kBytes);
+        if (other == first) continue;
+        throw Error(
+            fmt::format("process {} bakes {}, process 0 {}: start all of them on machines alike, with the "
+                        "same files, and name one kind of device by --device",
+                        rank, other.c_str(), first.c_str()));
+    }
+}
+
+} // namespace relume
