@@ -9,6 +9,7 @@
 #include "app/offline/compression_option.h"
 #include "app/offline/layer_file.h"
 #include "app/offline/layer_join.h"
+#include "app/offline/layer_ranks.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/probe_bake.h"
 #include "app/offline/probe_files.h"
@@ -63,10 +64,10 @@ private:
 
 // Returns the layers as they are written, marked where others are baked elsewhere.
 LayeredImage writtenLayers(const BakeOptions& o, const Baker& baker, const Scene& scene,
-                           const LightmapDesc& desc) {
-    LayeredImage image = layeredImage(baker, scene, desc);
+                           const BakeRequest& request) {
+    LayeredImage image = layeredImage(baker, scene, request.lightmap);
     fitTo(o.files.output, image, o.files.half ? ExrType::Half : ExrType::Float);
-    if (!o.layers.lights.empty())
+    if (!request.bake.solver.layers.lights.empty())
         noteJob(image, *baker.layers(),
                 {.lights = lightNames(scene), .fingerprint = sceneFingerprint(scene, baker.patches())});
     return image;
@@ -82,18 +83,34 @@ void checkOutputs(const BakeOptions& o) {
     if (!o.files.json.empty() && o.files.json != "-") checkFileWritable(o.files.json, 0);
 }
 
-// Writes the lightmap and the maps that go with it. Returns the CPU time when the lightmap was made.
+// Returns the layers that this process has baked, with all that the file says of them.
+LayeredImage ownLayers(const BakeOptions& o, const BakeRequest& request, const Scene& scene, Baker& baker) {
+    LayeredImage layers = writtenLayers(o, baker, scene, request);
+    addLightmapAttributes(layers.composite, o.files.scene, request.bake, request.lightmap,
+                          baker.solver().progress());
+    return layers;
+}
+
+// Leaves this rank's share of the lights that are baked, all of the scene's where none is named. Returns
+// whether it has any; the first rank always has work.
+bool takeLights(std::vector<std::string>& lights, const Scene& scene, const Ranks& ranks) {
+    lights = dealtLights(lights.empty() ? lightNames(scene) : lights, ranks.rank(), ranks.count());
+    return !lights.empty() || ranks.speaks();
+}
+
+// Writes the lightmap, of layers those of all ranks, and the maps that go with it. Returns the CPU time when
+// the lightmap was made.
 double writeMaps(const BakeOptions& o, const BakeRequest& request, const PreparedScene& prepared,
-                 const Baker& baker, const SolverProgress& progress) {
-    LayeredImage layers;
-    if (o.layers.on) layers = writtenLayers(o, baker, prepared.scene, request.lightmap);
+                 Baker& baker, LayeredImage layers) {
+    if (o.layers.on && layers.layers.empty()) layers = ownLayers(o, request, prepared.scene, baker);
     FloatImage image = o.layers.on ? layers.composite : baker.lightmap(request.lightmap);
     const double made = cpuSeconds();
-    addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
+    if (!o.layers.on)
+        addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap,
+                              baker.solver().progress());
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(o.files.compression);
     if (o.layers.on) {
-        layers.composite.attributes = image.attributes;
         writeLayers(o.files.output, layers, type, compression);
     } else {
         writeImage(o.files.output, image, type, compression);
@@ -129,8 +146,11 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     PhaseClock clock(phases);
     const InterruptGuard guard;
     BakeRequest request = resolveBakeOptions(o);
-    checkSharedBake(request, ranks.count());
-    request.bake.ranks = &ranks;
+    checkSharedBake(o, request, ranks.count());
+    // Of layers each rank bakes its own by itself, of other bakes its chunks of all light.
+    const bool byLights = o.layers.on && !ranks.alone();
+    Ranks& sharing = byLights ? oneProcess() : ranks;
+    request.bake.ranks = &sharing;
     checkFiles(o);
     o.solve.method = methodName(request.bake.solver.method);
     if (ranks.speaks()) checkOutputs(o);
@@ -146,6 +166,7 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     if (!o.layers.lights.empty())
         request.bake.solver.layers.lights =
             chosenLights("--lights", o.layers.lights, lightNames(prepared.scene));
+    const bool idle = byLights && !takeLights(request.bake.solver.layers.lights, prepared.scene, ranks);
     if (o.probes.wanted()) {
         probePlan = planProbes(o.probes, prepared.mesh);
         request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);
@@ -159,6 +180,10 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
 
     const double cpuStart = cpuSeconds();
     requireAlike(ranks, describeBake(request.bake, prepared.mesh.triangleCount(), device.info()));
+    if (idle) {
+        gatherLayers(ranks, {});
+        return {};
+    }
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     spdlog::info("{} patches", baker.patches().count);
@@ -166,10 +191,14 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     checkpoints.begin(baker, prepared.scene, request.bake, device.info());
     phase.reset();
     clock.restart();
-    solve(baker.solver(), request.bake.solver, checkpoints, ranks);
+    solve(baker.solver(), request.bake.solver, checkpoints, sharing);
     clock.end("solve");
     phase.emplace(false);
-    if (!ranks.alone()) baker.solver().light(); // which the first rank has from all others then
+    LayeredImage joined; // of all ranks
+    if (byLights)
+        joined = gatherLayers(ranks, ownLayers(o, request, prepared.scene, baker));
+    else if (!ranks.alone())
+        baker.solver().light(); // which the first rank has from all others then
     if (!ranks.speaks()) return {};
     ProbeSet probes;
     if (o.probes.wanted()) {
@@ -179,7 +208,7 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     }
     // From here on files are written, and all of them: what Ctrl-C ends before has written nothing.
     const SolverProgress& progress = baker.solver().progress();
-    const double bakeCpuSeconds = writeMaps(o, request, prepared, baker, progress) - cpuStart;
+    const double bakeCpuSeconds = writeMaps(o, request, prepared, baker, std::move(joined)) - cpuStart;
     if (o.probes.wanted()) writeProbes(o.probes.output, probes);
     if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
     clock.end("write");

@@ -13,6 +13,27 @@ void silence() {
     spdlog::set_level(spdlog::level::off);
 }
 
+// Each process bakes layers of its own: none knows how far those of the others are, or has them before the
+// end.
+void checkSharedLayers(const BakeOptions& options, const SolverSettings& solver, uint32_t ranks) {
+    if (solver.links.samples == 0 || solver.error > 0 || solver.localError > 0)
+        throw UsageError(
+            fmt::format("--layers: {} processes bake lights of their own, so each layer must stop by "
+                        "itself: give --samples, with or without --layer-error, and no --error",
+                        ranks));
+    const std::pair<const char*, bool> others[] = {{"--checkpoint", !options.checkpoint.file.empty()},
+                                                   {"--resume", !options.checkpoint.resume.empty()},
+                                                   {"--error-map", !options.files.errorMap.empty()},
+                                                   {"--json", !options.files.json.empty()},
+                                                   {"--probes-out", options.probes.wanted()}};
+    for (const auto& [name, given] : others)
+        if (given)
+            throw UsageError(
+                fmt::format("{}: none of {} processes has the layers of all lights: leave it out, or "
+                            "start --layers without mpirun",
+                            name, ranks));
+}
+
 } // namespace
 
 void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work) {
@@ -33,15 +54,14 @@ void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work) {
     }
 }
 
-void checkSharedBake(const BakeRequest& request, uint32_t ranks) {
+void checkSharedBake(const BakeOptions& options, const BakeRequest& request, uint32_t ranks) {
     if (ranks == 1) return;
     const SolverSettings& solver = request.bake.solver;
     const std::string mend = fmt::format(": {} processes cannot share it, start it without mpirun", ranks);
     if (isPairMethod(solver.method))
         throw UsageError(
             fmt::format("--method {}{}, or take hybrid or directional", methodName(solver.method), mend));
-    if (solver.layers.on)
-        throw UsageError("--layers" + mend + ", or bake lights as jobs (--lights) and join them");
+    if (solver.layers.on) checkSharedLayers(options, solver, ranks);
     if (solver.links.indirectScale > 1)
         throw UsageError(fmt::format("--indirect-scale {}{}", solver.links.indirectScale, mend));
 }

@@ -14,8 +14,8 @@ namespace relume {
 /// log is off from then on, throw, too. Throws UsageError where the program was built without MPI.
 void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work);
 
-/// Throws UsageError where several processes cannot share the bake that is asked for.
-void checkSharedBake(const BakeRequest& request, uint32_t ranks);
+/// Throws UsageError where several processes cannot share the bake that is asked for by these options.
+void checkSharedBake(const BakeOptions& options, const BakeRequest& request, uint32_t ranks);
 
 /// Throws Error on all ranks where one says something else than rank 0, such as another device: bytes would
 /// depend on who bakes what. `what` is one line.

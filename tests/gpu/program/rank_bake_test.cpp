@@ -118,6 +118,14 @@ TEST_F(RankBake, SamplesThatChunksTakeAloneHaveTheBytesOfOneProcess) {
     expectSameBytes({"--size", "64", "--per-chunk", "--error", "0.05", "--local-error", "0.3"}, {2, 3});
 }
 
+TEST_F(RankBake, LayersHaveTheBytesOfOneProcess) {
+    scene_ = "gallery.glb"; // it has 14 lights
+    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {2, 3});
+    expectSameBytes({"--size", "32", "--layers", "--samples", "128", "--layer-error", "0.2", "--half"}, {2});
+    scene_ = "cornell_statue.glb"; // it has one, so two of three processes have none
+    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {3});
+}
+
 TEST_F(RankBake, MoreProcessesThanChunksHaveTheBytesOfOneProcess) {
     expectSameBytes({"--size", "8", "--samples", "16"}, {3});
 }
