@@ -122,12 +122,13 @@ struct CoarseErrorPush {
 };
 struct ComposePush {
     ADDRESS sums;
-    ADDRESS direct; // 0: nothing
-    ADDRESS light;  // vec4[], written
-    ADDRESS scales; // vec2[chunkCount], as of SmoothPush; 0: `scale` holds for all
-    uint sampled;   // 0: the sums are of links; 1: of direct light
-    uint patchCount;
-    float scale; // from the sum of all sums to the mean
+    ADDRESS direct;              // 0: nothing
+    ADDRESS light;               // vec4[], written
+    ADDRESS scales;              // vec2[chunkCount], as of SmoothPush; 0: `scale` holds for all
+    uint sampled;                // 0: the sums are of links; 1: of direct light
+    uint firstChunk, chunkCount; // that are made
+    uint patchCount;             // of all
+    float scale;                 // from the sum of all sums to the mean
 };
 struct CarryPush {
     ADDRESS carried; // vec4[], of links alone

@@ -89,7 +89,7 @@ double LinkErrors::coarseVariance(const LinkState& state, double patches) const 
 
 glm::dvec4 LinkErrors::change() const {
     VkCommandBuffer cmd = kit_.commands.begin();
-    pass_.recordChange(cmd, kit_.input.light, kit_.buffers);
+    pass_.recordChange(cmd, kit_.input.light, kit_.buffers, kit_.rankChunks.own());
     kit_.run(cmd);
     return sumsOf(chunkSums<glm::vec4>());
 }

@@ -326,7 +326,7 @@ void LinkSolver::directBatch() {
 // Makes what links read: radiance of patches and, where they have footprints, of nodes, which need that of
 // all ranks.
 void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
-    radiancePass_.record(cmd, kit_.input.light, kit_.settings.transport);
+    radiancePass_.record(cmd, kit_.input.light, kit_.settings.transport, kit_.rankChunks.own());
     vk::barrier(cmd);
     if (kit_.rankChunks.alone() || !footprints_) recordReadable(cmd, kit_, footprints_);
 }
@@ -349,11 +349,12 @@ void LinkSolver::beginBounce() {
     VkCommandBuffer cmd = kit_.commands.begin();
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
+        const std::span<const ChunkRange> own = kit_.rankChunks.own();
         const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
         if (buffers.carried && samples > 0 && !state_.scaled)
-            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f);
+            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f, own);
         else
-            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales());
+            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales(), own);
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
@@ -448,7 +449,7 @@ void LinkSolver::carry() {
     if (!kit_.buffers.carried || state_.scaled) return;
     VkCommandBuffer cmd = kit_.commands.begin();
     kit_.gatherPass.recordCarry(cmd, kit_.input.light, kit_.buffers, direct(),
-                                carriedShare(state_.linkRounds + 1));
+                                carriedShare(state_.linkRounds + 1), kit_.rankChunks.own());
     kit_.run(cmd);
 }
 
