@@ -39,6 +39,11 @@ void checkSharedLayers(const BakeOptions& options, const SolverSettings& solver,
 void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work) {
     if (!launch.several()) return work(oneProcess());
     const std::unique_ptr<Ranks> ranks = startMpi(launch);
+    if (const Cores cores = coresOfProcess(); boundTight(cores, launch.localCount))
+        spdlog::warn(
+            "{} processes on this machine are bound to {} of its {} cores each: mpirun --bind-to none leaves "
+            "them all",
+            launch.localCount, cores.usable, cores.all);
     try {
         work(*ranks);
         ranks->finish();

@@ -68,19 +68,26 @@ Launch launchOfProcess() {
     return launchOf([](const char* name) { return std::getenv(name); });
 }
 
-uint32_t threadShare(uint32_t usable, uint32_t cores, uint32_t localCount) {
-    if (usable < cores) return std::max(1u, usable);
-    return std::max(1u, cores / std::max(1u, localCount));
+Cores coresOfProcess() {
+    const auto all = static_cast<uint32_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
+    cpu_set_t bound;
+    CPU_ZERO(&bound);
+    const bool known = sched_getaffinity(0, sizeof(bound), &bound) == 0;
+    return {known ? static_cast<uint32_t>(CPU_COUNT(&bound)) : all, all};
+}
+
+uint32_t threadShare(const Cores& cores, uint32_t localCount) {
+    if (cores.usable < cores.all) return std::max(1u, cores.usable);
+    return std::max(1u, cores.all / std::max(1u, localCount));
+}
+
+bool boundTight(const Cores& cores, uint32_t localCount) {
+    return cores.usable < cores.all && cores.usable < cores.all / std::max(1u, localCount);
 }
 
 void takeThreadShare(const Launch& launch) {
     if (!launch.several()) return;
-    const auto cores = static_cast<uint32_t>(std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)));
-    cpu_set_t bound;
-    CPU_ZERO(&bound);
-    const bool known = sched_getaffinity(0, sizeof(bound), &bound) == 0;
-    const uint32_t usable = known ? static_cast<uint32_t>(CPU_COUNT(&bound)) : cores;
-    const std::string threads = std::to_string(threadShare(usable, cores, launch.localCount));
+    const std::string threads = std::to_string(threadShare(coresOfProcess(), launch.localCount));
     for (const char* name : {"RELUME_THREADS", "LP_NUM_THREADS"})
         setenv(name, threads.c_str(), 0);
 }

@@ -27,9 +27,16 @@ Launch launchOf(const Environment& environment);
 /// Does so for this process.
 Launch launchOfProcess();
 
-/// Returns how many threads a process may use by default: all of the `usable` cores that it is bound to, or,
-/// where it is bound to none of the machine's `cores`, its share of them, 1 at least.
-uint32_t threadShare(uint32_t usable, uint32_t cores, uint32_t localCount);
+/// The cores of a machine, and those of them that this process is bound to: all of them where it is not.
+struct Cores {
+    uint32_t usable = 1, all = 1;
+};
+Cores coresOfProcess();
+/// Returns how many threads a process may use by default: as many as the cores that it is bound to, or, where
+/// it is not bound, its share of them, 1 at least.
+uint32_t threadShare(const Cores& cores, uint32_t localCount);
+/// Tells whether the launcher has bound the process to fewer cores than its share.
+bool boundTight(const Cores& cores, uint32_t localCount);
 /// Lets this process and a software driver use no more threads than that, unless RELUME_THREADS or
 /// LP_NUM_THREADS say otherwise. Call it before threads are made.
 void takeThreadShare(const Launch& launch);

@@ -68,10 +68,14 @@ TEST(Launch, whatIsNoNumberOrNoRankIsNotHeeded) {
 }
 
 TEST(Launch, aProcessHasTheCoresThatItIsBoundToOrItsShare) {
-    EXPECT_EQ(threadShare(4, 16, 4), 4u);  // bound
-    EXPECT_EQ(threadShare(16, 16, 4), 4u); // not bound
-    EXPECT_EQ(threadShare(2, 2, 5), 1u);
-    EXPECT_EQ(threadShare(16, 16, 1), 16u);
+    EXPECT_EQ(threadShare({4, 16}, 4), 4u);  // bound
+    EXPECT_EQ(threadShare({16, 16}, 4), 4u); // not bound
+    EXPECT_EQ(threadShare({2, 2}, 5), 1u);
+    EXPECT_EQ(threadShare({16, 16}, 1), 16u);
+    EXPECT_TRUE(boundTight({1, 16}, 4)); // as mpirun binds two processes
+    EXPECT_FALSE(boundTight({4, 16}, 4));
+    EXPECT_FALSE(boundTight({16, 16}, 4));
+    EXPECT_FALSE(boundTight({1, 2}, 2));
 }
 
 TEST(ChunkDeal, everyChunkIsBakedByOneRank) {
