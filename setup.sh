@@ -25,6 +25,7 @@ packages=(
     libglfw3-dev libimgui-dev                 # the viewer's window and panels
     fonts-dejavu-core                         # their letters: without it they are ImGui's bitmap of 13 pixels
     libcli11-dev libspdlog-dev nlohmann-json3-dev
+    libopenmpi-dev openmpi-bin                # mpirun: several GPUs or machines share a bake
     libgtest-dev libbenchmark-dev vulkan-validationlayers
     xvfb xdotool libx11-dev                   # the tests of the window, on a machine without a display
 )

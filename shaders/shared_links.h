@@ -122,12 +122,13 @@ struct CoarseErrorPush {
 };
 struct ComposePush {
     ADDRESS sums;
-    ADDRESS direct; // 0: nothing
-    ADDRESS light;  // vec4[], written
-    ADDRESS scales; // vec2[chunkCount], as of SmoothPush; 0: `scale` holds for all
-    uint sampled;   // 0: the sums are of links; 1: of direct light
-    uint patchCount;
-    float scale; // from the sum of all sums to the mean
+    ADDRESS direct;              // 0: nothing
+    ADDRESS light;               // vec4[], written
+    ADDRESS scales;              // vec2[chunkCount], as of SmoothPush; 0: `scale` holds for all
+    uint sampled;                // 0: the sums are of links; 1: of direct light
+    uint firstChunk, chunkCount; // that are made
+    uint patchCount;             // of all
+    float scale;                 // from the sum of all sums to the mean
 };
 struct CarryPush {
     ADDRESS carried; // vec4[], of links alone
@@ -172,11 +173,11 @@ struct SmoothPush {
     ADDRESS scales;     // vec2[chunkCount]: in place of scale and directScale; 0: these hold for all
     ADDRESS
     local; // uint[kLightBins + kErrorBins], then LocalSums[chunkCount] (lib/local_error.glsl); 0: none
-    uint chunkCount;
-    uint patchCount;
-    uint size;                // lightmap edge [texels]
-    uint reach;               // [texels], 0: no smoothing
-    float sigma;              // [texels]
-    float scale, directScale; // from a replicate's sum to its mean
-    float floor;              // light below which local error is not relative to it any more [cd/m^2]
+    uint firstChunk, chunkCount; // that are made
+    uint patchCount;             // of all
+    uint size;                   // lightmap edge [texels]
+    uint reach;                  // [texels], 0: no smoothing
+    float sigma;                 // [texels]
+    float scale, directScale;    // from a replicate's sum to its mean
+    float floor;                 // light below which local error is not relative to it any more [cd/m^2]
 };

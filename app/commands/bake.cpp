@@ -2,16 +2,19 @@
 
 #include "app/commands/command.h"
 #include "app/offline/bake_checkpoints.h"
+#include "app/offline/bake_settings.h"
 #include "app/offline/bake_statistics.h"
 #include "app/offline/chosen_lights.h"
 #include "app/offline/command_files.h"
 #include "app/offline/compression_option.h"
 #include "app/offline/layer_file.h"
 #include "app/offline/layer_join.h"
+#include "app/offline/layer_ranks.h"
 #include "app/offline/lightmap_attributes.h"
 #include "app/offline/probe_bake.h"
 #include "app/offline/probe_files.h"
 #include "app/offline/progress.h"
+#include "app/offline/rank_work.h"
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"
 #include "assets/base/file_write.h"
@@ -49,8 +52,8 @@ class DeviceStart {
 public:
     explicit DeviceStart(const MachineOptions& machine)
         : device_(std::async(std::launch::async, [&machine] {
-              return std::make_unique<const vk::Device>(
-                  vk::Device::Desc{.select = machine.device, .validation = machine.validate});
+              return std::make_unique<const vk::Device>(vk::Device::Desc{
+                  .select = machine.device, .turn = machine.turn, .validation = machine.validate});
           })) {}
     /// Waits for the device; throws Error where there is none.
     std::unique_ptr<const vk::Device> get() { return device_.get(); }
@@ -61,10 +64,10 @@ private:
 
 // Returns the layers as they are written, marked where others are baked elsewhere.
 LayeredImage writtenLayers(const BakeOptions& o, const Baker& baker, const Scene& scene,
-                           const LightmapDesc& desc) {
-    LayeredImage image = layeredImage(baker, scene, desc);
+                           const BakeRequest& request) {
+    LayeredImage image = layeredImage(baker, scene, request.lightmap);
     fitTo(o.files.output, image, o.files.half ? ExrType::Half : ExrType::Float);
-    if (!o.layers.lights.empty())
+    if (!request.bake.solver.layers.lights.empty())
         noteJob(image, *baker.layers(),
                 {.lights = lightNames(scene), .fingerprint = sceneFingerprint(scene, baker.patches())});
     return image;
@@ -80,18 +83,34 @@ void checkOutputs(const BakeOptions& o) {
     if (!o.files.json.empty() && o.files.json != "-") checkFileWritable(o.files.json, 0);
 }
 
-// Writes the lightmap and the maps that go with it. Returns the CPU time when the lightmap was made.
+// Returns the layers that this process has baked, with all that the file says of them.
+LayeredImage ownLayers(const BakeOptions& o, const BakeRequest& request, const Scene& scene, Baker& baker) {
+    LayeredImage layers = writtenLayers(o, baker, scene, request);
+    addLightmapAttributes(layers.composite, o.files.scene, request.bake, request.lightmap,
+                          baker.solver().progress());
+    return layers;
+}
+
+// Leaves this rank's share of the lights that are baked, all of the scene's where none is named. Returns
+// whether it has any; the first rank always has work.
+bool takeLights(std::vector<std::string>& lights, const Scene& scene, const Ranks& ranks) {
+    lights = dealtLights(lights.empty() ? lightNames(scene) : lights, ranks.rank(), ranks.count());
+    return !lights.empty() || ranks.speaks();
+}
+
+// Writes the lightmap, of layers those of all ranks, and the maps that go with it. Returns the CPU time when
+// the lightmap was made.
 double writeMaps(const BakeOptions& o, const BakeRequest& request, const PreparedScene& prepared,
-                 const Baker& baker, const SolverProgress& progress) {
-    LayeredImage layers;
-    if (o.layers.on) layers = writtenLayers(o, baker, prepared.scene, request.lightmap);
+                 Baker& baker, LayeredImage layers) {
+    if (o.layers.on && layers.layers.empty()) layers = ownLayers(o, request, prepared.scene, baker);
     FloatImage image = o.layers.on ? layers.composite : baker.lightmap(request.lightmap);
     const double made = cpuSeconds();
-    addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap, progress);
+    if (!o.layers.on)
+        addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap,
+                              baker.solver().progress());
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(o.files.compression);
     if (o.layers.on) {
-        layers.composite.attributes = image.attributes;
         writeLayers(o.files.output, layers, type, compression);
     } else {
         writeImage(o.files.output, image, type, compression);
@@ -100,6 +119,12 @@ double writeMaps(const BakeOptions& o, const BakeRequest& request, const Prepare
     if (!o.files.errorMap.empty())
         writeImage(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
     return made;
+}
+
+// Returns what all ranks must have alike.
+std::string describeBake(const BakeSettings& settings, uint32_t triangles, const vk::DeviceInfo& device) {
+    return fmt::format("{} triangles on '{}' ({}), version {} {}", triangles, device.name, device.driver,
+                       RELUME_VERSION, describeSettings(settings));
 }
 
 void logSolver(Method method, const SolverProgress& progress) {
@@ -113,7 +138,7 @@ void logSolver(Method method, const SolverProgress& progress) {
 
 } // namespace
 
-WholeBake runBake(BakeOptions o, double startSeconds) {
+WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     const auto start = Clock::now();
     const double startCpu = startSeconds > 0 ? 0.0 : cpuSeconds();
     std::vector<PhaseTime> phases;
@@ -121,13 +146,18 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     PhaseClock clock(phases);
     const InterruptGuard guard;
     BakeRequest request = resolveBakeOptions(o);
+    checkSharedBake(o, request, ranks.count());
+    // Of layers each rank bakes its own by itself, of other bakes its chunks of all light.
+    const bool byLights = o.layers.on && !ranks.alone();
+    Ranks& sharing = byLights ? oneProcess() : ranks;
+    request.bake.ranks = &sharing;
     checkFiles(o);
     o.solve.method = methodName(request.bake.solver.method);
-    checkOutputs(o);
+    if (ranks.speaks()) checkOutputs(o);
     if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
-    BakeCheckpoints checkpoints(o);
+    BakeCheckpoints checkpoints(o, ranks);
 
-    std::optional<PhaseProgress> phase(std::in_place, true);
+    std::optional<PhaseProgress> phase(std::in_place, ranks.alone());
     DeviceStart deviceStart(o.machine);
     PreparedScene prepared = prepareScene(request.prepare);
     phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
@@ -136,6 +166,7 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     if (!o.layers.lights.empty())
         request.bake.solver.layers.lights =
             chosenLights("--lights", o.layers.lights, lightNames(prepared.scene));
+    const bool idle = byLights && !takeLights(request.bake.solver.layers.lights, prepared.scene, ranks);
     if (o.probes.wanted()) {
         probePlan = planProbes(o.probes, prepared.mesh);
         request.bake.probes = probeExtent(o.probes, probePlan, prepared.scene, o.layers.on);
@@ -148,6 +179,11 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     clock.end("device");
 
     const double cpuStart = cpuSeconds();
+    requireAlike(ranks, describeBake(request.bake, prepared.mesh.triangleCount(), device.info()));
+    if (idle) {
+        gatherLayers(ranks, {});
+        return {};
+    }
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
     spdlog::info("{} patches", baker.patches().count);
@@ -155,9 +191,15 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     checkpoints.begin(baker, prepared.scene, request.bake, device.info());
     phase.reset();
     clock.restart();
-    solve(baker.solver(), request.bake.solver, checkpoints);
+    solve(baker.solver(), request.bake.solver, checkpoints, sharing);
     clock.end("solve");
     phase.emplace(false);
+    LayeredImage joined; // of all ranks
+    if (byLights)
+        joined = gatherLayers(ranks, ownLayers(o, request, prepared.scene, baker));
+    else if (!ranks.alone())
+        baker.solver().light(); // which the first rank has from all others then
+    if (!ranks.speaks()) return {};
     ProbeSet probes;
     if (o.probes.wanted()) {
         probes = bakeProbes(device, prepared.scene, baker, probePlan, o.probes.samplesOrDefault(),
@@ -166,7 +208,7 @@ WholeBake runBake(BakeOptions o, double startSeconds) {
     }
     // From here on files are written, and all of them: what Ctrl-C ends before has written nothing.
     const SolverProgress& progress = baker.solver().progress();
-    const double bakeCpuSeconds = writeMaps(o, request, prepared, baker, progress) - cpuStart;
+    const double bakeCpuSeconds = writeMaps(o, request, prepared, baker, std::move(joined)) - cpuStart;
     if (o.probes.wanted()) writeProbes(o.probes.output, probes);
     if (!o.files.sceneOut.empty()) saveGlb(withAtlas(prepared.scene, prepared.atlas), o.files.sceneOut);
     clock.end("write");
@@ -194,7 +236,11 @@ void addBakeCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bake", "Bake a scene's radiosity lightmap");
     auto options = std::make_shared<BakeOptions>();
     addBakeOptions(*command, *options);
-    command->callback([options] { runBake(*options, processSeconds()); });
+    command->callback([options] {
+        const Launch launch = launchOfProcess();
+        options->machine.turn = launch.localRank;
+        runOnRanks(launch, [&](Ranks& ranks) { runBake(*options, processSeconds(), ranks); });
+    });
 }
 
 } // namespace relume

@@ -103,6 +103,15 @@ std::vector<std::string> parserArguments(const std::vector<std::string>& typed, 
     return ready;
 }
 
+void requireSharedVerb(const CLI::App& app, const Launch& launch) {
+    const std::string name = typedName(parsedVerb(app));
+    if (launch.several() && name != "relume bake")
+        throw UsageError(
+            fmt::format("{}: is no work for {} processes, which share 'relume bake' alone: start it "
+                        "without mpirun",
+                        name, launch.count));
+}
+
 std::optional<int> runChildTask(int count, const char* const* arguments) {
     return runImportChild(count, arguments);
 }

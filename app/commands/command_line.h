@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bake/ranks/launch.h"
+
 namespace CLI {
 class App;
 }
@@ -17,6 +19,10 @@ void addCommands(CLI::App& app);
 /// belongs, and with an empty value as a word of its own, which CLI11 would skip for the next one. Throws
 /// UsageError for an unknown verb and for a value that is given to a flag.
 std::vector<std::string> parserArguments(const std::vector<std::string>& typed, const CLI::App& app);
+
+/// Throws UsageError where several processes were launched for a verb that was parsed and that is no work for
+/// them: each would do all of it.
+void requireSharedVerb(const CLI::App& app, const Launch& launch);
 
 /// Opens the viewer with its start page, which is what `relume` alone does where there is a display. Returns
 /// false where none is named, and, with a warning, where no window can be made.

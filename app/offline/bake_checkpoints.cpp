@@ -29,10 +29,11 @@ std::string lightsOf(const BakeSettings& settings) {
 
 } // namespace
 
-BakeCheckpoints::BakeCheckpoints(const BakeOptions& options)
-    : path_(options.checkpoint.file), shaders_(options.machine.shaders), every_(options.checkpoint.every) {
+BakeCheckpoints::BakeCheckpoints(const BakeOptions& options, const Ranks& ranks)
+    : ranks_(ranks), path_(options.checkpoint.file), shaders_(options.machine.shaders),
+      every_(options.checkpoint.every) {
     if (!options.checkpoint.resume.empty()) resumed_.emplace(options.checkpoint.resume, RELUME_VERSION);
-    if (!path_.empty()) checkFileWritable(path_, 0);
+    if (!path_.empty() && ranks_.speaks()) checkFileWritable(path_, 0);
 }
 
 void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings& settings,
@@ -44,7 +45,7 @@ void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings
         fmt::format(" tracer={} device={} driver={} shaders={}", baker.tracer().name(), oneWord(device.name),
                     oneWord(device.driver), shaders_.empty() ? "built-in" : oneWord(shaders_));
     key_.scene = sceneFingerprint(scene, baker.patches());
-    if (!path_.empty()) {
+    if (!path_.empty() && ranks_.speaks()) {
         uint64_t bytes = 0;
         for (const StatePart& part : baker.solver().stateParts())
             bytes += part.bytes;
@@ -62,6 +63,8 @@ void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings
 
 void BakeCheckpoints::save(Solver& solver, OnFailure onFailure) {
     const auto start = Clock::now();
+    solver.collect();
+    if (!ranks_.speaks()) return;
     const uint64_t bytes = saveCheckpoint(path_, key_, solver, onFailure);
     const auto end = Clock::now();
     const std::chrono::duration<double> took = end - start;
@@ -72,7 +75,7 @@ void BakeCheckpoints::save(Solver& solver, OnFailure onFailure) {
 }
 
 void BakeCheckpoints::afterStep(Solver& solver) {
-    if (path_.empty() || Clock::now() < next_) return;
+    if (ranks_.alone() && !due()) return; // else all were called because the first one's is due
     try {
         save(solver, OnFailure::Drop); // the next one will do
     } catch (const Error& error) {

@@ -69,6 +69,7 @@ struct MachineOptions {
     std::string device, tracer = "auto", shaders;
     double batchMs = 20;
     bool deviceGather = false, validate = false;
+    uint32_t turn = 0; // which of several devices alike (vk::Device::Desc); no option: a process's place
 };
 
 /// The texels that are written.

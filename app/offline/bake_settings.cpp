@@ -38,9 +38,9 @@ std::string describe(const LinkSettings& settings) {
 } // namespace
 
 std::string describeSettings(const BakeSettings& settings) {
-    // Probes change nothing of a lightmap.
-    const auto& [size, conservative, tracer, voxels, solver, probes] = settings;
-    (void)probes;
+    // Probes change nothing of a lightmap, and neither does the number of processes that bake it.
+    const auto& [size, conservative, tracer, voxels, solver, probes, ranks] = settings;
+    (void)probes, (void)ranks;
     const auto& [resolution, ratio] = voxels;
     const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
     const auto& [method, layers, pairs, links, cache, transport, passes, error, localError, batchMs, live] =

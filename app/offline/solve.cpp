@@ -6,6 +6,7 @@
 #include "assets/base/log.h"
 
 #include <algorithm>
+#include <array>
 
 namespace relume {
 namespace {
@@ -31,6 +32,19 @@ std::string progressText(Solver& solver, const SolverSettings& settings) {
     return text + fmt::format("  {} left{}", formatDuration(left), counted ? "" : " in this pass");
 }
 
+// Does between two passes, on all ranks, what the first one's clock asks for, or a signal that any of them
+// got. Without a file to save to nobody waits for the end of a pass.
+void watchTogether(Solver& solver, SolveWatcher& watcher, Ranks& ranks) {
+    const bool interrupted = InterruptGuard::requested();
+    if (interrupted && !watcher.saves()) watcher.interrupt(solver);
+    if (!solver.passBoundary()) return;
+    std::array<uint64_t, 2> wishes = {interrupted ? 1u : 0u, ranks.speaks() && watcher.due() ? 1u : 0u};
+    ranks.sum(wishes);
+    if (wishes[0] + wishes[1] == 0) return;
+    if (wishes[0] > 0) watcher.interrupt(solver);
+    watcher.afterStep(solver);
+}
+
 } // namespace
 
 void warnIfDark(const Scene& scene, const PatchSet& patches) {
@@ -49,13 +63,17 @@ void warnIfDark(const Scene& scene, const PatchSet& patches) {
                  scene.path);
 }
 
-void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher) {
+void solve(Solver& solver, const SolverSettings& settings, SolveWatcher& watcher, Ranks& ranks) {
     ProgressLine line;
     while (!solver.done()) {
         solver.step();
         if (solver.done()) break;
-        if (InterruptGuard::requested()) watcher.interrupt(solver);
-        watcher.afterStep(solver);
+        if (ranks.alone()) {
+            if (InterruptGuard::requested()) watcher.interrupt(solver);
+            watcher.afterStep(solver);
+        } else {
+            watchTogether(solver, watcher, ranks);
+        }
         if (line.due()) line.show(progressText(solver, settings));
     }
     if (solver.progress().converged || settings.error == 0) return;

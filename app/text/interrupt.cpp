@@ -13,6 +13,7 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0, abandonable = 0;
 
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGUSR1};
 constexpr long kGraceMicroseconds = 350000; // [us], of the half second in which a job has to end
 constexpr std::string_view kInterruptMessage = "interrupted: nothing was written";
 
@@ -49,12 +50,12 @@ void handleSignal(int number, void (*handler)(int)) {
 InterruptGuard::InterruptGuard() {
     interrupted = 0;
     handleSignal(SIGALRM, onAlarm);
-    handleSignal(SIGINT, onInterrupt);
-    handleSignal(SIGTERM, onInterrupt);
+    for (const int number : kSignals)
+        handleSignal(number, onInterrupt);
 }
 
 InterruptGuard::~InterruptGuard() {
-    for (const int number : {SIGINT, SIGTERM})
+    for (const int number : kSignals)
         std::signal(number, SIG_DFL);
     std::signal(SIGALRM, SIG_IGN); // one may be on its way
 }

@@ -2,8 +2,10 @@
 
 namespace relume {
 
-/// While one exists, Ctrl-C (SIGINT) and SIGTERM only set a flag, so that a long job can stop between two
-/// batches and clean up. A second Ctrl-C ends the program at once.
+/// While one exists, Ctrl-C (SIGINT), SIGTERM and SIGUSR1 only set a flag, so that a long job can stop
+/// between two batches and clean up. A second Ctrl-C ends the program at once. mpirun passes SIGUSR1 on to
+/// its processes without killing them soon after, and Slurm sends it ahead of a time limit
+/// (--signal=USR1@60).
 class InterruptGuard {
 public:
     InterruptGuard();

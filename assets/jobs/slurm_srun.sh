@@ -18,7 +18,8 @@ export RELUME=${RELUME:-relume} JOBS_FOLDER=${JOBS_FOLDER:-${SLURM_SUBMIT_DIR:-$
 scene=$1 output=$2 folder=$2.jobs
 shift 2
 "$JOBS_FOLDER/begin_jobs.sh" "$scene" "$folder" "$@" >/dev/null
-srun --kill-on-bad-exit=0 bash -c \
+# Tasks are jobs of their own: --mpi=none keeps them from being taken for processes that share one bake.
+srun --mpi=none --kill-on-bad-exit=0 bash -c \
     'exec "$JOBS_FOLDER/bake_lights.sh" $((SLURM_PROCID + 1)) "$SLURM_NTASKS" "$@"' task "$scene" "$folder" "$@"
 "$RELUME" mix --join "$folder"/*.exr -o "$output"
 rm -r "$folder"

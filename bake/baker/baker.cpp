@@ -22,6 +22,17 @@ constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
 // A bake may take this share of the free memory: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
 
+// Returns those of these patches (ascending) that are in these chunks.
+std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::vector<uint32_t>& patches) {
+    std::vector<uint32_t> in;
+    for (const ChunkRange& range : chunks) {
+        const auto first = std::lower_bound(patches.begin(), patches.end(), range.first * shader::kChunk);
+        const auto end = std::lower_bound(first, patches.end(), (range.first + range.count) * shader::kChunk);
+        in.insert(in.end(), first, end);
+    }
+    return in;
+}
+
 } // namespace
 
 std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings,
@@ -102,7 +113,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Worl
     makeTracers();
     onPhase("solver set-up");
     PhaseClock setUp(phases_);
-    solver_ = makeSolver({device, scene, patches_, *light_, *tracer_}, settings.solver);
+    solver_ = makeSolver(solverInput(), settings.solver);
     setUp.end("solver set-up");
 }
 
@@ -140,14 +151,22 @@ void Baker::makeTracers() {
     clock.end("voxels");
 }
 
+// Returns which chunks' validity each rank finds.
+ChunkDeal Baker::deal() const {
+    return {patches_.chunkCount(), ranks().count(), ChunkDeal::leastRunOf(device_.info().software())};
+}
+
 // Finds where samples may start that start all over their texels, once.
 void Baker::makeCovers() {
     if (!startsAllOver(settings_.solver) || patches_.covers.empty() || light_->covers) return;
+    const ChunkDeal dealt = deal();
+    const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
     searchCovers({.device = device_,
                   .tracer = *tracer_,
                   .patches = patches_,
                   .onBatch = [this](double) { onPhase("validity", 1.0); }},
-                 coveredPatches(patches_));
+                 patchesIn(own, coveredPatches(patches_)));
+    shareChunks(ranks(), dealt, patches_.covers);
     const vk::MemoryOwner owner("surface");
     light_->covers = vk::makeBuffer(device_, patches_.covers, "covers");
 }
@@ -158,13 +177,26 @@ void Baker::findInvalid() {
                         .tracer = *tracer_,
                         .patches = patches_,
                         .samples = kInsideSamples,
+                        .chunks = {},
                         .onLinks = {},
                         .onBatch = [this](double done) { onPhase("validity", done); }};
     if (mover_)
         search.onLinks = [this](uint32_t first, std::span<const uint32_t> links) {
             mover_->noteInside(first, links);
         };
-    const std::vector<uint32_t> inside = findInside(search);
+    const ChunkDeal dealt = deal();
+    const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
+    search.chunks.assign(own.begin(), own.end());
+    std::vector<uint32_t> inside = findInside(search);
+    if (!ranks().alone()) { // each knows its own
+        std::vector<uint8_t> marks(patches_.scene.patches.size(), 0);
+        for (const uint32_t patch : inside)
+            marks[patch] = 1;
+        shareChunks(ranks(), dealt, marks);
+        inside.clear();
+        for (uint32_t patch = 0; patch < marks.size(); ++patch)
+            if (marks[patch] != 0) inside.push_back(patch);
+    }
     invalid_ = static_cast<uint32_t>(inside.size());
     if (invalid_ == 0) return;
     for (const uint32_t patch : inside)
@@ -185,7 +217,7 @@ void Baker::resetSolver(const SolverSettings& settings) {
     solver_ = {}; // before the new one takes its memory
     settings_.solver = settings;
     makeCovers();
-    solver_ = makeSolver({device_, scene_, patches_, *light_, *tracer_}, settings);
+    solver_ = makeSolver(solverInput(), settings);
 }
 
 void Baker::restart(const SceneEdits& wanted, const SolverSettings& settings) {

@@ -13,6 +13,7 @@
 #include "bake/baker/make_solver.h"
 #include "bake/baker/memory_needs.h"
 #include "bake/output/lightmap.h"
+#include "bake/ranks/chunk_deal.h"
 #include "bake/surface/surface_colours.h"
 
 namespace relume {
@@ -96,6 +97,9 @@ private:
     std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
     void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;
+    Ranks& ranks() const { return settings_.ranks ? *settings_.ranks : oneProcess(); }
+    ChunkDeal deal() const;
+    SolverInput solverInput() { return {device_, scene_, patches_, *light_, *tracer_, ranks()}; }
 
     const vk::Device& device_;
     const Scene& scene_;

@@ -5,7 +5,6 @@
 #include "assets/base/clock.h"
 #include "assets/base/worker_pool.h"
 #include "bake/base/batch_rate.h"
-#include "bake/base/chunk_order.h"
 #include "bake/vk/commands.h"
 
 namespace relume {
@@ -131,19 +130,24 @@ uint64_t insideBytes(uint32_t chunks, uint32_t samples) {
 }
 
 std::vector<uint32_t> findInside(const InsideSearch& search) {
-    const uint32_t chunks = search.patches.chunkCount();
-    const uint32_t most = std::min(chunks, kMostInsideChunks);
+    const uint32_t most = std::min(search.patches.chunkCount(), kMostInsideChunks);
     InsideBatch batch(search, most);
     BatchRate rate(!search.device.info().software());
     std::vector<uint32_t> inside;
-    for (uint32_t first = 0; first < chunks;) {
-        if (search.onBatch) search.onBatch(static_cast<double>(first) / chunks);
-        const double wanted = std::clamp(rate.wanted(kInsideBatchMs), 1.0, static_cast<double>(most));
-        const uint32_t count = std::min(static_cast<uint32_t>(wanted), chunks - first);
-        const auto start = Clock::now();
-        batch.run(first, count, inside);
-        rate.note(count, kInsideBatchMs, secondsSince(start));
-        first += count;
+    uint32_t all = 0, done = 0;
+    for (const ChunkRange& range : search.chunks)
+        all += range.count;
+    for (const ChunkRange& range : search.chunks) {
+        for (uint32_t at = 0; at < range.count;) {
+            if (search.onBatch) search.onBatch(static_cast<double>(done) / all);
+            const double wanted = std::clamp(rate.wanted(kInsideBatchMs), 1.0, static_cast<double>(most));
+            const uint32_t count = std::min(static_cast<uint32_t>(wanted), range.count - at);
+            const auto start = Clock::now();
+            batch.run(range.first + at, count, inside);
+            rate.note(count, kInsideBatchMs, secondsSince(start));
+            at += count;
+            done += count;
+        }
     }
     return inside;
 }

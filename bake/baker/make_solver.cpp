@@ -44,6 +44,7 @@ void shareMemory(const SolverInput& input, SolverSettings& settings) {
 } // namespace
 
 MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings) {
+    ASSERT(input.ranks.alone() || (!isPairMethod(settings.method) && !settings.layers.on));
     SolverSettings complete = settings;
     shareMemory(input, complete);
     if (isPairMethod(settings.method)) {

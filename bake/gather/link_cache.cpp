@@ -4,19 +4,27 @@
 #include "bake/base/shader_types.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace relume {
 namespace {
 
 using shader::kChunk;
 
+// Returns how many chunks will be asked for.
+uint32_t askedChunks(const LinkCache::Desc& desc) {
+    if (desc.chunks.empty()) return desc.chunkCount;
+    return std::accumulate(desc.chunks.begin(), desc.chunks.end(), 0u,
+                           [](uint32_t sum, const ChunkRange& run) { return sum + run.count; });
+}
+
 } // namespace
 
 LinkCache::LinkCache(const vk::Device& device, const Desc& desc)
     : device_(device), desc_(desc), chunkBytes_(uint64_t{desc.links} * kChunk * sizeof(uint32_t)),
-      roundChunks_(desc.oneRound
-                       ? static_cast<uint32_t>(std::min<uint64_t>(desc.chunkCount, desc.bytes / chunkBytes_))
-                       : desc.chunkCount) {
+      asked_(askedChunks(desc)),
+      roundChunks_(desc.oneRound ? static_cast<uint32_t>(std::min<uint64_t>(asked_, desc.bytes / chunkBytes_))
+                                 : asked_) {
     if (desc.oneRound) keepIfRoom(0);
 }
 
@@ -38,20 +46,32 @@ void LinkCache::keepIfRoom(uint32_t round) {
         {vk::Buffer(device_, {.size = bytes, .name = "links"}), std::vector<uint8_t>(roundChunks_, 0)});
 }
 
+// Returns the place of a chunk among those that will be asked for.
+uint32_t LinkCache::slotOf(uint32_t chunk) const {
+    if (desc_.chunks.empty()) return chunk;
+    uint32_t before = 0;
+    for (const ChunkRange& run : desc_.chunks) {
+        if (chunk < run.first + run.count) return before + chunk - run.first;
+        before += run.count;
+    }
+    return before;
+}
+
 LinkCache::Place LinkCache::find(uint32_t round, uint32_t first, uint32_t most) {
     const uint32_t slot = desc_.oneRound ? 0 : round;
     keepIfRoom(slot);
-    if (slot >= kept_.size() || first >= roundChunks_) {
+    const uint32_t at = slotOf(first);
+    if (slot >= kept_.size() || at >= roundChunks_) {
         if (!staging_)
             staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
         return {&staging_, 0, false, std::min(most, desc_.batch)};
     }
     const Round& kept = kept_[slot];
-    const auto from = kept.known.begin() + first;
-    const auto end = from + std::min(most, roundChunks_ - first);
+    const auto from = kept.known.begin() + at;
+    const auto end = from + std::min(most, roundChunks_ - at);
     const bool known = *from != 0;
     const auto count = static_cast<uint32_t>(std::find(from, end, known ? 0 : 1) - from);
-    return {&kept.links, uint64_t{first} * desc_.links * kChunk, known, count};
+    return {&kept.links, uint64_t{at} * desc_.links * kChunk, known, count};
 }
 
 LinkCache::Place LinkCache::passing(uint32_t rounds, uint32_t most) {
@@ -69,9 +89,10 @@ LinkCache::Place LinkCache::passing(uint32_t rounds, uint32_t most) {
 
 void LinkCache::note(uint32_t round, ChunkRange range) {
     const uint32_t slot = desc_.oneRound ? 0 : round;
-    if (slot >= kept_.size() || range.first >= roundChunks_) return;
-    const uint32_t count = std::min(range.count, roundChunks_ - range.first);
-    std::fill_n(kept_[slot].known.begin() + range.first, count, uint8_t{1});
+    const uint32_t at = slotOf(range.first);
+    if (slot >= kept_.size() || at >= roundChunks_) return;
+    const uint32_t count = std::min(range.count, roundChunks_ - at);
+    std::fill_n(kept_[slot].known.begin() + at, count, uint8_t{1});
 }
 
 void LinkCache::forget() {

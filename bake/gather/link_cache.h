@@ -18,6 +18,8 @@ public:
         uint32_t links = 16; // per patch and sample pass
         uint32_t batch = 1;  // chunks of a batch of links that are not kept, at most
         uint64_t bytes = 0;  // at most
+        // The chunks that will be asked for: ascending runs, which no question reaches beyond. Empty: all.
+        std::vector<ChunkRange> chunks = {};
         // Whole sample passes are kept, the first ones, and memory is taken as they come. Or those of one
         // sample pass at a time are kept, of the first chunks where there is no room for all; memory for
         // these is taken at once.
@@ -49,7 +51,7 @@ public:
     uint64_t bytes() const; // in use
     uint32_t rounds() const { return static_cast<uint32_t>(kept_.size()); }
     /// Returns how much of a sample pass is kept, where one is kept at a time.
-    double share() const { return static_cast<double>(roundChunks_) / desc_.chunkCount; }
+    double share() const { return static_cast<double>(roundChunks_) / asked_; }
 
 private:
     struct Round {
@@ -57,10 +59,12 @@ private:
         std::vector<uint8_t> known; // per chunk that is kept
     };
     void keepIfRoom(uint32_t round);
+    uint32_t slotOf(uint32_t chunk) const;
 
     const vk::Device& device_;
     Desc desc_;
     uint64_t chunkBytes_;
+    uint32_t asked_;         // chunks that will be asked for
     uint32_t roundChunks_;   // kept of a sample pass
     std::deque<Round> kept_; // a Place points into it while more are added
     vk::Buffer staging_;     // of a batch beyond the kept ones

@@ -3,15 +3,17 @@
 #include "bake/base/shader_types.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace relume {
 
 LinkKit::LinkKit(const SolverInput& from, const Desc& desc)
     : input(from), settings(desc.settings), linksOfRound(desc.linksOfRound),
-      buffers(from.device, from.patches, desc.buffers), gatherPass(from.device, settings.transport),
-      commands(from.device), timestamps(from.device, 3 * kMostPortions), order(desc.chunks),
-      progress(desc.progress), batchMs(desc.batchMs) {}
+      buffers(from.device, from.patches, desc.buffers), rankChunks(from.device, from.ranks, from.patches),
+      gatherPass(from.device, settings.transport), commands(from.device),
+      timestamps(from.device, 3 * kMostPortions), order(desc.chunks), progress(desc.progress),
+      batchMs(desc.batchMs) {}
 
 ChunkRange LinkKit::nextRange(const BatchRate& rate, uint32_t most, double cost, double done) const {
     const double limit =
@@ -47,6 +49,23 @@ void LinkKit::recordRayCount(VkCommandBuffer cmd) {
 void LinkKit::countRays() {
     const auto* counters = back<uint32_t>(0, shader::kRayCounters);
     progress.rays = std::accumulate(counters, counters + shader::kRayCounters, progress.rays);
+}
+
+void LinkKit::shareCounters() {
+    if (rankChunks.alone()) return;
+    std::array<uint64_t, 3> gained = {progress.rays - sharedRays_, progress.raysSaved - sharedSaved_,
+                                      progress.pairs - sharedPairs_};
+    input.ranks.sum(gained);
+    progress.rays = sharedRays_ + gained[0];
+    progress.raysSaved = sharedSaved_ + gained[1];
+    progress.pairs = sharedPairs_ + gained[2];
+    noteCounters();
+}
+
+void LinkKit::noteCounters() {
+    sharedRays_ = progress.rays;
+    sharedSaved_ = progress.raysSaved;
+    sharedPairs_ = progress.pairs;
 }
 
 } // namespace relume

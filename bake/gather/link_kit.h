@@ -5,6 +5,7 @@
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
 #include "bake/gather/link_passes.h"
+#include "bake/gather/rank_chunks.h"
 #include "bake/vk/commands.h"
 
 namespace relume {
@@ -30,6 +31,7 @@ public:
     const SolverSettings settings;
     const uint32_t linksOfRound;
     LinkBuffers buffers;
+    RankChunks rankChunks; // that this process bakes
     LinkGatherPass gatherPass;
     vk::Commands commands;
     vk::Timestamps timestamps;
@@ -68,8 +70,15 @@ public:
     void recordRayCount(VkCommandBuffer cmd);
     void countRays();
 
+    /// Makes the counters of rays and links in the progress those of all ranks, which have counted theirs
+    /// since the call before.
+    void shareCounters();
+    /// Takes note of counters that all ranks have alike.
+    void noteCounters();
+
 private:
-    vk::Buffer back_; // sums per chunk, or counters of rays
+    vk::Buffer back_;                                             // sums per chunk, or counters of rays
+    uint64_t sharedRays_ = 0, sharedSaved_ = 0, sharedPairs_ = 0; // as all ranks have had them last
 };
 
 } // namespace relume

@@ -242,25 +242,32 @@ void LinkGatherPass::recordInterpolate(VkCommandBuffer cmd, const LightBuffers& 
 }
 
 void LinkGatherPass::recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                                   const vk::Buffer* direct, uint32_t samples,
-                                   const vk::Buffer* scales) const {
-    const shader::ComposePush push{.sums = buffers.linkSums.address(),
-                                   .direct = direct ? direct->address() : 0,
-                                   .light = light.ligIn.address(),
-                                   .scales = scales ? scales->address() : 0,
-                                   .patchCount = light.chunkCount * kChunk,
-                                   .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
-    dispatchChunks(compose_, cmd, push, light.chunkCount);
+                                   const vk::Buffer* direct, uint32_t samples, const vk::Buffer* scales,
+                                   const SomeChunks& chunks) const {
+    forRuns(chunks, light.chunkCount, [&](const ChunkRange& run) {
+        const shader::ComposePush push{.sums = buffers.linkSums.address(),
+                                       .direct = direct ? direct->address() : 0,
+                                       .light = light.ligIn.address(),
+                                       .scales = scales ? scales->address() : 0,
+                                       .firstChunk = run.first,
+                                       .chunkCount = run.count,
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .scale = samples > 0 ? 1.0f / static_cast<float>(samples) : 0.0f};
+        dispatchChunks(compose_, cmd, push, run.count);
+    });
 }
 
 void LinkGatherPass::recordCarry(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                                 const vk::Buffer* direct, float share) const {
-    const shader::CarryPush push{.carried = buffers.carried.address(),
-                                 .direct = direct ? direct->address() : 0,
-                                 .light = (share > 0 ? light.ligOut : light.ligIn).address(),
-                                 .share = share,
-                                 .patchCount = light.chunkCount * kChunk};
-    dispatchChunks(carry_, cmd, push, light.chunkCount);
+                                 const vk::Buffer* direct, float share, const SomeChunks& chunks) const {
+    forRuns(chunks, light.chunkCount, [&](const ChunkRange& run) {
+        const uint64_t at = uint64_t{run.first} * kChunk * sizeof(glm::vec4);
+        const shader::CarryPush push{.carried = buffers.carried.address() + at,
+                                     .direct = direct ? direct->address() + at : 0,
+                                     .light = (share > 0 ? light.ligOut : light.ligIn).address() + at,
+                                     .share = share,
+                                     .patchCount = run.count * kChunk};
+        dispatchChunks(carry_, cmd, push, run.count);
+    });
 }
 
 void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,
@@ -270,20 +277,24 @@ void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& l
                                    .light = buffers.direct.address(),
                                    .scales = scales ? scales->address() : 0,
                                    .sampled = 1,
+                                   .chunkCount = light.chunkCount,
                                    .patchCount = light.chunkCount * kChunk,
                                    .scale =
                                        rounds > 0 ? 1.0f / static_cast<float>(kReplicates * rounds) : 0.0f};
     dispatchChunks(compose_, cmd, push, light.chunkCount);
 }
 
-void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light,
-                               const LinkBuffers& buffers) const {
-    const shader::ChangePush push{.patches = light.patches.address(),
-                                  .ligIn = light.ligIn.address(),
-                                  .ligOut = light.ligOut.address(),
-                                  .sums = buffers.chunkSums.address(),
-                                  .chunkCount = light.chunkCount};
-    dispatchChunks(change_, cmd, push, light.chunkCount);
+void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                               const SomeChunks& chunks) const {
+    forRuns(chunks, light.chunkCount, [&](const ChunkRange& run) {
+        const uint64_t first = uint64_t{run.first} * kChunk;
+        const shader::ChangePush push{.patches = light.patches.address() + first * sizeof(shader::Patch),
+                                      .ligIn = light.ligIn.address() + first * sizeof(glm::vec4),
+                                      .ligOut = light.ligOut.address() + first * sizeof(glm::vec4),
+                                      .sums = buffers.chunkSums.address() + run.first * sizeof(glm::vec4),
+                                      .chunkCount = run.count};
+        dispatchChunks(change_, cmd, push, run.count);
+    });
 }
 
 void ResolvePass::recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -303,7 +314,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
                          const Work& work) const {
     const uint32_t reach = buffers.rows ? smoothingReach(work.sigma) : 0;
     const float perReplicate = static_cast<float>(work.samples) / static_cast<float>(kReplicates);
-    const shader::SmoothPush push{
+    shader::SmoothPush push{
         .patches = light.patches.address(),
         .patchChart = buffers.patchChart.address(),
         .texelToPatch = buffers.texelToPatch.address(),
@@ -315,7 +326,8 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .distances = buffers.distances ? buffers.distances.address() : 0,
         .scales = work.scaled ? buffers.scales.address() : 0,
         .local = work.local ? buffers.local.address() : 0,
-        .chunkCount = light.chunkCount,
+        .firstChunk = 0,
+        .chunkCount = 0,
         .patchCount = light.chunkCount * kChunk,
         .size = work.size,
         .reach = reach,
@@ -327,11 +339,18 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         vkCmdFillBuffer(cmd, buffers.local.handle(), 0, VK_WHOLE_SIZE, 0);
         vk::barrier(cmd);
     }
+    const auto dispatch = [&](const vk::ComputeProgram& program, const SomeChunks& chunks) {
+        forRuns(chunks, light.chunkCount, [&](const ChunkRange& run) {
+            push.firstChunk = run.first;
+            push.chunkCount = run.count;
+            dispatchChunks(program, cmd, push, run.count);
+        });
+    };
     if (reach > 0) {
-        dispatchChunks(smooth_, cmd, push, light.chunkCount);
+        dispatch(smooth_, work.rows);
         vk::barrier(cmd);
     }
-    dispatchChunks(resolve_, cmd, push, light.chunkCount);
+    dispatch(resolve_, work.chunks);
 }
 
 } // namespace relume

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "assets/base/worker_pool.h"
+#include "bake/base/chunk_dispatch.h"
 #include "bake/gather/coarse_patches.h"
 #include "bake/solver/solver.h"
 #include "bake/solver/solver_extent.h"
@@ -115,11 +116,12 @@ public:
     /// Makes ligIn of direct light (vec4 per patch, nullptr for none) and the mean of `samples` links; with
     /// `scales` each chunk has as many as these say.
     void recordCompose(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                       const vk::Buffer* direct, uint32_t samples, const vk::Buffer* scales = nullptr) const;
+                       const vk::Buffer* direct, uint32_t samples, const vk::Buffer* scales = nullptr,
+                       const SomeChunks& chunks = {}) const;
     /// Mixes this share of what a sample pass has brought to ligOut, less direct light, into what is carried;
     /// with 0 makes ligIn of direct light and what is carried.
     void recordCarry(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                     const vk::Buffer* direct, float share) const;
+                     const vk::Buffer* direct, float share, const SomeChunks& chunks = {}) const;
     /// Makes direct what it was after so many sample passes, or those that `scales` say.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                           uint32_t rounds, const vk::Buffer* scales = nullptr) const;
@@ -138,7 +140,8 @@ public:
         : change_(device, "change"), coarse_(device, "coarse_error"), smooth_(device, "smooth"),
           resolve_(device, "resolve") {}
     /// Compares ligOut with ligIn: makes a vec4 per chunk in chunkSums.
-    void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers) const;
+    void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
+                      const SomeChunks& chunks = {}) const;
     /// Compares receivers of a coarser grid with their neighbours: makes a vec4 per chunk of theirs in
     /// chunkSums. samples is the number of links per receiver in linkSums.
     void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
@@ -152,6 +155,9 @@ public:
         bool scaled = false;              // chunks have as many samples as LinkBuffers::scales say
         bool local = false;               // makes LinkBuffers::local
         float floor = 0;                  // as of SmoothPush
+        // The chunks that are smoothed along rows, and those that the result is made of, which read no other
+        // ones' rows; nothing: all.
+        SomeChunks rows = {}, chunks = {};
     };
     /// Makes result, and ResolveSums per chunk in chunkSums (sumsOf).
     void record(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

@@ -1,16 +1,18 @@
 #pragma once
 
+#include "bake/base/chunk_dispatch.h"
 #include "bake/solver/transport.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/vk/program.h"
 
 namespace relume {
 
-/// Makes what each patch sends and notes which chunks send at all. It reads ligIn.
+/// Makes what each patch of some chunks sends and notes which of these send at all. It reads ligIn.
 class RadiancePass {
 public:
     explicit RadiancePass(const vk::Device& device) : program_(device, "radiance") {}
-    void record(VkCommandBuffer cmd, const LightBuffers& light, const TransportSettings& settings) const;
+    void record(VkCommandBuffer cmd, const LightBuffers& light, const TransportSettings& settings,
+                const SomeChunks& chunks = {}) const;
 
 private:
     vk::ComputeProgram program_;

@@ -13,6 +13,13 @@ constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
 
 } // namespace
 
+template<typename T>
+std::vector<T> LinkErrors::chunkSums() const {
+    auto sums = vk::readBuffer<T>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount());
+    kit_.rankChunks.share(sums);
+    return sums;
+}
+
 shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) const {
     VkCommandBuffer cmd = kit_.commands.begin();
     pass_.record(cmd, kit_.input.light, kit_.buffers,
@@ -22,15 +29,19 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
                   .sigma = static_cast<float>(sigma),
                   .scaled = state.scaled,
                   .local = bool(kit_.buffers.local),
-                  .floor = static_cast<float>(kLocalFloor * state.median)});
+                  .floor = static_cast<float>(kLocalFloor * state.median),
+                  .rows = kit_.rankChunks.rows(),
+                  .chunks = kit_.rankChunks.own()});
     kit_.run(cmd);
-    return sumsOf(
-        vk::readBuffer<shader::ResolveSums>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount()));
+    return sumsOf(chunkSums<shader::ResolveSums>());
 }
 
 LinkErrors::Local LinkErrors::local() const {
-    const auto bins = vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local,
-                                               shader::kLightBins + shader::kErrorBins);
+    const auto own = vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local,
+                                              shader::kLightBins + shader::kErrorBins);
+    std::vector<uint64_t> counts(own.begin(), own.end());
+    kit_.input.ranks.sum(counts);
+    const std::vector<uint32_t> bins(counts.begin(), counts.end());
     const std::span<const uint32_t> all = bins;
     Local local{.median = medianLight(all.first(shader::kLightBins)),
                 .error = localErrorOf(all.subspan(shader::kLightBins))};
@@ -45,12 +56,13 @@ std::vector<shader::LocalSums> LinkErrors::localSums() const {
     std::vector<shader::LocalSums> sums(kit_.chunkCount());
     vk::download(kit_.input.device, kit_.buffers.local, sums.data(), sums.size() * sizeof(shader::LocalSums),
                  (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t));
+    kit_.rankChunks.share(sums);
     return sums;
 }
 
 std::vector<ChunkVariance> LinkErrors::chunks() const {
     const size_t count = kit_.chunkCount();
-    const auto sums = vk::readBuffer<shader::ResolveSums>(kit_.input.device, kit_.buffers.chunkSums, count);
+    const std::vector<shader::ResolveSums> sums = chunkSums<shader::ResolveSums>();
     const std::vector<shader::LocalSums> local = localSums();
     std::vector<ChunkVariance> chunks;
     for (size_t i = 0; i < count; ++i)
@@ -77,9 +89,9 @@ double LinkErrors::coarseVariance(const LinkState& state, double patches) const 
 
 glm::dvec4 LinkErrors::change() const {
     VkCommandBuffer cmd = kit_.commands.begin();
-    pass_.recordChange(cmd, kit_.input.light, kit_.buffers);
+    pass_.recordChange(cmd, kit_.input.light, kit_.buffers, kit_.rankChunks.own());
     kit_.run(cmd);
-    return sumsOf(vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount()));
+    return sumsOf(chunkSums<glm::vec4>());
 }
 
 } // namespace relume

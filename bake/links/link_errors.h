@@ -7,7 +7,8 @@
 
 namespace relume {
 
-/// Makes the result of a link solver from its sums, and finds how far it is off.
+/// Makes the result of a link solver from its sums, and finds how far it is off. Where several ranks bake,
+/// each makes it of its own chunks, and all learn what all of them say; so all make the same calls.
 class LinkErrors {
 public:
     explicit LinkErrors(LinkKit& kit) : kit_(kit), pass_(kit.input.device) {}
@@ -33,7 +34,9 @@ public:
     glm::dvec4 change() const;
 
 private:
-    std::vector<shader::LocalSums> localSums() const; // per chunk
+    std::vector<shader::LocalSums> localSums() const; // per chunk, of all ranks
+    template<typename T>
+    std::vector<T> chunkSums() const; // likewise
 
     LinkKit& kit_;
     ResolvePass pass_;

@@ -51,6 +51,38 @@ SolverSettings withTransport(SolverSettings settings) {
     return settings;
 }
 
+// Returns the chunks whose links are kept; none where there are all of them.
+std::vector<ChunkRange> ownChunks(const RankChunks& chunks, bool coarse) {
+    ASSERT(chunks.alone() || !coarse);
+    return chunks.alone() ? std::vector<ChunkRange>()
+                          : std::vector<ChunkRange>(chunks.own().begin(), chunks.own().end());
+}
+
+// Makes what links read of the patches' radiance.
+void recordReadable(VkCommandBuffer cmd, const LinkKit& kit, const std::optional<Footprints>& footprints) {
+    const LightBuffers& light = kit.input.light;
+    if (footprints) {
+        footprints->recordLevels(cmd, light.radiance);
+        vk::barrier(cmd);
+    }
+    kit.gatherPass.recordPack(cmd, light, kit.buffers);
+}
+
+// Returns the state's buffers of which each rank has its own chunks.
+std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
+    const LightBuffers& light = kit.input.light;
+    const LinkBuffers& buffers = kit.buffers;
+    constexpr VkDeviceSize kLight = kChunk * sizeof(glm::vec4);
+    return {{light.ligIn, kLight},
+            {light.ligOut, kLight},
+            {buffers.linkSums, kLight, shader::kReplicates},
+            {buffers.directSums, kLight, shader::kReplicates},
+            {buffers.direct, kLight},
+            {buffers.carried, kLight},
+            {buffers.notes, sizeof(glm::uvec2)},
+            {buffers.distances, kChunk * sizeof(float)}};
+}
+
 } // namespace
 
 LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
@@ -79,10 +111,12 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .links = kit_.linksOfRound,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
+                      .chunks = ownChunks(kit_.rankChunks, coarse_.count > 0),
                       .oneRound = true}),
       errors_(kit_), senders_(receiversOf(input, coarse_)), schedule_(rules()), disc_(makeDisc()),
       radiancePass_(input.device), directRounds_(kit_.chunkCount()), linkRounds_(senders_.chunks()),
       directRate_(kit_.wide()) {
+    ASSERT(input.ranks.alone() || !settings.live);
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
     LinkBuffers& buffers = kit_.buffers;
@@ -206,8 +240,11 @@ void LinkSolver::begin(Stage stage) {
     kit_.commands.run();
 }
 
+// This process does its own chunks of the pass.
 void LinkSolver::beginOrder() {
-    if (pass_.all)
+    if (!kit_.rankChunks.alone())
+        kit_.order.beginMarked(kit_.rankChunks.ownOf(pass_.chunks), seenOfStage());
+    else if (pass_.all)
         kit_.order.begin(chunksOfStage(), seenOfStage());
     else
         kit_.order.beginMarked(pass_.chunks, seenOfStage());
@@ -260,37 +297,50 @@ void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange ra
     progress_.gatherSeconds += times.gather;
 }
 
+// A rank may have no chunk in a pass.
 void LinkSolver::directBatch() {
-    const uint32_t batch = std::min(kit_.buffers.batchChunks, emitters_.batchChunks());
-    const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
-    const ChunkRange range = kit_.nextRange(directRate_, most);
-    const auto start = Clock::now();
-    if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range);
-    for (uint32_t group = 0; group < lamps_.groups(); ++group)
-        traceDirect(lamps_, group, range);
-    directRate_.note(range.count, batchMs_, secondsSince(start));
-    kit_.order.finish(range);
-    if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
+    if (kit_.order.left() > 0) {
+        const uint32_t batch = std::min(kit_.buffers.batchChunks, emitters_.batchChunks());
+        const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
+        const ChunkRange range = kit_.nextRange(directRate_, most);
+        const auto start = Clock::now();
+        if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range);
+        for (uint32_t group = 0; group < lamps_.groups(); ++group)
+            traceDirect(lamps_, group, range);
+        directRate_.note(range.count, batchMs_, secondsSince(start));
+        kit_.order.finish(range);
+        if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
+    }
     if (kit_.order.left() > 0) return;
     const auto counters =
         vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
     const uint64_t rays = std::accumulate(counters.begin(), counters.end(), uint64_t{0});
+    const uint64_t before = progress_.rays;
     progress_.rays += rays;
+    kit_.shareCounters();
     const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
-    state_.raysToLights = static_cast<double>(rays) / static_cast<double>(chunks * kChunk);
+    state_.raysToLights = static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk);
     endPass();
 }
 
-// Makes what links read: radiance of patches and, where they have footprints, of nodes.
+// Makes what links read: radiance of patches and, where they have footprints, of nodes, which need that of
+// all ranks.
 void LinkSolver::recordRadiance(VkCommandBuffer cmd) {
-    const LightBuffers& light = kit_.input.light;
-    radiancePass_.record(cmd, light, kit_.settings.transport);
-    if (footprints_) {
-        vk::barrier(cmd);
-        footprints_->recordLevels(cmd, light.radiance);
-    }
+    radiancePass_.record(cmd, kit_.input.light, kit_.settings.transport, kit_.rankChunks.own());
     vk::barrier(cmd);
-    kit_.gatherPass.recordPack(cmd, light, kit_.buffers);
+    if (kit_.rankChunks.alone() || !footprints_) recordReadable(cmd, kit_, footprints_);
+}
+
+// Brings what other ranks' patches send, packed where links read it so.
+void LinkSolver::shareRadiance() {
+    if (kit_.rankChunks.alone()) return;
+    const bool packed = kit_.buffers.packed && !footprints_;
+    if (packed) return kit_.rankChunks.share({kit_.buffers.packed, kChunk * sizeof(glm::uvec2)});
+    kit_.rankChunks.share({kit_.input.light.radiance, kChunk * sizeof(glm::vec4)});
+    if (!footprints_) return;
+    VkCommandBuffer cmd = kit_.commands.begin();
+    recordReadable(cmd, kit_, footprints_);
+    kit_.run(cmd);
 }
 
 void LinkSolver::beginBounce() {
@@ -299,16 +349,18 @@ void LinkSolver::beginBounce() {
     VkCommandBuffer cmd = kit_.commands.begin();
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
+        const std::span<const ChunkRange> own = kit_.rankChunks.own();
         const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
         if (buffers.carried && samples > 0 && !state_.scaled)
-            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f);
+            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f, own);
         else
-            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales());
+            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales(), own);
         vk::barrier(cmd);
     }
     recordRadiance(cmd);
     if (buffers.coarseSums) vkCmdFillBuffer(cmd, buffers.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
     kit_.run(cmd);
+    shareRadiance();
     beginOrder();
     if (!schedule_.hasSolution(state_)) {
         live_.all = true;
@@ -318,6 +370,7 @@ void LinkSolver::beginBounce() {
 
 // Mostly links are there from the sample pass's second bounce on; after a restore they are traced once more.
 void LinkSolver::linkBatch() {
+    if (kit_.order.left() == 0) return endBounce(); // a rank may have no chunk
     const bool coarse = coarse_.count > 0;
     LinkBatches::Portion portion =
         state_.scaled ? batches_.nextOnce(pass_.first, pass_.count) : batches_.next(pass_.first);
@@ -396,12 +449,13 @@ void LinkSolver::carry() {
     if (!kit_.buffers.carried || state_.scaled) return;
     VkCommandBuffer cmd = kit_.commands.begin();
     kit_.gatherPass.recordCarry(cmd, kit_.input.light, kit_.buffers, direct(),
-                                carriedShare(state_.linkRounds + 1));
+                                carriedShare(state_.linkRounds + 1), kit_.rankChunks.own());
     kit_.run(cmd);
 }
 
 void LinkSolver::endBounce() {
     if (coarse_.count > 0) interpolate();
+    kit_.shareCounters();
     ++progress_.passes;
     const bool settling = schedule_.converges(state_);
     if (settling) {
@@ -448,6 +502,10 @@ void LinkSolver::check() {
 }
 
 void LinkSolver::resolve() {
+    if (kit_.buffers.rows) { // smoothing reads what is near, of other ranks, too
+        kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
+        kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(float)});
+    }
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
     const bool isNew = state_.median == 0;
     shader::ResolveSums sums = kit_.buffers.rows ? state_.width.settle(at) : at(0.0);
@@ -499,9 +557,11 @@ const std::vector<glm::vec4>& LinkSolver::light() {
         resolve();
         state_ = before;
     }
-    if (light_.empty())
+    if (light_.empty()) {
+        kit_.rankChunks.share({kit_.buffers.result, kChunk * sizeof(glm::vec4)});
         light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result,
                                            kit_.input.patches.scene.patches.size());
+    }
     return light_;
 }
 
@@ -517,16 +577,23 @@ SolverState LinkSolver::state() {
     return makeState(state_);
 }
 
+void LinkSolver::collect() {
+    if (kit_.rankChunks.alone()) return;
+    ASSERT(passBoundary());
+    for (const RankChunks::Shared& shared : ownBuffers(kit_))
+        if (shared.buffer) kit_.rankChunks.share(shared);
+}
+
 std::vector<StatePart> LinkSolver::stateParts() {
-    const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     std::vector<StatePart> parts;
-    for (const vk::Buffer* buffer :
-         {&std::as_const(light.ligIn), &std::as_const(light.ligOut), &buffers.linkSums, &buffers.directSums,
-          &buffers.direct, &buffers.carried, &buffers.notes, &buffers.distances, &buffers.coarseSums,
-          &buffers.rays}) {
-        if (*buffer) parts.push_back(part(kit_.input.device, *buffer));
-    }
+    const auto add = [&](const vk::Buffer& buffer) {
+        if (buffer) parts.push_back(part(kit_.input.device, buffer));
+    };
+    for (const RankChunks::Shared& shared : ownBuffers(kit_))
+        add(shared.buffer);
+    add(buffers.coarseSums);
+    add(buffers.rays);
     parts.push_back(part(kit_.order));
     for (ChunkRounds* rounds : {&directRounds_, &linkRounds_}) {
         parts.push_back(part(rounds->doneArray()));
@@ -539,7 +606,16 @@ void LinkSolver::restore(const SolverState& state) {
     state_ = takeState<LinkState>(state);
     if (state_.stage != Stage::Plan) pass_ = roundsOf(state_.stage).next(state_.passRounds);
     if (state_.scaled) uploadScales();
+    if (!kit_.rankChunks.alone()) { // what is left of the pass under way, and what it has counted, is shared
+        kit_.order.marks() = kit_.rankChunks.ownOf(kit_.order.marks());
+        if (!kit_.input.ranks.speaks()) {
+            VkCommandBuffer cmd = kit_.commands.begin();
+            vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+            kit_.run(cmd);
+        }
+    }
     kit_.order.restore(chunksOfStage(), seenOfStage());
+    kit_.noteCounters();
     done_ = false;
     stale_ = true;
     live_ = {.version = live_.version};
@@ -548,6 +624,7 @@ void LinkSolver::restore(const SolverState& state) {
     VkCommandBuffer cmd = kit_.commands.begin();
     recordRadiance(cmd);
     kit_.run(cmd);
+    shareRadiance();
 }
 
 } // namespace relume

@@ -32,6 +32,7 @@ public:
     const std::vector<glm::vec4>& light() override;
     std::vector<float> errors() override; // standard errors
     SolverState state() override;
+    void collect() override;
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
 
@@ -71,6 +72,7 @@ private:
     void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
     bool wantsDistances() const { return kit_.buffers.distances && state_.linkRounds == 0 && state_.last; }
     void recordRadiance(VkCommandBuffer cmd);
+    void shareRadiance();
     void beginBounce();
     void interpolate();
     void carry();

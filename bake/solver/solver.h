@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/base/chunk_order.h"
+#include "bake/ranks/ranks.h"
 #include "bake/solver/transport.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/trace/tracer.h"
@@ -195,6 +196,9 @@ public:
 
     /// Returns where it stands; not once it is done().
     virtual SolverState state() = 0;
+    /// Brings to this rank what others have of the state's arrays and of light(), so that it may be read
+    /// here; all ranks call it between two passes. Where one process bakes alone nothing is missing.
+    virtual void collect() {}
     /// Returns the state's arrays in the solver's own order; they hold as long as no step() is made.
     virtual std::vector<StatePart> stateParts() = 0;
     /// Goes on from a state of a solver with the same input and settings; batches and caches may differ. The
@@ -242,6 +246,7 @@ struct SolverInput {
     const PatchSet& patches;
     LightBuffers& light; // ligIn and ligOut are set to the starting light
     Tracer& tracer;
+    Ranks& ranks = oneProcess(); // that bake together; a solver that cannot asserts that there is one
 };
 
 } // namespace relume

@@ -67,23 +67,29 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-// Returns the usable device of the highest rank, the first one among equals.
-const DeviceInfo& best(const std::vector<DeviceInfo>& infos, const std::string& select) {
-    if (infos.empty()) throw Error("no Vulkan device: install mesa-vulkan-drivers or the GPU's driver");
-    const DeviceInfo* found = nullptr;
-    for (const DeviceInfo& info : infos) {
-        if (!matches(info, select)) continue;
-        const auto order = [](const DeviceInfo& d) { return (d.missing.empty() ? 10 : 0) + rank(d.type); };
-        if (found == nullptr || order(info) > order(*found)) found = &info;
-    }
-    if (found == nullptr) throw Error("device '" + select + "' not found: 'relume devices' lists them");
-    if (!found->missing.empty())
-        throw Error("device '" + found->name + "' lacks " + joined(found->missing) +
-                    ": choose another one with --device, update its driver or install mesa-vulkan-drivers");
-    return *found;
+// A device that can be used comes before one that lacks something, then it is its kind that counts.
+int worthOf(const DeviceInfo& info) {
+    return (info.missing.empty() ? 10 : 0) + rank(info.type);
 }
 
 } // namespace
+
+const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select,
+                               uint32_t turn) {
+    if (infos.empty()) throw Error("no Vulkan device: install mesa-vulkan-drivers or the GPU's driver");
+    std::vector<const DeviceInfo*> best;
+    for (const DeviceInfo& info : infos) {
+        if (!matches(info, select)) continue;
+        if (!best.empty() && worthOf(info) > worthOf(*best.front())) best.clear();
+        if (best.empty() || worthOf(info) == worthOf(*best.front())) best.push_back(&info);
+    }
+    if (best.empty()) throw Error("device '" + select + "' not found: 'relume devices' lists them");
+    const DeviceInfo& found = *best[turn % best.size()];
+    if (!found.missing.empty())
+        throw Error("device '" + found.name + "' lacks " + joined(found.missing) +
+                    ": choose another one with --device, update its driver or install mesa-vulkan-drivers");
+    return found;
+}
 
 Device::Device(const Desc& desc) {
     if (!openLoader()) throw Error("no Vulkan loader found: install libvulkan1");
@@ -100,7 +106,7 @@ Device::Device(const Desc& desc) {
             const VkDebugUtilsMessengerCreateInfoEXT info = messengerInfo(instanceDesc);
             VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_));
         }
-        choose(desc.select);
+        choose(desc);
         if (desc.chosen) desc.chosen(info_);
         workers_ = std::make_unique<WorkerPool>(0);
         createDevice();
@@ -133,14 +139,14 @@ void Device::release() {
     if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
 }
 
-void Device::choose(const std::string& select) {
+void Device::choose(const Desc& desc) {
     const std::vector<VkPhysicalDevice> physicals = physicalDevices(instance_);
     std::vector<DeviceInfo> infos;
     for (VkPhysicalDevice physical : physicals) {
         infos.push_back(readDeviceInfo(physical));
         infos.back().index = static_cast<uint32_t>(infos.size() - 1);
     }
-    info_ = best(infos, select);
+    info_ = chooseDevice(infos, desc.select, desc.turn);
     physical_ = physicals[info_.index];
 
     const bool accel = info_.rayTracingPipeline || info_.rayQuery;

@@ -51,6 +51,11 @@ struct DeviceInfo {
 /// Returns "discrete", "integrated", "virtual", "software" or "other".
 const char* deviceTypeName(VkPhysicalDeviceType type);
 
+/// Returns the one of these devices that Device takes (Device::Desc::select and turn). Throws Error where
+/// there is none, and where it lacks something.
+const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select,
+                               uint32_t turn);
+
 /// Returns all Vulkan devices of this machine; the list is empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
 
@@ -64,6 +69,9 @@ public:
     struct Desc {
         std::string select; // "": best by capability (discrete > integrated > software); else index or part
                             // of the name
+        // Of several devices that are as good as the best one, the one that has this number among them,
+        // counted round and round: each process of a machine takes another one.
+        uint32_t turn = 0;
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
         // Called before the logical device and its pool of threads are made: these threads, and those of a
@@ -121,7 +129,7 @@ private:
                                                               VkDebugUtilsMessageTypeFlagsEXT,
                                                               const VkDebugUtilsMessengerCallbackDataEXT*,
                                                               void*);
-    void choose(const std::string& select);
+    void choose(const Desc& desc);
     void createDevice();
     void release();
 

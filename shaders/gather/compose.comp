@@ -1,5 +1,5 @@
 // Makes the light that bounces on: direct light and the mean of all links so far. Or it makes direct light
-// itself from its sums, as direct.comp does. There is one invocation per patch.
+// itself from its sums, as direct.comp does. There is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -8,8 +8,9 @@ layout(push_constant, scalar) uniform Push { ComposePush push; };
 layout(local_size_x = 64) in;
 
 void main() {
-    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
-    if (index >= push.patchCount) return;
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (chunk >= push.chunkCount) return;
+    uint index = (push.firstChunk + chunk) * kChunk + gl_LocalInvocationID.x;
     vec3 sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) sum += Vec4s(push.sums).items[q * push.patchCount + index].rgb;
     vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);

@@ -48,6 +48,7 @@ LocalSums localTerm(vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplica
 void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     if (chunk >= push.chunkCount) return;
+    chunk += push.firstChunk;
     uint index = chunk * kChunk + lane;
     vec3 direct[kReplicates], raw[kReplicates], smoothed[kReplicates], moved[kReplicates];
     vec2 scales = push.scales != 0ul ? Vec2s(push.scales).items[chunk] : vec2(push.scale, push.directScale);

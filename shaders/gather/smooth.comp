@@ -1,5 +1,5 @@
 // Does the first half of smoothing the indirect light: along rows of texels, each replicate by itself. There
-// is one invocation per patch.
+// is one workgroup per chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -9,8 +9,9 @@ layout(push_constant, scalar) uniform Push { SmoothPush push; };
 layout(local_size_x = 64) in;
 
 void main() {
-    uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
-    if (index >= push.patchCount) return;
+    uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (chunk >= push.chunkCount) return;
+    uint index = (push.firstChunk + chunk) * kChunk + gl_LocalInvocationID.x;
     Taps taps = smoothingTaps(index, ivec2(1, 0));
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);

@@ -192,7 +192,7 @@ protected:
               "echo \"$@\" >>\"$FAKE_LOG\"\nscript=$(cat)\n"
               "for task in $tasks; do SLURM_ARRAY_TASK_ID=$task bash -c \"$script\" || exit 1; done\n"
               "echo '7;cluster'\n");
-        write("srun", "shift # --kill-on-bad-exit=0\n"
+        write("srun", "shift 2 # --mpi=none --kill-on-bad-exit=0\n"
                       "for task in 0 1 2; do SLURM_PROCID=$task SLURM_NTASKS=3 \"$@\" & done\nwait\n");
         setenv("FAKE_LOG", path("log").c_str(), 1);
         setenv("PATH", (path("bin") + ":" + before_).c_str(), 1);

@@ -1,0 +1,270 @@
+// A bake that mpirun shares among processes: the bytes are those of one process, whatever their number; an
+// error, Ctrl-C and the death of one end all of them; a bake goes on with another number of processes.
+#include "assets/base/clock.h"
+#include "bake/ranks/mpi_ranks.h"
+#include "tests/gpu/relume_process.h"
+#include "tests/temporary_folder.h"
+#include "tests/text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+namespace relume {
+namespace {
+
+using RankWords = std::vector<std::string>;
+
+// mpirun gives its processes two seconds after Ctrl-C; a loaded machine takes longer.
+constexpr double kAllHaveEnded = 10.0; // [s]
+
+std::optional<std::string> findMpirun() {
+    const std::string path = std::getenv("PATH") ? std::getenv("PATH") : "";
+    for (size_t begin = 0; begin < path.size();) {
+        const size_t end = std::min(path.find(':', begin), path.size());
+        const std::string program = path.substr(begin, end - begin) + "/mpirun";
+        if (std::filesystem::exists(program)) return program;
+        begin = end + 1;
+    }
+    return {};
+}
+
+class RankBake : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!hasMpi()) GTEST_SKIP() << "the program was built without MPI";
+        mpirun_ = findMpirun();
+        if (!mpirun_) GTEST_SKIP() << "there is no mpirun: openmpi-bin has it";
+        setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+        setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    }
+
+    ProcessResult mpirun(uint32_t count, const RankWords& arguments,
+                         const std::function<int(const std::string&)>& onErr = nullptr) const {
+        RankWords words = {"--oversubscribe", "-np", std::to_string(count), RELUME_BINARY};
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        return runProgram(*mpirun_, words, onErr);
+    }
+
+    RankWords bake(const std::string& to, const RankWords& options) const {
+        RankWords words = {"bake", RELUME_SOURCE_DIR "/assets/scenes/" + scene_, "-o", folder_.path(to)};
+        words.insert(words.end(), options.begin(), options.end());
+        return words;
+    }
+
+    /// Bakes with each of these numbers of processes and, at first, without a launcher.
+    void expectSameBytes(const RankWords& options, const std::vector<uint32_t>& counts) const {
+        const ProcessResult plain = runRelume(bake("plain.exr", options));
+        ASSERT_EQ(plain.status, 0) << plain.err;
+        const std::string bytes = bytesOf(folder_.path("plain.exr"));
+        ASSERT_FALSE(bytes.empty());
+        for (const uint32_t count : counts) {
+            const ProcessResult shared = mpirun(count, bake("shared.exr", options));
+            ASSERT_EQ(shared.status, 0) << shared.err;
+            EXPECT_TRUE(bytes == bytesOf(folder_.path("shared.exr"))) << count << " processes";
+            std::filesystem::remove(folder_.path("shared.exr"));
+        }
+    }
+
+    static size_t timesIn(const std::string& text, const std::string& part) {
+        size_t times = 0;
+        for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+            ++times;
+        return times;
+    }
+
+    const TemporaryFolder folder_;
+    std::string scene_ = "cornell_statue.glb";
+    std::optional<std::string> mpirun_;
+};
+
+TEST_F(RankBake, HybridHasTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "64", "--error", "0.03"}, {1, 2, 3, 5});
+    expectSameBytes({"--size", "64", "--samples", "48"}, {2, 4});
+}
+
+TEST_F(RankBake, ManyLightsHaveTheBytesOfOneProcess) {
+    scene_ = "gallery.glb";
+    expectSameBytes({"--size", "64", "--error", "0.05"}, {2, 3});
+}
+
+TEST_F(RankBake, AShareOfATownHasTheBytesOfOneProcess) {
+    scene_ = "town.glb";
+    expectSameBytes({"--size", "128", "--samples", "16"}, {3});
+}
+
+TEST_F(RankBake, DirectionalHasTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "64", "--method", "directional", "--samples", "64"}, {2, 3});
+}
+
+TEST_F(RankBake, FootprintsPassesAndOtherDirectionsHaveTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "48", "--samples", "32", "--footprint"}, {3});
+    expectSameBytes({"--size", "48", "--samples", "32", "--directions", "lec", "--no-smooth"}, {2});
+    expectSameBytes({"--size", "48", "--samples", "32", "--passes", "3"}, {2});
+    expectSameBytes({"--size", "48", "--samples", "32", "--cache", "none"}, {3});
+}
+
+// What the shaders gather, as on a GPU, is packed.
+TEST_F(RankBake, WhatADeviceGathersHasTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "48", "--samples", "32", "--tracer", "bvh", "--device-gather"}, {3});
+}
+
+TEST_F(RankBake, SamplesThatChunksTakeAloneHaveTheBytesOfOneProcess) {
+    scene_ = "gallery.glb";
+    expectSameBytes({"--size", "64", "--per-chunk", "--error", "0.05", "--local-error", "0.3"}, {2, 3});
+}
+
+TEST_F(RankBake, LayersHaveTheBytesOfOneProcess) {
+    scene_ = "gallery.glb"; // it has 14 lights
+    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {2, 3});
+    expectSameBytes({"--size", "32", "--layers", "--samples", "128", "--layer-error", "0.2", "--half"}, {2});
+    scene_ = "cornell_statue.glb"; // it has one, so two of three processes have none
+    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {3});
+}
+
+TEST_F(RankBake, MoreProcessesThanChunksHaveTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "8", "--samples", "16"}, {3});
+}
+
+TEST_F(RankBake, TheScriptOfTheExamplesHasTheBytesOfOneProcess) {
+    const ProcessResult plain = runRelume(bake("plain.exr", {"--size", "48", "--samples", "16"}));
+    ASSERT_EQ(plain.status, 0) << plain.err;
+    for (const auto& [name, value] : {std::pair("RELUME", RELUME_BINARY), std::pair("PROCESSES", "3"),
+                                      std::pair("OMPI_MCA_rmaps_base_oversubscribe", "1")})
+        setenv(name, value, 1);
+    const ProcessResult shared = runProgram(RELUME_SOURCE_DIR "/assets/jobs/share_bake.sh",
+                                            {RELUME_SOURCE_DIR "/assets/scenes/" + scene_,
+                                             folder_.path("shared.exr"), "--size", "48", "--samples", "16"});
+    unsetenv("OMPI_MCA_rmaps_base_oversubscribe");
+    ASSERT_EQ(shared.status, 0) << shared.err;
+    EXPECT_TRUE(bytesOf(folder_.path("plain.exr")) == bytesOf(folder_.path("shared.exr")));
+}
+
+TEST_F(RankBake, OneProcessSpeaksAndWrites) {
+    const ProcessResult result = mpirun(3, bake("map.exr", {"--size", "32", "--samples", "16"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(timesIn(result.err, "wrote "), 1u) << result.err;
+    EXPECT_EQ(timesIn(result.err, "tracer: "), 1u) << result.err;
+}
+
+TEST_F(RankBake, AnErrorIsToldOnce) {
+    const ProcessResult missing = mpirun(3, {"bake", "missing.glb", "-o", folder_.path("map.exr")});
+    EXPECT_EQ(missing.status, 1) << missing.err;
+    EXPECT_EQ(timesIn(missing.err, "error: "), 1u) << missing.err;
+    const ProcessResult wrong = mpirun(3, bake("map.exr", {"--size", "x"}));
+    EXPECT_EQ(wrong.status, 2) << wrong.err;
+    EXPECT_EQ(timesIn(wrong.err, "error: "), 1u) << wrong.err;
+}
+
+// Only the first process writes, so only it finds this out.
+TEST_F(RankBake, AnErrorOfOneProcessEndsAll) {
+    const std::string file = folder_.path("no folder/map.exr");
+    const ProcessResult result = mpirun(3, {"bake", RELUME_SOURCE_DIR "/assets/scenes/" + scene_, "-o", file,
+                                            "--size", "32", "--samples", "16"});
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_EQ(timesIn(result.err, "error: "), 1u) << result.err;
+    EXPECT_TRUE(contains(result.err, "no folder")) << result.err;
+}
+
+TEST_F(RankBake, WhatProcessesCannotShareIsRefusedOnce) {
+    for (const RankWords& options :
+         {RankWords{"--method", "pure"}, RankWords{"--layers"}, RankWords{"--indirect-scale", "2"}}) {
+        const ProcessResult result = mpirun(2, bake("map.exr", options));
+        EXPECT_EQ(result.status, 2) << result.err;
+        EXPECT_EQ(timesIn(result.err, "error: "), 1u) << result.err;
+        EXPECT_TRUE(contains(result.err, options.front())) << result.err;
+        EXPECT_FALSE(std::filesystem::exists(folder_.path("map.exr")));
+    }
+    const ProcessResult info = mpirun(2, {"info", RELUME_SOURCE_DIR "/assets/scenes/" + scene_});
+    EXPECT_EQ(info.status, 2) << info.err;
+    EXPECT_EQ(timesIn(info.err, "error: relume info: "), 1u) << info.err;
+    EXPECT_TRUE(info.out.empty()) << info.out;
+}
+
+class RankCheckpoint : public RankBake {
+protected:
+    RankWords options(const RankWords& more) const {
+        RankWords words = {"--size", "64", "--samples", "512"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+    std::string file() const { return folder_.path("bake.checkpoint"); }
+
+    void expectGoesOn(const std::vector<uint32_t>& counts) const {
+        ASSERT_TRUE(std::filesystem::exists(file()));
+        const ProcessResult plain = runRelume(bake("plain.exr", options({})));
+        ASSERT_EQ(plain.status, 0) << plain.err;
+        for (const uint32_t count : counts) {
+            const ProcessResult second = mpirun(count, bake("second.exr", options({"--resume", file()})));
+            ASSERT_EQ(second.status, 0) << second.err;
+            EXPECT_EQ(timesIn(second.err, "resumed after "), 1u) << second.err;
+            EXPECT_TRUE(bytesOf(folder_.path("plain.exr")) == bytesOf(folder_.path("second.exr"))) << count;
+        }
+    }
+};
+
+} // namespace
+
+// mpirun passes this signal on to all, and waits for them.
+TEST_F(RankCheckpoint, ASignalLeavesOneThatAnotherNumberOfProcessesGoesOnFrom) {
+    bool sent = false;
+    const ProcessResult first =
+        mpirun(4, bake("first.exr", options({"--checkpoint", file()})), [&](const std::string& err) {
+            if (sent || !contains(err, " patches\n")) return 0;
+            sent = true;
+            return SIGUSR1;
+        });
+    EXPECT_EQ(first.status, 1) << first.err;
+    EXPECT_EQ(timesIn(first.err, "error: "), 1u) << first.err;
+    EXPECT_TRUE(contains(first.err, "error: interrupted: go on with --resume " + file() + "\n")) << first.err;
+    EXPECT_EQ(folder_.files(), (RankWords{"bake.checkpoint"}));
+    expectGoesOn({3, 1});
+}
+
+TEST_F(RankBake, CtrlCEndsAllAndNothingIsWritten) {
+    std::optional<Clock::time_point> sent;
+    const ProcessResult result =
+        mpirun(3, bake("map.exr", {"--size", "1024", "--samples", "4096"}), [&](const std::string& err) {
+            if (sent || !contains(err, " patches\n")) return 0;
+            sent = Clock::now();
+            return SIGINT;
+        });
+    ASSERT_TRUE(sent);
+    EXPECT_NE(result.status, 0) << result.err;
+    EXPECT_LT(secondsSince(*sent), kAllHaveEnded);
+    EXPECT_TRUE(folder_.files().empty());
+}
+
+TEST_F(RankCheckpoint, TheDeathOfAProcessEndsAllAndTheBakeGoesOn) {
+    // The second process is killed as soon as there is a checkpoint.
+    std::string script = "if [ \"$OMPI_COMM_WORLD_RANK\" != 1 ]; then exec \"$@\"; fi; \"$@\" & pid=$!; "
+                         "until [ -e '" +
+                         file() + "' ]; do sleep 0.02; done; kill -9 $pid; wait $pid";
+    RankWords words = {"--oversubscribe", "-np", "3", "sh", "-c", script, "sh", RELUME_BINARY};
+    const RankWords arguments =
+        bake("first.exr", options({"--checkpoint", file(), "--checkpoint-every", "0.05"}));
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const ProcessResult first = runProgram(*mpirun_, words);
+    EXPECT_NE(first.status, 0) << first.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_.path("first.exr"))) << "it had been done before";
+    expectGoesOn({2});
+}
+
+// A process alone stops within a pass, of which each of several then does its own share.
+TEST_F(RankCheckpoint, OfOneProcessIsTakenUpBySeveral) {
+    bool sent = false;
+    const ProcessResult first = runRelume(
+        bake("first.exr", options({"--checkpoint", file(), "--batch-ms", "1"})), [&](const std::string& err) {
+            if (sent || !contains(err, " patches\n")) return 0;
+            sent = true;
+            return SIGINT;
+        });
+    EXPECT_EQ(first.status, 1) << first.err;
+    expectGoesOn({3});
+}
+
+} // namespace relume
