@@ -227,6 +227,8 @@ void BakeLoop::ready() {
     status_.tracer = bake_.baker()->tracerChoice();
     applySeen();
     report(true);
+    // A driver compiles for seconds what the next start of the viewer then has, however this one ends.
+    device_->keepPipelines();
 }
 
 // Follows the phases of a preparation, and ends it where something newer is wanted.

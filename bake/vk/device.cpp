@@ -124,13 +124,17 @@ Device::~Device() {
     release();
 }
 
+void Device::keepPipelines() const noexcept {
+    if (pipelineCache_ != VK_NULL_HANDLE) savePipelineCache(device_, info_, pipelineCache_);
+}
+
 void Device::release() {
     if (device_ != VK_NULL_HANDLE) {
         vkDeviceWaitIdle(device_);
         staging_.reset();
         computePipelines_.reset();
         if (pipelineCache_ != VK_NULL_HANDLE) {
-            savePipelineCache(device_, info_, pipelineCache_);
+            keepPipelines();
             vkDestroyPipelineCache(device_, pipelineCache_, nullptr);
         }
         vkDestroyDevice(device_, nullptr);

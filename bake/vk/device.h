@@ -118,6 +118,9 @@ public:
     /// Returns the same number for all devices of this process, those destroyed as well.
     static uint32_t validationMessagesOfAll();
     VkPipelineCache pipelineCache() const { return pipelineCache_; }
+    /// Writes what was compiled so far for later runs, which the destructor does as well: a process that
+    /// lives long may be killed. Any thread may call it.
+    void keepPipelines() const noexcept;
     ComputePipelines& computePipelines() const { return *computePipelines_; }
     Staging& staging() const { return *staging_; }
     /// Returns the pool for the CPU's share of all work on this device: nobody makes threads of his own.

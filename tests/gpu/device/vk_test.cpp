@@ -3,10 +3,13 @@
 #include "bake/vk/program.h"
 #include "shaders/shader_library.h"
 #include "tests/gpu/gpu_environment.h"
+#include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <cctype>
+#include <cstdlib>
+#include <filesystem>
 #include <numeric>
 
 namespace relume {
@@ -192,6 +195,26 @@ TEST(VkCompute, TimestampsGrow) {
     commands.run();
     EXPECT_GT(timestamps.milliseconds(0, 1), 0.0);
     EXPECT_LT(timestamps.milliseconds(0, 1), 10'000.0);
+}
+
+// A viewer that is killed has told the next one what its driver compiled.
+TEST(VkDevice, KeepsItsPipelinesBeforeItEnds) {
+    const TemporaryFolder folder;
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    const std::string before = cache ? cache : "";
+    setenv("XDG_CACHE_HOME", folder.path("").c_str(), 1);
+    {
+        const vk::Device device(vk::Device::Desc{});
+        const TestShaders shaders;
+        const vk::ComputeProgram program(device, "fill");
+        EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
+        device.keepPipelines();
+        EXPECT_FALSE(std::filesystem::is_empty(folder.path("relume")));
+    }
+    if (cache)
+        setenv("XDG_CACHE_HOME", before.c_str(), 1);
+    else
+        unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(VkRay, AccelKeepsGeometriesApart) {
