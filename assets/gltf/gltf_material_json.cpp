@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/gltf/file/gltf_value.h"
+#include "assets/gltf/gltf_light_json.h"
 
 #include <algorithm>
 #include <cmath>
