@@ -25,11 +25,19 @@ LightPattern withoutState(LightPattern pattern) {
     return pattern;
 }
 
+// Tells whether all patches that stay are where they were. What is kept of the others is repaired there.
+bool isInPlace(const PatchCarry& carry) {
+    bool inPlace = carry.former.size() == carry.now.size();
+    for (uint32_t i = 0; inPlace && i < carry.former.size(); ++i)
+        inPlace = carry.former[i] == i || carry.former[i] == kNoPatch;
+    return inPlace;
+}
+
 /// Gives the layers of one solver what the one before it has left.
 class Carrier {
 public:
     Carrier(LinkKit& kit, LayerStore& store, const MoveReach& reach, const LayerCarry& carry)
-        : kit_(kit), store_(store), reach_(reach), carry_(carry) {}
+        : kit_(kit), store_(store), reach_(reach), carry_(carry), inPlace_(isInPlace(carry.patches)) {}
 
     // Tells whether there was such a layer; `whole` says whether it shows what it did.
     bool layer(Layer& to, bool& whole) {
@@ -47,7 +55,7 @@ public:
     bool links(LinkCache& cache) {
         std::deque<LinkCache::Round> rounds = std::exchange(carry_.former.links, {});
         if (carry_.former.linksOfRound != kit_.linksOfRound) return false;
-        if (carry_.patches.same) {
+        if (inPlace_) { // a link to what is no more is traced again wherever it leads to
             cache.takeOver(std::move(rounds));
             return cache.rounds() > 0;
         }
@@ -76,19 +84,24 @@ private:
         const PatchCarry& patches = carry_.patches;
         to.directRounds = from.directRounds;
         to.directSteps = from.directSteps;
+        if (inPlace_) to.direct = from.direct; // what is other there is made anew
         if (patches.same) {
-            to.direct = from.direct;
             to.penumbra = from.penumbra;
             to.stale = from.stale;
             to.begun = from.begun;
         } else {
-            const auto then = vk::readBuffer<glm::vec4>(kit_.input.device, *from.direct, patches.now.size());
-            const std::vector<glm::vec4> now = carryValues(patches, then);
-            to.direct = std::make_shared<vk::Buffer>(store_.takeBuffer("direct light of a layer"));
-            vk::upload(kit_.input.device, *to.direct, now.data(), now.size() * sizeof(glm::vec4));
+            if (!inPlace_) values(from, to);
             marks(from, to);
         }
         if (!isEmpty(carry_.move) || reach_.farther) markDirty(reach_, to);
+    }
+
+    void values(const Layer& from, Layer& to) {
+        const PatchCarry& patches = carry_.patches;
+        const auto then = vk::readBuffer<glm::vec4>(kit_.input.device, *from.direct, patches.now.size());
+        const std::vector<glm::vec4> now = carryValues(patches, then);
+        to.direct = std::make_shared<vk::Buffer>(store_.takeBuffer("direct light of a layer"));
+        vk::upload(kit_.input.device, *to.direct, now.data(), now.size() * sizeof(glm::vec4));
     }
 
     // Carries over where the penumbra is, and what was to be repaired: all of it begins anew.
@@ -163,6 +176,7 @@ private:
     LayerStore& store_;
     const MoveReach& reach_;
     const LayerCarry& carry_;
+    const bool inPlace_;
 };
 
 } // namespace
