@@ -128,6 +128,10 @@ private:
         const std::string lit = folder_.file("lit.glb");
         saveEditedScene(desc_.scene, before, after, lit);
         saveGlb(loadScene(lit), level_);
+        // Normals are made unit whenever a file is read, and settle in their last bits after a few times.
+        constexpr int kSettled = 4;
+        for (int i = 0; i < kSettled; ++i)
+            saveGlb(loadScene(level_), level_);
         home_ = loadScene(level_);
     }
 
