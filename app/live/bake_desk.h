@@ -93,6 +93,7 @@ struct BakeStatus {
     std::vector<ConvergencePoint> history;
     std::string device, tracer, display; // what was chosen, with the reason
     uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
+    uint64_t ballBytes = 0;              // of these, what lights the ball and the grid of probes
     uint32_t validationMessages = 0;
 };
 
