@@ -197,6 +197,7 @@ expectUsageError mix layers.exr --probes-out out.json # no probes to weigh
 expectUsageError mix layers.exr -o out.exr --probes-in probes.json # they go nowhere
 expectUsageError mix layers.exr --probes-in probes.json --probes-out out.txt
 expectUsageError bake room.glb -o room.exr --probe-at 1,2,3 --probes-out probes.ktx2 # no grid
+expectUsageError export layers.exr --web page --probes probes.json # a page has none
 expectUsageError mix layers.exr -o out.png --compression none
 expectUsageError mix layers.exr -o out.png --join
 expectRefusal "error: mix: 2 files: name one, or add --join to put their layers into one" mix a.exr b.exr -o out.exr

@@ -25,10 +25,10 @@ void print(const ReloadReport& report) {
     fmt::print("device: {}\ntracer: {}\nlightmap: {}², {} patches, {} lamps\nreading the file: {:.1f} ms\n",
                report.device, report.tracer, report.size, report.patches, report.lamps,
                1e3 * report.readSeconds);
-    fmt::print("{:<14} {:>10} {:>10} {:>8} {:>12} {:>12} {:>8}\n", "first picture", "file ms", "viewer ms",
+    fmt::print("{:<15} {:>10} {:>10} {:>8} {:>12} {:>12} {:>8}\n", "first picture", "file ms", "viewer ms",
                "ratio", "file rays", "viewer rays", "kept");
     for (const MeasuredReload& edit : report.edits)
-        fmt::print("{:<14} {:>10.1f} {:>10.1f} {:>8.2f} {:>12} {:>12} {:>8}\n", edit.edit,
+        fmt::print("{:<15} {:>10.1f} {:>10.1f} {:>8.2f} {:>12} {:>12} {:>8}\n", edit.edit,
                    1e3 * edit.fileSeconds, 1e3 * edit.viewerSeconds,
                    edit.fileSeconds / (edit.viewerSeconds + report.readSeconds), edit.fileRays,
                    edit.viewerRays,

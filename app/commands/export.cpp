@@ -1,4 +1,5 @@
 #include "app/commands/command.h"
+#include "app/commands/export_probes.h"
 #include "app/commands/export_web.h"
 #include "app/edit/choice_options.h"
 #include "app/export/export_options.h"
@@ -27,6 +28,7 @@ struct ExportCommand {
     ExportOptions out;
     WebOptions web;
     std::string lightmap, layers; // "": bake
+    std::string probes;           // "": none
 };
 
 FloatImage bakedLightmap(const vk::Device& device, const PreparedScene& prepared, const BakeRequest& request,
@@ -42,9 +44,12 @@ FloatImage bakedLightmap(const vk::Device& device, const PreparedScene& prepared
     return image;
 }
 
-// Returns the lightmap that is given, nothing where one is to be baked.
-std::optional<FloatImage> givenLightmap(const ExportCommand& o) {
-    if (!o.layers.empty()) return readLayeredExr(o.layers).composite;
+// Returns the lightmap that is given, nothing where one is to be baked, and reads the probes that come along.
+std::optional<FloatImage> givenLight(const ExportCommand& o, ExportDesc& desc) {
+    std::optional<LayeredImage> layers;
+    if (!o.layers.empty()) layers = readLayeredExr(o.layers);
+    desc.extras = readProbeExtras(desc.engine, o.probes, layers ? &*layers : nullptr);
+    if (layers) return std::move(layers->composite);
     if (!o.lightmap.empty()) return readLightmap(o.lightmap, o.bake.files.scene);
     return std::nullopt;
 }
@@ -52,16 +57,18 @@ std::optional<FloatImage> givenLightmap(const ExportCommand& o) {
 void exportScene(const ExportCommand& o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
-    const ExportDesc desc = resolveExportOptions(o.out);
+    ExportDesc desc = resolveExportOptions(o.out);
+    desc.extras = probeExtras(desc.engine, o.probes);
     BakeRequest request = resolveBakeOptions(o.bake);
     CommandFiles files;
     files.readsScene("SCENE", o.bake.files.scene).reads("--lightmap", o.lightmap).reads("--layers", o.layers);
+    files.reads("--probes", o.probes);
     for (const std::string& path : exportedFiles(desc))
         files.writes("--output", path);
     files.check();
     checkExport(desc);
     if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
-    std::optional<FloatImage> lightmap = givenLightmap(o);
+    std::optional<FloatImage> lightmap = givenLight(o, desc);
     if (lightmap) checkLightmap(*lightmap, o.lightmap.empty() ? o.layers : o.lightmap);
     if (lightmap) request.prepare.size = lightmap->width; // the gutters of a repacked atlas depend on it
     std::optional<PhaseProgress> phase(std::in_place, true);
@@ -107,6 +114,12 @@ void addExportCommand(CLI::App& app) {
                 "do not bake")
             ->type_name("LAYERS.exr")
             ->excludes(lightmap);
+    CLI::Option* probes =
+        command
+            ->add_option("--probes", o->probes,
+                         "Take these light probes along ('relume bake --probes-out'): as they are, for three "
+                         "also as its LightProbe objects, for bevy as its volume")
+            ->type_name("FILE.json");
     addSizeOption(*command, "--size", o->bake);
     // The surfaces are drawn on the device, whoever bakes.
     addSolverOptionsBeside(*command, o->bake, {lightmap, layers}, {"--device", "--validate"});
@@ -119,7 +132,8 @@ void addExportCommand(CLI::App& app) {
                 "Write a web page in this folder, on which the lights are mixed, in place of --for and "
                 "-o; it needs layers, and opens without a network")
             ->type_name("OUT")
-            ->excludes(lightmap);
+            ->excludes(lightmap)
+            ->excludes(probes);
     for (const char* engines :
          {"--for", "--output", "--texture-format", "--texture-size", "--gloss", "--size"})
         web->excludes(command->get_option(engines));

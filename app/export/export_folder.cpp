@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 constexpr const char* kSceneName = "scene.glb";
 constexpr const char* kTextureName = "lightmap.ktx2";
 constexpr const char* kImageName = "lightmap.exr";
+constexpr const char* kReadmeName = "README.txt";
 constexpr float kUsualAspect = 16.0f / 9.0f;
 // The texture of Engine::Any has the surfaces' pictures in it, which the lightmap's texels are too coarse
 // for.
@@ -119,6 +120,13 @@ void addLightmap(Scene& scene, const FloatImage& lightmap, GlbLook& look) {
     scene.images.push_back(std::move(image));
 }
 
+std::string linesOf(const std::vector<ExportExtra>& extras) {
+    std::string lines = "\n";
+    for (const ExportExtra& extra : extras)
+        lines += fmt::format("{}  {}\n", extra.name, extra.line);
+    return lines;
+}
+
 FloatImage colorsOf(const FloatImage& lightmap) {
     FloatImage out{lightmap.width, lightmap.height, {}, {}, lightmap.attributes};
     for (const char* channel : {"R", "G", "B"})
@@ -135,6 +143,8 @@ std::vector<std::string> exportedFiles(const ExportDesc& desc) {
         paths.push_back((folder / name).string());
     for (const EngineFile& file : engineFiles(desc.engine, {}))
         paths.push_back((folder / file.name).string());
+    for (const ExportExtra& extra : desc.extras)
+        paths.push_back((folder / extra.name).string());
     return paths;
 }
 
@@ -194,9 +204,13 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     writeImage((folder / kImageName).string(), colorsOf(lightmap));
     result.files.push_back((folder / kImageName).string());
     const std::string name = fs::path(scene.path).stem().string();
-    for (const EngineFile& file :
-         engineFiles(desc.engine, {.name = name, .exposure = result.exposure, .sky = meanOf(scene.sky)}))
+    for (EngineFile& file :
+         engineFiles(desc.engine, {.name = name, .exposure = result.exposure, .sky = meanOf(scene.sky)})) {
+        if (file.name == kReadmeName && !desc.extras.empty()) file.text += linesOf(desc.extras);
         write(file.name, file.text);
+    }
+    for (const ExportExtra& extra : desc.extras)
+        write(extra.name, extra.bytes);
     return result;
 }
 

@@ -12,6 +12,13 @@
 
 namespace relume {
 
+/// A file that comes along with a level.
+struct ExportExtra {
+    std::string name;       // in the folder
+    std::string bytes = {}; // of the file
+    std::string line = {};  // what README.txt says of it
+};
+
 /// Says what is exported, for whom and where.
 struct ExportDesc {
     Engine engine = Engine::Three;
@@ -21,6 +28,7 @@ struct ExportDesc {
     bool gloss = false;                   // highlights stay, which take from the diffuse light
     uint32_t textureSize = 0;             // Engine::Any: edge of the light's texture [texels]; 0: it follows
                                           // from the lightmap's
+    std::vector<ExportExtra> extras = {}; // what else is written, such as light probes
 };
 
 /// Tells what was written.

@@ -86,13 +86,14 @@ struct BakeStatus {
     std::string remark;             // why there are no layers though asked for, and the remedy; "": nothing
     std::vector<std::string> stale; // the edits that the light does not show yet, one line each
     SolverProgress progress;
-    uint64_t beginnings = 0;  // how often a bake began, by start() or by reset()
+    uint64_t beginnings = 0;  // how often a bake began from no light, by start() or by reset()
     uint64_t rays = 0;        // since then, with those of the pass under way
     double raysPerSecond = 0; // over the last second or so
     double secondsLeft = -1;  // until the error asked for, judged by how it fell so far; negative: unknown
     std::vector<ConvergencePoint> history;
     std::string device, tracer, display; // what was chosen, with the reason
     uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
+    uint64_t ballBytes = 0;              // of these, what lights the ball and the grid of probes
     uint32_t validationMessages = 0;
 };
 

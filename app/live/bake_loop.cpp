@@ -138,7 +138,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     bake_.takeUp(start, desc_.batchMs);
     status_.bake = start.number;
     status_.settings = bake_.settings();
-    begin();
+    begin(bake_.goesOn());
     const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
     if (solverOnly) onPhase("solver set-up");
     endMaps();
@@ -208,12 +208,15 @@ void BakeLoop::beginMaps(bool keepLight) {
                   .settings = bake_.settings()});
 }
 
-void BakeLoop::begin() {
+// Begins a preparation, of a bake that begins anew or that goes on with what the one before has.
+void BakeLoop::begin(bool goesOn) {
     status_.phase = Phase::Preparing;
     status_.doing.clear();
     status_.fraction = 0;
-    ++status_.beginnings;
-    meter_.begin(status_);
+    if (!goesOn) {
+        ++status_.beginnings;
+        meter_.begin(status_);
+    }
     report(true);
 }
 

@@ -37,7 +37,7 @@ private:
     void reloadShaders();
     void reset();
     void beginMaps(bool keepLight);
-    void begin();
+    void begin(bool goesOn = false);
     void ready();
     void onPhase(const char* phase, double done = -1.0);
     void steer(const BakeOrders& orders);

@@ -1,6 +1,7 @@
 #include "app/live/bake_meter.h"
 
 #include "app/live/layer_remark.h"
+#include "app/live/light_balls.h"
 #include "app/offline/layer_file.h"
 
 #include <algorithm>
@@ -51,6 +52,7 @@ void BakeMeter::update(BakeStatus& status, Baker& baker, const BakeSettings& set
     status.progress = now;
     status.rays = std::max(status.rays, now.rays);
     const LayerSolver* layers = baker.layers();
+    status.ballBytes = device.ledger().bytesOf(LightBalls::kOwner);
     status.stale = layers ? staleReasons(*layers) : std::vector<std::string>();
     status.groups = layers ? groupsOf(*layers) : std::vector<LightGroup>();
     addPoint(status.history, {now.seconds, now.error, now.localError95}, kMaxHistory);

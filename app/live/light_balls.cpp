@@ -29,10 +29,8 @@ bool sameSources(const std::vector<LightSource>& a, const std::vector<LightSourc
     });
 }
 
-// Tells whether what patches hold is lighting, and rays meet triangles.
-bool knowsPlaces(const BakeSettings& settings) {
-    return !settings.solver.transport.rtrad;
-}
+// Of the memory that is free a driver needs some.
+constexpr double kMemoryShare = 0.9;
 
 } // namespace
 
@@ -41,6 +39,17 @@ BallStep decideBalls(const BallFacts& facts) {
     if (!facts.traced) return BallStep::Trace;
     if (!facts.newer) return BallStep::None;
     return facts.secondsSince < kBallSeconds ? BallStep::Wait : BallStep::Gather;
+}
+
+std::string ballProblem(const BallMeans& means) {
+    if (means.rtrad)
+        return "RTRad's preset knows no light between surfaces: choose another method to light the ball and "
+               "the probes";
+    const auto mebibytes = [](uint64_t bytes) { return (bytes + (uint64_t{1} << 20) - 1) >> 20; };
+    if (static_cast<double>(means.needed) <= kMemoryShare * static_cast<double>(means.free)) return "";
+    return fmt::format("the ball and the probes need {} MiB of device memory, and {} are free: use a smaller "
+                       "lightmap, or close other programs",
+                       mebibytes(means.needed), means.free >> 20);
 }
 
 std::vector<glm::vec3> gridOfView(const Box& bounds) {
@@ -83,11 +92,32 @@ void LightBalls::forget() {
     grid_.reset();
     tracedFor_ = {};
     told_ = owes_ = false;
+    remark_.clear();
+}
+
+// Returns the device bytes that the next trace takes, 0 where it takes no more than there is.
+uint64_t LightBalls::needed(const Bake& bake, size_t lamps) const {
+    const size_t places = kProbeStride + request_.grid.size();
+    if (tracer_ && places_ == places && moves_ == bake.baker.moves().seconds) return 0;
+    const PatchSet& patches = bake.baker.patches();
+    BakeSettings settings = bake.settings;
+    settings.probes = {.count = static_cast<uint32_t>(places),
+                       .samples = kBallSamples,
+                       .targets = static_cast<uint32_t>(lamps) * kProbeLampSamples,
+                       .lights = 1};
+    const uint64_t size = patches.scene.size;
+    return memoryNeeds(settings, extentOf(bake.scene, patches.scene.mesh.triangleCount()),
+                       {.chunkCount = patches.chunkCount(),
+                        .texels = size * size,
+                        .software = device_.info().software(),
+                        .skyPixels = bake.scene.sky.pixels.size(),
+                        .skyRows = bake.scene.sky.height})
+        .probes;
 }
 
 std::optional<LitBalls> LightBalls::next(const Bake& bake) {
     owes_ = false;
-    if (!request_.wanted() || !knowsPlaces(bake.settings)) return std::nullopt;
+    if (!request_.wanted()) return std::nullopt;
     const LampSet lamps = probeLamps(bake.scene, bake.baker.patches().scene.mesh);
     const std::vector<LightSource> sources = shiningSources(bake.baker, bake.scene);
     const bool newer = !told_ || version_ != bake.version || !sameSources(sources_, sources);
@@ -95,7 +125,17 @@ std::optional<LitBalls> LightBalls::next(const Bake& bake) {
         {.wanted = true, .traced = isTraced(bake, lamps), .newer = newer, .secondsSince = secondsSince(at_)});
     owes_ = step == BallStep::Wait;
     if (step == BallStep::None || step == BallStep::Wait) return std::nullopt;
-    const vk::MemoryOwner owner("balls");
+    const std::string problem =
+        ballProblem({.rtrad = bake.settings.solver.transport.rtrad,
+                     .needed = step == BallStep::Trace ? needed(bake, lamps.lamps.size()) : 0,
+                     .free = device_.freeMemory()});
+    if (!problem.empty()) {
+        if (std::exchange(remark_, problem) == problem) return std::nullopt;
+        LitBalls none;
+        none.remark = problem;
+        return none;
+    }
+    remark_.clear();
     if (step == BallStep::Trace) trace(bake, lamps);
     LitBalls answer = gather(bake, sources);
     answer.traced = step == BallStep::Trace;

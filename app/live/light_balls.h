@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "app/live/lit_ball.h"
@@ -25,6 +26,14 @@ enum class BallStep { None, Wait, Gather, Trace };
 /// Decides what comes next. New places are traced at once; new light waits, so that no bake is held up by it.
 BallStep decideBalls(const BallFacts& facts);
 
+/// Says what stands against the light of places.
+struct BallMeans {
+    bool rtrad = false; // the bake follows RTRad, whose radiosity is no light that comes to a place
+    uint64_t needed = 0, free = 0; // device memory [bytes]
+};
+/// Returns why there can be no light of places, and what helps, in one line; "" where there can be.
+std::string ballProblem(const BallMeans& means);
+
 /// Returns where light probes of a view stand: a grid in these bounds [m] of a few hundred at most. Empty
 /// bounds have none.
 std::vector<glm::vec3> gridOfView(const Box& bounds);
@@ -33,6 +42,9 @@ std::vector<glm::vec3> gridOfView(const Box& bounds);
 /// light costs no ray. Only the bake thread uses it.
 class LightBalls {
 public:
+    /// The ledger counts what balls take on the device as this owner's (vk::MemoryOwner), which is
+    /// ProbeTracer's.
+    static constexpr const char* kOwner = "probes";
     explicit LightBalls(const vk::Device& device) : device_(device) {}
 
     /// Replaces what was asked for before.
@@ -48,13 +60,13 @@ public:
         uint64_t version = 0;                                 // of its light
         const std::function<std::vector<glm::vec4>()>& light; // lighting of each patch [cd/m^2]
     };
-    /// Returns the light where there is something new to tell. Methods that know no places between surfaces
-    /// tell nothing.
+    /// Returns the light where there is something new to tell, or once why there is none.
     std::optional<LitBalls> next(const Bake& bake);
     /// Tells whether new light waits for its time.
     bool owes() const { return owes_; }
 
 private:
+    uint64_t needed(const Bake& bake, size_t lamps) const;
     bool isTraced(const Bake& bake, const LampSet& lamps) const;
     void trace(const Bake& bake, const LampSet& lamps);
     LitBalls gather(const Bake& bake, const std::vector<LightSource>& sources) const;
@@ -70,6 +82,7 @@ private:
     std::vector<LightSource> sources_; // of the last answer
     uint64_t version_ = 0;
     bool told_ = false, owes_ = false;
+    std::string remark_; // that was told
     Clock::time_point at_{};
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -29,6 +30,7 @@ struct LitBalls {
     std::optional<LitBall> ball;
     std::vector<LitBall> grid;
     bool traced = false; // rays were asked for it; else the light alone has changed
+    std::string remark;  // says why there is no light, and what helps; "": there is
 };
 
 } // namespace relume

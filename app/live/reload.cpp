@@ -92,14 +92,15 @@ bool sameTriangles(const Mesh& a, const Mesh& b) {
                       });
 }
 
+bool samePixels(const Image& a, const Image& b) {
+    return a.width == b.width && a.height == b.height && a.rgba == b.rgba;
+}
+
 bool samePictures(const Scene& a, const Scene& b) {
-    const auto image = [](const Image& x, const Image& y) {
-        return x.width == y.width && x.height == y.height && x.rgba == y.rgba;
-    };
     const auto texture = [](const Texture& x, const Texture& y) {
         return x.image == y.image && x.wrapS == y.wrapS && x.wrapT == y.wrapT && x.nearest == y.nearest;
     };
-    return std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), image) &&
+    return std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), samePixels) &&
            std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(), texture) &&
            a.sky.pixels == b.sky.pixels && a.sky.file == b.sky.file;
 }
@@ -277,6 +278,7 @@ SceneChanges changesBetween(const Scene& held, const PreparedScene& before, cons
         return sameColours(x, y) && sameSurface(x, y);
     });
     out.meshes = countDifferent(before.scene.meshes, b.meshes, sameTriangles);
+    out.pictures = countDifferent(before.scene.images, b.images, samePixels);
     out.sky = !a.sky.preview && !b.sky.preview && static_cast<const SkySettings&>(a.sky) != b.sky;
     out.surfaces = !sameSurfaces(before, after);
     return out;
@@ -292,6 +294,7 @@ std::string describe(const SceneChanges& changes) {
     add(changes.objects, "object", "objects");
     add(changes.materials, "material", "materials");
     add(changes.meshes, "mesh", "meshes");
+    add(changes.pictures, "picture", "pictures");
     if (parts.empty()) return changes.surfaces ? "surfaces" : "nothing";
     return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -14,10 +14,11 @@ struct SceneChanges {
     size_t objects = 0;    // that stand elsewhere, are hidden or shown, came or went
     size_t materials = 0;  // whose colour or emission changed, came or went
     size_t meshes = 0;     // whose triangles changed, came or went
+    size_t pictures = 0;   // of textures, whose pixels changed, came or went
     bool sky = false;      // what is set of it
-    bool surfaces = false; // what patches are made with: a bake that goes on would bake what is no more
+    bool surfaces = false; // what patches are made with: they are to be made anew
 
-    bool any() const { return lights + objects + materials + meshes > 0 || sky || surfaces; }
+    bool any() const { return lights + objects + materials + meshes + pictures > 0 || sky || surfaces; }
 };
 
 /// Compares a scene with the same file's former one. `held` has the materials, objects, lights and sky that

@@ -26,6 +26,10 @@ bool SceneBake::keepsPatches(const Start& start) const {
 }
 
 void SceneBake::takeUp(const Start& start, double batchMs) {
+    const BakeRecipe wanted{.surfaces = recipe_.surfaces, .settings = start.settings, .rings = recipe_.rings};
+    goesOn_ = (former_ || layers()) && start.keepLight && start.settings.solver.layers.on &&
+              differOnlyInEdits(recipe_, wanted);
+    if (!goesOn_) former_.reset();
     due_ = true;
     recipe_.settings = bakeable(start.settings, batchMs);
     recipe_.rings = start.rings;
@@ -33,6 +37,7 @@ void SceneBake::takeUp(const Start& start, double batchMs) {
 }
 
 void SceneBake::make(const vk::Device& device, const Start& start) {
+    if (goesOn_) keepFormer(device);
     baker_.reset(); // before the new one takes its memory
     scene_ = start.scene->scene;
     const bool moved = differenceBetween(scene_, start.edits).objects;
@@ -43,14 +48,30 @@ void SceneBake::make(const vk::Device& device, const Start& start) {
     makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
 }
 
+// Keeps what the next bake of the level goes on with, as far as that takes no more than a share of the memory
+// that is free without the rest: the new one has as much memory of its own. A bake that was given up on its
+// way has left nothing, so that what the one before it left still counts.
+void SceneBake::keepFormer(const vk::Device& device) {
+    constexpr uint64_t kShare = 4;
+    if (!baker_) return;
+    former_ = baker_->release();
+    baker_.reset();
+    if (!former_) return;
+    former_->scene = std::move(scene_);
+    former_->layers.keepWithin(device.freeMemory() / kShare);
+}
+
 void SceneBake::makeAgain(const vk::Device& device) {
     WorldMesh mesh = baker_->patches().scene.mesh;
     baker_.reset();
+    former_.reset();
     makeBaker(device, std::move(mesh));
 }
 
 void SceneBake::makeBaker(const vk::Device& device, WorldMesh mesh) {
-    baker_ = std::make_unique<Baker>(device, scene_, std::move(mesh), settings());
+    FormerBake* const former = former_ ? &*former_ : nullptr;
+    baker_ = std::make_unique<Baker>(device, scene_, BakeSurfaces(std::move(mesh), former), settings());
+    former_.reset();
     due_ = false;
     spdlog::info("{} patches", baker_->patches().count);
     warnIfDark(scene_, baker_->patches());
@@ -69,6 +90,7 @@ void SceneBake::mix(const LightMix& mix) {
 
 void SceneBake::end() {
     baker_.reset();
+    former_.reset();
     recipe_.surfaces = 0;
 }
 

@@ -37,7 +37,11 @@ public:
     /// Takes up what the start wants beside its scene. A baker or a solver is to be made next; until then the
     /// former one follows no edit.
     void takeUp(const Start& start, double batchMs);
-    /// Makes the bake. Throws Error, and what ends a preparation: then there is none.
+    /// Tells whether the bake that is made next goes on with what the one before has, as the start that was
+    /// taken up differs in its surfaces alone.
+    bool goesOn() const { return goesOn_; }
+    /// Makes the bake. Throws Error, and what ends a preparation: then there is none, and what the one before
+    /// had is kept for the next one.
     void make(const vk::Device& device, const Start& start);
     /// Makes it anew as it is, with the shaders as they are now. Throws likewise.
     void makeAgain(const vk::Device& device);
@@ -49,14 +53,17 @@ public:
     void end();
 
 private:
+    void keepFormer(const vk::Device& device);
     void makeBaker(const vk::Device& device, WorldMesh mesh);
 
-    Scene scene_;                  // with the edits; the baker changes it
-    LightmapAtlas atlas_;          // of the scene
-    BakeRecipe recipe_;            // surfaces: 0 where there is no bake, or it was given up
-    bool due_ = false;             // the recipe was taken up, and nothing was made by it yet
-    bool wantsLayers_ = true;      // they are asked for, even if the settings cannot have them
-    std::unique_ptr<Baker> baker_; // of scene_
+    Scene scene_;                      // with the edits; the baker changes it
+    LightmapAtlas atlas_;              // of the scene
+    BakeRecipe recipe_;                // surfaces: 0 where there is no bake, or it was given up
+    bool due_ = false;                 // the recipe was taken up, and nothing was made by it yet
+    bool wantsLayers_ = true;          // they are asked for, even if the settings cannot have them
+    bool goesOn_ = false;              // with layers of the bake before
+    std::unique_ptr<Baker> baker_;     // of scene_
+    std::optional<FormerBake> former_; // until a bake went on with it
 };
 
 } // namespace relume

@@ -133,8 +133,8 @@ SceneEdits Session::reloaded(const PreparedScene& now, const SceneChanges& chang
     // too.
     if (!carried.sameFile || changes.materials > 0 || changes.surfaces) history_.forget();
     if (!carried.sameNumbers) document_.mix = {};
-    reloadNotes_ = {
-        fmt::format("reloaded: {}{}", describe(changes), changes.surfaces ? " (the bake begins anew)" : "")};
+    const bool anew = changes.surfaces && !bake_.status().layered; // layers go on with what stays
+    reloadNotes_ = {fmt::format("reloaded: {}{}", describe(changes), anew ? " (the bake begins anew)" : "")};
     spdlog::info("{}", reloadNotes_[0]);
     for (const std::string& conflict : carried.conflicts) {
         spdlog::warn("{}", conflict);

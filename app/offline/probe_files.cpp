@@ -13,7 +13,7 @@ namespace {
 // Larger files are none of ours: so much is the largest grid with the light of some hundred lights.
 constexpr uint64_t kMostProbeFileBytes = uint64_t{4} << 30;
 
-void writeVolume(const std::string& path, const ProbeSet& set) {
+std::string volumeBytes(const std::string& path, const ProbeSet& set) {
     if (!set.grid)
         throw Error(path +
                     ": a volume needs a grid of probes: bake them with --probes SPACING, or take .json");
@@ -22,14 +22,8 @@ void writeVolume(const std::string& path, const ProbeSet& set) {
     for (const Probe& probe : set.probes)
         requireFiniteLight(probe.radiance, path);
     // A few hundred kilobytes are not worth the decoder that Bevy may have been built without.
-    writeFileAtomically(path, encodeKtx2(ambientCubes(*set.grid, set.probes),
-                                         {.zstd = false, .depth = 3 * set.grid->counts.z}, path));
-    const glm::vec3 scale = set.grid->spacing * glm::vec3(set.grid->counts);
-    const glm::vec3 middle = set.grid->first + 0.5f * (scale - set.grid->spacing);
-    spdlog::info(
-        "{}: in Bevy an IrradianceVolume of intensity 1 at translation {:g}, {:g}, {:g}, scale {:g}, "
-        "{:g}, {:g}",
-        path, middle.x, middle.y, middle.z, scale.x, scale.y, scale.z);
+    return encodeKtx2(ambientCubes(*set.grid, set.probes), {.zstd = false, .depth = 3 * set.grid->counts.z},
+                      path);
 }
 
 } // namespace
@@ -51,18 +45,29 @@ ProbeSet readProbes(const std::string& path) {
     return parseProbes(text, path);
 }
 
-void writeProbes(const std::string& path, const ProbeSet& set) {
+std::string volumePlace(const ProbeGrid& grid) {
+    const glm::vec3 scale = grid.spacing * glm::vec3(grid.counts);
+    const glm::vec3 middle = grid.first + 0.5f * (scale - grid.spacing);
+    return fmt::format("translation {:g}, {:g}, {:g}, scale {:g}, {:g}, {:g}", middle.x, middle.y, middle.z,
+                       scale.x, scale.y, scale.z);
+}
+
+std::string probeBytes(const std::string& path, const ProbeSet& set) {
     switch (probeFormOf("--probes-out", path)) {
-    case ProbeForm::Relume:
-        writeFileAtomically(path, probesJson(set, path));
-        break;
     case ProbeForm::Three:
-        writeFileAtomically(path, threeProbes(set, path));
-        break;
+        return threeProbes(set, path);
     case ProbeForm::Bevy:
-        writeVolume(path, set);
+        return volumeBytes(path, set);
+    case ProbeForm::Relume:
         break;
     }
+    return probesJson(set, path);
+}
+
+void writeProbes(const std::string& path, const ProbeSet& set) {
+    writeFileAtomically(path, probeBytes(path, set));
+    if (probeFormOf("--probes-out", path) == ProbeForm::Bevy)
+        spdlog::info("{}: in Bevy an IrradianceVolume of intensity 1 at {}", path, volumePlace(*set.grid));
     spdlog::info("wrote {}", path);
 }
 

@@ -65,41 +65,22 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, const SceneExtent& sce
     return memoryNeeds(settings, scene, all).total();
 }
 
-Baker::Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
-             PhaseHook phaseHook)
-    : Baker(device, scene, nullptr, std::move(mesh), settings, std::move(phaseHook)) {}
+Baker::Baker(const vk::Device& device, const Scene& scene, BakeSurfaces surfaces,
+             const BakeSettings& settings, PhaseHook phaseHook)
+    : Baker(device, scene, nullptr, std::move(surfaces), settings, std::move(phaseHook)) {}
 
-Baker::Baker(const vk::Device& device, Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+Baker::Baker(const vk::Device& device, Scene& scene, BakeSurfaces surfaces, const BakeSettings& settings,
              PhaseHook phaseHook)
-    : Baker(device, scene, &scene, std::move(mesh), settings, std::move(phaseHook)) {}
+    : Baker(device, scene, &scene, std::move(surfaces), settings, std::move(phaseHook)) {}
 
-Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, WorldMesh mesh,
+Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
              const BakeSettings& settings, PhaseHook phaseHook)
     : device_(device), scene_(scene), editable_(editable), settings_(settings),
       phaseHook_(std::move(phaseHook)) {
-    const auto limit = static_cast<uint64_t>(kMemoryShare * static_cast<double>(device.freeMemory()));
-    const std::string problem = sizeProblem(device, settings, extentOf(scene, mesh.triangleCount()), limit);
-    if (!problem.empty()) throw Error(problem);
-    const bool rtrad = settings.solver.transport.rtrad;
+    requireRoom(surfaces);
     PhaseClock clock(phases_);
-    onPhase("cit");
-    {
-        const vk::MemoryOwner owner("cit");
-        const TextureGroup group = rasterizeTextureGroup(
-            device, scene, mesh,
-            {.size = settings.size, .conservative = settings.conservative, .rtrad = rtrad});
-        clock.end("cit");
-        onPhase("patches");
-        patches_ = buildPatches(scene, std::move(mesh), group,
-                                {.reflectivity = settings.solver.transport.reflectivity,
-                                 .rtrad = rtrad,
-                                 .pool = &device.workers()});
-    }
-    if (patches_.clampedAlbedo > 0) {
-        spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
-                     "lower the base colour",
-                     patches_.clampedAlbedo);
-    }
+    makePatches(std::move(surfaces.mesh), clock);
+    std::optional<Carry> carry = carryFrom(surfaces.former);
     {
         const vk::MemoryOwner owner("surface");
         light_ = std::make_unique<LightBuffers>(device, patches_);
@@ -107,20 +88,92 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Worl
     colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
 
-    if (settings.solver.layers.on && !rtrad && !usesVoxels(settings))
+    if (followsObjects())
         mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
                                                settings.conservative);
-    makeTracers();
+    makeTracers(carry ? &*carry : nullptr);
     onPhase("solver set-up");
     PhaseClock setUp(phases_);
-    solver_ = makeSolver(solverInput(), settings.solver);
+    std::optional<LayerCarry> layers;
+    if (carry) layers.emplace(layerCarry(*carry));
+    solver_ = makeSolver(solverInput(), settings.solver, layers ? &*layers : nullptr);
     setUp.end("solver set-up");
+}
+
+// Throws Error where the size does not fit. What a former bake has left is given up before.
+void Baker::requireRoom(BakeSurfaces& surfaces) const {
+    const SceneExtent extent = extentOf(scene_, surfaces.mesh.triangleCount());
+    const auto problem = [&] {
+        const auto free = static_cast<double>(device_.freeMemory());
+        return sizeProblem(device_, settings_, extent, static_cast<uint64_t>(kMemoryShare * free));
+    };
+    std::string now = problem();
+    if (!now.empty() && surfaces.former) {
+        std::exchange(surfaces.former, nullptr)->layers = {};
+        now = problem();
+    }
+    if (!now.empty()) throw Error(now);
+}
+
+void Baker::makePatches(WorldMesh mesh, PhaseClock& clock) {
+    const TransportSettings& transport = settings_.solver.transport;
+    onPhase("cit");
+    const vk::MemoryOwner owner("cit");
+    const TextureGroup group = rasterizeTextureGroup(
+        device_, scene_, mesh,
+        {.size = settings_.size, .conservative = settings_.conservative, .rtrad = transport.rtrad});
+    clock.end("cit");
+    onPhase("patches");
+    patches_ = buildPatches(
+        scene_, std::move(mesh), group,
+        {.reflectivity = transport.reflectivity, .rtrad = transport.rtrad, .pool = &device_.workers()});
+    if (patches_.clampedAlbedo == 0) return;
+    spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
+                 "lower the base colour",
+                 patches_.clampedAlbedo);
+}
+
+bool Baker::followsObjects() const {
+    const SolverSettings& solver = settings_.solver;
+    return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings_);
+}
+
+// Finds what stays of a former bake. Directions that a chunk shares would be others where its patches are.
+std::optional<Baker::Carry> Baker::carryFrom(FormerBake* former) {
+    if (former == nullptr || !followsObjects() || former->patches.scene.size != settings_.size ||
+        settings_.solver.links.rotation == Rotation::Tile)
+        return std::nullopt;
+    Carry carry{.former = *former,
+                .patches = carryPatches({former->scene, former->patches}, {scene_, patches_})};
+    carrySearches(carry.patches, former->patches, patches_);
+    return carry;
+}
+
+LayerCarry Baker::layerCarry(const Carry& carry) const {
+    const Sky &was = carry.former.scene.sky, &is = scene_.sky;
+    return {.former = carry.former.layers,
+            .patches = carry.patches,
+            .move = carry.move,
+            .sameSky = was.file == is.file && was.pixels == is.pixels,
+            .sameColours = carry.patches.same && sameColours(carry.former.patches, patches_)};
 }
 
 Baker::~Baker() = default;
 
+std::optional<FormerBake> Baker::release() {
+    if (!mover_ || !solver_.layers) return std::nullopt;
+    FormerBake former;
+    former.layers = solver_.layers->release();
+    former.inside = mover_->giveInside();
+    solver_ = {};
+    mover_.reset();
+    tracer_.reset(); // it borrows the patches
+    former.patches = std::move(patches_);
+    return former;
+}
+
 // Makes the tracers. Triangles tell whether a patch lies inside something: a voxel knows no inside.
-void Baker::makeTracers() {
+void Baker::makeTracers(Carry* carry) {
     const vk::MemoryOwner owner("trace");
     std::string why = "as asked for";
     TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
@@ -141,7 +194,7 @@ void Baker::makeTracers() {
         tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
         clock.end("tracer");
     }
-    if (!settings_.solver.transport.rtrad) findInvalid();
+    if (!settings_.solver.transport.rtrad) findInvalid(carry);
     makeCovers();
     clock.end("validity");
     if (!marches) return;
@@ -167,12 +220,35 @@ void Baker::makeCovers() {
                   .onBatch = [this](double) { onPhase("validity", 1.0); }},
                  patchesIn(own, coveredPatches(patches_)));
     shareChunks(ranks(), dealt, patches_.covers);
+    uploadCovers();
+}
+
+void Baker::uploadCovers() {
+    if (!startsAllOver(settings_.solver) || patches_.covers.empty()) return;
     const vk::MemoryOwner owner("surface");
     light_->covers = vk::makeBuffer(device_, patches_.covers, "covers");
 }
 
 // Finds the patches inside something, once, before the first pass.
-void Baker::findInvalid() {
+void Baker::findInvalid(Carry* carry) {
+    if (carry) {
+        uploadCovers();
+        onPhase("validity");
+        const FormerBake& former = carry->former;
+        carry->move = mover_->takeOver(
+            {.patches = former.patches, .instances = former.scene.instances.size(), .inside = former.inside},
+            carry->patches, *tracer_);
+        invalid_ = mover_->invalidPatches();
+    } else {
+        searchInside();
+    }
+    if (invalid_ > 0)
+        spdlog::info(
+            "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
+            invalid_, patches_.count);
+}
+
+void Baker::searchInside() {
     InsideSearch search{.device = device_,
                         .tracer = *tracer_,
                         .patches = patches_,
@@ -201,9 +277,6 @@ void Baker::findInvalid() {
     if (invalid_ == 0) return;
     for (const uint32_t patch : inside)
         patches_.scene.patches[patch].flags &= ~shader::kPatchSends;
-    spdlog::info(
-        "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
-        invalid_, patches_.count);
     vk::upload(device_, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
 }

@@ -10,6 +10,7 @@
 #include "assets/base/phase_clock.h"
 #include "bake/baker/bake_settings.h"
 #include "bake/baker/edit_decision.h"
+#include "bake/baker/former_bake.h"
 #include "bake/baker/make_solver.h"
 #include "bake/baker/memory_needs.h"
 #include "bake/output/lightmap.h"
@@ -18,7 +19,6 @@
 
 namespace relume {
 
-struct ObjectMove;
 class ObjectMover;
 
 /// Counts over all moves of objects that a bake has followed.
@@ -39,13 +39,18 @@ public:
     /// hears what comes next ("cit", "tracer", ...), some of it more than once; what it throws ends the
     /// preparation, as does what this thread's watch throws.
     using PhaseHook = std::function<void(const char* phase)>;
-    Baker(const vk::Device& device, const Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+    Baker(const vk::Device& device, const Scene& scene, BakeSurfaces surfaces, const BakeSettings& settings,
           PhaseHook phaseHook = {});
     /// Does likewise for a scene that edits may change: nobody but apply() and restart() may do so from now
-    /// on.
-    Baker(const vk::Device& device, Scene& scene, WorldMesh mesh, const BakeSettings& settings,
+    /// on. Where layers are baked it goes on with what a former bake of the level has: what stays as it was
+    /// is neither traced nor made again, and what comes of it is a fresh bake.
+    Baker(const vk::Device& device, Scene& scene, BakeSurfaces surfaces, const BakeSettings& settings,
           PhaseHook phaseHook = {});
     ~Baker();
+
+    /// Gives up what a bake of the same settings can go on with; nothing without layers. What is left of this
+    /// one is to be destroyed.
+    std::optional<FormerBake> release();
 
     Solver& solver() { return *solver_.solver; }
     /// Returns the same solver where each light has a layer, else nullptr.
@@ -89,11 +94,24 @@ public:
     static uint64_t deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
 private:
-    Baker(const vk::Device& device, const Scene& scene, Scene* editable, WorldMesh mesh,
+    /// What stays of a former bake.
+    struct Carry {
+        FormerBake& former;
+        PatchCarry patches;
+        ObjectMove move = {};
+    };
+    Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
           const BakeSettings& settings, PhaseHook phaseHook);
-    void makeTracers();
-    void findInvalid();
+    void requireRoom(BakeSurfaces& surfaces) const;
+    void makePatches(WorldMesh mesh, PhaseClock& clock);
+    void makeTracers(Carry* carry);
+    bool followsObjects() const;
+    std::optional<Carry> carryFrom(FormerBake* former);
+    LayerCarry layerCarry(const Carry& carry) const;
+    void findInvalid(Carry* carry);
+    void searchInside();
     void makeCovers();
+    void uploadCovers();
     std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
     void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;

@@ -43,7 +43,7 @@ void shareMemory(const SolverInput& input, SolverSettings& settings) {
 
 } // namespace
 
-MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings) {
+MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry) {
     ASSERT(input.ranks.alone() || (!isPairMethod(settings.method) && !settings.layers.on));
     SolverSettings complete = settings;
     shareMemory(input, complete);
@@ -56,7 +56,7 @@ MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings) 
         const std::string tooMany =
             layerProblem(input.scene, input.patches, complete.layers.bytes, complete.layers.lights);
         if (!settings.layers.optional || tooMany.empty()) {
-            auto layers = std::make_unique<LayerSolver>(input, complete);
+            auto layers = std::make_unique<LayerSolver>(input, complete, carry);
             LayerSolver* const known = layers.get();
             return {.solver = std::move(layers), .layers = known};
         }

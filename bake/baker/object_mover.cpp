@@ -17,8 +17,6 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-// Rays and boxes together may round off this share of a coordinate, with room.
-constexpr float kBoxRounding = 1e-5f;
 // So many boxes tell where objects were, or are: each is a test per ray. An object of many parts is one.
 constexpr size_t kMostMoveBoxes = 4;
 // This marks a link that was not traced again, where none are listed.
@@ -38,13 +36,23 @@ bool liesInside(const glm::uvec2& bits) {
                               static_cast<uint32_t>(std::popcount(bits.y)), ObjectMover::kInsideSamples);
 }
 
-void change(ObjectMove& move, uint32_t patch) {
-    move.changed[patch / kChunk][static_cast<int>(patch % kChunk / 32)] |= 1u << patch % 32;
-}
-
 void sortUnique(std::vector<uint32_t>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+void addBox(const WorldMesh& mesh, std::span<const uint32_t> triangles,
+            std::vector<shader::TraceBox>& boxes) {
+    if (const std::optional<shader::TraceBox> box = boxAround(mesh, triangles)) boxes.push_back(*box);
+}
+
+// Returns one box around all where they are many.
+std::vector<shader::TraceBox> fewBoxes(std::vector<shader::TraceBox> boxes) {
+    if (boxes.size() <= kMostMoveBoxes) return boxes;
+    shader::TraceBox around = boxes.front();
+    for (const shader::TraceBox& box : boxes)
+        around = {glm::min(around.lo, box.lo), glm::max(around.hi, box.hi)};
+    return {around};
 }
 
 std::vector<uint32_t> merged(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
@@ -85,25 +93,6 @@ struct ObjectMover::Buffers {
         return (1 + std::min(kAtOnce, words())) * sizeof(uint32_t);
     }
 };
-
-ObjectMover::Members::Members(const std::vector<uint32_t>& instanceOf, size_t instances)
-    : first_(instances + 2, 0), members_(instanceOf.size()) {
-    for (const uint32_t instance : instanceOf) // padding is of one more
-        ++first_[instance + 1];
-    for (size_t i = 1; i < first_.size(); ++i)
-        first_[i] += first_[i - 1];
-    std::vector<uint32_t> next = first_;
-    for (uint32_t i = 0; i < instanceOf.size(); ++i)
-        members_[next[instanceOf[i]]++] = i;
-}
-
-std::vector<uint32_t> ObjectMover::Members::of(const std::vector<uint32_t>& instances) const {
-    std::vector<uint32_t> all;
-    for (const uint32_t instance : instances)
-        all.insert(all.end(), members_.begin() + first_[instance], members_.begin() + first_[instance + 1]);
-    if (instances.size() > 1) std::sort(all.begin(), all.end());
-    return all;
-}
 
 ObjectMover::ObjectMover(const On& on, bool conservative)
     : on_(on), conservative_(conservative), placed_(editsOf(on.scene).placements),
@@ -215,28 +204,13 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
     return part;
 }
 
-// Returns one box for each instance that is there; where they are many, one around all.
+// Returns one box for each instance that is there.
 std::vector<shader::TraceBox> ObjectMover::boxesOf(const Moved& moved) const {
-    const std::vector<glm::vec3>& positions = on_.patches.scene.mesh.positions;
-    const shader::TraceBox none{glm::vec3(1e30f), glm::vec3(-1e30f)};
     std::vector<shader::TraceBox> boxes;
-    for (const std::vector<uint32_t>* list : {&moved.shown, &moved.gone}) {
-        for (const uint32_t instance : *list) {
-            shader::TraceBox box = none;
-            for (const uint32_t t : triangles_.of({instance}))
-                for (size_t corner = size_t{t} * 3; corner < size_t{t} * 3 + 3; ++corner)
-                    box = {glm::min(box.lo, positions[corner]), glm::max(box.hi, positions[corner])};
-            if (placed_[instance].hidden || box.lo.x > box.hi.x) continue;
-            const glm::vec3 reach = glm::max(glm::abs(box.lo), glm::abs(box.hi));
-            const float grown = kBoxRounding * std::max({reach.x, reach.y, reach.z});
-            boxes.push_back({box.lo - grown, box.hi + grown});
-        }
-    }
-    if (boxes.size() <= kMostMoveBoxes) return boxes;
-    shader::TraceBox around = none;
-    for (const shader::TraceBox& box : boxes)
-        around = {glm::min(around.lo, box.lo), glm::max(around.hi, box.hi)};
-    return {around};
+    for (const std::vector<uint32_t>* list : {&moved.shown, &moved.gone})
+        for (const uint32_t instance : *list)
+            if (!placed_[instance].hidden) addBox(on_.patches.scene.mesh, triangles_.of(instance), boxes);
+    return fewBoxes(std::move(boxes));
 }
 
 // Puts the triangles into the scene. Those of hidden objects go to where other triangles are: the scene's
@@ -274,7 +248,7 @@ std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move
     const auto put = [&](uint32_t slot, const shader::Patch& patch, uint32_t owner) {
         invalid_ -= liesInside(all.scene.patches[slot]);
         all.scene.patches[slot] = patch;
-        change(move, slot);
+        move.change(slot);
         const uint32_t texel = texels_[slot] & ~kHome;
         if ((texels_[slot] & kHome) == 0 || all.scene.texelToPatch[texel] == owner) return;
         all.scene.texelToPatch[texel] = owner;
@@ -387,7 +361,7 @@ std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patch
         patch.flags ^= shader::kPatchSends;
         now ? ++invalid_ : --invalid_;
         move.texels = true;
-        change(move, i);
+        move.change(i);
         others.push_back(i);
     }
     return others;
@@ -412,8 +386,42 @@ void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots,
     const std::vector<uint32_t> others =
         searchCovers({.device = on_.device, .tracer = tracer, .patches = patches, .onBatch = {}}, which);
     for (const uint32_t i : others)
-        change(move, i);
+        move.change(i);
     vk::uploadElements(on_.device, on_.light.covers, patches.covers, merged(slots, others));
+}
+
+ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry& carry, Tracer& tracer) {
+    const PatchSet& patches = on_.patches;
+    ObjectMove move;
+    move.changed.assign(patches.chunkCount(), glm::uvec2(0));
+    move.instances = carry.changed;
+    inside_.assign(patches.scene.patches.size(), glm::uvec2(0));
+    std::vector<uint32_t> slots;
+    for (uint32_t i = 0; i < patches.count; ++i) {
+        if (carry.former[i] != kNoPatch) {
+            inside_[i] = former.inside[carry.former[i]];
+            invalid_ += liesInside(patches.scene.patches[i]);
+            continue;
+        }
+        move.change(i);
+        slots.push_back(i);
+    }
+    std::vector<shader::TraceBox> boxes;
+    for (const uint32_t instance : carry.changed)
+        addBox(patches.scene.mesh, triangles_.of(instance), boxes);
+    move.boxes = fewBoxes(std::exchange(boxes, {}));
+    const ObjectMembers gone(former.patches.scene.mesh.instance, former.instances);
+    for (const uint32_t instance : carry.gone)
+        addBox(former.patches.scene.mesh, gone.of(instance), boxes);
+    boxes = fewBoxes(std::move(boxes));
+    move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
+    if (move.boxes.empty()) return move;
+    const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
+    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
+    findCovers(tracer, slots, move);
+    ObjectMove result;
+    result.add(move); // many boxes become one
+    return result;
 }
 
 std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {

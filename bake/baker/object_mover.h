@@ -10,6 +10,8 @@
 #include "bake/layers/object_move.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/light_buffers.h"
+#include "bake/surface/object_members.h"
+#include "bake/surface/patch_carry.h"
 #include "bake/trace/tracer.h"
 
 namespace relume {
@@ -34,6 +36,16 @@ public:
     /// Takes note of what the directions of these chunks meet: links as findInside tells them. All chunks
     /// come once.
     void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
+    /// What a mover leaves for one of the same level, whose objects were edited.
+    struct FormerSurfaces {
+        const PatchSet& patches;
+        size_t instances = 0;                  // of its scene
+        const std::vector<glm::uvec2>& inside; // as giveInside() has it
+    };
+    std::vector<glm::uvec2> giveInside() { return std::move(inside_); }
+    /// Goes on from a former mover in place of noteInside(): patches that were there have what it knew of
+    /// them (carrySearches() was done). Returns what is other than before, as of objects that have moved.
+    ObjectMove takeOver(const FormerSurfaces& former, const PatchCarry& carry, Tracer& tracer);
     /// Follows objects to where the scene has them now. Returns nothing where that cannot be followed (an
     /// object that was hidden from the beginning, triangles that have lost their area); then nothing has
     /// changed.
@@ -44,15 +56,6 @@ public:
     uint32_t invalidPatches() const { return invalid_; }
 
 private:
-    /// The triangles, or the patches, of each instance.
-    class Members {
-    public:
-        Members(const std::vector<uint32_t>& instanceOf, size_t instances);
-        std::vector<uint32_t> of(const std::vector<uint32_t>& instances) const; // ascending
-
-    private:
-        std::vector<uint32_t> first_, members_;
-    };
     struct Moved {
         std::vector<uint32_t> shown, gone; // instances
     };
@@ -77,7 +80,7 @@ private:
     uint32_t invalid_ = 0;
     std::vector<Placement> placed_;    // where the patches' instances stand
     std::vector<uint8_t> known_;       // per instance: it was there from the beginning
-    Members triangles_, slots_;        // slots: places among patches
+    ObjectMembers triangles_, slots_;  // slots: places among patches
     std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown
     std::vector<glm::uvec2> inside_;   // per patch: a bit for each direction that meets a back, the sky
     std::unique_ptr<Buffers> buffers_; // once something moves

@@ -100,6 +100,16 @@ void LinkCache::forget() {
         std::fill(round.known.begin(), round.known.end(), uint8_t{0});
 }
 
+void LinkCache::takeOver(std::deque<Round> rounds) {
+    ASSERT(!desc_.oneRound && kept_.empty());
+    const uint64_t each = roundChunks_ * chunkBytes_;
+    while (!rounds.empty() && rounds.size() * each > desc_.bytes)
+        rounds.pop_back();
+    for (const Round& round : rounds)
+        ASSERT(round.links.size() == each && round.known.size() == roundChunks_);
+    kept_ = std::move(rounds);
+}
+
 uint64_t LinkCache::bytes() const {
     return kept_.size() * roundChunks_ * chunkBytes_;
 }

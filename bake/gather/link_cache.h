@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "bake/base/chunk_order.h"
@@ -48,16 +49,22 @@ public:
     /// Forgets all links, but keeps the memory.
     void forget();
 
+    /// The links of a sample pass.
+    struct Round {
+        vk::Buffer links;           // uint[chunk][links][64]
+        std::vector<uint8_t> known; // per chunk that is kept
+    };
+    /// Gives away the sample passes that are kept.
+    std::deque<Round> release() { return std::exchange(kept_, {}); }
+    /// Takes them over as they are, as far as there is room; of as many chunks, with as many links each.
+    void takeOver(std::deque<Round> rounds);
+
     uint64_t bytes() const; // in use
     uint32_t rounds() const { return static_cast<uint32_t>(kept_.size()); }
     /// Returns how much of a sample pass is kept, where one is kept at a time.
     double share() const { return static_cast<double>(roundChunks_) / asked_; }
 
 private:
-    struct Round {
-        vk::Buffer links;
-        std::vector<uint8_t> known; // per chunk that is kept
-    };
     void keepIfRoom(uint32_t round);
     uint32_t slotOf(uint32_t chunk) const;
 

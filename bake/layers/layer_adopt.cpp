@@ -96,6 +96,11 @@ void LayerSolver::adoptMove() {
 }
 
 void LayerSolver::adoptLayers() {
+    const auto isUnderWay = [&](const Layer* layer) {
+        if (const auto* direct = std::get_if<DirectJob>(&job_)) return &direct->layer() == layer;
+        const auto* bounce = std::get_if<BounceJob>(&job_);
+        return bounce && bounce->needs(layer);
+    };
     // A layer that is under way must be the same one afterwards, not another one at its place in memory.
     std::vector<std::pair<const Layer*, LightPattern>> underWay;
     for (const std::unique_ptr<Layer>& layer : layers())
@@ -111,12 +116,6 @@ void LayerSolver::adoptLayers() {
         const bool dark = store_.holds(layer) && layer->isGroup() && !layer->shines(); // has no parts
         if (!store_.holds(layer) || !(layer->pattern == pattern) || dark) abortPass();
     }
-}
-
-bool LayerSolver::isUnderWay(const Layer* layer) const {
-    if (const auto* direct = std::get_if<DirectJob>(&job_)) return &direct->layer() == layer;
-    const auto* bounce = std::get_if<BounceJob>(&job_);
-    return bounce && bounce->needs(layer);
 }
 
 // Takes over direct light: surfaces of other colours change bounces alone, objects that moved change direct
@@ -146,6 +145,44 @@ void LayerSolver::inherit(const Layer& from, Layer& to) const {
     to.redo = from.redo;
     if (!from.redo && from.has()) to.redo = LayerLevel{from.directRounds, from.level.linkRounds};
     to.redoSteps = from.redoSteps;
+}
+
+// Layers follow all edits first, so that what they leave is of one scene.
+FormerLayers LayerSolver::release() {
+    abortPass();
+    if (edited_) adopt();
+    FormerLayers former;
+    former.state = states_.now();
+    former.pending = relinker_.pending();
+    former.links = batches_.cache().release();
+    former.linksOfRound = kit_.linksOfRound;
+    former.partOfPatch = penumbra_.parts().ofPatch;
+    former.reach = lights_.reach();
+    former.progress = progress_;
+    former.layers = store_.release();
+    return former;
+}
+
+// Goes on as after an edit of objects, or of nothing at all. A viewer sees what was shown until then.
+void LayerSolver::takeOver(const LayerCarry& carry) {
+    progress_ = carry.former.progress;
+    progress_.passFraction = 0;
+    const CarriedWork work = carryLayers(kit_, store_, batches_.cache(),
+                                         {.pool = kit_.input.device.workers(),
+                                          .patches = kit_.input.patches,
+                                          .parts = penumbra_.parts(),
+                                          .move = carry.move,
+                                          .reach = lights_.reach(),
+                                          .farther = carry.former.reach != lights_.reach()},
+                                         carry);
+    if (work.relink) relinker_.follow(*work.relink);
+    progress_.cacheBytes = batches_.cache().bytes();
+    unseen_ = !work.whole;
+    sumDue_ = canSum();
+    mixer_.replaced();
+    report_.tell(layers(), progress_, true);
+    spdlog::info("the bake goes on: {} of {} patches stay, and {} of {} layers have direct light",
+                 carry.patches.kept, kit_.input.patches.count, work.layers, layers().size());
 }
 
 void LayerSolver::tellGroups() {

@@ -58,7 +58,7 @@ std::unique_ptr<LayerGather> makeGather(LinkKit& kit, const LayerPass& pass, con
 
 } // namespace
 
-LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& settings)
+LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry)
     : kit_(input, kitOf(input, settings, progress_, batchMs_)), layerPass_(input.device),
       senders_(input.patches.scene.patches), schedule_({.pointsOfRound = kPointsOfRound,
                                                         .linksOfRound = kit_.linksOfRound,
@@ -87,6 +87,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     vkCmdFillBuffer(cmd, mixer_.composite().handle(), 0, VK_WHOLE_SIZE, 0);
     kit_.run(cmd);
     adopt();
+    if (carry) takeOver(*carry);
 }
 
 LayerSolver::~LayerSolver() = default;

@@ -7,6 +7,7 @@
 #include "bake/layers/bounce_job.h"
 #include "bake/layers/composite_report.h"
 #include "bake/layers/direct_job.h"
+#include "bake/layers/layer_carry.h"
 #include "bake/layers/layer_mixer.h"
 #include "bake/layers/layer_schedule.h"
 #include "bake/layers/relinker.h"
@@ -20,8 +21,8 @@ namespace relume {
 /// its cache key, geometry and surfaces: not on weights, on other lights, or on what was edited before.
 class LayerSolver final : public Solver {
 public:
-    /// Throws Error.
-    LayerSolver(const SolverInput& input, const SolverSettings& settings);
+    /// With `carry` it goes on with what another solver has left. Throws Error.
+    LayerSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry = nullptr);
     ~LayerSolver() override;
 
     void step() override;
@@ -36,6 +37,9 @@ public:
     SolverState state() override;
     std::vector<StatePart> stateParts() override;
     void restore(const SolverState& state) override;
+
+    /// Gives up the layers and links, for another solver to go on with. It is of no use afterwards.
+    FormerLayers release();
 
     /// Tells whether there is memory for layers of so many analytic lights beside those of the other lights,
     /// grouped or not.
@@ -95,7 +99,7 @@ private:
     void adoptMove();
     void adoptLayers();
     std::vector<WantedLayer> wantedNow() const;
-    bool isUnderWay(const Layer* layer) const;
+    void takeOver(const LayerCarry& carry);
     void inherit(const Layer& from, Layer& to) const;
     void tellGroups();
 

@@ -108,6 +108,15 @@ void LayerStore::archive(std::unique_ptr<Layer> layer) {
     }
 }
 
+std::vector<std::unique_ptr<Layer>> LayerStore::release() {
+    former_.clear();
+    spare_.clear();
+    records_.clear();
+    for (const std::unique_ptr<Layer>& layer : layers_)
+        layer->before.reset();
+    return std::exchange(layers_, {});
+}
+
 // Records a layer. One on its way to a level that it had is in the records already.
 void LayerStore::remember(const Layer& layer) {
     if (layer.redo) return;

@@ -33,6 +33,9 @@ public:
     /// Keeps a layer for an undo, as long as there is memory for it.
     void archive(std::unique_ptr<Layer> layer);
 
+    /// Gives away the layers that are shown; all that is kept beside them goes.
+    std::vector<std::unique_ptr<Layer>> release();
+
     /// Returns a buffer of a vec4 per patch, a spare one where there is one.
     vk::Buffer takeBuffer(const char* name);
 

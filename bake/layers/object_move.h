@@ -17,6 +17,10 @@ struct ObjectMove {
 
     /// Adds a later move, as if both had been one.
     void add(const ObjectMove& later);
+    void change(uint32_t patch) {
+        glm::uvec2& bits = changed[patch / shader::kChunk];
+        (patch % shader::kChunk < 32 ? bits.x : bits.y) |= 1u << patch % 32;
+    }
     bool changes(uint32_t chunk) const { return (changed[chunk].x | changed[chunk].y) != 0; }
     bool has(uint32_t patch) const {
         const glm::uvec2& bits = changed[patch / shader::kChunk];

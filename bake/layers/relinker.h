@@ -17,6 +17,10 @@ public:
     void follow(const ObjectMove& move);
     /// Returns the sample pass whose links come next; nothing where all have followed.
     std::optional<uint32_t> round() const { return relink_ ? std::optional(relink_->round) : std::nullopt; }
+    /// Returns the move that some links have not followed yet; nothing where all have.
+    std::optional<ObjectMove> pending() const {
+        return relink_ ? std::optional(relink_->late.move) : std::nullopt;
+    }
     /// Traces a batch. Needs round().
     void batch();
 

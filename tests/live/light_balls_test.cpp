@@ -102,4 +102,19 @@ TEST_F(LiveBalls, AreLitByTheBakeAndFollowItsLightWithoutRays) {
     EXPECT_EQ(traced_, 2);
 }
 
+TEST_F(LiveBalls, UnderRtradsPresetTheySayWhyTheyAreGrey) {
+    bake_.askBalls({.ball = glm::vec3(0.1f, 1.0f, 0.2f)});
+    BakeSettings settings = quickSettings();
+    settings.solver.method = Method::Static;
+    settings.solver.transport.rtrad = true;
+    newest_ = bake_.start({.scene = &scene_, .edits = edits_, .settings = settings, .keepLight = true});
+    ASSERT_TRUE(until([&] { return answers_ > 0; }));
+    EXPECT_FALSE(lit_.ball);
+    EXPECT_NE(lit_.remark.find("RTRad's preset"), std::string::npos) << lit_.remark;
+    // By another method it is lit, and its memory is told.
+    start();
+    ASSERT_TRUE(until([&] { return lit_.ball && lit_.remark.empty(); }));
+    ASSERT_TRUE(until([&] { return bake_.status().ballBytes > 0; }));
+}
+
 } // namespace relume

@@ -226,11 +226,57 @@ TEST_F(LiveBakeTest, ASceneOfTheSameSurfacesIsAnEdit) {
     const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
     EXPECT_LE(compareImages(got, "got", expected, "expected").relRmse, 2 * settings.solver.error);
 
-    // Other surfaces need another bake.
+    // Other surfaces of another level need another bake.
     newest_ = bake_.start(
-        {.scene = &saved, .edits = edits_, .settings = settings, .keepLight = true, .surfaces = 2});
+        {.scene = &saved, .edits = edits_, .settings = settings, .keepLight = false, .surfaces = 2});
     ASSERT_TRUE(untilShown());
     EXPECT_GT(bake_.status().beginnings, beginnings);
+}
+
+// A file that another program wrote anew, with an object gone and other textures: the bake goes on, also
+// where the next file comes while it is prepared, and what is shown never grows dark.
+TEST_F(LiveBakeTest, AnEditedLevelGoesOnWithWhatStays) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    settings.solver.error = 0;
+    settings.solver.links.samples = 64;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const uint64_t beginnings = bake_.status().beginnings, rays = bake_.status().progress.rays;
+    const double lit = screen_.mean();
+    double darkest = lit;
+    onMap_ = [&] { darkest = std::min(darkest, screen_.mean()); };
+
+    PreparedScene first = cornell();
+    first.scene.materials.front().roughness *= 0.5f;
+    PreparedScene saved = cornell();
+    saved.scene.instances.pop_back();
+    saved.atlas.instances.pop_back();
+    saved.mesh = flatten(saved.scene, saved.atlas);
+    uint64_t surfaces = 2;
+    for (PreparedScene* scene : {&first, &saved}) {
+        edits_ = editsOf(scene->scene);
+        newest_ = bake_.start({.scene = scene,
+                               .edits = edits_,
+                               .settings = settings,
+                               .keepLight = true,
+                               .surfaces = surfaces++});
+    }
+    ASSERT_TRUE(untilShown());
+    onMap_ = {};
+    EXPECT_EQ(bake_.status().beginnings, beginnings);
+    EXPECT_LT(bake_.status().progress.rays - rays, rays) << "than from the beginning";
+    EXPECT_GT(darkest, 0.5 * lit);
+
+    const TemporaryFolder folder;
+    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
+    Baker baker(testDevice(), saved.scene, saved.mesh, settings);
+    while (!baker.solver().done())
+        baker.solver().step();
+    const FloatImage expected = baker.lightmap({}), got = readImage(folder.path("live.exr"));
+    for (size_t c = 0; c < expected.planes.size(); ++c)
+        EXPECT_EQ(got.planes[c], expected.planes[c]);
 }
 
 // An export comes with the edits that were made before it, and goes on where a newer edit comes between.

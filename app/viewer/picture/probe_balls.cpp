@@ -77,10 +77,12 @@ bool ProbeBalls::follow() {
         changed = true;
     }
     if (std::optional<LitBalls> answer = bake_.takeBalls()) {
+        if (!answer->remark.empty()) remark_ = answer->remark;
         const auto inside = std::count_if(answer->grid.begin(), answer->grid.end(),
                                           [](const LitBall& ball) { return ball.inside; });
         told_ = fmt::format("{}{} in a grid, {} of them inside walls, {}", answer->ball ? "ball, " : "",
                             answer->grid.size(), inside, answer->traced ? "traced" : "light alone");
+        if (!answer->remark.empty()) lit_ = {};
         if (wanted.ball.has_value() == answer->ball.has_value()) lit_.ball = answer->ball;
         if (wanted.grid.size() == answer->grid.size()) lit_.grid = std::move(answer->grid);
         changed = true;

@@ -31,6 +31,8 @@ public:
     bool follow();
     /// Returns what the last answer was, for the log of actions; "" where there was none since the last call.
     std::string takeTold() { return std::exchange(told_, {}); }
+    /// Returns once why the balls are grey, "" where they are not.
+    std::string takeRemark() { return std::exchange(remark_, {}); }
 
 private:
     void draw();
@@ -39,7 +41,7 @@ private:
     SceneView& picture_;
     BallRequest asked_;
     LitBalls lit_;
-    std::string told_;
+    std::string told_, remark_;
 };
 
 } // namespace relume

@@ -222,6 +222,7 @@ void Viewer::followBake(double time) {
     }
     if (inspection_.follow(baking_.status(), lights_.list(), time)) feedback_.sceneChanged();
     if (const std::string told = inspection_.balls().takeTold(); !told.empty()) feedback_.tell("balls", told);
+    if (const std::string why = inspection_.balls().takeRemark(); !why.empty()) feedback_.note(why, true);
     feedback_.followExposure(picture_.pane().adapting());
     baking_.setBudget(desc_.budgetMs, !picture_.rests(time));
 }

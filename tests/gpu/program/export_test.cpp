@@ -1,8 +1,11 @@
 // This runs `relume export` as a user does. What it writes is put into the formulas by which engines show a
 // level (../../app/export/README.md), and what comes out must be the light that our own bake has.
+#include "app/offline/probe_files.h"
+#include "app/offline/probe_forms.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/image_file.h"
 #include "assets/images/ktx2.h"
+#include "assets/images/layered_exr.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
@@ -296,6 +299,48 @@ TEST_F(ExportCommand, LayersGiveTheirSum) {
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < a.planes[c].size(); ++i)
             ASSERT_NEAR(a.planes[c][i], b.planes[c][i], 1e-5f * std::abs(a.planes[c][i]));
+}
+
+TEST_F(ExportCommand, LightProbesComeAlongAsTheEngineReadsThem) {
+    relume({"bake", scene_, "-o", path("layers.exr"), "--layers", "--size", std::to_string(kEdge),
+            "--samples", "64", "--probes", "0.5", "--probe-samples", "64", "--probes-out", path("p.json")});
+    const ProbeSet probes = readProbes(path("p.json"));
+    ASSERT_TRUE(probes.grid);
+    const auto with = [&](const std::string& engine, const std::string& layers) {
+        const std::string folder = path(engine + layers);
+        relume({"export", scene_, "--layers", path(layers), "--for", engine, "--output", folder, "--probes",
+                path("p.json")});
+        return folder + "/";
+    };
+    const std::string three = with("three", "layers.exr"), bevy = with("bevy", "layers.exr");
+    EXPECT_EQ(textOf(three + "probes.three.json"), threeProbes(readProbes(three + "probes.json"), "probes"));
+    const auto group = nlohmann::json::parse(textOf(three + "probes.three.json")).at("object");
+    EXPECT_EQ(group.at("children").size(), probes.probes.size());
+    EXPECT_NE(textOf(three + "README.txt").find("probes.three.json"), std::string::npos);
+    ProbeSet weighed = probes;
+    weighLike(weighed, readLayeredExr(path("layers.exr")));
+    EXPECT_EQ(textOf(bevy + "probes.ktx2"), probeBytes("probes.ktx2", weighed));
+    EXPECT_NE(textOf(bevy + "README.txt").find("IrradianceVolume"), std::string::npos);
+    EXPECT_FALSE(fs::exists(three + "probes.ktx2"));
+    EXPECT_FALSE(fs::exists(bevy + "probes.three.json"));
+
+    // They are weighed as the layers are.
+    relume({"mix", path("layers.exr"), "-o", path("mixed.exr"), "--layers-out", "--set", "Point*=3"});
+    const ProbeSet mixed = readProbes(with("any", "mixed.exr") + "probes.json");
+    EXPECT_GT(mixed.probes[0].radiance[0].g, 1.05 * probes.probes[0].radiance[0].g);
+
+    // Places that are no grid are no volume.
+    relume({"bake", scene_, "-o", path("one.exr"), "--size", std::to_string(kEdge), "--samples", "64",
+            "--probe-at", "1,1,1", "--probe-samples", "64", "--probes-out", path("one.json")});
+    relume({"export", scene_, "--lightmap", path("one.exr"), "--for", "bevy", "--output", path("one"),
+            "--probes", path("one.json")});
+    EXPECT_TRUE(fs::exists(path("one/probes.json")));
+    EXPECT_FALSE(fs::exists(path("one/probes.ktx2")));
+    const ProcessResult odd = refused({"--lightmap", path("one.exr"), "--for", "three", "--output",
+                                       path("odd"), "--probes", path("layers.exr")});
+    EXPECT_EQ(odd.status, 1);
+    EXPECT_EQ(std::count(odd.err.begin(), odd.err.end(), '\n'), 1) << odd.err;
+    EXPECT_FALSE(fs::exists(path("odd")));
 }
 
 TEST_F(ExportCommand, WrongUsageIsToldAndNothingIsWritten) {

@@ -113,7 +113,13 @@ const OptionNames kTexts = {"--scene",
                             "--probes-in"};
 
 /// These are options of other verbs, too, where they take numbers or need no other option.
-const OptionNames kOfBake = {"--layer-memory", "--lights"};
+const OptionNames kOfBake = {"--layer-memory", "--lights", "--probes"};
+
+/// Tells whether an option takes any text. Some do in one verb alone, and take numbers elsewhere.
+bool takesText(const std::string& name, const std::string& verb) {
+    return kTexts.contains(name) || (name == "--lights" && verb == "bake") ||
+           (name == "--probes" && verb == "export");
+}
 
 /// For all other options, these are the values among the absurd ones that mean something.
 const std::map<std::string, WalkWords> kMeanings = {
@@ -244,7 +250,7 @@ TEST_P(OptionWalk, AbsurdValuesAreRefused) {
             SCOPED_TRACE(typedLine(line));
             const WalkOutcome outcome = walkOutcome(line);
             EXPECT_EQ(outcome.message.find('\n'), std::string::npos) << outcome.message;
-            if (!isFlag && (kTexts.contains(name) || (name == "--lights" && GetParam() == "bake"))) {
+            if (!isFlag && takesText(name, GetParam())) {
                 EXPECT_TRUE(value.empty() || outcome.end != WalkEnd::Done); // empty is as good as none
                 continue;
             }

@@ -1,6 +1,7 @@
 // The light of places in a scene as the viewer shows it: a ball that is dragged, and a grid of light probes.
 #include "app/live/light_balls.h"
 #include "app/viewer/picture/probe_balls.h"
+#include "tests/text.h"
 
 #include <cmath>
 #include <numbers>
@@ -31,6 +32,15 @@ TEST(LightBalls, NewPlacesComeAtOnceAndNewLightWaitsABit) {
               BallStep::Gather);
     EXPECT_EQ(decideBalls({.wanted = false, .traced = false, .newer = true, .secondsSince = 9}),
               BallStep::None);
+}
+
+TEST(LightBalls, WhyTheyAreGreyIsTold) {
+    EXPECT_EQ(ballProblem({.needed = 80, .free = 100}), "");
+    EXPECT_TRUE(contains(ballProblem({.rtrad = true, .free = 100}), "RTRad's preset"));
+    constexpr uint64_t kMiB = 1 << 20;
+    const std::string full = ballProblem({.needed = 95 * kMiB + 1, .free = 100 * kMiB});
+    EXPECT_TRUE(contains(full, "need 96 MiB")) << full;
+    EXPECT_TRUE(contains(full, "100 are free")) << full;
 }
 
 TEST(LightBalls, AGridOfAViewHasAFewHundredProbesWithinTheScene) {
