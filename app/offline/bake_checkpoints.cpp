@@ -75,7 +75,7 @@ void BakeCheckpoints::save(Solver& solver, OnFailure onFailure) {
 }
 
 void BakeCheckpoints::afterStep(Solver& solver) {
-    if (ranks_.alone() && !due()) return; // else all were called because the first one's is due
+    if (path_.empty() || (ranks_.alone() && !due())) return; // else all were called as the first one's is due
     try {
         save(solver, OnFailure::Drop); // the next one will do
     } catch (const Error& error) {

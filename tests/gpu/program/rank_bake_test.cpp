@@ -57,6 +57,13 @@ protected:
     }
 
     /// Bakes with each of these numbers of processes and, at first, without a launcher.
+    static size_t timesIn(const std::string& text, const std::string& part) {
+        size_t times = 0;
+        for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+            ++times;
+        return times;
+    }
+
     void expectSameBytes(const RankWords& options, const std::vector<uint32_t>& counts) const {
         const ProcessResult plain = runRelume(bake("plain.exr", options));
         ASSERT_EQ(plain.status, 0) << plain.err;
@@ -65,16 +72,10 @@ protected:
         for (const uint32_t count : counts) {
             const ProcessResult shared = mpirun(count, bake("shared.exr", options));
             ASSERT_EQ(shared.status, 0) << shared.err;
+            EXPECT_EQ(timesIn(shared.err, "checkpoint"), 0u) << "none is asked for\n" << shared.err;
             EXPECT_TRUE(bytes == bytesOf(folder_.path("shared.exr"))) << count << " processes";
             std::filesystem::remove(folder_.path("shared.exr"));
         }
-    }
-
-    static size_t timesIn(const std::string& text, const std::string& part) {
-        size_t times = 0;
-        for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
-            ++times;
-        return times;
     }
 
     const TemporaryFolder folder_;
