@@ -2,7 +2,7 @@
 // after each call, or the same end.
 #include "bake/ranks/chunk_deal.h"
 #include "bake/ranks/launch.h"
-#include "tests/unit/thread_ranks.h"
+#include "tests/unit/ranks/thread_ranks.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "app/offline/layer_ranks.h"
 #include "app/offline/rank_work.h"
 #include "assets/base/error.h"
-#include "tests/unit/thread_ranks.h"
+#include "tests/unit/ranks/thread_ranks.h"
 
 #include <gtest/gtest.h>
 
