@@ -17,7 +17,7 @@
 
 namespace {
 
-// Of several processes that a launcher started, the first one speaks for all.
+// The first one of several processes that a launcher started speaks for all.
 void setupLogOf(const relume::Launch& launch, bool quiet) {
     relume::setupLog(quiet);
     if (!launch.speaks()) spdlog::set_level(spdlog::level::off);

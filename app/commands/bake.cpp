@@ -147,7 +147,7 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     const InterruptGuard guard;
     BakeRequest request = resolveBakeOptions(o);
     checkSharedBake(o, request, ranks.count());
-    // Of layers each rank bakes its own by itself, of other bakes its chunks of all light.
+    // Each rank bakes layers of its own by itself; other bakes are shared chunk by chunk.
     const bool byLights = o.layers.on && !ranks.alone();
     Ranks& sharing = byLights ? oneProcess() : ranks;
     request.bake.ranks = &sharing;

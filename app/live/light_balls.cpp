@@ -29,7 +29,7 @@ bool sameSources(const std::vector<LightSource>& a, const std::vector<LightSourc
     });
 }
 
-// Of the memory that is free a driver needs some.
+// A driver needs some of the memory that is free for itself.
 constexpr double kMemoryShare = 0.9;
 
 } // namespace

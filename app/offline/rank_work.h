@@ -10,7 +10,7 @@
 namespace relume {
 
 /// Does `work` on the ranks that a launcher started, or in this process alone, where nothing of MPI is begun.
-/// What ends the work on one rank ends it on all: the first one that failed says why, and the others, whose
+/// An error on one rank ends the work on all: the first one that failed says why, and the others, whose
 /// log is off from then on, throw, too. Throws UsageError where the program was built without MPI.
 void runOnRanks(const Launch& launch, const std::function<void(Ranks&)>& work);
 

@@ -94,7 +94,7 @@ public:
     static uint64_t deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
 private:
-    /// What stays of a former bake.
+    /// Holds what stays of a former bake.
     struct Carry {
         FormerBake& former;
         PatchCarry patches;

@@ -416,6 +416,11 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     boxes = fewBoxes(std::move(boxes));
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     if (move.boxes.empty()) return move;
+    return searched(tracer, slots, move);
+}
+
+// Looks anew which patches lie inside something and where samples start, near a move of these patches.
+ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
     findCovers(tracer, slots, move);
@@ -446,12 +451,7 @@ std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer
     const std::vector<uint32_t> slots = merged(part->slots, part->goneSlots);
     upload(slots, move);
     tracer.update({.triangles = merged(part->triangles, part->goneTriangles), .texels = texels});
-    const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
-    vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
-    findCovers(tracer, slots, move);
-    ObjectMove result;
-    result.add(move); // many boxes become one
-    return result;
+    return searched(tracer, slots, move);
 }
 
 } // namespace relume

@@ -36,7 +36,7 @@ public:
     /// Takes note of what the directions of these chunks meet: links as findInside tells them. All chunks
     /// come once.
     void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
-    /// What a mover leaves for one of the same level, whose objects were edited.
+    /// Holds what a mover leaves for one of the same level, whose objects were edited.
     struct FormerSurfaces {
         const PatchSet& patches;
         size_t instances = 0;                  // of its scene
@@ -72,6 +72,7 @@ private:
     void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
     std::vector<uint32_t> findInside(const std::vector<uint32_t>& patches, ObjectMove& move);
     void findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
+    ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;
 
     On on_;
