@@ -1,6 +1,5 @@
 #include "bake/links/link_solver.h"
 
-#include "bake/base/finite_light.h"
 #include "bake/links/directions.h"
 #include "bake/links/link_memory.h"
 
@@ -16,9 +15,6 @@ using shader::kChunk;
 
 // A submit interpolates so many chunks: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
-// Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
-// square.
-constexpr double kBesideGrid = 0.1;
 // Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
 // many times at most.
 constexpr double kStricter = 0.8;
@@ -66,21 +62,6 @@ void recordReadable(VkCommandBuffer cmd, const LinkKit& kit, const std::optional
         vk::barrier(cmd);
     }
     kit.gatherPass.recordPack(cmd, light, kit.buffers);
-}
-
-// Returns the state's buffers of which each rank has its own chunks.
-std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
-    const LightBuffers& light = kit.input.light;
-    const LinkBuffers& buffers = kit.buffers;
-    constexpr VkDeviceSize kLight = kChunk * sizeof(glm::vec4);
-    return {{light.ligIn, kLight},
-            {light.ligOut, kLight},
-            {buffers.linkSums, kLight, shader::kReplicates},
-            {buffers.directSums, kLight, shader::kReplicates},
-            {buffers.direct, kLight},
-            {buffers.carried, kLight},
-            {buffers.notes, sizeof(glm::uvec2)},
-            {buffers.distances, kChunk * sizeof(float)}};
 }
 
 } // namespace
@@ -482,149 +463,6 @@ void LinkSolver::endBounce() {
     endPass();
     const double links = static_cast<double>(linkRounds_.total()) * kit_.linksOfRound;
     progress_.samples = static_cast<uint32_t>(std::lround(links / linkRounds_.done().size()));
-}
-
-// Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
-void LinkSolver::check() {
-    state_.nextCheck = state_.rounds() + 1;
-    if (!schedule_.hasSolution(state_)) return; // no bounces yet
-    resolve();
-    const double aim = kit_.settings.error;
-    const double excess = schedule_.excess(progress_.error, progress_.localError95);
-    progress_.converged = excess <= 1.0;
-    state_.nextCheck = schedule_.perChunk() ? 0 : schedule_.nextCheck(state_, excess);
-    state_.scaled = schedule_.perChunk();
-    if (state_.scaled) uploadScales();
-    // No number of samples makes up for a grid that is too coarse.
-    const double grid2 = progress_.gridError * progress_.gridError;
-    gridLimits_ = aim > 0 && progress_.gridError > aim &&
-                  progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
-}
-
-void LinkSolver::resolve() {
-    if (kit_.buffers.rows) { // smoothing reads what is near, of other ranks, too
-        kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
-        kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(float)});
-    }
-    const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
-    const bool isNew = state_.median == 0;
-    shader::ResolveSums sums = kit_.buffers.rows ? state_.width.settle(at) : at(0.0);
-    state_.median = errors_.local().median;
-    // What local error is relative to hangs on the median, which hardly changes once it is known.
-    if (isNew && state_.median > 0) sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
-    learn(sums);
-    stale_ = false;
-    light_.clear();
-}
-
-// Learns what sums over all patches say, and that there is a new result.
-void LinkSolver::learn(const shader::ResolveSums& sums) {
-    requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
-    state_.directVariance = sums.direct;
-    state_.indirectVariance = smoothedVariance(sums);
-    state_.light = sums.light;
-    state_.patches = sums.count;
-    state_.bias = std::max(0.0f, sums.bias);
-    const LinkErrors::Local local = errors_.local();
-    progress_.localError95 = local.error.p95;
-    progress_.localError99 = local.error.p99;
-    state_.directAtCheck = state_.directRounds;
-    state_.linksAtCheck = state_.linkRounds;
-    progress_.error = 0;
-    if (sums.light > 0) {
-        state_.coarseVariance = errors_.coarseVariance(state_, sums.count);
-        progress_.gridError = relativeError({sums.light, sums.count, state_.coarseVariance}, 0.0);
-        const double variance = state_.directVariance + state_.indirectVariance + state_.coarseVariance;
-        const double iteration = schedule_.directAlone() ? 0.0 : state_.series.error;
-        progress_.error = relativeError({sums.light, sums.count, variance}, iteration);
-    }
-    const bool locally = schedule_.choosesLocally(progress_.error, progress_.localError95);
-    state_.directChoice = locally ? local.direct : state_.directVariance;
-    state_.linkChoice = locally ? local.links : state_.indirectVariance;
-    if (!schedule_.hasSolution(state_)) {
-        live_.all = true; // this result is without what has arrived since
-        return;
-    }
-    ++live_.resolves;
-    live_.complete = live_.complete || kit_.settings.passes > 0 || state_.settling.left <= kMostDimmer;
-}
-
-// Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
-// about widths and variances must not decide what comes next: looking changes no byte.
-const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.stage == Stage::Plan && state_.rounds() > 0) {
-        const LinkState before = state_;
-        resolve();
-        state_ = before;
-    }
-    if (light_.empty()) {
-        kit_.rankChunks.share({kit_.buffers.result, kChunk * sizeof(glm::vec4)});
-        light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result,
-                                           kit_.input.patches.scene.patches.size());
-    }
-    return light_;
-}
-
-std::vector<float> LinkSolver::errors() {
-    std::vector<float> result;
-    for (const glm::vec4& v : light())
-        result.push_back(v.w);
-    return result;
-}
-
-SolverState LinkSolver::state() {
-    ASSERT(!done_);
-    return makeState(state_);
-}
-
-void LinkSolver::collect() {
-    if (kit_.rankChunks.alone()) return;
-    ASSERT(passBoundary());
-    for (const RankChunks::Shared& shared : ownBuffers(kit_))
-        if (shared.buffer) kit_.rankChunks.share(shared);
-}
-
-std::vector<StatePart> LinkSolver::stateParts() {
-    const LinkBuffers& buffers = kit_.buffers;
-    std::vector<StatePart> parts;
-    const auto add = [&](const vk::Buffer& buffer) {
-        if (buffer) parts.push_back(part(kit_.input.device, buffer));
-    };
-    for (const RankChunks::Shared& shared : ownBuffers(kit_))
-        add(shared.buffer);
-    add(buffers.coarseSums);
-    add(buffers.rays);
-    parts.push_back(part(kit_.order));
-    for (ChunkRounds* rounds : {&directRounds_, &linkRounds_}) {
-        parts.push_back(part(rounds->doneArray()));
-        parts.push_back(part(rounds->wantedArray()));
-    }
-    return parts;
-}
-
-void LinkSolver::restore(const SolverState& state) {
-    state_ = takeState<LinkState>(state);
-    if (state_.stage != Stage::Plan) pass_ = roundsOf(state_.stage).next(state_.passRounds);
-    if (state_.scaled) uploadScales();
-    if (!kit_.rankChunks.alone()) { // what is left of the pass under way, and what it has counted, is shared
-        kit_.order.marks() = kit_.rankChunks.ownOf(kit_.order.marks());
-        if (!kit_.input.ranks.speaks()) {
-            VkCommandBuffer cmd = kit_.commands.begin();
-            vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
-            kit_.run(cmd);
-        }
-    }
-    kit_.order.restore(chunksOfStage(), seenOfStage());
-    kit_.noteCounters();
-    done_ = false;
-    stale_ = true;
-    live_ = {.version = live_.version};
-    batches_.cache().forget();
-    if (state_.stage != Stage::Links) return;
-    VkCommandBuffer cmd = kit_.commands.begin();
-    recordRadiance(cmd);
-    kit_.run(cmd);
-    shareRadiance();
 }
 
 } // namespace relume

@@ -83,7 +83,7 @@ private:
     void resolve();
     void learn(const shader::ResolveSums& sums);
 
-    // These serve a viewer and are in link_live.cpp.
+    // These serve a viewer and are in link_result.cpp, with all that tells of the result.
     void look();
     std::vector<ChunkRange> showUnfinished();
     const vk::Buffer& sumsOfStage() const;

@@ -1,0 +1,311 @@
+// This part of LinkSolver is about what it tells: its result, how far that is off, its state, and what a
+// viewer asks.
+#include "bake/links/link_solver.h"
+
+#include "assets/base/error.h"
+#include "bake/base/finite_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+
+// Results are made for the viewer's eyes at most as often as a display shows them, and so that they take no
+// more than this share of the time.
+constexpr double kLookSeconds = 1.0 / 60.0, kLookShare = 0.1;
+
+// Where the grid alone misses the error that was asked for, sampling ends when it adds this little to the
+// square.
+constexpr double kBesideGrid = 0.1;
+
+// Returns the state's buffers of which each rank has its own chunks.
+std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
+    const LightBuffers& light = kit.input.light;
+    const LinkBuffers& buffers = kit.buffers;
+    constexpr VkDeviceSize kLight = kChunk * sizeof(glm::vec4);
+    return {{light.ligIn, kLight},
+            {light.ligOut, kLight},
+            {buffers.linkSums, kLight, shader::kReplicates},
+            {buffers.directSums, kLight, shader::kReplicates},
+            {buffers.direct, kLight},
+            {buffers.carried, kLight},
+            {buffers.notes, sizeof(glm::uvec2)},
+            {buffers.distances, kChunk * sizeof(float)}};
+}
+
+} // namespace
+
+// Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
+void LinkSolver::check() {
+    state_.nextCheck = state_.rounds() + 1;
+    if (!schedule_.hasSolution(state_)) return; // no bounces yet
+    resolve();
+    const double aim = kit_.settings.error;
+    const double excess = schedule_.excess(progress_.error, progress_.localError95);
+    progress_.converged = excess <= 1.0;
+    state_.nextCheck = schedule_.perChunk() ? 0 : schedule_.nextCheck(state_, excess);
+    state_.scaled = schedule_.perChunk();
+    if (state_.scaled) uploadScales();
+    // No number of samples makes up for a grid that is too coarse.
+    const double grid2 = progress_.gridError * progress_.gridError;
+    gridLimits_ = aim > 0 && progress_.gridError > aim &&
+                  progress_.error * progress_.error - grid2 <= kBesideGrid * grid2;
+}
+
+void LinkSolver::resolve() {
+    if (kit_.buffers.rows) { // smoothing reads what is near, of other ranks, too
+        kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
+        kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(float)});
+    }
+    const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
+    const bool isNew = state_.median == 0;
+    shader::ResolveSums sums = kit_.buffers.rows ? state_.width.settle(at) : at(0.0);
+    state_.median = errors_.local().median;
+    // What local error is relative to hangs on the median, which hardly changes once it is known.
+    if (isNew && state_.median > 0) sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
+    learn(sums);
+    stale_ = false;
+    light_.clear();
+}
+
+// Learns what sums over all patches say, and that there is a new result.
+void LinkSolver::learn(const shader::ResolveSums& sums) {
+    requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
+    state_.directVariance = sums.direct;
+    state_.indirectVariance = smoothedVariance(sums);
+    state_.light = sums.light;
+    state_.patches = sums.count;
+    state_.bias = std::max(0.0f, sums.bias);
+    const LinkErrors::Local local = errors_.local();
+    progress_.localError95 = local.error.p95;
+    progress_.localError99 = local.error.p99;
+    state_.directAtCheck = state_.directRounds;
+    state_.linksAtCheck = state_.linkRounds;
+    progress_.error = 0;
+    if (sums.light > 0) {
+        state_.coarseVariance = errors_.coarseVariance(state_, sums.count);
+        progress_.gridError = relativeError({sums.light, sums.count, state_.coarseVariance}, 0.0);
+        const double variance = state_.directVariance + state_.indirectVariance + state_.coarseVariance;
+        const double iteration = schedule_.directAlone() ? 0.0 : state_.series.error;
+        progress_.error = relativeError({sums.light, sums.count, variance}, iteration);
+    }
+    const bool locally = schedule_.choosesLocally(progress_.error, progress_.localError95);
+    state_.directChoice = locally ? local.direct : state_.directVariance;
+    state_.linkChoice = locally ? local.links : state_.indirectVariance;
+    if (!schedule_.hasSolution(state_)) {
+        live_.all = true; // this result is without what has arrived since
+        return;
+    }
+    ++live_.resolves;
+    live_.complete = live_.complete || kit_.settings.passes > 0 || state_.settling.left <= kMostDimmer;
+}
+
+// Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
+// about widths and variances must not decide what comes next: looking changes no byte.
+const std::vector<glm::vec4>& LinkSolver::light() {
+    if (stale_ && state_.stage == Stage::Plan && state_.rounds() > 0) {
+        const LinkState before = state_;
+        resolve();
+        state_ = before;
+    }
+    if (light_.empty()) {
+        kit_.rankChunks.share({kit_.buffers.result, kChunk * sizeof(glm::vec4)});
+        light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result,
+                                           kit_.input.patches.scene.patches.size());
+    }
+    return light_;
+}
+
+std::vector<float> LinkSolver::errors() {
+    std::vector<float> result;
+    for (const glm::vec4& v : light())
+        result.push_back(v.w);
+    return result;
+}
+
+SolverState LinkSolver::state() {
+    ASSERT(!done_);
+    return makeState(state_);
+}
+
+void LinkSolver::collect() {
+    if (kit_.rankChunks.alone()) return;
+    ASSERT(passBoundary());
+    for (const RankChunks::Shared& shared : ownBuffers(kit_))
+        if (shared.buffer) kit_.rankChunks.share(shared);
+}
+
+std::vector<StatePart> LinkSolver::stateParts() {
+    const LinkBuffers& buffers = kit_.buffers;
+    std::vector<StatePart> parts;
+    const auto add = [&](const vk::Buffer& buffer) {
+        if (buffer) parts.push_back(part(kit_.input.device, buffer));
+    };
+    for (const RankChunks::Shared& shared : ownBuffers(kit_))
+        add(shared.buffer);
+    add(buffers.coarseSums);
+    add(buffers.rays);
+    parts.push_back(part(kit_.order));
+    for (ChunkRounds* rounds : {&directRounds_, &linkRounds_}) {
+        parts.push_back(part(rounds->doneArray()));
+        parts.push_back(part(rounds->wantedArray()));
+    }
+    return parts;
+}
+
+void LinkSolver::restore(const SolverState& state) {
+    state_ = takeState<LinkState>(state);
+    if (state_.stage != Stage::Plan) pass_ = roundsOf(state_.stage).next(state_.passRounds);
+    if (state_.scaled) uploadScales();
+    if (!kit_.rankChunks.alone()) { // what is left of the pass under way, and what it has counted, is shared
+        kit_.order.marks() = kit_.rankChunks.ownOf(kit_.order.marks());
+        if (!kit_.input.ranks.speaks()) {
+            VkCommandBuffer cmd = kit_.commands.begin();
+            vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
+            kit_.run(cmd);
+        }
+    }
+    kit_.order.restore(chunksOfStage(), seenOfStage());
+    kit_.noteCounters();
+    done_ = false;
+    stale_ = true;
+    live_ = {.version = live_.version};
+    batches_.cache().forget();
+    if (state_.stage != Stage::Links) return;
+    VkCommandBuffer cmd = kit_.commands.begin();
+    recordRadiance(cmd);
+    kit_.run(cmd);
+    shareRadiance();
+}
+
+// A coarser grid's chunk is seen when light of one of its receivers goes into a patch that is.
+void LinkSolver::setPriority(std::vector<uint8_t> chunkSeen) {
+    ASSERT(chunkSeen.empty() || chunkSeen.size() == kit_.input.patches.chunkCount());
+    kit_.seen = std::move(chunkSeen);
+    seenReceivers_.assign(kit_.seen.empty() ? 0 : coarse_.chunkCount(), 0);
+    const std::vector<shader::CoarseTaps>& taps = coarse_.taps;
+    for (size_t i = 0; i < taps.size() && !kit_.seen.empty(); ++i) {
+        if (kit_.seen[i / kChunk] == 0) continue;
+        const shader::CoarseTaps& t = taps[i];
+        const glm::uvec4 receivers(t.receiver0, t.receiver1, t.receiver2, t.receiver3);
+        for (int k = 0; k < 4; ++k)
+            if (t.weights[k] != 0.0f) seenReceivers_[receivers[k] / kChunk] = 1;
+    }
+    if (state_.stage != Stage::Plan) kit_.order.prefer(seenOfStage());
+}
+
+// Makes a sample pass's result at its end, where a viewer waits for one and there is time. It does so once:
+// the width of smoothing is what the look before said. light() and the end make theirs anew.
+void LinkSolver::look() {
+    const uint32_t rounds = state_.rounds();
+    if (!stale_ || !schedule_.hasSolution(state_) || !live_.asked || rounds == live_.rounds) return;
+    const double pause = std::max(kLookSeconds, live_.cost / kLookShare);
+    if (live_.resolves > 0 && secondsSince(live_.looked) < pause) return;
+    live_.looked = Clock::now();
+    const LinkState before = state_;
+    SmoothingWidth width = live_.width.value_or(state_.width);
+    const shader::ResolveSums sums = errors_.resolve(state_, kit_.buffers.rows ? width.sigma : 0.0);
+    learn(sums);
+    if (kit_.buffers.rows) width.adapt(sums);
+    live_.width = width;
+    state_ = before;
+    live_.cost = secondsSince(live_.looked);
+    live_.rounds = rounds;
+    live_.asked = false;
+    light_.clear(); // within the next sample pass this is the latest there is
+}
+
+LiveLight LinkSolver::liveLight() {
+    ASSERT(kit_.settings.live);
+    if (passBoundary()) look();
+    live_.asked = true;
+    std::vector<ChunkRange> changed;
+    if (live_.resolves == 0)
+        changed = showUnfinished();
+    else if (live_.resolves != live_.shown)
+        changed = {{0, kit_.input.patches.chunkCount()}};
+    live_.shown = live_.resolves;
+    if (!changed.empty()) ++live_.version;
+    return {&kit_.buffers.result, live_.version, live_.complete || done_, std::move(changed)};
+}
+
+// Shows the light that bounces on and, where the bounce under way has been, the light of that one. After a
+// restore within a sample pass this is all that can be shown: sums are of different sample passes.
+std::vector<ChunkRange> LinkSolver::showUnfinished() {
+    std::vector<ChunkRange> ranges = merged(std::exchange(live_.ranges, {}));
+    if (!live_.all && ranges.empty()) return {};
+    const LightBuffers& light = kit_.input.light;
+    const bool inLinks = state_.stage == Stage::Links;
+    const std::vector<ChunkRange> all = {{0, kit_.input.patches.chunkCount()}};
+    VkCommandBuffer cmd = kit_.commands.begin();
+    if (live_.all) {
+        const bool bounces = inLinks || schedule_.hasSolution(state_) || !hasDirect();
+        recordCopy(cmd, bounces ? light.ligIn : kit_.buffers.direct, kit_.buffers.result, all);
+        vk::barrier(cmd);
+    }
+    recordCopy(cmd, inLinks ? light.ligOut : kit_.buffers.direct, kit_.buffers.result, ranges);
+    vk::barrier(cmd);
+    kit_.commands.run();
+    return std::exchange(live_.all, false) ? all : ranges;
+}
+
+const vk::Buffer& LinkSolver::sumsOfStage() const {
+    return state_.stage == Stage::Direct ? kit_.buffers.directSums : kit_.buffers.linkSums;
+}
+
+// Keeps the sums in what smoothing is made with, which lies idle within a sample pass. With a coarser grid,
+// links add to sums only when all of them are there.
+void LinkSolver::recordUndo(VkCommandBuffer cmd) {
+    live_.undoable = kit_.settings.live;
+    if (!kit_.settings.live || (state_.stage == Stage::Links && coarse_.count > 0)) return;
+    const vk::Buffer& sums = sumsOfStage();
+    const VkBufferCopy all{0, 0, sums.size()};
+    vkCmdCopyBuffer(cmd, sums.handle(), (undo_ ? undo_ : kit_.buffers.rows).handle(), 1, &all);
+}
+
+void LinkSolver::undo() {
+    const vk::Buffer& sums = sumsOfStage();
+    const VkBufferCopy all{0, 0, sums.size()};
+    VkCommandBuffer cmd = kit_.commands.begin();
+    vkCmdCopyBuffer(cmd, (undo_ ? undo_ : kit_.buffers.rows).handle(), sums.handle(), 1, &all);
+    vk::barrier(cmd);
+    if (state_.stage == Stage::Direct) {
+        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directRounds, scales());
+        vk::barrier(cmd);
+    }
+    vk::hostBarrier(cmd);
+    kit_.commands.run();
+}
+
+void LinkSolver::abortPass() {
+    if (passBoundary()) return;
+    const bool direct = state_.stage == Stage::Direct;
+    const bool adds = direct || (state_.last && coarse_.count == 0);
+    if (adds && !live_.undoable) {
+        while (!passBoundary())
+            step();
+        return;
+    }
+    if (adds) undo();
+    if (direct) {
+        const auto counters =
+            vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
+        progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
+    } else if (state_.linkRounds == 0) { // convergence begins anew
+        state_.series = {};
+        state_.settling = {};
+    }
+    progress_.passes -= state_.bounce;
+    progress_.passFraction = 0;
+    state_.stage = Stage::Plan;
+    state_.bounce = 0;
+    live_.all = true;
+    live_.ranges.clear();
+}
+
+} // namespace relume
