@@ -10,8 +10,9 @@ namespace relume {
 
 namespace {
 
-constexpr double kThinnest = 1e-10; // twice the area over the longest edge's square; below it is a line
-constexpr size_t kMostSides = 16;   // of one edge; where more triangles meet, none continues another
+constexpr double kThinnestTriangle =
+    1e-10;                        // twice the area over the longest edge's square; below it is a line
+constexpr size_t kMostSides = 16; // of one edge; where more triangles meet, none continues another
 
 uint64_t weldHash(const glm::dvec3& p) {
     uint64_t h = 0;
@@ -35,7 +36,7 @@ void measureTriangles(WeldedMesh& mesh) {
         if (!(longest > 0.0) || !std::isfinite(longest)) continue;
         const glm::dvec3 cross = glm::cross(a / longest, b / longest);
         const double shape = glm::length(cross);
-        if (!(shape > kThinnest)) continue;
+        if (!(shape > kThinnestTriangle)) continue;
         mesh.normal[i] = cross / shape;
         mesh.area[i] = 0.5 * shape * longest * longest;
     }

@@ -2,6 +2,7 @@
 
 #include "assets/gltf/gltf.h"
 #include "assets/gltf/edit/gltf_edit.h"
+#include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/glb_builder.h"
 
@@ -64,14 +65,6 @@ protected:
         Scene after = before;
         edit(after);
         return saveEditedGltf(path, before, after, path);
-    }
-    static std::string messageOf(const std::function<void()>& action) {
-        try {
-            action();
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "no error";
     }
 
     const TemporaryFolder folder_;

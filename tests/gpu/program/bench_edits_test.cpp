@@ -7,15 +7,11 @@
 
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 #include "tests/unit/markup.h"
 
 namespace relume {
 namespace {
-
-std::string textOf(const std::string& name) {
-    std::ifstream in(name);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void expectCurve(const nlohmann::json& curve, double seconds) {
     ASSERT_FALSE(curve.empty());
@@ -92,7 +88,7 @@ TEST(BenchEdits, TellsEveryFigure) {
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("device: "), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("materials and sky of the scene do not shine"), std::string::npos) << run.out;
-    const auto report = nlohmann::json::parse(textOf(json));
+    const auto report = nlohmann::json::parse(bytesOf(json));
     EXPECT_FALSE(report.at("device").get<std::string>().empty());
     EXPECT_EQ(report.at("size"), 64);
     EXPECT_GE(report.at("firstPictureMostOverLeast"), 1.0);
@@ -101,7 +97,7 @@ TEST(BenchEdits, TellsEveryFigure) {
     EXPECT_EQ(report.at("counts")[1].at("lamps"), 2);
     for (const auto& count : report.at("counts"))
         expectCount(count);
-    EXPECT_EQ(markupProblem(textOf(plot)), "");
+    EXPECT_EQ(markupProblem(bytesOf(plot)), "");
 }
 
 } // namespace

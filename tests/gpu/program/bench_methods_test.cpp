@@ -9,6 +9,7 @@
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 #include "tests/unit/markup.h"
 
 namespace relume {
@@ -21,11 +22,6 @@ protected:
         maker.box({0, 0, 0}, {glm::vec3(2, 0, 0), {0, 2, 0}, {0, 0, 2}}, maker.material(0.5f, 1.0f), 14);
         saveGlb(maker.scene(), scene_);
     }
-    static std::string textOf(const std::string& name) {
-        std::ifstream in(name);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-
     TemporaryFolder folder_;
     const std::string scene_ = folder_.path("room.glb");
 };
@@ -37,7 +33,7 @@ TEST_F(BenchMethods, WritesItsReport) {
                    "2", "--reference-samples", "64", "--html", html, "--json", json});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("window 2"), std::string::npos) << run.out;
-    const auto report = nlohmann::json::parse(textOf(json));
+    const auto report = nlohmann::json::parse(bytesOf(json));
     ASSERT_EQ(report.at("runs").size(), 4u);
     for (size_t i = 0; i < 4; ++i) {
         const auto& entry = report.at("runs")[i];
@@ -51,7 +47,7 @@ TEST_F(BenchMethods, WritesItsReport) {
         EXPECT_FALSE(entry.contains("note"));
     }
     EXPECT_EQ(report.at("runs")[0].at("DFPR"), 0.0);
-    const std::string page = textOf(html);
+    const std::string page = bytesOf(html);
     EXPECT_EQ(markupProblem(page), "");
     EXPECT_NE(page.find("data:image/png;base64,iVBOR"), std::string::npos);
 }

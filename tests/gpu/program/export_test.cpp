@@ -28,15 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 using ExportWords = std::vector<std::string>;
 
-std::string textOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 nlohmann::json glbJson(const std::string& path) {
-    const std::string bytes = textOf(path);
+    const std::string bytes = bytesOf(path);
     uint32_t length = 0;
     std::memcpy(&length, bytes.data() + 12, sizeof length);
     return nlohmann::json::parse(bytes.substr(20, length));
@@ -114,7 +107,7 @@ protected:
     }
     /// Returns a picture of a .glb file as readImage() has it.
     FloatImage pictureOf(const std::string& glb, size_t number) const {
-        const std::string bytes = textOf(glb);
+        const std::string bytes = bytesOf(glb);
         const nlohmann::json json = glbJson(glb);
         uint32_t length = 0;
         std::memcpy(&length, bytes.data() + 12, sizeof length);
@@ -236,7 +229,7 @@ TEST_F(ExportCommand, BevysFormulaGivesTheLightThatLeavesTheSurfaces) {
     bake();
     const std::string folder = exported("bevy", {"--exposure", "1.5"});
     const FloatImage light = readImage(folder + "lightmap.ktx2"), right = readImage(path("radiance.exr"));
-    const double ev100 = numberBetween(textOf(folder + "relume_lightmap.rs"), "EV100: f32 = ");
+    const double ev100 = numberBetween(bytesOf(folder + "relume_lightmap.rs"), "EV100: f32 = ");
     const double exposure = std::exp2(-ev100) / 1.2;
     EXPECT_NEAR(exposure, std::exp2(1.5), 1e-3);
     forWalls(folder + "scene.glb", [&](size_t i, const Material& material) {
@@ -256,7 +249,7 @@ TEST_F(ExportCommand, GodotsFormulaGivesTheLightThatLeavesTheSurfaces) {
     bake();
     const std::string folder = exported("godot", {"--exposure", "-2"});
     const FloatImage light = readImage(folder + "lightmap.exr"), right = readImage(path("radiance.exr"));
-    const double factor = numberBetween(textOf(folder + "level.tscn"), "tonemap_exposure = ");
+    const double factor = numberBetween(bytesOf(folder + "level.tscn"), "tonemap_exposure = ");
     EXPECT_NEAR(factor, 0.25, 1e-6);
     forWalls(folder + "scene.glb", [&](size_t i, const Material& material) {
         for (int c = 0; c < 3; ++c) {
@@ -313,14 +306,14 @@ TEST_F(ExportCommand, LightProbesComeAlongAsTheEngineReadsThem) {
         return folder + "/";
     };
     const std::string three = with("three", "layers.exr"), bevy = with("bevy", "layers.exr");
-    EXPECT_EQ(textOf(three + "probes.three.json"), threeProbes(readProbes(three + "probes.json"), "probes"));
-    const auto group = nlohmann::json::parse(textOf(three + "probes.three.json")).at("object");
+    EXPECT_EQ(bytesOf(three + "probes.three.json"), threeProbes(readProbes(three + "probes.json"), "probes"));
+    const auto group = nlohmann::json::parse(bytesOf(three + "probes.three.json")).at("object");
     EXPECT_EQ(group.at("children").size(), probes.probes.size());
-    EXPECT_NE(textOf(three + "README.txt").find("probes.three.json"), std::string::npos);
+    EXPECT_NE(bytesOf(three + "README.txt").find("probes.three.json"), std::string::npos);
     ProbeSet weighed = probes;
     weighLike(weighed, readLayeredExr(path("layers.exr")));
-    EXPECT_EQ(textOf(bevy + "probes.ktx2"), probeBytes("probes.ktx2", weighed));
-    EXPECT_NE(textOf(bevy + "README.txt").find("IrradianceVolume"), std::string::npos);
+    EXPECT_EQ(bytesOf(bevy + "probes.ktx2"), probeBytes("probes.ktx2", weighed));
+    EXPECT_NE(bytesOf(bevy + "README.txt").find("IrradianceVolume"), std::string::npos);
     EXPECT_FALSE(fs::exists(three + "probes.ktx2"));
     EXPECT_FALSE(fs::exists(bevy + "probes.three.json"));
 
@@ -389,12 +382,12 @@ TEST_F(ExportCommand, WhatItReadsIsNotOverwritten) {
     bake();
     fs::create_directory(path("three"));
     fs::rename(path("lighting.exr"), path("three/lightmap.exr"));
-    const std::string before = textOf(path("three/lightmap.exr"));
+    const std::string before = bytesOf(path("three/lightmap.exr"));
     const ProcessResult run =
         refused({"--for", "three", "-o", path("three"), "--lightmap", path("three/lightmap.exr")});
     EXPECT_NE(run.status, 0);
     EXPECT_TRUE(contains(run.err, "lightmap.exr")) << run.err;
-    EXPECT_EQ(textOf(path("three/lightmap.exr")), before);
+    EXPECT_EQ(bytesOf(path("three/lightmap.exr")), before);
 }
 
 TEST_F(ExportCommand, AFolderThatIsThereKeepsItsOtherFiles) {
@@ -403,7 +396,7 @@ TEST_F(ExportCommand, AFolderThatIsThereKeepsItsOtherFiles) {
     std::ofstream(path("three/mine.txt")) << "text";
     exported("three");
     exported("three"); // once more, over its own files
-    EXPECT_EQ(textOf(path("three/mine.txt")), "text");
+    EXPECT_EQ(bytesOf(path("three/mine.txt")), "text");
 }
 
 } // namespace

@@ -13,12 +13,12 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 48;
+constexpr uint32_t kRoomSize = 48;
 
 // Two rooms beside each other: a lamp lights one of them, and a gap in the wall between lets some of it into
 // the other.
 Scene darkRoom() {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kRoomSize);
     const int grey = maker.material(0.6f), lamp = maker.material(0.0f, 40.0f);
     maker.box({0, 0, 0}, {6.0f * kX, 3.0f * kY, 3.0f * kZ}, grey, 10);
     maker.quad({1, 2.99f, 1}, 0.6f * kX, 0.6f * kZ, lamp, {2, 2});
@@ -28,7 +28,7 @@ Scene darkRoom() {
 }
 
 BakeDesc localOnly(double localError, bool perChunk) {
-    return {.size = kSize,
+    return {.size = kRoomSize,
             .passes = 0,
             .localError = localError,
             .perChunk = perChunk,
@@ -37,7 +37,7 @@ BakeDesc localOnly(double localError, bool perChunk) {
 }
 
 BakeDesc reference(uint32_t samples) {
-    return {.size = kSize, .passes = 0, .method = Method::Hybrid, .samples = samples};
+    return {.size = kRoomSize, .passes = 0, .method = Method::Hybrid, .samples = samples};
 }
 
 LocalPercentiles localOf(const FloatImage& map, const FloatImage& truth) {

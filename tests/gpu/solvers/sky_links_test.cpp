@@ -12,12 +12,12 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kSize = 48;
+constexpr uint32_t kAtlasSize = 48;
 constexpr float kRadiance = 3.0f; // [cd/m^2]
 
 // A court, an arcade beside it and a deep room behind that: from open to the sky to hardly any of it.
 Scene court() {
-    SceneMaker maker(kSize);
+    SceneMaker maker(kAtlasSize);
     const int grey = maker.material(0.6f);
     maker.quad({0, 0, 0}, 8.0f * kX, 4.0f * kY, grey, {16, 8});
     maker.quad({0, 0, 0}, 4.0f * kY, 3.0f * kZ, grey, {8, 6});
@@ -33,7 +33,7 @@ Scene court() {
 }
 
 BakeDesc precise(Method method, uint32_t samples) {
-    return {.size = kSize, .passes = 0, .method = method, .samples = samples};
+    return {.size = kAtlasSize, .passes = 0, .method = method, .samples = samples};
 }
 
 } // namespace
@@ -70,7 +70,7 @@ TEST(SkyLinks, BringWhatRaysToTheSkyDo) {
         ASSERT_FALSE(linksSeeSky(picture.sky, settingsOf(desc).solver));
         const Baked links = bakeScene(scene, desc), rays = bakeScene(picture, desc);
         EXPECT_LT(relativeError(links.lighting, rays.lighting), 0.02) << methodName(method);
-        const TexelRect all{0, 0, kSize, kSize};
+        const TexelRect all{0, 0, kAtlasSize, kAtlasSize};
         EXPECT_NEAR(statistics(links.lighting, all).mean / statistics(rays.lighting, all).mean, 1.0, 1e-3);
         EXPECT_LT(links.progress.rays, 0.75 * static_cast<double>(rays.progress.rays));
     }
@@ -108,7 +108,7 @@ TEST(SkyLinks, TellTheLocalErrorThatIsThere) {
     const ImagePair pair({baked.lighting, "map"}, {truth.lighting, "truth"});
     const LocalPercentiles truly = pair.percentiles(pair.localErrors());
     EXPECT_NEAR(baked.progress.localError95 / truly.p95, 1.0, 0.2);
-    const TexelRect all{0, 0, kSize, kSize};
+    const TexelRect all{0, 0, kAtlasSize, kAtlasSize};
     EXPECT_NEAR(statistics(baked.lighting, all).mean / statistics(truth.lighting, all).mean, 1.0, 3e-3);
 }
 

@@ -36,7 +36,7 @@ EditsRun made(uint32_t lamps, double first) {
     return run;
 }
 
-EditsReport report() {
+EditsReport editsReport() {
     EditsReport result;
     result.scene = "room.glb";
     result.device = "a device";
@@ -46,7 +46,7 @@ EditsReport report() {
 }
 
 TEST(EditsReport, JsonHasEveryFigure) {
-    const nlohmann::ordered_json json = editsJson(report());
+    const nlohmann::ordered_json json = editsJson(editsReport());
     for (const char* name :
          {"version", "scene", "command", "device", "driver", "tracer", "size", "patches", "error", "samples",
           "referenceSamples", "runs", "diagonal", "lamps", "onlyLamps"})
@@ -74,21 +74,21 @@ TEST(EditsReport, JsonHasEveryFigure) {
 }
 
 TEST(EditsReport, AlbedoMayBeMissing) {
-    EditsReport without = report();
+    EditsReport without = editsReport();
     without.counts[0].albedo.reset();
     EXPECT_TRUE(editsJson(without).at("counts")[0].at("albedo").is_null());
     EXPECT_NE(editsTable(without).find("–"), std::string::npos);
 }
 
 TEST(EditsReport, TableHasAColumnForEachNumberOfLamps) {
-    const std::string table = editsTable(report());
+    const std::string table = editsTable(editsReport());
     EXPECT_NE(table.find("move: first picture after             10 ms        12 ms\n"), std::string::npos)
         << table;
     EXPECT_NE(table.find("most over least: 1.2\n"), std::string::npos);
 }
 
 TEST(EditsReport, PlotIsOfTheMostLamps) {
-    const PlotDesc desc = editsPlot(report());
+    const PlotDesc desc = editsPlot(editsReport());
     EXPECT_NE(desc.title.find("16 lamps"), std::string::npos);
     ASSERT_EQ(desc.series.size(), 4u);
     EXPECT_EQ(desc.series[0].points.size(), 2u);

@@ -21,7 +21,7 @@ QualityPoint at(uint64_t rays, double seconds, double local95, double relRmse) {
     return point;
 }
 
-QualityReport report() {
+QualityReport qualityReport() {
     QualityReport made;
     made.scene = "a/room.glb";
     made.size = 64;
@@ -36,7 +36,7 @@ QualityReport report() {
 }
 
 TEST(QualityReport, CurvesRunStraightBetweenPointsInLogarithms) {
-    const auto points = report().runs[0].points; // a quarter of the error takes 16 times the rays
+    const auto points = qualityReport().runs[0].points; // a quarter of the error takes 16 times the rays
     const auto half = reachedAt(points, &QualityPoint::local95, 0.2);
     ASSERT_TRUE(half);
     EXPECT_NEAR(half->rays, 400, 1e-9);
@@ -63,7 +63,7 @@ TEST(QualityReport, CurvesMayComeFromInfinityOrEndAtNothing) {
 }
 
 TEST(QualityReport, JsonHasEveryFigure) {
-    QualityReport made = report();
+    QualityReport made = qualityReport();
     made.runs[0].points[0].local99 = std::numeric_limits<double>::infinity();
     const nlohmann::ordered_json told = qualityJson(made);
     for (const char* name : {"version", "scene", "command", "device", "driver", "tracer", "size", "error",
@@ -86,11 +86,11 @@ TEST(QualityReport, JsonHasEveryFigure) {
 }
 
 TEST(QualityReport, TableAndPlot) {
-    const std::string table = qualityTable(report());
+    const std::string table = qualityTable(qualityReport());
     EXPECT_NE(table.find("0.010 0.030"), std::string::npos) << table;
     EXPECT_NE(table.find("local error 20 %   0.0004 Mrays, 4 s\n"), std::string::npos) << table;
     EXPECT_NE(table.find("relRMSE 1 %        not reached\n"), std::string::npos) << table;
-    const PlotDesc time = qualityPlot(report(), false), rays = qualityPlot(report(), true);
+    const PlotDesc time = qualityPlot(qualityReport(), false), rays = qualityPlot(qualityReport(), true);
     ASSERT_EQ(time.series.size(), 6u);
     EXPECT_EQ(time.series[0].points[1].x, 16);
     EXPECT_EQ(rays.series[0].points[1].x, 1600);

@@ -5,6 +5,7 @@
 #include "assets/images/layered_exr.h"
 #include "assets/images/sky_picture.h"
 #include "tests/exr_claims.h"
+#include "tests/message_of.h"
 #include "tests/peak_memory.h"
 #include "tests/temporary_folder.h"
 
@@ -33,14 +34,6 @@ protected:
     std::string store(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_.path(name), std::ios::binary) << bytes;
         return folder_.path(name);
-    }
-    static std::string messageOf(const std::function<void()>& action) {
-        try {
-            action();
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "no error";
     }
     /// Expects that all readers refuse the file with one line that has `part`, and take little memory for
     /// that.

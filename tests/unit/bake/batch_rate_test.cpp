@@ -9,14 +9,14 @@
 namespace relume {
 namespace {
 
-constexpr double kAim = 20; // [ms]
+constexpr double kAimMs = 20;
 
 // Runs batches of at most so many chunks on a device that takes `ms` for them and returns the size and the
 // time of the last.
 struct Batch {
     double chunks = 0, ms = 0;
 };
-Batch settle(BatchRate& rate, const std::function<double(double)>& ms, double aim = kAim, double most = 1e9,
+Batch settle(BatchRate& rate, const std::function<double(double)>& ms, double aim = kAimMs, double most = 1e9,
              int batches = 60) {
     Batch last;
     for (int i = 0; i < batches; ++i) {
@@ -32,7 +32,7 @@ TEST(BatchRate, ReachesTheAimWhereTimeIsProportional) {
         for (const double perChunk : {0.002, 0.1, 3.0}) {
             BatchRate rate(wide);
             const Batch last = settle(rate, [&](double n) { return perChunk * n; });
-            EXPECT_NEAR(last.ms, kAim, 0.1 * kAim + perChunk) << wide << ' ' << perChunk;
+            EXPECT_NEAR(last.ms, kAimMs, 0.1 * kAimMs + perChunk) << wide << ' ' << perChunk;
             EXPECT_NEAR(rate.perMs(), 1 / perChunk, 0.05 / perChunk) << wide;
         }
 }
@@ -56,7 +56,7 @@ TEST(BatchRate, AMapThatIsOneBatchStaysOne) {
     BatchRate rate(true);
     const double most = 1541;
     const Batch last = settle(
-        rate, [](double n) { return std::max(25.0, 0.004 * n); }, kAim, most);
+        rate, [](double n) { return std::max(25.0, 0.004 * n); }, kAimMs, most);
     EXPECT_EQ(last.chunks, most);
 }
 
@@ -66,20 +66,20 @@ TEST(BatchRate, RestsOfPassesDoNotShrinkWhatFollows) {
     const auto ms = [](double n) { return std::max(25.0, 0.01 * n); };
     for (int pass = 0; pass < 30; ++pass)
         for (double left = 6000; left > 0;) {
-            const double n = std::clamp(std::floor(rate.wanted(kAim)), 1.0, left);
-            rate.note(n, kAim, ms(n) / 1000);
+            const double n = std::clamp(std::floor(rate.wanted(kAimMs)), 1.0, left);
+            rate.note(n, kAimMs, ms(n) / 1000);
             left -= n;
         }
-    EXPECT_GE(rate.wanted(kAim), 1500);
+    EXPECT_GE(rate.wanted(kAimMs), 1500);
 }
 
 TEST(BatchRate, AFirstBatchThatCompilesShadersIsForgotten) {
     for (const bool wide : {false, true}) {
         BatchRate rate(wide);
-        rate.note(rate.wanted(kAim), kAim, 0.5);
+        rate.note(rate.wanted(kAimMs), kAimMs, 0.5);
         const Batch last = settle(
-            rate, [](double n) { return 0.01 * n; }, kAim, 1e9, 12);
-        EXPECT_NEAR(last.ms, kAim, 0.2 * kAim) << wide;
+            rate, [](double n) { return 0.01 * n; }, kAimMs, 1e9, 12);
+        EXPECT_NEAR(last.ms, kAimMs, 0.2 * kAimMs) << wide;
     }
 }
 
@@ -96,17 +96,17 @@ TEST(BatchRate, StaysNearTheAimWhereChunksDiffer) {
             if (count > 20) sum += ms;
             return ms;
         },
-        kAim, 1e9, 220);
-    EXPECT_LT(longest, 5 * kAim);
-    EXPECT_NEAR(sum / 200, kAim, 0.6 * kAim);
+        kAimMs, 1e9, 220);
+    EXPECT_LT(longest, 5 * kAimMs);
+    EXPECT_NEAR(sum / 200, kAimMs, 0.6 * kAimMs);
 }
 
 // Another level is opened or the camera moves: what was cheap becomes dear, and the other way round.
 TEST(BatchRate, FollowsAChangeOfCost) {
     BatchRate rate(true);
     settle(rate, [](double n) { return 0.01 * n; });
-    EXPECT_NEAR(settle(rate, [](double n) { return 0.2 * n; }).ms, kAim, 0.2 * kAim);
-    EXPECT_NEAR(settle(rate, [](double n) { return 0.01 * n; }).ms, kAim, 0.2 * kAim);
+    EXPECT_NEAR(settle(rate, [](double n) { return 0.2 * n; }).ms, kAimMs, 0.2 * kAimMs);
+    EXPECT_NEAR(settle(rate, [](double n) { return 0.01 * n; }).ms, kAimMs, 0.2 * kAimMs);
 }
 
 } // namespace

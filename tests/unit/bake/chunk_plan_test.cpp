@@ -8,7 +8,7 @@
 namespace relume {
 namespace {
 
-constexpr double kPatches = 64;
+constexpr double kChunkPatches = 64;
 
 ChunkPlan after(size_t chunks, uint32_t direct, uint32_t links) {
     return {std::vector<uint32_t>(chunks, direct), std::vector<uint32_t>(chunks, links)};
@@ -16,11 +16,11 @@ ChunkPlan after(size_t chunks, uint32_t direct, uint32_t links) {
 
 // Makes a chunk whose patches are off by so much each, relative to what local error is relative to.
 ChunkVariance off(double direct, double links) {
-    return {.patches = kPatches,
-            .direct = kPatches * direct * direct,
-            .indirect = kPatches * links * links,
-            .localDirect = kPatches * direct * direct,
-            .localIndirect = kPatches * links * links};
+    return {.patches = kChunkPatches,
+            .direct = kChunkPatches * direct * direct,
+            .indirect = kChunkPatches * links * links,
+            .localDirect = kChunkPatches * direct * direct,
+            .localIndirect = kChunkPatches * links * links};
 }
 
 ChunkPlanRules local(double error) {

@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
+#include "tests/message_of.h"
 #include "tests/unit/glb_builder.h"
 #include "tests/unit/guarded_bytes.h"
 
@@ -73,15 +74,6 @@ T valueAt(const std::vector<uint8_t>& bytes, size_t i) {
     T value;
     std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
     return value;
-}
-
-std::string messageOf(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
 }
 
 TEST(Draco, BothMethodsGiveTheMeshBackWithinItsQuantization) {
