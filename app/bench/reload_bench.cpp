@@ -129,7 +129,7 @@ private:
         saveEditedScene(desc_.scene, before, after, lit);
         saveGlb(loadScene(lit), level_);
         // Normals are made unit whenever a file is read, and settle in their last bits after a few times.
-        constexpr int kSettled = 4;
+        constexpr int kSettled = 10;
         for (int i = 0; i < kSettled; ++i)
             saveGlb(loadScene(level_), level_);
         home_ = loadScene(level_);
@@ -229,7 +229,9 @@ private:
         std::filesystem::rename(next, level_);
     }
 
-    // Returns how long it takes from the end of `change` until its light is on screen, bounces and all [s].
+    // Returns how long it takes from the end of `change` until its light is on screen, bounces and all [s]. A
+    // map bears the number of an edit as soon as the bake follows it; what it shows is older until it is
+    // current.
     double untilSeen(const std::function<void()>& change) {
         const uint64_t bake = session_.newestBake();
         rays_ = bake_.status().progress.rays;
@@ -237,7 +239,8 @@ private:
         change();
         waitFor([&] {
             return session_.newestBake() > bake && sink_.map() &&
-                   sink_.map()->bake == session_.newestBake() && sink_.map()->complete;
+                   sink_.map()->bake == session_.newestBake() && sink_.map()->complete &&
+                   sink_.map()->current;
         });
         return secondsSince(written_);
     }

@@ -113,6 +113,9 @@ struct BakeOrders {
         uint64_t number = 0;    // counts the bakes that were asked for
         // Scenes with the same number have the same patches where their edits are the same. It is above 0.
         uint64_t surfaces = 1;
+        // Among these, scenes with the same number have materials of the same textures, metallic and
+        // roughness.
+        uint64_t paint = 1;
     };
     struct Export {
         std::string path; // .exr or .png

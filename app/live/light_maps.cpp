@@ -9,11 +9,12 @@ void LightMaps::begin(MapSource source, bool keepLight) {
     keepLight_ = keepLight;
     changed_.clear();
     drawnVersion_ = 0;
-    edited_ = false;
+    edited_ = drawnCurrent_ = false;
 }
 
 void LightMaps::edited(uint64_t number, const PatchSet& patches) {
     edited_ = true;
+    drawnCurrent_ = false;
     MapSource& source = next_.publisher ? next_ : light_;
     if (!source.publisher) return;
     source.bake = number;
@@ -24,7 +25,8 @@ void LightMaps::end() {
     next_ = {};
 }
 
-LiveLight LightMaps::ask(Solver& solver) {
+LiveLight LightMaps::ask(Solver& solver, bool current) {
+    current_ = current;
     LiveLight live = solver.liveLight();
     changed_.insert(changed_.end(), live.changed.begin(), live.changed.end());
     changed_ = merged(std::move(changed_));
@@ -34,7 +36,7 @@ LiveLight LightMaps::ask(Solver& solver) {
 LightMapStep LightMaps::decide(const LiveLight& live, bool otherOnScreen) const {
     return decideLightMap({.solved = live.light != nullptr,
                            .complete = live.complete,
-                           .newer = live.version != drawnVersion_,
+                           .newer = live.version != drawnVersion_ || (current_ && !drawnCurrent_),
                            .edited = edited_,
                            .keepLight = keepLight_,
                            .drawn = light_.publisher != nullptr,
@@ -57,6 +59,7 @@ MapSource& LightMaps::draw(LightMapStep step, const LiveLight& live) {
     changed_.clear();
     light_.publisher->update({.values = *live.light, .chunks = chunks, .unit = light_.publisher->unit()});
     drawnVersion_ = live.version;
+    drawnCurrent_ = current_;
     return light_;
 }
 

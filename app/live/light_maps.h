@@ -28,12 +28,14 @@ public:
     void end();
 
     /// Asks the solver for its light and takes note of what has changed. decide() and draw() are told what it
-    /// answers.
-    LiveLight ask(Solver& solver);
+    /// answers. `current` says whether that light is of the newest edit.
+    LiveLight ask(Solver& solver, bool current);
     /// Decides on the next map, where the newest one shows something else or not.
     LightMapStep decide(const LiveLight& live, bool otherOnScreen) const;
     /// Returns the edge of the lightmap that such a step shows [texels].
     uint32_t size(LightMapStep step) const;
+    /// Tells whether the light that was drawn is of the newest edit.
+    bool current() const { return drawnCurrent_; }
     /// Draws the solver's light, where the step says so, and returns what the map is of.
     MapSource& draw(LightMapStep step, const LiveLight& live);
 
@@ -42,6 +44,8 @@ private:
     bool keepLight_ = false;
     std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
     uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
+    bool current_ = false;            // the solver's light is of the newest edit
+    bool drawnCurrent_ = false;       // light_ was, when it was drawn
     bool edited_ = false;             // since the newest map
 };
 

@@ -44,6 +44,7 @@ struct PublishedMap {
     LightKey light = {};     // of a content Layer: the light
     uint64_t bake = 0;       // number of the bake that it comes from, see LiveBake::start()
     bool complete = false;   // a solution with all bounces
+    bool current = false;    // ... of the newest edit, as far as the solver tells them apart
     float unit = 1;          // [cd/m^2], [m], ...: a texel's 1.0
     glm::vec3 ambient{0.0f}; // mean of the patches, in the same unit as what a texel stands for
     float low = 0, high = 0; // range of the content's first channel, of all patches

@@ -1,6 +1,7 @@
 #include "app/live/map_publisher.h"
 
 #include "assets/base/error.h"
+#include "bake/layers/layer_solver.h"
 #include "bake/vk/buffer.h"
 
 #include <algorithm>
@@ -49,7 +50,8 @@ void MapPublisher::end() {
 }
 
 LiveLight MapPublisher::askSolver() {
-    return light_.ask(running_->bake.baker.solver());
+    const LayerSolver* layers = running_->bake.baker.layers();
+    return light_.ask(running_->bake.baker.solver(), layers == nullptr || layers->current());
 }
 
 bool MapPublisher::publish(const InspectRequest& request) {
@@ -81,6 +83,7 @@ bool MapPublisher::publishLight() {
     hand(source, *slot,
          {.content = MapContent::Light,
           .complete = live.complete,
+          .current = light_.current(),
           .unit = source.publisher->unit(),
           .ambient = source.publisher->mean(),
           .radiance = source.radiance});

@@ -1,5 +1,7 @@
 #include "app/live/reload.h"
 
+#include "bake/surface/repaint.h"
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -101,8 +103,7 @@ bool samePictures(const Scene& a, const Scene& b) {
         return x.image == y.image && x.wrapS == y.wrapS && x.wrapT == y.wrapT && x.nearest == y.nearest;
     };
     return std::equal(a.images.begin(), a.images.end(), b.images.begin(), b.images.end(), samePixels) &&
-           std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(), texture) &&
-           a.sky.pixels == b.sky.pixels && a.sky.file == b.sky.file;
+           std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(), texture);
 }
 
 bool sameAtlas(const LightmapAtlas& a, const LightmapAtlas& b) {
@@ -116,12 +117,20 @@ bool sameAtlas(const LightmapAtlas& a, const LightmapAtlas& b) {
 bool sameSurfaces(const PreparedScene& before, const PreparedScene& after) {
     const Scene &a = before.scene, &b = after.scene;
     const auto object = [](const Instance& x, const Instance& y) { return x.mesh == y.mesh; };
-    return before.size == after.size && sameAtlas(before.atlas, after.atlas) && samePictures(a, b) &&
+    const auto serves = [&](const Material& x, const Material& y) { return servesPatches({a, x}, {b, y}); };
+    return before.size == after.size && sameAtlas(before.atlas, after.atlas) &&
+           a.sky.pixels == b.sky.pixels && a.sky.file == b.sky.file &&
            std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
                       object) &&
            std::equal(a.materials.begin(), a.materials.end(), b.materials.begin(), b.materials.end(),
-                      sameSurface) &&
+                      serves) &&
            std::equal(a.meshes.begin(), a.meshes.end(), b.meshes.begin(), b.meshes.end(), sameTriangles);
+}
+
+// Tells whether all surfaces are painted alike, but for colours.
+bool samePaint(const Scene& a, const Scene& b) {
+    return samePictures(a, b) && std::equal(a.materials.begin(), a.materials.end(), b.materials.begin(),
+                                            b.materials.end(), sameSurface);
 }
 
 std::vector<Light> withoutPreview(std::vector<Light> lights) {
@@ -281,6 +290,7 @@ SceneChanges changesBetween(const Scene& held, const PreparedScene& before, cons
     out.pictures = countDifferent(before.scene.images, b.images, samePixels);
     out.sky = !a.sky.preview && !b.sky.preview && static_cast<const SkySettings&>(a.sky) != b.sky;
     out.surfaces = !sameSurfaces(before, after);
+    out.paint = !out.surfaces && !samePaint(before.scene, b);
     return out;
 }
 
@@ -295,7 +305,7 @@ std::string describe(const SceneChanges& changes) {
     add(changes.materials, "material", "materials");
     add(changes.meshes, "mesh", "meshes");
     add(changes.pictures, "picture", "pictures");
-    if (parts.empty()) return changes.surfaces ? "surfaces" : "nothing";
+    if (parts.empty()) return changes.surfaces || changes.paint ? "surfaces" : "nothing";
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 

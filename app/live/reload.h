@@ -17,8 +17,11 @@ struct SceneChanges {
     size_t pictures = 0;   // of textures, whose pixels changed, came or went
     bool sky = false;      // what is set of it
     bool surfaces = false; // what patches are made with: they are to be made anew
+    bool paint = false;    // textures, metallic or roughness, where patches may stay
 
-    bool any() const { return lights + objects + materials + meshes + pictures > 0 || sky || surfaces; }
+    bool any() const {
+        return lights + objects + materials + meshes + pictures > 0 || sky || surfaces || paint;
+    }
 };
 
 /// Compares a scene with the same file's former one. `held` has the materials, objects, lights and sky that

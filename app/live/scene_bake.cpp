@@ -17,12 +17,18 @@ std::string SceneBake::remark() const {
 Applied SceneBake::edit(const Start& start) {
     const BakeRecipe wanted{.surfaces = start.surfaces, .settings = start.settings, .rings = start.rings};
     if (due_ || !layers() || !differOnlyInEdits(recipe_, wanted)) return Applied::NeedsNewBake;
-    return baker_->apply({.scene = start.edits, .mix = start.mix, .atlas = &start.scene->atlas});
+    const Applied applied =
+        baker_->apply({.scene = start.edits,
+                       .mix = start.mix,
+                       .atlas = &start.scene->atlas,
+                       .repainted = start.paint != paint_ ? &start.scene->scene : nullptr});
+    if (applied == Applied::Now) paint_ = start.paint;
+    return applied;
 }
 
 bool SceneBake::keepsPatches(const Start& start) const {
-    return baker_ && start.surfaces == recipe_.surfaces && !differenceBetween(scene_, start.edits).any() &&
-           samePatches(start.settings, settings());
+    return baker_ && start.surfaces == recipe_.surfaces && start.paint == paint_ &&
+           !differenceBetween(scene_, start.edits).any() && samePatches(start.settings, settings());
 }
 
 void SceneBake::takeUp(const Start& start, double batchMs) {
@@ -45,6 +51,7 @@ void SceneBake::make(const vk::Device& device, const Start& start) {
     readEditedPicture(scene_.sky);
     atlas_ = start.scene->atlas;
     recipe_.surfaces = start.surfaces;
+    paint_ = start.paint;
     makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
 }
 

@@ -58,6 +58,7 @@ private:
 
     Scene scene_;                      // with the edits; the baker changes it
     LightmapAtlas atlas_;              // of the scene
+    uint64_t paint_ = 0;               // as the start had it
     BakeRecipe recipe_;                // surfaces: 0 where there is no bake, or it was given up
     bool due_ = false;                 // the recipe was taken up, and nothing was made by it yet
     bool wantsLayers_ = true;          // they are asked for, even if the settings cannot have them

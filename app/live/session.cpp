@@ -131,9 +131,10 @@ SceneEdits Session::reloaded(const PreparedScene& now, const SceneChanges& chang
     file_.loaded(now.scene);
     // Its steps hold all that can be edited as the file had it, whole materials with their textures' numbers
     // too.
-    if (!carried.sameFile || changes.materials > 0 || changes.surfaces) history_.forget();
+    if (!carried.sameFile || changes.materials > 0 || changes.surfaces || changes.paint) history_.forget();
     if (!carried.sameNumbers) document_.mix = {};
-    const bool anew = changes.surfaces && !bake_.status().layered; // layers go on with what stays
+    const bool anew =
+        (changes.surfaces || changes.paint) && !bake_.status().layered; // layers go on with what stays
     reloadNotes_ = {fmt::format("reloaded: {}{}", describe(changes), anew ? " (the bake begins anew)" : "")};
     spdlog::info("{}", reloadNotes_[0]);
     for (const std::string& conflict : carried.conflicts) {
@@ -199,6 +200,7 @@ void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) 
         edits = reloaded(scene->prepared, changes);
     }
     if (changes.surfaces) ++surfaces_;
+    if (changes.surfaces || changes.paint) ++paint_;
     document_.edits = std::move(edits);
     if (loading_.fits) document_.bake.size = scene->size;
     ++changes_;
@@ -217,7 +219,8 @@ void Session::startBake(bool keepLight) {
                                        .settings = document_.bake,
                                        .keepLight = keepLight,
                                        .rings = document_.lightmap.sew ? document_.lightmap.dilate : 0,
-                                       .surfaces = surfaces_});
+                                       .surfaces = surfaces_,
+                                       .paint = paint_});
     if (!keepLight) firstBake_ = bake;
     newestBake_ = bake;
 }

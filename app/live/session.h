@@ -145,7 +145,8 @@ private:
     EditHistory history_;
     FileWatch watch_; // of the scene's files
     FileNews news_;   // of these, where it is on
-    uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0, surfaces_ = 0;
+    uint64_t firstBake_ = 0, newestBake_ = 0, changes_ = 0, saves_ = 0;
+    uint64_t surfaces_ = 0, paint_ = 0; // as BakeOrders::Start has them
 };
 
 } // namespace relume

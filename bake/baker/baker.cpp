@@ -10,10 +10,13 @@
 #include "bake/layers/layer_solver.h"
 #include "bake/output/layer_sum.h"
 #include "bake/surface/cit_pass.h"
+#include "bake/surface/known_covers.h"
+#include "bake/surface/repaint.h"
 #include "bake/surface/texture_group.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace relume {
 namespace {
@@ -31,6 +34,12 @@ std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::v
         in.insert(in.end(), first, end);
     }
     return in;
+}
+
+// The parts of a scene that its materials are painted with.
+using Pictures = std::pair<std::vector<Image>, std::vector<Texture>>;
+Pictures takePictures(Scene& scene) {
+    return {std::exchange(scene.images, {}), std::exchange(scene.textures, {})};
 }
 
 } // namespace
@@ -79,7 +88,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
       phaseHook_(std::move(phaseHook)) {
     requireRoom(surfaces);
     PhaseClock clock(phases_);
-    makePatches(std::move(surfaces.mesh), clock);
+    makePatches(std::move(surfaces.mesh), surfaces.former, clock);
     std::optional<Carry> carry = carryFrom(surfaces.former);
     {
         const vk::MemoryOwner owner("surface");
@@ -115,7 +124,7 @@ void Baker::requireRoom(BakeSurfaces& surfaces) const {
     if (!now.empty()) throw Error(now);
 }
 
-void Baker::makePatches(WorldMesh mesh, PhaseClock& clock) {
+void Baker::makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock) {
     const TransportSettings& transport = settings_.solver.transport;
     onPhase("cit");
     const vk::MemoryOwner owner("cit");
@@ -124,9 +133,15 @@ void Baker::makePatches(WorldMesh mesh, PhaseClock& clock) {
         {.size = settings_.size, .conservative = settings_.conservative, .rtrad = transport.rtrad});
     clock.end("cit");
     onPhase("patches");
-    patches_ = buildPatches(
-        scene_, std::move(mesh), group,
-        {.reflectivity = transport.reflectivity, .rtrad = transport.rtrad, .pool = &device_.workers()});
+    const PatchDesc desc{
+        .reflectivity = transport.reflectivity, .rtrad = transport.rtrad, .pool = &device_.workers()};
+    if (goesOnWith(former)) {
+        const KnownCovers known =
+            knownCovers({former->scene, former->patches}, mesh, scene_.instances.size());
+        patches_ = buildPatches(scene_, std::move(mesh), group, desc, known);
+    } else {
+        patches_ = buildPatches(scene_, std::move(mesh), group, desc);
+    }
     if (patches_.clampedAlbedo == 0) return;
     spdlog::warn("{} patches have an albedo above 0.98 (reflectivity counted in), which is clamped: "
                  "lower the base colour",
@@ -138,11 +153,16 @@ bool Baker::followsObjects() const {
     return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings_);
 }
 
-// Finds what stays of a former bake. Directions that a chunk shares would be others where its patches are.
+// Tells whether there is something to go on with. Directions that a chunk shares would be others where its
+// patches are.
+bool Baker::goesOnWith(const FormerBake* former) const {
+    return former != nullptr && followsObjects() && former->patches.scene.size == settings_.size &&
+           settings_.solver.links.rotation != Rotation::Tile;
+}
+
+// Finds what stays of a former bake.
 std::optional<Baker::Carry> Baker::carryFrom(FormerBake* former) {
-    if (former == nullptr || !followsObjects() || former->patches.scene.size != settings_.size ||
-        settings_.solver.links.rotation == Rotation::Tile)
-        return std::nullopt;
+    if (!goesOnWith(former)) return std::nullopt;
     Carry carry{.former = *former,
                 .patches = carryPatches({former->scene, former->patches}, {scene_, patches_})};
     carrySearches(carry.patches, former->patches, patches_);
@@ -154,6 +174,7 @@ LayerCarry Baker::layerCarry(const Carry& carry) const {
     return {.former = carry.former.layers,
             .patches = carry.patches,
             .move = carry.move,
+            .formerTexels = carry.former.patches.scene.texelToPatch,
             .sameSky = was.file == is.file && was.pixels == is.pixels,
             .sameColours = carry.patches.same && sameColours(carry.former.patches, patches_)};
 }
@@ -302,27 +323,57 @@ void Baker::restart(const SceneEdits& wanted, const SolverSettings& settings) {
 }
 
 Applied Baker::apply(const BakeEdits& edits) {
-    const SceneDifference difference = differenceBetween(scene_, edits.scene);
+    SceneDifference difference = differenceBetween(scene_, edits.scene);
+    difference.colours = difference.colours || edits.repainted;
     LayerSolver* const layers = solver_.layers;
     const Applied applied =
         decideEdit(difference, {.follows = editable_ && layers,
                                 .fits = layers && layers->holds(edits.scene.lights.size()),
                                 .atRest = layers && layers->atRest()});
     if (applied != Applied::Now) return applied;
-    const SceneEdits before = difference.objects ? editsOf(scene_) : SceneEdits();
+    const bool mayFail = difference.objects || edits.repainted;
+    const SceneEdits before = mayFail ? editsOf(scene_) : SceneEdits();
+    std::vector<uint8_t> painted;
+    Pictures pictures;
+    if (edits.repainted) {
+        painted = repaintedMaterials(scene_, *edits.repainted, edits.scene.materials);
+        pictures = takePictures(*editable_);
+        editable_->images = edits.repainted->images;
+        editable_->textures = edits.repainted->textures;
+    }
     applyEdits(*editable_, edits.scene);
+    const auto takeBack = [&] {
+        applyEdits(*editable_, before);
+        if (edits.repainted) std::tie(editable_->images, editable_->textures) = std::move(pictures);
+        return Applied::NeedsNewBake;
+    };
+    if (edits.repainted && !repaint(edits, painted)) return takeBack();
     std::optional<ObjectMove> move;
     if (difference.objects) {
         move = moveObjects(edits.atlas);
-        if (!move) {
-            applyEdits(*editable_, before);
-            return Applied::NeedsNewBake;
-        }
+        if (!move) return takeBack();
     }
     if (difference.colours) updateMaterials();
     if (move) layers->moveObjects(*move);
-    layers->edit(edits.mix);
+    layers->edit(edits.mix, edits.repainted != nullptr);
     return Applied::Now;
+}
+
+// Gives patches of these materials the patterns that these make now. Returns false where that cannot be done.
+bool Baker::repaint(const BakeEdits& edits, const std::vector<uint8_t>& materials) {
+    if (!mover_ || edits.atlas == nullptr) return false;
+    std::vector<uint8_t> painted(scene_.instances.size(), 0);
+    for (uint32_t triangle = 0; triangle < patches_.scene.mesh.triangleCount(); ++triangle) {
+        const uint32_t material = patches_.scene.mesh.material[triangle];
+        if (material < materials.size() && materials[material] != 0)
+            painted[patches_.scene.mesh.instance[triangle]] = 1;
+    }
+    std::vector<uint32_t> instances;
+    for (uint32_t i = 0; i < painted.size(); ++i)
+        if (painted[i] != 0) instances.push_back(i);
+    if (!mover_->repaint(*edits.atlas, instances)) return false;
+    colours_->updateAll(device_, scene_.materials, patches_, *light_);
+    return true;
 }
 
 void Baker::updateMaterials() {

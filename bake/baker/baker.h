@@ -103,7 +103,8 @@ private:
     Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
           const BakeSettings& settings, PhaseHook phaseHook);
     void requireRoom(BakeSurfaces& surfaces) const;
-    void makePatches(WorldMesh mesh, PhaseClock& clock);
+    bool goesOnWith(const FormerBake* former) const;
+    void makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock);
     void makeTracers(Carry* carry);
     bool followsObjects() const;
     std::optional<Carry> carryFrom(FormerBake* former);
@@ -113,6 +114,7 @@ private:
     void makeCovers();
     void uploadCovers();
     std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
+    bool repaint(const BakeEdits& edits, const std::vector<uint8_t>& materials);
     void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;
     Ranks& ranks() const { return settings_.ranks ? *settings_.ranks : oneProcess(); }

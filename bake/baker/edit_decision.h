@@ -13,6 +13,9 @@ struct BakeEdits {
     const LightMix& mix;
     // This is the one that the mesh was made with; without it, objects that move cannot be followed.
     const LightmapAtlas* atlas = nullptr;
+    // The level, where its textures, metallic or roughness are others now; its triangles are those that are
+    // baked. What shines and what is masked must look as it did. Needs the atlas.
+    const Scene* repainted = nullptr;
 };
 
 /// The answer of Baker::apply().

@@ -229,6 +229,7 @@ void ObjectMover::putTriangles(const Part& part) {
         if (own.hitTriangles[t].representative != kNoPatch)
             hit.representative = part.slots[own.hitTriangles[t].representative];
     }
+    putUvs(part); // they may have been repainted while they were hidden
     if (part.goneTriangles.empty()) return;
     glm::vec3 point(0.0f);
     for (uint32_t t = 0; t < all.mesh.triangleCount(); ++t)
@@ -238,6 +239,17 @@ void ObjectMover::putTriangles(const Part& part) {
         }
     for (const uint32_t t : part.goneTriangles)
         std::fill_n(all.mesh.positions.begin() + std::ptrdiff_t{t} * 3, 3, point);
+}
+
+// Puts the places in textures into the scene, which are others where materials read other textures.
+void ObjectMover::putUvs(const Part& part) {
+    WorldMesh& all = on_.patches.scene.mesh;
+    const WorldMesh& own = part.patches.scene.mesh;
+    for (uint32_t t = 0; t < part.triangles.size(); ++t) {
+        const auto from = std::ptrdiff_t{3} * t, to = std::ptrdiff_t{3} * part.triangles[t];
+        std::copy_n(own.baseUv.begin() + from, 3, all.baseUv.begin() + to);
+        std::copy_n(own.metallicUv.begin() + from, 3, all.metallicUv.begin() + to);
+    }
 }
 
 // Puts the patches into the scene as they would be before any was found to lie inside something. Returns the
@@ -427,6 +439,19 @@ ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& sl
     ObjectMove result;
     result.add(move); // many boxes become one
     return result;
+}
+
+bool ObjectMover::repaint(const LightmapAtlas& atlas, std::span<const uint32_t> instances) {
+    cit_.reset(); // it has the textures that were
+    Moved painted;
+    for (const uint32_t instance : instances)
+        if (!placed_[instance].hidden) painted.shown.push_back(instance);
+    const std::optional<Part> part = makePart(painted, atlas);
+    if (!part) return false;
+    putUvs(*part);
+    for (uint32_t i = 0; i < part->slots.size(); ++i)
+        on_.patches.albedoPattern[part->slots[i]] = part->patches.albedoPattern[i];
+    return true;
 }
 
 std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer& tracer) {

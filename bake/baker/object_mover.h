@@ -50,6 +50,10 @@ public:
     /// object that was hidden from the beginning, triangles that have lost their area); then nothing has
     /// changed.
     std::optional<ObjectMove> follow(const LightmapAtlas& atlas, Tracer& tracer);
+    /// Gives patches of these instances (ascending) the albedo patterns that the scene's materials and
+    /// textures make now; hidden ones get theirs when they are shown. Returns false where it cannot tell
+    /// them, as for an object that was hidden from the beginning; then nothing has changed.
+    bool repaint(const LightmapAtlas& atlas, std::span<const uint32_t> instances);
     /// Tells whether albedo or emission patterns of patches have changed in the last move.
     bool repainted() const { return repainted_; }
     /// Returns how many patches lie inside something.
@@ -67,6 +71,7 @@ private:
     TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
     std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
     void putTriangles(const Part& part);
+    void putUvs(const Part& part);
     std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);
     std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
     void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);

@@ -10,8 +10,9 @@
 
 namespace relume {
 
-void LayerSolver::edit(const LightMix& mix) {
+void LayerSolver::edit(const LightMix& mix, bool repainted) {
     mix_ = mix;
+    if (repainted) states_.repainted();
     edited_ = true;
     done_ = false;
     weigh();
@@ -159,6 +160,7 @@ FormerLayers LayerSolver::release() {
     former.partOfPatch = penumbra_.parts().ofPatch;
     former.reach = lights_.reach();
     former.progress = progress_;
+    if (kit_.settings.live && mixer_.isComplete(layers())) former.shown = mixer_.light(layers());
     former.layers = store_.release();
     return former;
 }
@@ -178,6 +180,12 @@ void LayerSolver::takeOver(const LayerCarry& carry) {
     if (work.relink) relinker_.follow(*work.relink);
     progress_.cacheBytes = batches_.cache().bytes();
     unseen_ = !work.whole;
+    if (!work.whole && kit_.settings.live && !carry.former.shown.empty()) {
+        mixer_.beginStandIn(carryShown(carry, kit_.input.patches),
+                            store_.takeBuffer("light of the bake before"));
+        for (const std::unique_ptr<Layer>& layer : layers())
+            layer->covered = true;
+    }
     sumDue_ = canSum();
     mixer_.replaced();
     report_.tell(layers(), progress_, true);

@@ -25,6 +25,16 @@ LightPattern withoutState(LightPattern pattern) {
     return pattern;
 }
 
+// Does what the other one does, on all cores.
+void carryValues(const PatchCarry& carry, const glm::vec4* from, glm::vec4* to, WorkerPool& pool) {
+    constexpr size_t kPatches = size_t{kChunksOfTask} * kChunk;
+    const size_t count = carry.former.size();
+    pool.run(static_cast<uint32_t>((count + kPatches - 1) / kPatches), [&](uint32_t task) {
+        for (size_t i = task * kPatches; i < std::min(count, (task + 1) * kPatches); ++i)
+            to[i] = carry.former[i] == kNoPatch ? glm::vec4(0.0f) : from[carry.former[i]];
+    });
+}
+
 // Tells whether all patches that stay are where they were. What is kept of the others is repaired there.
 bool isInPlace(const PatchCarry& carry) {
     bool inPlace = carry.former.size() == carry.now.size();
@@ -96,12 +106,24 @@ private:
         if (!isEmpty(carry_.move) || reach_.farther) markDirty(reach_, to);
     }
 
+    // Goes from memory to memory where the host sees what the device has.
     void values(const Layer& from, Layer& to) {
         const PatchCarry& patches = carry_.patches;
-        const auto then = vk::readBuffer<glm::vec4>(kit_.input.device, *from.direct, patches.now.size());
-        const std::vector<glm::vec4> now = carryValues(patches, then);
         to.direct = std::make_shared<vk::Buffer>(store_.takeBuffer("direct light of a layer"));
-        vk::upload(kit_.input.device, *to.direct, now.data(), now.size() * sizeof(glm::vec4));
+        std::vector<glm::vec4> read, write;
+        const auto* then = static_cast<const glm::vec4*>(from.direct->mapped());
+        if (then == nullptr) {
+            read = vk::readBuffer<glm::vec4>(kit_.input.device, *from.direct, patches.now.size());
+            then = read.data();
+        }
+        auto* now = static_cast<glm::vec4*>(to.direct->mapped());
+        if (now == nullptr) {
+            write.resize(patches.former.size());
+            now = write.data();
+        }
+        carryValues(patches, then, now, kit_.input.device.workers());
+        if (!write.empty())
+            vk::upload(kit_.input.device, *to.direct, write.data(), write.size() * sizeof(write[0]));
     }
 
     // Carries over where the penumbra is, and what was to be repaired: all of it begins anew.
@@ -239,6 +261,17 @@ std::vector<glm::vec4> carryValues(const PatchCarry& carry, std::span<const glm:
     for (size_t i = 0; i < values.size(); ++i)
         if (carry.former[i] != kNoPatch) values[i] = from[carry.former[i]];
     return values;
+}
+
+std::vector<glm::vec4> carryShown(const LayerCarry& carry, const PatchSet& patches) {
+    std::vector<glm::vec4> light = carryValues(carry.patches, carry.former.shown);
+    for (uint32_t i = 0; i < patches.count; ++i) {
+        const uint32_t texel = patches.scene.patches[i].flags >> 8;
+        if (carry.patches.former[i] != kNoPatch || texel >= carry.formerTexels.size()) continue;
+        const uint32_t then = carry.formerTexels[texel];
+        if (then != kNoPatch) light[i] = carry.former.shown[then];
+    }
+    return light;
 }
 
 std::optional<LightPattern> formerPattern(const LightPattern& pattern, const LayerCarry& carry) {

@@ -23,6 +23,7 @@ struct FormerLayers {
     std::optional<ObjectMove> pending;  // a move that some links have not followed yet
     std::vector<uint32_t> partOfPatch;  // TileParts::ofPatch
     float reach = 0;                    // how far away rays to suns and the sky end [m]
+    std::vector<glm::vec4> shown;       // the light that a viewer was shown, per patch; empty: not all of it
     SolverProgress progress;
 
     uint64_t bytes() const; // on the device
@@ -35,7 +36,9 @@ struct FormerLayers {
 struct LayerCarry {
     FormerLayers& former; // is used up
     const PatchCarry& patches;
-    const ObjectMove& move;   // of this scene's patches: what is to be traced again
+    const ObjectMove& move; // of this scene's patches: what is to be traced again
+    // The former patch of each texel. A patch that was not there shows its light at first.
+    std::span<const uint32_t> formerTexels = {};
     bool sameSky = false;     // its picture is the one that it was
     bool sameColours = false; // sameColours() of the patches
 };
@@ -54,6 +57,10 @@ ObjectMove carryMove(const PatchCarry& carry, const ObjectMove& move);
 
 /// Returns values per former patch as values per patch, 0 for those that were not there.
 std::vector<glm::vec4> carryValues(const PatchCarry& carry, std::span<const glm::vec4> from);
+
+/// Returns what was shown as light of these patches. Those that were not there have that of the patch which
+/// had their texel, or none.
+std::vector<glm::vec4> carryShown(const LayerCarry& carry, const PatchSet& patches);
 
 /// Returns the cache key that a layer of this light had in the former scene, of no state; nothing where it
 /// had none, or its light cannot be told apart.

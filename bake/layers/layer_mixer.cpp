@@ -50,6 +50,12 @@ void LayerMixer::beginStandIn(const std::vector<const Layer*>& former, vk::Buffe
     standIn_ = std::move(to);
 }
 
+void LayerMixer::beginStandIn(const std::vector<glm::vec4>& light, vk::Buffer to) {
+    for (const vk::Buffer* buffer : {&to, &composite_})
+        vk::upload(kit_.input.device, *buffer, light.data(), light.size() * sizeof(light[0]));
+    standIn_ = std::move(to);
+}
+
 void LayerMixer::endStandIn(size_t layers) {
     standIn_ = vk::Buffer();
     restOf_.reset();
@@ -115,6 +121,12 @@ void LayerMixer::mixOne(const Layers& layers, size_t layer) {
         restOf_ = layer;
     }
     run(shares(layers, std::nullopt, layer), &rest_, composite_);
+}
+
+bool LayerMixer::isComplete(const Layers& layers) const {
+    return showsSum() || std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
+               return layer->shown() != nullptr || layer->covered || !layer->shines();
+           });
 }
 
 bool LayerMixer::mixForViewer(const Layers& layers) {

@@ -32,6 +32,8 @@ public:
     /// Shows the weighted sum of these former layers in place of those that are covered, until endStandIn().
     /// It is made in the buffer, a vec4 per patch.
     void beginStandIn(const std::vector<const Layer*>& former, vk::Buffer to);
+    /// Shows this light likewise, which is of another bake; so does composite() at once.
+    void beginStandIn(const std::vector<glm::vec4>& light, vk::Buffer to);
     bool hasStandIn() const { return static_cast<bool>(standIn_); }
     void endStandIn(size_t layers);
 
@@ -39,6 +41,8 @@ public:
     void mixDirect(const Layers& layers, const vk::Buffer& direct);
     /// Mixes what a viewer is shown, where it has changed; tells whether it has.
     bool mixForViewer(const Layers& layers);
+    /// Tells whether all that shines is shown with its bounces, in some state.
+    bool isComplete(const Layers& layers) const;
     /// Returns the composite, vec4 per patch: on the device as it was mixed last, and as it is now.
     const vk::Buffer& composite() const { return composite_; }
     const std::vector<glm::vec4>& light(const Layers& layers);

@@ -328,12 +328,7 @@ LiveLight LayerSolver::liveLight() {
     ASSERT(kit_.settings.live);
     std::vector<ChunkRange> ranges;
     if (mixer_.mixForViewer(layers())) ranges = {{0, kit_.chunkCount()}};
-    const bool complete =
-        mixer_.showsSum() ||
-        std::all_of(layers().begin(), layers().end(), [](const std::unique_ptr<Layer>& layer) {
-            return layer->shown() != nullptr || layer->covered || !layer->shines();
-        });
-    return {&mixer_.composite(), mixer_.version(), complete, std::move(ranges)};
+    return {&mixer_.composite(), mixer_.version(), mixer_.isComplete(layers()), std::move(ranges)};
 }
 
 std::vector<float> LayerSolver::errors() {

@@ -56,8 +56,8 @@ public:
     /// colours of its materials (with the patches', as Baker::apply has it) or the switches. Weights count at
     /// once, or in the next sum of all lights while all are seen in one. Layers whose cache key changed are
     /// made anew once the first level of the layer under way is through, so that a light that is dragged is
-    /// seen.
-    void edit(const LightMix& mix);
+    /// seen. `repainted` says that materials were given other patterns, too.
+    void edit(const LightMix& mix, bool repainted = false);
     /// Tells whether what is shown is of the newest colours of surfaces and places of objects: layer by
     /// layer, or all in one.
     bool current() const { return !edited_ && schedule_.isWhole(layers(), now()); }

@@ -10,9 +10,10 @@ namespace {
 // A level of 10,000 objects takes 0.7 MB per state, so that some hundred of its states are known.
 constexpr uint64_t kMostBytes = 64u << 20;
 
-std::vector<uint32_t> surfacesOf(const Scene& scene) {
+std::vector<uint32_t> surfacesOf(const Scene& scene, uint32_t paint) {
     std::vector<uint32_t> words;
-    words.reserve(3 * scene.materials.size());
+    words.reserve(1 + 3 * scene.materials.size());
+    words.push_back(paint);
     for (const Material& material : scene.materials) {
         for (int k = 0; k < 3; ++k)
             words.push_back(std::bit_cast<uint32_t>(material.baseColor[k]));
@@ -47,7 +48,7 @@ uint64_t StateBook::numberOf(std::vector<uint32_t> words) {
 
 void SceneStates::note(const Scene& scene) {
     before_ = now_;
-    now_ = {surfaces_.numberOf(surfacesOf(scene)), objects_.numberOf(objectsOf(scene))};
+    now_ = {surfaces_.numberOf(surfacesOf(scene, paint_)), objects_.numberOf(objectsOf(scene))};
 }
 
 } // namespace relume

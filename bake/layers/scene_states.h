@@ -37,11 +37,14 @@ class SceneStates {
 public:
     /// Takes note of the state that the scene is in.
     void note(const Scene& scene);
+    /// Says that surfaces look otherwise from now on for the same base colours: no former state comes back.
+    void repainted() { ++paint_; }
     const SceneState& now() const { return now_; }
     const SceneState& before() const { return before_; } // before the newest note()
 
 private:
     StateBook surfaces_, objects_;
+    uint32_t paint_ = 0;
     SceneState now_, before_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "bake/surface/object_members.h"
+#include "bake/surface/repaint.h"
 
 #include <algorithm>
 #include <array>
@@ -19,15 +20,6 @@ constexpr uint64_t kFnvStart = 1469598103934665603u, kFnvPrime = 1099511628211u;
 
 bool emits(const Material& material) {
     return material.emission != glm::vec3(0.0f);
-}
-
-bool sameTexels(const Scene& a, int x, const Scene& b, int y) {
-    if (x < 0 || y < 0) return x < 0 && y < 0;
-    const Texture &one = a.textures[static_cast<size_t>(x)], &other = b.textures[static_cast<size_t>(y)];
-    const Image& was = a.images[static_cast<size_t>(one.image)];
-    const Image& is = b.images[static_cast<size_t>(other.image)];
-    return one.wrapS == other.wrapS && one.wrapT == other.wrapT && one.nearest == other.nearest &&
-           was.width == is.width && was.height == is.height && was.rgba == is.rgba;
 }
 
 // Everything about one side of the comparison, object by object.
@@ -226,7 +218,7 @@ private:
     }
     bool sameGlow(int x, int y) const {
         const auto [found, isNew] = glows_.try_emplace({x, y}, false);
-        if (isNew) found->second = sameTexels(before_.scene(), x, after_.scene(), y);
+        if (isNew) found->second = sameTexture(before_.scene(), x, after_.scene(), y);
         return found->second;
     }
 

@@ -1,6 +1,7 @@
 #include "bake/surface/patch_cover.h"
 
 #include "assets/base/worker_pool.h"
+#include "bake/surface/known_covers.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,8 @@ using shader::kNoPatch;
 
 constexpr uint32_t kCells = kCoverEdge * kCoverEdge;
 constexpr uint32_t kBandRows = 8; // that a thread works on at a time
-constexpr uint32_t kRim = (1u << kRimPlaces) - 1;
+constexpr uint16_t kRim = (1u << kRimPlaces) - 1;
+constexpr uint16_t kDone = 1u << kRimPlaces; // in place of a rim: the cover is known, and has not all of it
 // Edges are shortened by this share on both sides: what lies on the very edge of a texel may lie in a wall
 // that stands there.
 constexpr float kInset = 1.0f / 256.0f;
@@ -53,8 +55,9 @@ struct TexelTriangle {
 
 class CoverBuilder {
 public:
-    CoverBuilder(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames)
-        : set_(set), group_(group), frames_(frames), rims_(set.scene.patches.size(), 0) {
+    CoverBuilder(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames,
+                 const KnownCovers* known)
+        : set_(set), group_(group), frames_(frames), known_(known), rims_(set.scene.patches.size(), 0) {
         set_.covers.assign(set.scene.patches.size(), shader::PatchCover{});
     }
 
@@ -67,6 +70,9 @@ public:
         set_.coverCells.assign(set_.covers.size(), 0);
         runWatched(pool, "patches", bands, [&](uint32_t band) {
             const Rows rows{w.row + band * kBandRows, w.row + std::min(w.rows, (band + 1) * kBandRows) - 1};
+            for (uint32_t y = rows.first; known_ && y <= rows.last; ++y)
+                for (uint32_t x = w.column; x < w.column + w.columns; ++x)
+                    takeKnown({x, y});
             for (const uint32_t t : triangles[band])
                 cover(t, rows);
             for (uint32_t y = rows.first; y <= rows.last; ++y)
@@ -105,6 +111,17 @@ private:
                 result[band].push_back(t);
         }
         return result;
+    }
+
+    // Marks the patch of a texel as done where its cover is known: its cells are there, and its rim is whole
+    // or cannot become so.
+    void takeKnown(glm::uvec2 texel) {
+        const uint32_t patch = set_.scene.texelToPatch[group_.window.index(texel.x, texel.y)];
+        const uint32_t former = patch == kNoPatch ? kNoPatch : known_->of(set_, patch);
+        if (former == kNoPatch) return;
+        const uint32_t cells = known_->former.coverCells[former];
+        set_.covers[patch].cells = cells & kCoverCells;
+        rims_[patch] = (cells & kCoverWhole) != 0 ? kRim : kDone;
     }
 
     // Completes the cover of a texel's patch, of which all triangles have been seen.
@@ -179,7 +196,7 @@ private:
         const uint32_t own = ownTriangle(texel.x, texel.y);
         if (own >= set_.scene.mesh.opaqueCount) return;
         shader::PatchCover& c = set_.covers[patch];
-        if (c.cells == kCoverCells && rims_[patch] == kRim) return;
+        if (rims_[patch] == kDone || (c.cells == kCoverCells && rims_[patch] == kRim)) return;
         const glm::dvec2 corner(texel);
         const auto inside = [&](double x, double y) { return triangle.has(corner + glm::dvec2(x, y)); };
         if (t == own && inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)) {
@@ -195,7 +212,7 @@ private:
             if ((c.cells >> cell & 1u) == 0 && goesOn(shader::cellPlace(cell))) c.cells |= 1u << cell;
         for (uint32_t i = 0; i < kRimPlaces; ++i)
             if ((rims_[patch] >> i & 1u) == 0 && goesOn(rimPlace(i)))
-                rims_[patch] |= static_cast<uint8_t>(1u << i);
+                rims_[patch] |= static_cast<uint16_t>(1u << i);
     }
 
     // Tells whether triangle t goes on, at a place in the lightmap [texels], where the patch's own one would.
@@ -217,14 +234,15 @@ private:
     PatchSet& set_;
     const TextureGroup& group_;
     std::span<const TriangleFrame> frames_;
-    std::vector<uint8_t> rims_; // per patch: a bit for each place on the texel's edge that is covered
+    const KnownCovers* known_;
+    std::vector<uint16_t> rims_; // per patch: a bit for each place on the texel's edge that is covered
 };
 
 } // namespace
 
 void addCovers(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames,
-               WorkerPool* pool) {
-    CoverBuilder(set, group, frames).run(pool);
+               WorkerPool* pool, const KnownCovers* known) {
+    CoverBuilder(set, group, frames, known).run(pool);
 }
 
 float coverReach(const shader::PatchCover& cover) {

@@ -4,6 +4,7 @@
 #include "assets/base/watch.h"
 #include "assets/base/worker_pool.h"
 #include "assets/images/float_image.h"
+#include "bake/surface/known_covers.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/surface/patch_material.h"
 #include "bake/surface/triangle_frame.h"
@@ -64,7 +65,7 @@ public:
         surveyCharts();
     }
 
-    PatchSet build() {
+    PatchSet build(const KnownCovers* known) {
         const TexelWindow& w = group_.window;
         ASSERT(w.column % kTileTexels == 0 && w.row % kTileTexels == 0);
         set_.scene.texelToPatch.assign(w.size(), kNoPatch);
@@ -85,7 +86,7 @@ public:
         for (uint32_t i = set_.count; i < padded; ++i)
             put(i, padding);
         findMiddles();
-        if (!rtrad_) addCovers(set_, group_, frames_, pool_);
+        if (!rtrad_) addCovers(set_, group_, frames_, pool_, known);
         applyMaterials(set_, scene_.materials, pool_);
         set_.bounds.resize(set_.chunkCount());
         inPortions(set_.chunkCount(), kChunksEach,
@@ -440,7 +441,13 @@ private:
 
 PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc) {
     PatchBuilder builder(scene, std::move(mesh), group, desc);
-    return builder.build();
+    return builder.build(nullptr);
+}
+
+PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc,
+                      const KnownCovers& known) {
+    PatchBuilder builder(scene, std::move(mesh), group, desc);
+    return builder.build(&known);
 }
 
 shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk) {

@@ -81,6 +81,13 @@ public:
         const LightmapAtlas atlas = buildAtlas(scene, desc_.size);
         ASSERT_EQ(baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas}), Applied::Now);
     }
+    /// Edits the bake that there is, whose materials are painted otherwise now.
+    Applied repaint() {
+        while (!solver().atRest())
+            solver().step();
+        const LightmapAtlas atlas = buildAtlas(scene, desc_.size);
+        return baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas, .repainted = &scene});
+    }
     /// Goes on with another bake, which has so many bytes of the former layers and links.
     void goOn(uint64_t bytes = UINT64_MAX) {
         std::optional<FormerBake> former = baker_->release();
@@ -130,6 +137,9 @@ double carried(CarriedBake& bake) {
     CarriedBake fresh(bake.scene, bake.desc());
     fresh.finish();
     expectFresh(bake, fresh);
+    const PatchSet &patches = bake.baker().patches(), &wanted = fresh.baker().patches();
+    EXPECT_EQ(patches.coverCells, wanted.coverCells);
+    EXPECT_EQ(patches.reach, wanted.reach);
     return static_cast<double>(rays) / static_cast<double>(fresh.rays());
 }
 
@@ -187,6 +197,35 @@ TEST_P(CarriedBakes, APictureOrARoughnessCostsNoRay) {
     EXPECT_EQ(carried(bake), 0.0);
 }
 
+// The patches that there are get other patterns: no other bake is needed.
+TEST_P(CarriedBakes, WhatIsPaintedOtherwiseIsAnEdit) {
+    CarriedBake bake(carriedRoom(), desc());
+    bake.finish();
+    const uint64_t rays = bake.rays();
+    bake.scene.images.insert(bake.scene.images.begin(), bake.scene.images.front());
+    for (Texture& texture : bake.scene.textures)
+        ++texture.image; // another number of the same picture, which changes nothing
+    bake.scene.materials.front().metallic = 0.6f;
+    bake.scene.materials.front().roughness = 0.2f;
+    ASSERT_EQ(bake.repaint(), Applied::Now);
+    bake.finish();
+    EXPECT_EQ(bake.rays(), rays);
+    CarriedBake metal(bake.scene, bake.desc());
+    expectFresh(bake, metal.finish());
+
+    bake.scene.images.back().rgba[0] = 255;
+    bake.scene.instances[kCarriedShelf].hidden = true;
+    ASSERT_EQ(bake.repaint(), Applied::Now);
+    bake.scene.materials[2].metallic = 0.5f; // of the shelf, which nobody sees
+    ASSERT_EQ(bake.repaint(), Applied::Now);
+    bake.scene.instances[kCarriedShelf].hidden = false;
+    bake.edit();
+    bake.finish();
+    CarriedBake fresh(bake.scene, bake.desc());
+    expectFresh(bake, fresh.finish());
+    EXPECT_EQ(bake.baker().patches().albedoPattern, fresh.baker().patches().albedoPattern);
+}
+
 TEST_P(CarriedBakes, AChangedMeshCostsItsOwn) {
     CarriedBake bake(carriedRoom(), desc());
     bake.finish();
@@ -222,6 +261,32 @@ TEST_P(CarriedBakes, ALightOfAnotherFormIsMadeAnew) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, CarriedBakes, testing::Range(0, 4));
+
+// A viewer sees what it saw, in its new places, until there is better.
+TEST(CarriedBakes, WhatWasShownIsShownOn) {
+    BakeDesc desc = kCarriedDesc;
+    desc.live = true;
+    CarriedBake bake(carriedRoom(), desc);
+    bake.finish();
+    const FloatImage before = bake.baker().lightmap({.sew = false});
+    removeObjects(bake.scene, kCarriedPicture, kCarriedPicture + 1);
+    bake.goOn();
+    EXPECT_TRUE(bake.solver().liveLight().complete);
+    EXPECT_FALSE(bake.solver().current());
+    const FloatImage after = bake.baker().lightmap({.sew = false});
+    size_t covered = 0;
+    for (size_t texel = 0; texel < after.planes[0].size(); ++texel) {
+        // What lay inside the picture that went had no light to show.
+        if (after.planes[0][texel] <= 0.0f || before.planes[0][texel] <= 0.0f) continue;
+        ++covered;
+        EXPECT_FLOAT_EQ(after.planes[0][texel], before.planes[0][texel]) << texel;
+    }
+    EXPECT_GT(covered, kCarriedSize * kCarriedSize / 5);
+    bake.finish();
+    EXPECT_TRUE(bake.solver().current());
+    CarriedBake fresh(bake.scene, desc);
+    expectFresh(bake, fresh.finish());
+}
 
 // Edits of all kinds come before the ones before were followed to their end.
 TEST(CarriedBakes, EditsUnderWayComeAlong) {
@@ -332,23 +397,24 @@ TEST(CarriedBakes, WhatMemoryIsShortForIsMadeAgain) {
 }
 
 // A viewer goes on showing what it showed until there is a whole picture.
-TEST(CarriedBakes, NothingIsShownBeforeThereIsAWholePicture) {
+TEST(CarriedBakes, TheFirstNewPictureIsOfAllLightsAtOnce) {
     BakeDesc desc = kCarriedDesc;
     desc.live = true;
     CarriedBake bake(carriedRoom(), desc);
     bake.finish();
     cut(bake.scene, kCarriedBlock);
     bake.goOn();
-    EXPECT_FALSE(bake.solver().liveLight().complete);
-    while (!bake.solver().liveLight().complete)
+    while (!bake.solver().current()) {
+        EXPECT_TRUE(bake.solver().liveLight().complete) << "as it was before";
         bake.solver().step();
-    EXPECT_TRUE(bake.solver().current());
+    }
+    EXPECT_TRUE(bake.solver().liveLight().complete);
     const Light4 first = bake.solver().light();
     bake.finish();
     EXPECT_LT(distance(first, bake.solver().light()), 0.03) << "of all lights at once";
     // With all layers there is one at once.
     bake.goOn();
-    EXPECT_TRUE(bake.solver().liveLight().complete);
+    EXPECT_TRUE(bake.solver().current());
 }
 
 // Two hundred changes of all kinds, drawn by chance, come one after the other and under way. The light that

@@ -39,6 +39,14 @@ SceneChanges changesOf(const PreparedScene& after) {
     return changesBetween(before.scene, before, after);
 }
 
+/// Gives the first material a texture.
+void paint(PreparedScene& prepared, TextureRef Material::*use) {
+    Scene& scene = prepared.scene;
+    scene.images.push_back({.name = "Picture", .width = 1, .height = 1, .rgba = {9, 9, 9, 255}});
+    scene.textures.push_back({.image = static_cast<int>(scene.images.size()) - 1});
+    (scene.materials[0].*use).texture = static_cast<int>(scene.textures.size()) - 1;
+}
+
 TEST(SceneChanges, NothingIsNothing) {
     const SceneChanges none = changesOf(twoOfEach());
     EXPECT_FALSE(none.any());
@@ -63,9 +71,9 @@ TEST(SceneChanges, WhatPatchesAreMadeWithIsMore) {
     using Change = void (*)(PreparedScene&);
     for (const Change change : {+[](PreparedScene& p) { p.scene.meshes[0].primitives[0].positions[1].x = 2; },
                                 +[](PreparedScene& p) { p.scene.meshes[0].primitives[0].material = 1; },
-                                +[](PreparedScene& p) { p.scene.materials[0].roughness = 0.5f; },
                                 +[](PreparedScene& p) { p.scene.materials[0].doubleSided = true; },
-                                +[](PreparedScene& p) { p.scene.images.emplace_back(); },
+                                +[](PreparedScene& p) { p.scene.materials[0].alphaMode = AlphaMode::Mask; },
+                                +[](PreparedScene& p) { paint(p, &Material::emissionTexture); },
                                 +[](PreparedScene& p) { p.scene.instances.pop_back(); },
                                 +[](PreparedScene& p) { p.scene.sky.pixels.emplace_back(1.0f); },
                                 +[](PreparedScene& p) { p.atlas.instances[1].offset.x = 0.5f; },
@@ -74,6 +82,30 @@ TEST(SceneChanges, WhatPatchesAreMadeWithIsMore) {
         change(after);
         EXPECT_TRUE(changesOf(after).surfaces);
     }
+}
+
+TEST(SceneChanges, WhatIsPaintedOnSurfacesLeavesThePatches) {
+    using Change = void (*)(PreparedScene&);
+    for (const Change change : {+[](PreparedScene& p) { p.scene.materials[0].roughness = 0.5f; },
+                                +[](PreparedScene& p) { p.scene.materials[1].metallic = 0.5f; },
+                                +[](PreparedScene& p) { p.scene.images.emplace_back(); },
+                                +[](PreparedScene& p) { paint(p, &Material::baseColorTexture); },
+                                +[](PreparedScene& p) { paint(p, &Material::metallicRoughnessTexture); }}) {
+        PreparedScene after = twoOfEach();
+        change(after);
+        const SceneChanges changes = changesOf(after);
+        EXPECT_FALSE(changes.surfaces);
+        EXPECT_TRUE(changes.paint);
+        EXPECT_TRUE(changes.any());
+    }
+}
+
+TEST(SceneChanges, APictureThatIsCutOutMakesOtherPatches) {
+    PreparedScene before = twoOfEach();
+    before.scene.materials[0].alphaMode = AlphaMode::Mask;
+    PreparedScene after = before;
+    paint(after, &Material::baseColorTexture);
+    EXPECT_TRUE(changesBetween(before.scene, before, after).surfaces);
 }
 
 /// Holds what a file had, what it has now, and what the user made of it meanwhile.
