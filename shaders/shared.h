@@ -26,10 +26,12 @@ CONST uint kRayCounters = 4096u;
 // Samples belong in turn to so many sequences that are scrambled independently: their spread is the error.
 CONST uint kReplicates = 4u;
 
-// Patch::flags, bits 0..7
+// Patch::flags, its lowest kTexelShift bits
 CONST uint kPatchSends = 1u;    // not set: inside something, sends nothing, receives nothing
 CONST uint kPatchBackSide = 2u; // the back of a double-sided mesh light: sends its emission, is never shown
 CONST uint kPatchThin = 4u;     // stands for a chart that covers no texel centre: no error counts it
+CONST uint kTexelShift = 3u;    // above these bits stands the patch's texel
+CONST uint kFlagBits = 7u;
 
 // These say which neighbouring patches have all their directions in common: none; those in the same place of
 // their 4 x 4 texels; those of one chunk.
@@ -58,7 +60,7 @@ struct Patch {
     vec3 normal;   // geometric, unit
     float area;    // [m^2]
     vec3 shading;  // shading normal, unit
-    uint flags;    // bits 0..7: kPatch...; bits 8..31: its texel, row * size + column, the key of its random
+    uint flags;    // kFlagBits: kPatch...; above them its texel, row * size + column, the key of its random
                    // numbers
 };
 
@@ -357,7 +359,7 @@ CONST uint kRegion = 64u;
 struct PublishPush {
     ADDRESS values;      // vec4[], per patch
     ADDRESS patchTexels; // uint[], per patch: where it is shown; kNoTexel
-    ADDRESS fills;       // uint[]: texel << 8 | bits of the neighbours that it is filled from
+    ADDRESS fills;       // uvec2[]: texel, and bits of the neighbours that it is filled from
     ADDRESS starts;      // uint[rings * chunkCount + 1]: where the fills of a ring and chunk begin
     ADDRESS chunks;      // uint[]: those that changed
     ADDRESS texels;      // uvec2[size * size]: four halves

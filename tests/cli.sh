@@ -99,8 +99,15 @@ expectRefusal "error: --density: '-1' is not allowed: give a number above 0, at 
 expectRefusal "error: --window: '-1' is not allowed: choose 1, 2, 4, 8, 16 or 32" bake room.glb -o room.exr --window -1
 expectRefusal "error: --indirect-scale: 'abc' is not allowed: choose 1, 2 or 4" \
     bake room.glb -o room.exr --indirect-scale abc
-expectRefusal "error: --size: '' is not allowed: give a whole number from 8 to 4096" \
+expectRefusal "error: --size: '' is not allowed: give a whole number from 8 to 8192" \
     bake room.glb -o room.exr --size= --error 0.1
+expectRefusal "error: --pages: '65' is not allowed: give a whole number from 1 to 64, or auto" bake room.glb -o room.exr --pages 65
+expectRefusal "error: --pages auto: needs a --density to choose the number by" bake room.glb -o room.exr --pages auto
+expectRefusal "error: --pages: pages consist of tiles of 8 x 8 texels, so that their --size is a multiple of 8, not 100: give 104" \
+    bake room.glb -o room.exr --pages 4 --size 100
+expectUsageError unwrap room.glb -o out.glb --pages 0
+expectUsageError unwrap room.glb -o out.glb --pages auto --density 4 # no --size
+expectUsageError shot room.glb -o shot.png --lightmap room.exr --pages 2
 expectRefusal "error: --ppd: 'nan' is not allowed: give a number from 1 to 1000" compare a.exr b.exr --ppd nan
 expectRefusal "error: --error: 'nan' is not allowed: give a number from 0.0001 to 1" bench edits room.glb --error nan
 expectRefusal "error: --msaa: 'abc' is not allowed: choose 0, 2, 4 or 8" bench frames room.glb --msaa abc
@@ -291,6 +298,10 @@ expectOneFile --output --bake edit s.glb --delete Bulb -o o.exr --bake o.exr
 expectOneFile --output LAYERS mix a.exr -o a.exr
 expectOneFile --probes-out --probes-in mix a.exr --probes-in p.json --probes-out p.json
 expectOneFile --output LAYERS mix --join b.exr a.exr -o a.exr
+: >paged.0.exr # of several pages
+expectOneFile --output LAYERS mix paged.exr -o paged.exr
+expectOneFile --output LAYERS mix paged.exr -o paged.0.exr
+expectOneFile --output --error-map bake s.glb -o o.exr --pages 2 --error-map o.1.exr
 expectOneFile --diff A compare a.png b.exr --diff a.png
 expectOneFile --diff B compare a.exr b.png --diff b.png
 expectOneFile --diff --mask compare a.exr b.exr --mask m.png --diff ./m.png

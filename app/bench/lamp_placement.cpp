@@ -58,7 +58,7 @@ public:
                 shader::Patch& eye = eyes[2 * i + lower];
                 eye.position = places[i];
                 eye.normal = eye.shading = {0.0f, lower != 0 ? -1.0f : 1.0f, 0.0f};
-                eye.flags = shader::kPatchSends | static_cast<uint32_t>(2 * i + lower) << 8;
+                eye.flags = shader::kPatchSends | static_cast<uint32_t>(2 * i + lower) << shader::kTexelShift;
             }
         }
         std::vector<uint32_t> links(size_t{kChunk} * kRays);

@@ -21,9 +21,10 @@
 #include "assets/base/log.h"
 #include "assets/base/phase_clock.h"
 #include "assets/gltf/gltf.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 #include "shaders/shader_library.h"
 
+#include <algorithm>
 #include <future>
 #include <memory>
 #include <optional>
@@ -31,13 +32,13 @@
 namespace relume {
 namespace {
 
-void checkFiles(const BakeOptions& o) {
+void checkFiles(const BakeOptions& o, uint32_t pages) {
     CommandFiles()
         .readsScene("SCENE", o.files.scene)
         .reads("--resume", o.checkpoint.resume)
-        .writes("--output", o.files.output)
-        .writes("--picture", o.files.picture)
-        .writes("--error-map", o.files.errorMap)
+        .writesLightmap("--output", o.files.output, pages)
+        .writesLightmap("--picture", o.files.picture, pages)
+        .writesLightmap("--error-map", o.files.errorMap, pages)
         .writes("--checkpoint", o.checkpoint.file)
         .writes("--json", o.files.json)
         .writes("--scene-out", o.files.sceneOut)
@@ -73,9 +74,9 @@ LayeredImage writtenLayers(const BakeOptions& o, const Baker& baker, const Scene
     return image;
 }
 
-void checkOutputs(const BakeOptions& o) {
+void checkOutputs(const BakeOptions& o, uint32_t pages) {
     constexpr uint64_t kBytesPerTexel = 16; // uncompressed
-    checkWritable(o.files.output, uint64_t{o.patches.size} * o.patches.size * kBytesPerTexel);
+    checkWritable(o.files.output, uint64_t{pages} * o.patches.size * o.patches.size * kBytesPerTexel);
     if (!o.files.picture.empty()) checkWritable(o.files.picture);
     if (!o.files.errorMap.empty()) checkWritable(o.files.errorMap);
     if (!o.files.sceneOut.empty()) checkFileWritable(o.files.sceneOut, 0);
@@ -113,11 +114,11 @@ double writeMaps(const BakeOptions& o, const BakeRequest& request, const Prepare
     if (o.layers.on) {
         writeLayers(o.files.output, layers, type, compression);
     } else {
-        writeImage(o.files.output, image, type, compression);
+        writeLightmap(o.files.output, image, type, compression);
     }
-    if (!o.files.picture.empty()) writeImage(o.files.picture, image);
+    if (!o.files.picture.empty()) writeLightmap(o.files.picture, image);
     if (!o.files.errorMap.empty())
-        writeImage(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
+        writeLightmap(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
     return made;
 }
 
@@ -151,9 +152,10 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     const bool byLights = o.layers.on && !ranks.alone();
     Ranks& sharing = byLights ? oneProcess() : ranks;
     request.bake.ranks = &sharing;
-    checkFiles(o);
+    const uint32_t asked = request.prepare.pages.value_or(1);
+    checkFiles(o, asked);
     o.solve.method = methodName(request.bake.solver.method);
-    if (ranks.speaks()) checkOutputs(o);
+    if (ranks.speaks()) checkOutputs(o, std::max(asked, 1u));
     if (!o.machine.shaders.empty()) setShaderFolder(o.machine.shaders);
     BakeCheckpoints checkpoints(o, ranks);
 
@@ -161,6 +163,7 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     DeviceStart deviceStart(o.machine);
     PreparedScene prepared = prepareScene(request.prepare);
     phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
+    if (prepared.atlas.pages.count != asked) checkFiles(o, prepared.atlas.pages.count);
     if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);
     ProbePlan probePlan;
     if (!o.layers.lights.empty())
@@ -214,7 +217,9 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     clock.end("write");
 
     logSolver(request.bake.solver.method, progress);
-    spdlog::info("wrote {} ({} in all)", o.files.output, formatDuration(secondsSince(start)));
+    spdlog::info("wrote {} ({} in all)",
+                 fmt::format("{}", fmt::join(lightmapFiles(o.files.output, prepared.atlas.pages), ", ")),
+                 formatDuration(secondsSince(start)));
     failOnValidation(device.validationMessages());
     addOther(phases, startSeconds + secondsSince(start), cpuSeconds() - startCpu);
     const WholeBake whole{.tracer = baker.tracer().name(),

@@ -5,7 +5,7 @@
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/images/flip.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 #include "assets/images/metrics.h"
 
 #include <nlohmann/json.hpp>
@@ -167,21 +167,21 @@ void runCompare(const CompareOptions& options) {
         if (!options.diff.ends_with(".png"))
             throw UsageError("--diff: '" + options.diff + "' does not end in .png");
         CommandFiles()
-            .reads("A", options.a)
-            .reads("B", options.b)
-            .reads("--mask", options.mask)
-            .reads("--dark-by", options.darkBy)
+            .readsLightmap("A", options.a)
+            .readsLightmap("B", options.b)
+            .readsLightmap("--mask", options.mask)
+            .readsLightmap("--dark-by", options.darkBy)
             .writes("--diff", options.diff)
             .check();
         checkWritable(options.diff);
     }
-    const FloatImage a = readImage(options.a), b = readImage(options.b);
-    const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImage(options.mask);
+    const FloatImage a = readImageOrPages(options.a), b = readImageOrPages(options.b);
+    const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImageOrPages(options.mask);
     const NamedImage mask{maskImage, options.mask};
     const ImagePair pair({a, options.a}, {b, options.b}, options.mask.empty() ? nullptr : &mask);
     Measured measured{.all = pair.measure(), .flipMean = 0, .local = {}, .darkBias = 0};
     if (wants(options, "dark")) {
-        const FloatImage byImage = options.darkBy.empty() ? FloatImage() : readImage(options.darkBy);
+        const FloatImage byImage = options.darkBy.empty() ? FloatImage() : readImageOrPages(options.darkBy);
         const NamedImage by{byImage, options.darkBy};
         measured.darkBias = pair.darkBias(options.darkBy.empty() ? nullptr : &by);
     }

@@ -12,7 +12,7 @@
 #include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/images/layered_exr.h"
+#include "assets/images/paged_image.h"
 #include "shaders/shader_library.h"
 
 #include <cstdio>
@@ -47,11 +47,18 @@ FloatImage bakedLightmap(const vk::Device& device, const PreparedScene& prepared
 // Returns the lightmap that is given, nothing where one is to be baked, and reads the probes that come along.
 std::optional<FloatImage> givenLight(const ExportCommand& o, ExportDesc& desc) {
     std::optional<LayeredImage> layers;
-    if (!o.layers.empty()) layers = readLayeredExr(o.layers);
+    if (!o.layers.empty()) layers = readLayeredLightmap(o.layers);
     desc.extras = readProbeExtras(desc.engine, o.probes, layers ? &*layers : nullptr);
     if (layers) return std::move(layers->composite);
     if (!o.lightmap.empty()) return readLightmap(o.lightmap, o.bake.files.scene);
     return std::nullopt;
+}
+
+// Throws Error where a file that is exported is one of those that are read.
+void checkExportFiles(CommandFiles files, const ExportDesc& desc) {
+    for (const std::string& path : exportedFiles(desc))
+        files.writes("--output", path);
+    files.check();
 }
 
 void exportScene(const ExportCommand& o) {
@@ -60,17 +67,23 @@ void exportScene(const ExportCommand& o) {
     ExportDesc desc = resolveExportOptions(o.out);
     desc.extras = probeExtras(desc.engine, o.probes);
     BakeRequest request = resolveBakeOptions(o.bake);
+    if (request.prepare.pages.value_or(0) > 0) desc.pages = {*request.prepare.pages};
     CommandFiles files;
-    files.readsScene("SCENE", o.bake.files.scene).reads("--lightmap", o.lightmap).reads("--layers", o.layers);
+    files.readsScene("SCENE", o.bake.files.scene).readsLightmap("--lightmap", o.lightmap);
+    files.readsLightmap("--layers", o.layers);
     files.reads("--probes", o.probes);
-    for (const std::string& path : exportedFiles(desc))
-        files.writes("--output", path);
-    files.check();
+    checkExportFiles(files, desc);
     checkExport(desc);
     if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
     std::optional<FloatImage> lightmap = givenLight(o, desc);
     if (lightmap) checkLightmap(*lightmap, o.lightmap.empty() ? o.layers : o.lightmap);
-    if (lightmap) request.prepare.size = lightmap->width; // the gutters of a repacked atlas depend on it
+    if (lightmap) { // the gutters of a repacked atlas depend on its size
+        const LightmapPages pages = lightmapPagesOf(*lightmap);
+        request.prepare.size = pages.edgeOf(lightmap->width);
+        request.prepare.pages = pages.count;
+        desc.pages = pages;
+        checkExportFiles(files, desc); // now that the number of pages is known
+    }
     std::optional<PhaseProgress> phase(std::in_place, true);
     const PreparedScene prepared = prepareScene(request.prepare);
     stopIfInterrupted();
@@ -124,7 +137,8 @@ void addExportCommand(CLI::App& app) {
     // The surfaces are drawn on the device, whoever bakes.
     addSolverOptionsBeside(*command, o->bake, {lightmap, layers}, {"--device", "--validate"});
     for (CLI::Option* given : {lightmap, layers})
-        command->get_option("--size")->excludes(given);
+        for (const char* size : {"--size", "--pages"})
+            command->get_option(size)->excludes(given);
     CLI::Option* web =
         command
             ->add_option(
@@ -135,7 +149,7 @@ void addExportCommand(CLI::App& app) {
             ->excludes(lightmap)
             ->excludes(probes);
     for (const char* engines :
-         {"--for", "--output", "--texture-format", "--texture-size", "--gloss", "--size"})
+         {"--for", "--output", "--texture-format", "--texture-size", "--gloss", "--size", "--pages"})
         web->excludes(command->get_option(engines));
     command->add_flag("--single-file", o->web.single, "With --web: one file, OUT.html")->needs(web);
     command

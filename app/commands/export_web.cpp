@@ -8,6 +8,7 @@
 #include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/images/paged_image.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -70,7 +71,7 @@ void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::st
                          "'relume bake --layers' writes it");
     BakeOptions loaded = bake;
     CommandFiles files;
-    files.reads("LAYERS", layers);
+    files.readsLightmap("LAYERS", layers);
     if (!alone) files.readsScene("SCENE", bake.files.scene);
     for (const std::string& path : webFiles(desc))
         files.writes("--web", path);
@@ -78,11 +79,14 @@ void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::st
         files.reads("--timelapse", path);
     files.check();
     checkWebPage(desc);
-    const LayeredImage image = readLayeredExr(layers);
+    const LayeredImage image = readLayeredLightmap(layers);
     if (alone) loaded.files.scene = sceneBeside(layers, image);
     warnAbout(image, layers, loaded.files.scene);
     BakeRequest request = resolveBakeOptions(loaded);
-    request.prepare.size = image.composite.width; // the gutters of a repacked atlas depend on it
+    // The gutters of a repacked atlas depend on the size.
+    const LightmapPages pages = lightmapPagesOf(image.composite);
+    request.prepare.size = pages.edgeOf(image.composite.width);
+    request.prepare.pages = pages.count;
     const PreparedScene prepared = [&] {
         const PhaseProgress phase(true);
         return prepareScene(request.prepare);

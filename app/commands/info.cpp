@@ -46,6 +46,7 @@ Json atlasJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                    {"mean", info.statistics.texelDensityMean},
                    {"max", info.statistics.texelDensityMax}}},
                  {"instances", Json::array()}};
+    if (info.atlas.pages.count > 1) json["pages"] = info.atlas.pages.count;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = info.atlas.instances[i];
         json["instances"].push_back({{"name", scene.instances[i].name},
@@ -53,6 +54,7 @@ Json atlasJson(const Scene& scene, const SceneInfo& info, uint32_t size) {
                                      {"texCoord", rect.texCoord},
                                      {"scale", jsonOf(rect.scale)},
                                      {"offset", jsonOf(rect.offset)}});
+        if (info.atlas.pages.count > 1) json["instances"].back()["page"] = rect.page;
     }
     return json;
 }

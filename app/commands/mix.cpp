@@ -9,7 +9,7 @@
 #include "assets/base/log.h"
 #include "assets/base/warnings.h"
 #include "assets/images/finite_image.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 
 #include <cstdio>
 #include <memory>
@@ -84,7 +84,7 @@ void printList(const LayeredImage& image) {
 LayeredImage readLayers(const MixOptions& options) {
     std::vector<LayerFile> files;
     for (const std::string& path : options.layers)
-        files.push_back({path, readLayeredExr(path)});
+        files.push_back({path, readLayeredLightmap(path)});
     LayeredImage image = joinLayers(std::move(files));
     if (!options.join) return image;
     const std::vector<std::string> missing = missingLights(image);
@@ -111,9 +111,9 @@ void writeSum(const MixOptions& options, const LayeredImage& image) {
     requireFinite(image.composite, options.output);
     const ExrCompression compression = compressionOf(options.compression);
     if (options.writesLayers())
-        writeLayeredExr(options.output, image, options.type(), compression);
+        writeLayeredLightmap(options.output, image, options.type(), compression);
     else
-        writeImage(options.output, image.composite, options.type(), compression);
+        writeLightmap(options.output, image.composite, options.type(), compression);
     spdlog::info("wrote {}: {} lights", options.output, image.layers.size());
 }
 
@@ -121,7 +121,7 @@ void runMix(const MixOptions& options) {
     const MixDesc desc = resolve(options);
     CommandFiles files;
     for (const std::string& path : options.layers)
-        files.reads("LAYERS", path);
+        files.readsLightmap("LAYERS", path);
     files.reads("--probes-in", options.probesIn)
         .writes("--output", options.output)
         .writes("--probes-out", options.probesOut)

@@ -14,7 +14,7 @@
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/gltf/gltf_camera_motion.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 #include "renderer/scene_geometry.h"
 #include "shaders/shader_library.h"
 
@@ -95,7 +95,7 @@ void shoot(ShotOptions o) {
     BakeRequest request = resolveBakeOptions(o.bake);
     const bool frames = o.isSeries() && !isVideo(o.bake.files.output);
     CommandFiles files;
-    files.readsScene("SCENE", o.bake.files.scene).reads("--lightmap", o.lightmap);
+    files.readsScene("SCENE", o.bake.files.scene).readsLightmap("--lightmap", o.lightmap);
     if (frames)
         files.writesFrames("--output", o.bake.files.output);
     else
@@ -114,7 +114,10 @@ void shoot(ShotOptions o) {
     std::unique_ptr<FloatImage> image;
     if (!o.lightmap.empty()) {
         image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.files.scene));
-        request.prepare.size = image->width; // the gutters of a repacked atlas depend on it
+        // The gutters of a repacked atlas depend on the size.
+        const LightmapPages pages = lightmapPagesOf(*image);
+        request.prepare.size = pages.edgeOf(image->width);
+        request.prepare.pages = pages.count;
     }
     std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareScene(request.prepare);
@@ -135,7 +138,8 @@ void shoot(ShotOptions o) {
         lightmap = std::make_unique<LightmapImage>(*image, o.lightmap.empty() ? "lightmap" : o.lightmap);
 
     const LightmapTexture texture =
-        lightmap ? lightmap->texture() : LightmapTexture{.size = request.prepare.size};
+        lightmap ? lightmap->texture()
+                 : LightmapTexture{.size = prepared.atlas.pages.sheetOf(request.prepare.size)};
     if (writer)
         takeSeries(studio, texture, shot.draw, series, *writer);
     else

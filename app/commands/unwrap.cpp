@@ -1,5 +1,6 @@
 #include "app/commands/command.h"
 #include "app/edit/choice_options.h"
+#include "app/edit/page_options.h"
 #include "app/offline/command_files.h"
 #include "app/text/option_checks.h"
 #include "assets/atlas/lightmap_atlas.h"
@@ -16,12 +17,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace relume {
 namespace {
 
 struct UnwrapOptions {
     std::string scene, output;
+    std::string pages; // "": not given
     GltfChoice choice;
     UnwrapDesc desc;
     bool all = false, json = false;
@@ -32,16 +35,20 @@ constexpr uint32_t kUsualSize = 512; // [texels]
 void runUnwrap(const UnwrapOptions& options) {
     if (std::filesystem::path(options.output).extension() != ".glb")
         throw UsageError(options.output + ": unwrap writes GLB: give a name that ends in .glb");
+    UnwrapDesc desc = options.desc;
+    desc.onlyMissing = !options.all;
+    if (desc.size == 0 && desc.density <= 0.0)
+        desc.size = kUsualSize; // else the size follows from the density
+    const std::optional<uint32_t> pages = askedPages(options.pages);
+    if (pages) checkPages(*pages, desc.size, desc.density);
     CommandFiles().readsScene("SCENE", options.scene).writes("--output", options.output).check();
     checkFileWritable(options.output, 0);
     Scene scene = loadScene(options.scene, options.choice);
     for (const std::string& warning : scene.warnings)
         spdlog::warn("{}", warning);
     requireArea(scene);
-    UnwrapDesc desc = options.desc;
-    desc.onlyMissing = !options.all;
-    if (desc.size == 0 && desc.density <= 0.0)
-        desc.size = kUsualSize; // else the size follows from the density
+    desc.pages = pages.value_or(scene.pages);
+    checkPages(desc.pages, desc.size, desc.density);
     const auto start = Clock::now();
     const UnwrapResult result = unwrap(scene, desc);
     const double seconds = secondsSince(start);
@@ -57,8 +64,9 @@ void runUnwrap(const UnwrapOptions& options) {
             std::printf(", %u longer than the lightmap with %.4g along themselves", result.shortened,
                         result.leastDensity);
         if (result.charts > 0)
-            std::printf("; they cover %.1f %% of %u x %u texels", 100.0 * result.covered, result.size,
-                        result.size);
+            std::printf("; they cover %.1f %% of %s%u x %u texels", 100.0 * result.covered,
+                        result.pages > 1 ? fmt::format("{} pages of ", result.pages).c_str() : "",
+                        result.size, result.size);
         std::printf("\n");
         return;
     }
@@ -70,6 +78,7 @@ void runUnwrap(const UnwrapOptions& options) {
                                   {"shortened", result.shortened},
                                   {"leastDensity", result.leastDensity},
                                   {"seconds", seconds}};
+    if (result.pages > 1) out["pages"] = result.pages;
     if (result.charts > 0) {
         const AtlasStatistics statistics =
             measureAtlas(scene, buildAtlas(scene, result.size, true), result.size);
@@ -100,6 +109,7 @@ void addUnwrapCommand(CLI::App& app) {
         ->add_option("--size", options->desc.size,
                      "Lightmap edge that the density fills [texels] (default: 512, or what --density needs)")
         ->check(wholeFrom(1, 65536));
+    addPagesOption(*command, options->pages);
     command->add_flag("--all", options->all, "Replace valid lightmap UVs too");
     command->add_flag("--json", options->json,
                       "Print what was made as JSON: charts, coverage, stretch, time");

@@ -44,11 +44,15 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
                         desc.path, missing, scene.meshes.size()));
     }
     if (!furnishing.unwrap) return;
-    const UnwrapResult made =
-        unwrap(scene, {.density = furnishing.density, .size = prepared.size}, desc.memory);
+    const UnwrapResult made = unwrap(
+        scene,
+        {.density = furnishing.density, .size = prepared.size, .pages = desc.pages.value_or(scene.pages)},
+        desc.memory);
     if (made.meshes == 0) return; // they are nothing but triangles without area
-    prepared.madeUvs = fmt::format("lightmap UVs were made for {} of {} meshes: {} charts at {:.3g} texels/m",
-                                   made.meshes, scene.meshes.size(), made.charts, made.density);
+    prepared.madeUvs =
+        fmt::format("lightmap UVs were made for {} of {} meshes: {} charts{} at {:.3g} texels/m", made.meshes,
+                    scene.meshes.size(), made.charts,
+                    made.pages > 1 ? fmt::format(" on {} pages", made.pages) : "", made.density);
     if (made.shortened > 0)
         prepared.madeUvs += fmt::format(", {} longer than the lightmap with {:.3g} along themselves",
                                         made.shortened, made.leastDensity);
@@ -84,7 +88,10 @@ PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(con
     result.size = sizeOf(result.scene, desc);
     furnishUvs(result, desc);
     clock.end("unwrap");
-    result.atlas = buildAtlas(result.scene, result.size, desc.furnishing.unwrap);
+    // As many as a density needs are those that an unwrap made, or else those of the file.
+    const uint32_t asked = desc.pages.value_or(0);
+    result.atlas = buildAtlas(result.scene, result.size, desc.furnishing.unwrap,
+                              LightmapPages{asked > 0 ? asked : result.scene.pages});
     warn(result.atlas.warnings);
     const size_t before = result.scene.warnings.size();
     result.mesh = flatten(result.scene, result.atlas);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct PreparedScene {
     Scene scene;
     LightmapAtlas atlas;
     WorldMesh mesh;
-    uint32_t size = 0;             // lightmap edge that the atlas is made for [texels]
+    uint32_t size = 0;             // edge of a lightmap's page that the atlas is made for [texels]
     std::string madeUvs;           // says which lightmap UVs were made, "" for none
     std::string madeLight;         // says what preview light was added, "" for none
     std::vector<PhaseTime> phases; // load, unwrap, atlas
@@ -37,7 +38,9 @@ struct PreparedScene {
 struct PrepareDesc {
     std::string path;
     GltfChoice choice = {};
-    uint32_t size = 512;     // lightmap edge [texels]
+    uint32_t size = 512;                // edge of a lightmap's page [texels]
+    std::optional<uint32_t> pages = {}; // of the lightmap; 0: as many as furnishing.density needs; nothing:
+                                        // as many as the file has
     double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it,
                              // as far as kMostFitted goes; 0: the edge is `size`
     Furnishing furnishing = {};

@@ -29,7 +29,26 @@ float ev100Of(float exposure) {
     return -exposure - std::log2(1.2f);
 }
 
+// Leaves out the lines that are for a lightmap of several pages, or those for one, and the marks of the
+// others.
+std::string forPages(const std::string& text, uint32_t pages) {
+    const std::string own = pages > 1 ? "@MANY@" : "@ONE@", other = pages > 1 ? "@ONE@" : "@MANY@";
+    std::string out;
+    for (size_t begin = 0; begin < text.size();) {
+        const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+        std::string line = text.substr(begin, end - begin);
+        if (line.starts_with(own)) line.erase(0, own.size());
+        if (!line.starts_with(other)) out += line;
+        begin = end;
+    }
+    return out;
+}
+
 } // namespace
+
+bool knowsPages(Engine engine) {
+    return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::PlayCanvas;
+}
 
 const std::vector<std::string>& engineNames() {
     static const std::vector<std::string> names = {"any",  "three", "babylon", "playcanvas",
@@ -51,7 +70,8 @@ std::vector<EngineFile> engineFiles(Engine engine, const EngineFacts& facts) {
     for (const EngineText& text : engineTexts()) {
         const std::string path = text.path;
         if (!path.starts_with(folder)) continue;
-        EngineFile file{path.substr(folder.size()), text.text};
+        EngineFile file{path.substr(folder.size()), forPages(text.text, facts.pages)};
+        replaceAll(file.text, "@PAGES@", std::to_string(facts.pages));
         replaceAll(file.text, "@NAME@", file.name.ends_with(".html") ? inMarkup(facts.name) : facts.name);
         replaceAll(file.text, "@EV@", fmt::format("{:.4f}", facts.exposure));
         replaceAll(file.text, "@EV100@", fmt::format("{:.4f}", ev100Of(facts.exposure)));

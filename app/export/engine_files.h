@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,7 +27,11 @@ struct EngineFacts {
     std::string name;      // of the level
     float exposure = 0.0f; // [EV]: light counts 2^exposure times on a screen
     glm::vec3 sky{0.0f};   // what is seen behind it [cd/m^2]
+    uint32_t pages = 1;    // of its lightmap
 };
+
+/// Tells whether an engine's files load a lightmap of several pages; for others they are one texture.
+bool knowsPages(Engine engine);
 
 /// Returns the files that an engine needs beside the level and its lightmap, README.txt among them.
 std::vector<EngineFile> engineFiles(Engine engine, const EngineFacts& facts);

@@ -18,6 +18,7 @@ struct MaterialUse {
     size_t original = 0;
     bool mapped = false; // it has lightmap UVs
     int moved = -1;      // the set that its textures read for TEXCOORD_1 (Primitive::movedUvs)
+    uint32_t page = 0;   // of the lightmap
 
     auto operator<=>(const MaterialUse&) const = default;
 };
@@ -42,16 +43,17 @@ public:
     }
 
     /// Returns the number in materials() of what a primitive is made of.
-    int numberOf(const Primitive& primitive, bool mapped) {
+    int numberOf(const Primitive& primitive, bool mapped, uint32_t page) {
         const size_t original =
             primitive.material < 0 ? originals_.size() - 1 : static_cast<size_t>(primitive.material);
-        const MaterialUse use{original, mapped, primitive.movedUvs};
+        const MaterialUse use{original, mapped, primitive.movedUvs, mapped ? page : 0};
         const auto [place, isNew] = numbers_.try_emplace(use, static_cast<int>(materials_.size()));
         if (isNew) add(use);
         return place->second;
     }
     std::vector<Material>& materials() { return materials_; }
     std::vector<bool>& lit() { return lit_; }
+    std::vector<uint32_t>& pages() { return pages_; }
 
 private:
     void add(const MaterialUse& use) {
@@ -65,6 +67,7 @@ private:
         for (int number = 2; !names_.insert(material.name).second; ++number)
             material.name = fmt::format("{} ({})", name, number);
         lit_.push_back(use.mapped && !material.pane);
+        pages_.push_back(use.page);
         materials_.push_back(std::move(material));
     }
     Material shining(Material material) const {
@@ -78,6 +81,7 @@ private:
 
     std::vector<Material> originals_, materials_;
     std::vector<bool> lit_;
+    std::vector<uint32_t> pages_;
     glm::vec3 ambient_;
     std::map<MaterialUse, int> numbers_;
     std::set<std::string> names_;
@@ -97,7 +101,7 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
         if (!instance.name.empty()) mesh.name = instance.name;
         for (Primitive& primitive : mesh.primitives) {
             const bool mapped = atlas.instances[i].texCoord >= 0 && !primitive.texCoord1.empty();
-            const int number = split.numberOf(primitive, mapped);
+            const int number = split.numberOf(primitive, mapped, instance.page);
             // Some engines light whatever has a second set of UVs.
             if (!split.lit()[static_cast<size_t>(number)] &&
                 !readsSecondSet(split.materials()[static_cast<size_t>(number)]))
@@ -116,6 +120,8 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
     out.scene.cameras = std::move(placed.cameras);
     out.scene.materials = std::move(split.materials());
     out.lit = std::move(split.lit());
+    out.page = std::move(split.pages());
+    out.scene.pages = placed.pages;
     giveEngineMetals(out.scene);
     dropUnusedTextures(out.scene);
     return out;

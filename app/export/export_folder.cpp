@@ -6,7 +6,7 @@
 #include "assets/base/file_write.h"
 #include "assets/base/warnings.h"
 #include "assets/gltf/gltf.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 #include "renderer/good_view.h"
 
 #include <algorithm>
@@ -30,6 +30,7 @@ constexpr float kUsualAspect = 16.0f / 9.0f;
 // The texture of Engine::Any has the surfaces' pictures in it, which the lightmap's texels are too coarse
 // for.
 constexpr uint32_t kFiner = 4, kMostFine = 4096; // times; edge [texels]
+constexpr uint32_t kMostTexture = 16384;         // edge that engines draw with on usual devices [texels]
 
 uint32_t textureSize(const ExportDesc& desc, const Scene& scene, uint32_t lightmap) {
     if (desc.engine != Engine::Any) return lightmap;
@@ -95,29 +96,61 @@ Camera startCamera(const WorldMesh& mesh) {
     return camera;
 }
 
-// Adds the lightmap as a picture of 8 bits, as MOZ_lightmap has it, and says so in `look`.
-void addLightmap(Scene& scene, const FloatImage& lightmap, GlbLook& look) {
-    Image image{"Lightmap", lightmap.width, lightmap.height, {}};
-    const size_t count = size_t{lightmap.width} * lightmap.height;
+// Returns the lightmap's pages, or the lightmap where it has one.
+std::vector<FloatImage> pagesOf(const FloatImage& lightmap) {
+    const LightmapPages pages = lightmapPagesOf(lightmap);
+    if (pages.count == 1) return {lightmap};
+    std::vector<FloatImage> all;
+    for (uint32_t page = 0; page < pages.count; ++page)
+        all.push_back(pageOf(lightmap, page));
+    return all;
+}
+
+// Adds a page of the lightmap as a picture of 8 bits, in shares of look.intensity.
+void addPage(Scene& scene, const FloatImage& page, const std::string& name, GlbLook& look) {
+    Image image{name, page.width, page.height, {}};
+    const size_t count = size_t{page.width} * page.height;
     image.rgba.assign(4 * count, 255);
-    float brightest = 0.0f;
-    for (const char* channel : {"R", "G", "B"})
-        for (const float value : *lightmap.find(channel))
-            brightest = std::max(brightest, value);
-    look.intensity = brightest > 0.0f ? brightest : 1.0f;
     for (size_t c = 0; c < 3; ++c) {
-        const std::vector<float>& plane = *lightmap.find(std::string(1, "RGB"[c]));
+        const std::vector<float>& plane = *page.find(std::string(1, "RGB"[c]));
         for (size_t i = 0; i < count; ++i) {
             const float share = std::clamp(plane[i] / look.intensity, 0.0f, 1.0f);
             image.rgba[4 * i + c] = static_cast<uint8_t>(std::lround(255.0f * share));
         }
     }
-    look.lightmap = static_cast<int>(scene.textures.size());
-    look.maps = {look.lightmap};
+    look.lightmaps.push_back(static_cast<int>(scene.textures.size()));
+    look.maps.push_back(look.lightmaps.back());
     scene.textures.push_back({.image = static_cast<int>(scene.images.size()),
                               .wrapS = Wrap::ClampToEdge,
                               .wrapT = Wrap::ClampToEdge});
     scene.images.push_back(std::move(image));
+}
+
+// Adds the lightmap, page by page, as MOZ_lightmap has it, and says so in `look`.
+void addLightmap(Scene& scene, const std::vector<FloatImage>& pages, GlbLook& look) {
+    float brightest = 0.0f;
+    for (const FloatImage& page : pages)
+        for (const char* channel : {"R", "G", "B"})
+            for (const float value : *page.find(channel))
+                brightest = std::max(brightest, value);
+    look.intensity = brightest > 0.0f ? brightest : 1.0f;
+    for (size_t i = 0; i < pages.size(); ++i)
+        addPage(scene, pages[i], pages.size() > 1 ? fmt::format("Lightmap {}", i) : "Lightmap", look);
+}
+
+// Makes one page of all where the engine's files know no pages. Throws Error where it is too large.
+void joinPages(Engine engine, LightmapAtlas& atlas, FloatImage& lightmap) {
+    if (atlas.pages.count == 1 || knowsPages(engine)) return;
+    const std::string& name = engineNames()[static_cast<size_t>(engine)];
+    if (lightmap.width > kMostTexture)
+        throw Error(fmt::format("--for {0}: takes the {1} pages of the lightmap as one texture, which would "
+                                "have {2} texels a side, more than {3}: bake a smaller --size or fewer "
+                                "--pages, or export --for three",
+                                name, atlas.pages.count, lightmap.width, kMostTexture));
+    spdlog::info("for {} the {} pages of the lightmap lie side by side in one texture of {} x {} texels",
+                 name, atlas.pages.count, lightmap.width, lightmap.width);
+    atlas = onOneSheet(std::move(atlas));
+    noteLightmapPages(lightmap, atlas.pages);
 }
 
 std::string linesOf(const std::vector<ExportExtra>& extras) {
@@ -139,8 +172,11 @@ FloatImage colorsOf(const FloatImage& lightmap) {
 std::vector<std::string> exportedFiles(const ExportDesc& desc) {
     const fs::path folder = desc.folder;
     std::vector<std::string> paths;
-    for (const char* name : {kSceneName, kTextureName, kImageName})
-        paths.push_back((folder / name).string());
+    const LightmapPages pages = knowsPages(desc.engine) ? desc.pages : LightmapPages();
+    paths.push_back((folder / kSceneName).string());
+    for (const char* name : {kTextureName, kImageName})
+        for (const std::string& file : lightmapFiles(name, pages))
+            paths.push_back((folder / file).string());
     for (const EngineFile& file : engineFiles(desc.engine, {}))
         paths.push_back((folder / file.name).string());
     for (const ExportExtra& extra : desc.extras)
@@ -163,14 +199,22 @@ void checkLightmap(const FloatImage& lightmap, const std::string& name) {
 }
 
 ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const AtlasLevel& source,
-                         const FloatImage& lightmap) {
-    checkLightmap(lightmap, "the lightmap");
+                         const FloatImage& given) {
+    checkLightmap(given, "the lightmap");
     const Scene& scene = source.scene;
+    if (lightmapPagesOf(given) != source.atlas.pages)
+        throw Error(
+            fmt::format("{}: its lightmap UVs are for {} pages and the lightmap has {}: bake it again",
+                        scene.path, source.atlas.pages.count, lightmapPagesOf(given).count));
+    FloatImage lightmap = given;
+    LightmapAtlas atlas = source.atlas;
+    joinPages(desc.engine, atlas, lightmap);
     const SurfaceLight light =
         surfaceLight(device, source, lightmap, textureSize(desc, scene, lightmap.width));
     ExportResult result;
     result.exposure = desc.exposure.value_or(exposureOf(light));
-    EngineScene level = engineScene(scene, source.atlas, meanLight(lightmap, light));
+    EngineScene level = engineScene(scene, atlas, meanLight(lightmap, light));
+    const std::vector<FloatImage> pages = pagesOf(lightmap);
     if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
     if (!readsThirdSet(desc.engine))
         for (const std::string& name : meshesWithThirdSet(level.scene))
@@ -182,8 +226,9 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     if (desc.engine == Engine::Any) {
         look.maps = lightByEmission(level, light, scene.materials, result.exposure);
     } else {
-        addLightmap(level.scene, lightmap, look);
+        addLightmap(level.scene, pages, look);
         look.lit = level.lit;
+        look.page = level.page;
         if (desc.engine == Engine::Unity) exposeEmission(level.scene, result.exposure);
     }
 
@@ -198,14 +243,22 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     write(kSceneName, {reinterpret_cast<const char*>(glb.data()), glb.size()});
     // The loaders for these two are a few lines, which unpack nothing.
     const bool plain = desc.engine == Engine::Babylon || desc.engine == Engine::PlayCanvas;
-    write(kTextureName,
-          encodeKtx2(lightmap, {.format = plain ? Ktx2Format::Half : desc.format, .zstd = !plain},
-                     (folder / kTextureName).string()));
-    writeImage((folder / kImageName).string(), colorsOf(lightmap));
-    result.files.push_back((folder / kImageName).string());
+    const std::vector<std::string> textures = lightmapFiles(kTextureName, atlas.pages),
+                                   images = lightmapFiles(kImageName, atlas.pages);
+    for (size_t page = 0; page < pages.size(); ++page)
+        write(textures[page],
+              encodeKtx2(pages[page], {.format = plain ? Ktx2Format::Half : desc.format, .zstd = !plain},
+                         (folder / textures[page]).string()));
+    for (size_t page = 0; page < pages.size(); ++page) {
+        const std::string path = (folder / images[page]).string();
+        writeImage(path, colorsOf(pages[page]));
+        result.files.push_back(path);
+    }
     const std::string name = fs::path(scene.path).stem().string();
-    for (EngineFile& file :
-         engineFiles(desc.engine, {.name = name, .exposure = result.exposure, .sky = meanOf(scene.sky)})) {
+    for (EngineFile& file : engineFiles(desc.engine, {.name = name,
+                                                     .exposure = result.exposure,
+                                                     .sky = meanOf(scene.sky),
+                                                     .pages = atlas.pages.count})) {
         if (file.name == kReadmeName && !desc.extras.empty()) file.text += linesOf(desc.extras);
         write(file.name, file.text);
     }

@@ -8,6 +8,7 @@
 #include "app/export/surface_light.h"
 #include "assets/images/float_image.h"
 #include "assets/images/ktx2.h"
+#include "assets/model/lightmap_pages.h"
 #include "bake/vk/device.h"
 
 namespace relume {
@@ -29,6 +30,7 @@ struct ExportDesc {
     uint32_t textureSize = 0;             // Engine::Any: edge of the light's texture [texels]; 0: it follows
                                           // from the lightmap's
     std::vector<ExportExtra> extras = {}; // what else is written, such as light probes
+    LightmapPages pages = {};             // of the lightmap, as far as they are known
 };
 
 /// Tells what was written.
@@ -37,7 +39,7 @@ struct ExportResult {
     float exposure = 0.0f;          // [EV]
 };
 
-/// Returns the paths of the files that exportLevel() writes.
+/// Returns the paths of the files that exportLevel() writes for desc.pages.
 std::vector<std::string> exportedFiles(const ExportDesc& desc);
 
 /// Throws Error where the folder cannot be written to: call before long work.
@@ -49,7 +51,9 @@ void checkLightmap(const FloatImage& lightmap, const std::string& name);
 /// Writes a level with its lightmap (lighting, R, G and B) as an engine reads it: scene.glb, lightmap.ktx2,
 /// lightmap.exr, README.txt and what else the engine needs. Files of the same names are replaced, each whole
 /// or not at all; others in the folder stay. The scene's first camera comes first; one without a camera gets
-/// the view that the viewer begins with. Throws Error.
+/// the view that the viewer begins with. A lightmap of several pages becomes lightmap.0.ktx2 and so on where
+/// the engine's files load them (knowsPages), whose materials say which page they take; for others all pages
+/// are side by side in one texture. Throws Error where that would be too large.
 ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const AtlasLevel& level,
                          const FloatImage& lightmap);
 

@@ -106,7 +106,7 @@ uint64_t LightBalls::needed(const Bake& bake, size_t lamps) const {
                        .targets = static_cast<uint32_t>(lamps) * kProbeLampSamples,
                        .lights = 1};
     const uint64_t size = patches.scene.size;
-    return memoryNeeds(settings, extentOf(bake.scene, patches.scene.mesh.triangleCount()),
+    return memoryNeeds(settings, extentOf(bake.scene, patches.scene.mesh),
                        {.chunkCount = patches.chunkCount(),
                         .texels = size * size,
                         .software = device_.info().software(),

@@ -5,7 +5,7 @@
 #include "app/offline/lightmap_attributes.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 
 namespace relume {
 namespace {
@@ -41,7 +41,7 @@ void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSe
         desc.rtrad = settings.solver.transport.rtrad;
         desc.reflectivity = settings.solver.transport.reflectivity;
         if (desc.rtrad) desc.quantity = Quantity::Radiance;
-        writeImage(wanted.path, lightmapNow(desc, wanted.scene, baker, settings, lightNow));
+        writeLightmap(wanted.path, lightmapNow(desc, wanted.scene, baker, settings, lightNow));
         spdlog::info("wrote {}", wanted.path);
     } catch (const Error& error) {
         spdlog::error("{}", error.what());

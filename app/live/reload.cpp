@@ -107,10 +107,11 @@ bool samePictures(const Scene& a, const Scene& b) {
 }
 
 bool sameAtlas(const LightmapAtlas& a, const LightmapAtlas& b) {
-    return a.repacked == b.repacked &&
+    return a.repacked == b.repacked && a.pages == b.pages &&
            std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
                       [](const AtlasRect& x, const AtlasRect& y) {
-                          return x.scale == y.scale && x.offset == y.offset && x.texCoord == y.texCoord;
+                          return x.scale == y.scale && x.offset == y.offset && x.texCoord == y.texCoord &&
+                                 x.page == y.page;
                       });
 }
 

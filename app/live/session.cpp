@@ -299,4 +299,10 @@ void Session::pollFile() {
     if (change != FileChange::None) load({prepare_.path, true, prepare_.choice, change == FileChange::Hasty});
 }
 
+uint32_t mapSize(const Session& session) {
+    const LoadedScene* scene = session.scene();
+    const LightmapPages pages = scene ? scene->prepared.atlas.pages : LightmapPages();
+    return pages.sheetOf(session.document().bake.size);
+}
+
 } // namespace relume

@@ -149,4 +149,7 @@ private:
     uint64_t surfaces_ = 0, paint_ = 0; // as BakeOrders::Start has them
 };
 
+/// Returns the edge of the map of all pages of a session's lightmap [texels].
+uint32_t mapSize(const Session& session);
+
 } // namespace relume

@@ -19,6 +19,12 @@ std::string oneWord(std::string text) {
     return text;
 }
 
+// Returns how many pages the lightmap has, where there are several: the scene decides it, too.
+std::string pagesOf(const Baker& baker) {
+    const uint32_t pages = baker.patches().scene.mesh.pages.count;
+    return pages > 1 ? fmt::format(" pages={}", pages) : "";
+}
+
 // Returns the lights that a job bakes layers of, where it is one: another job's state is of other layers.
 std::string lightsOf(const BakeSettings& settings) {
     std::string text;
@@ -41,7 +47,7 @@ void BakeCheckpoints::begin(Baker& baker, const Scene& scene, const BakeSettings
     if (path_.empty() && !resumed_) return;
     key_.version = RELUME_VERSION;
     key_.settings =
-        describeSettings(settings) + lightsOf(settings) +
+        describeSettings(settings) + lightsOf(settings) + pagesOf(baker) +
         fmt::format(" tracer={} device={} driver={} shaders={}", baker.tracer().name(), oneWord(device.name),
                     oneWord(device.driver), shaders_.empty() ? "built-in" : oneWord(shaders_));
     key_.scene = sceneFingerprint(scene, baker.patches());

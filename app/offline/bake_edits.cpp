@@ -9,7 +9,7 @@
 #include "app/text/interrupt.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 #include "assets/images/sky_picture.h"
 #include "bake/vk/device.h"
 
@@ -46,7 +46,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     } else {
         FloatImage image = baker.lightmap(request.lightmap);
         addLightmapAttributes(image, options.files.scene, request.bake, request.lightmap, progress);
-        writeImage(options.files.output, image, ExrType::Float, compression);
+        writeLightmap(options.files.output, image, ExrType::Float, compression);
     }
     spdlog::info("wrote {}", options.files.output);
     failOnValidation(device.validationMessages());

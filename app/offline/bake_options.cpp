@@ -2,6 +2,7 @@
 
 #include "app/edit/choice_options.h"
 #include "app/edit/furnishing_options.h"
+#include "app/edit/page_options.h"
 #include "app/offline/compression_option.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
@@ -215,9 +216,10 @@ void addMachineOptions(CLI::App& command, BakeOptions& o) {
 }
 
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
-    command.add_option(name, o.patches.size, "Lightmap edge in texels")
+    command.add_option(name, o.patches.size, "Lightmap edge in texels, that of each page")
         ->capture_default_str()
         ->check(wholeFrom(8, Baker::kMaxSize));
+    addPagesOption(command, o.patches.pages);
 }
 
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
@@ -299,6 +301,8 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
         throw UsageError("--distance-factor: only with --preset rtrad, it has no physical meaning");
     }
     checkFurnishing(o.patches.furnishing);
+    if (!o.patches.pages.empty())
+        checkPages(*askedPages(o.patches.pages), o.patches.size, o.patches.furnishing.density);
     if (!o.files.picture.empty() && !o.files.picture.ends_with(".png"))
         throw UsageError("--picture: '" + o.files.picture + "' does not end in .png");
     if (!o.files.sceneOut.empty() && !o.files.sceneOut.ends_with(".glb"))
@@ -313,6 +317,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
     request.prepare = {.path = o.files.scene,
                        .choice = o.files.choice,
                        .size = o.patches.size,
+                       .pages = askedPages(o.patches.pages),
                        .leastDensity = o.patches.leastDensity,
                        .furnishing = o.patches.furnishing};
     request.bake.size = o.patches.size;

@@ -28,7 +28,8 @@ struct BakeFiles {
 
 /// The patches that the lightmap has.
 struct PatchOptions {
-    uint32_t size = 512;     // lightmap edge [texels]
+    uint32_t size = 512;     // edge of a lightmap's page [texels]
+    std::string pages;       // as askedPages() takes them; "": not given
     double leastDensity = 0; // as PrepareDesc has it
     bool conservative = false;
     Furnishing furnishing;
@@ -115,6 +116,7 @@ std::vector<std::string> methodNames();
 std::vector<std::string> tracerNames();
 /// Adds the option for the memory of a layer for each light.
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& options);
+/// Adds the option for the edge of the lightmap, and --pages.
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& options);
 
 /// The bake that the options ask for. resolveBakeOptions() throws UsageError when they contradict each other.

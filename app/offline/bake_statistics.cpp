@@ -20,6 +20,7 @@ Json atlasJson(const PreparedScene& prepared) {
                              {"texcoord", rect.texCoord},
                              {"scale", {rect.scale.x, rect.scale.y}},
                              {"offset", {rect.offset.x, rect.offset.y}}});
+        if (prepared.atlas.pages.count > 1) instances.back()["page"] = rect.page;
     }
     return {{"repacked", prepared.atlas.repacked}, {"instances", instances}};
 }
@@ -90,6 +91,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                  {"cpuSeconds", cpu},
                  {"bakeCpuSeconds", s.bakeCpuSeconds},
                  {"atlas", atlasJson(s.prepared)}};
+    if (s.prepared.atlas.pages.count > 1) json["pages"] = s.prepared.atlas.pages.count;
     if (s.baker.layers()) json["layers"] = layersJson(*s.baker.layers());
     // The names of files, and those from the scene's file, need not be UTF-8.
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

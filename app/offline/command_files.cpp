@@ -4,6 +4,7 @@
 #include "assets/base/error.h"
 #include "assets/base/write_plan.h"
 #include "assets/foreign/load_scene.h"
+#include "assets/images/paged_image.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -46,6 +47,22 @@ CommandFiles& CommandFiles::readsScene(const std::string& option, const std::str
     add(Use::Read, option, path);
     for (const std::string& linked : filesOfScene(path))
         add(Use::Linked, option, linked);
+    return *this;
+}
+
+CommandFiles& CommandFiles::readsLightmap(const std::string& option, const std::string& path) {
+    add(Use::Read, option, path);
+    for (const std::string& file : filesOfLightmap(path))
+        if (file != path) add(Use::Read, option, file);
+    return *this;
+}
+
+CommandFiles& CommandFiles::writesLightmap(const std::string& option, const std::string& path,
+                                           uint32_t pages) {
+    add(Use::Written, option, path);
+    if (path.empty() || pages == 1) return *this;
+    for (const std::string& file : lightmapFiles(path, {pages == 0 ? kMostPages : pages}))
+        add(Use::Written, option, file);
     return *this;
 }
 

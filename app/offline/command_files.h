@@ -27,7 +27,12 @@ public:
     CommandFiles& reads(const std::string& option, const std::string& path);
     /// Adds a scene that is read, with the files that belong to it (filesOfScene()).
     CommandFiles& readsScene(const std::string& option, const std::string& path);
+    /// Adds a lightmap that is read, with the files of its pages (filesOfLightmap()).
+    CommandFiles& readsLightmap(const std::string& option, const std::string& path);
     CommandFiles& writes(const std::string& option, const std::string& path);
+    /// Adds a lightmap that is written: one file, or where `pages` is 0 or more than 1 those of its pages, 0
+    /// for a number that is not known yet.
+    CommandFiles& writesLightmap(const std::string& option, const std::string& path, uint32_t pages);
     /// Adds a folder in which frames are replaced.
     CommandFiles& writesFrames(const std::string& option, const std::string& folder);
     /// Says that `output` may write the file that `input` reads.

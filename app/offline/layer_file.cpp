@@ -3,6 +3,7 @@
 #include "app/offline/light_mix.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/images/paged_image.h"
 #include "assets/model/light_names.h"
 #include "bake/output/layer_sum.h"
 
@@ -98,7 +99,7 @@ void fitTo(const std::string& path, LayeredImage& image, ExrType type) {
 
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,
                  ExrCompression compression) {
-    writeLayeredExr(path, image, type, compression);
+    writeLayeredLightmap(path, image, type, compression);
     for (const LayeredImage::Layer& layer : image.layers) {
         const auto error = layer.attributes.find("relume:error");
         spdlog::info("layer '{}': {}", layer.name,

@@ -23,7 +23,7 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
 /// files of the same layers have the same bytes, however many processes baked them.
 void fitTo(const std::string& path, LayeredImage& image, ExrType type);
 
-/// Writes the image by writeLayeredExr, and a line to the log about each layer.
+/// Writes the image by writeLayeredLightmap, and a line to the log about each layer.
 void writeLayers(const std::string& path, const LayeredImage& image, ExrType type,
                  ExrCompression compression);
 

@@ -3,7 +3,7 @@
 #include "app/offline/bake_settings.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/images/image_file.h"
+#include "assets/images/paged_image.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ void addLightmapAttributes(FloatImage& image, const std::string& scene, const Ba
 }
 
 FloatImage readLightmap(const std::string& path, const std::string& scene) {
-    FloatImage image = readImage(path);
+    FloatImage image = readLightmapFile(path);
     if (attribute(image, "relume:quantity") == "radiance") {
         throw Error(path +
                     ": holds radiance, which has the albedo in it: bake it with --quantity lighting and "

@@ -125,7 +125,8 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
     CLI::Option* lightmap = command.get_option("--lightmap");
     addSizeOption(command, "--lightmap-size", o.bake);
     addSolverOptionsBeside(command, o.bake, {lightmap});
-    command.get_option("--lightmap-size")->excludes(lightmap);
+    for (const char* size : {"--lightmap-size", "--pages"})
+        command.get_option(size)->excludes(lightmap);
 }
 
 ShotRequest resolveShotOptions(const ShotOptions& o) {

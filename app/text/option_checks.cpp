@@ -83,6 +83,17 @@ CLI::Validator wholeFrom(uint64_t least, uint64_t most) {
                    });
 }
 
+CLI::Validator wholeFromOr(uint64_t least, uint64_t most, const std::string& word) {
+    const std::string allowed = fmt::format("{} to {}, or {}", least, most, word);
+    return checkOf(allowed, "give a whole number from " + allowed,
+                   [=](const std::string& text) -> std::optional<std::string> {
+                       if (text == word) return text;
+                       const std::optional<uint64_t> value = wholeNumber(text);
+                       if (!value || *value < least || *value > most) return std::nullopt;
+                       return std::to_string(*value);
+                   });
+}
+
 CLI::Validator oneOf(std::vector<std::string> words) {
     return wordCheck(std::move(words), false);
 }

@@ -20,6 +20,9 @@ CLI::Validator numberAbove(double above, double most);
 /// Allows decimal digits, which are never octal.
 CLI::Validator wholeFrom(uint64_t least, uint64_t most);
 
+/// Allows the same, and one word.
+CLI::Validator wholeFromOr(uint64_t least, uint64_t most, const std::string& word);
+
 /// Allows one of these words, which may be numbers.
 CLI::Validator oneOf(std::vector<std::string> words);
 /// Allows the same, in capitals too.

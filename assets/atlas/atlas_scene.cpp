@@ -6,11 +6,25 @@
 
 namespace relume {
 
+LightmapAtlas onOneSheet(LightmapAtlas atlas) {
+    if (atlas.pages.count == 1) return atlas;
+    const auto columns = static_cast<float>(atlas.pages.columns());
+    for (AtlasRect& rect : atlas.instances) {
+        rect.offset = (rect.offset + glm::vec2(atlas.pages.cellOf(rect.page))) / columns;
+        rect.scale /= columns;
+        rect.page = 0;
+    }
+    atlas.pages = {};
+    return atlas;
+}
+
 Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas) {
     Scene result = scene;
+    result.pages = atlas.pages.count;
     Warnings warnings;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = atlas.instances[i];
+        result.instances[i].page = rect.page;
         const bool asItIs =
             rect.texCoord == 1 && rect.scale == glm::vec2(1.0f) && rect.offset == glm::vec2(0.0f);
         if (rect.texCoord < 0 || asItIs) continue;

@@ -269,16 +269,6 @@ bool Packer::packAll() {
     return std::all_of(order.begin(), order.end(), [this](uint32_t chart) { return pack(chart); });
 }
 
-double areaOf(const LayoutChart& chart) {
-    double area = 0.0;
-    const std::vector<glm::dvec2>& uv = chart.chart->uv;
-    for (size_t i = 0; i + 2 < uv.size(); i += 3) {
-        const glm::dvec2 a = uv[i + 1] - uv[i], b = uv[i + 2] - uv[i];
-        area += 0.5 * std::abs(a.x * b.y - a.y * b.x);
-    }
-    return area * chart.scale * chart.scale;
-}
-
 /// Looks for the highest density at which all charts fit.
 class Search {
 public:
@@ -390,6 +380,16 @@ uint32_t texelsPerCell(uint32_t size) {
 }
 
 } // namespace
+
+double areaOf(const LayoutChart& chart) {
+    double area = 0.0;
+    const std::vector<glm::dvec2>& uv = chart.chart->uv;
+    for (size_t i = 0; i + 2 < uv.size(); i += 3) {
+        const glm::dvec2 a = uv[i + 1] - uv[i], b = uv[i + 2] - uv[i];
+        area += 0.5 * std::abs(a.x * b.y - a.y * b.x);
+    }
+    return area * chart.scale * chart.scale;
+}
 
 glm::dvec2 ChartPlace::texelOf(glm::dvec2 uv) const {
     glm::dvec2 p = glm::clamp(inset + uv * stretch, glm::dvec2(0.0), glm::dvec2(box));

@@ -66,6 +66,9 @@ std::optional<ChartLayout> extendLayout(std::span<const LayoutChart> charts, con
                                         const ChartLayout& layout,
                                         std::span<const std::optional<ChartPlace>> places);
 
+/// Returns the area of a chart as its instance has it [m^2], times its density factor squared.
+double areaOf(const LayoutChart& chart);
+
 /// Tells whether a chart would get a box as large as that of its place in such a layout.
 bool isAsBefore(const LayoutChart& chart, const ChartLayout& layout, uint32_t size, const ChartPlace& place);
 

@@ -1,6 +1,7 @@
 #include "assets/atlas/lightmap_atlas.h"
 
 #include "assets/atlas/chart_quality.h"
+#include "assets/atlas/page_deal.h"
 #include "assets/atlas/rect_pack.h"
 #include "assets/atlas/uv_grid.h"
 #include "assets/base/error.h"
@@ -13,6 +14,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 namespace relume {
 
@@ -159,22 +162,27 @@ double worldArea(const Instance& instance, const Mesh& mesh, int set) {
     return std::isfinite(area) ? area : 0.0;
 }
 
-/// Tells whether all instances' UVs, as they are, make one atlas.
+/// Tells whether all instances' UVs, as they are, make one atlas, page by page.
 bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
-    std::vector<bool> seen(scene.meshes.size());
+    std::set<std::pair<size_t, uint32_t>> seen;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
-        if (atlas.instances[i].texCoord < 0) continue;
+        const AtlasRect& rect = atlas.instances[i];
+        if (rect.texCoord < 0) continue;
+        if (rect.page >= atlas.pages.count) return false;
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
-        if (seen[mesh]) return false; // two instances of a mesh cover the same texels
-        seen[mesh] = true;
+        // Two instances of a mesh cover the same texels.
+        if (!seen.emplace(mesh, rect.page).second) return false;
     }
-    UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
-    for (size_t i = 0; i < scene.instances.size(); ++i)
-        if (atlas.instances[i].texCoord >= 0)
-            addWhileFree(grid, scene.meshes[static_cast<size_t>(scene.instances[i].mesh)],
-                         atlas.instances[i].texCoord);
-    atlas.visits += grid.visits();
-    return !grid.overlaps(kMaxOverlap);
+    for (uint32_t page = 0; page < atlas.pages.count; ++page) {
+        UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
+        for (size_t i = 0; i < scene.instances.size(); ++i)
+            if (atlas.instances[i].texCoord >= 0 && atlas.instances[i].page == page)
+                addWhileFree(grid, scene.meshes[static_cast<size_t>(scene.instances[i].mesh)],
+                             atlas.instances[i].texCoord);
+        atlas.visits += grid.visits();
+        if (grid.overlaps(kMaxOverlap)) return false;
+    }
+    return true;
 }
 
 /// Holds an instance's UV bounds and how many metres one unit of UV is.
@@ -199,50 +207,87 @@ bool packAt(const std::vector<Footprint>& footprints, double density, uint32_t s
     return packRects(rects, size, size, kMeshGutter);
 }
 
+/// Packs the rectangles, each into its page of edge `size`, at a density; tells whether all fit.
+bool packPagesAt(const std::vector<std::vector<Footprint>>& pages, double density, uint32_t size,
+                 std::vector<std::vector<PackedRect>>& rects) {
+    rects.resize(pages.size());
+    for (size_t page = 0; page < pages.size(); ++page) {
+        rects[page].resize(pages[page].size());
+        if (!packAt(pages[page], density, size, rects[page])) return false;
+    }
+    return true;
+}
+
+double areaOf(const Footprint& f) {
+    return f.extent.x * f.extent.y * f.metres * f.metres;
+}
+
 /// Packs the rectangles at the highest common density [texels/m] at which all fit, found by bisection.
-std::vector<PackedRect> packDensest(const Scene& scene, const std::vector<Footprint>& footprints,
-                                    uint32_t size) {
-    std::vector<PackedRect> rects(footprints.size()), best;
-    double area = 0.0;
-    for (const Footprint& f : footprints)
-        area += f.extent.x * f.extent.y * f.metres * f.metres;
+std::vector<std::vector<PackedRect>>
+packDensest(const Scene& scene, const std::vector<std::vector<Footprint>>& pages, uint32_t size) {
+    std::vector<std::vector<PackedRect>> rects, best;
+    double area = 0.0; // of the fullest page
+    size_t count = 0;
+    for (const std::vector<Footprint>& footprints : pages) {
+        double own = 0.0;
+        for (const Footprint& f : footprints)
+            own += areaOf(f);
+        area = std::max(area, own);
+        count += footprints.size();
+    }
     double low = 0.0, high = area > 0.0 ? size / std::sqrt(area) : 1.0;
-    if (packAt(footprints, high, size, rects)) return rects;
+    if (packPagesAt(pages, high, size, rects)) return rects;
     constexpr int kSteps = 14; // leaves 1/16384 of the bound
     for (int step = 0; step < kSteps; ++step) {
         tellWatch("atlas", double(step) / kSteps);
         const double middle = 0.5 * (low + high);
-        const bool fits = packAt(footprints, middle, size, rects);
+        const bool fits = packPagesAt(pages, middle, size, rects);
         (fits ? low : high) = middle;
         if (fits) best = rects;
     }
-    if (best.empty() && packAt(footprints, 0.0, size, rects)) best = rects;
+    if (best.empty() && packPagesAt(pages, 0.0, size, rects)) best = rects;
     if (best.empty())
-        throw Error(
-            fmt::format("{}: {} instances do not fit a lightmap of {} x {} texels: use a larger --size",
-                        scene.path, footprints.size(), size, size));
+        throw Error(fmt::format(
+            "{}: {} instances do not fit {} of {} x {} texels: use a larger --size", scene.path, count,
+            pages.size() == 1 ? "a lightmap" : fmt::format("{} pages", pages.size()), size, size));
     return best;
 }
 
 void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t size, LightmapAtlas& atlas) {
-    std::vector<Footprint> footprints;
+    std::vector<Footprint> all;
+    std::vector<double> areas;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         if (atlas.instances[i].texCoord < 0) continue;
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
         const SetQuality& quality = choices[mesh].quality;
         const double area = worldArea(scene.instances[i], scene.meshes[mesh], choices[mesh].texCoord);
         const double metres = quality.uvArea > 0.0 ? std::sqrt(area / quality.uvArea) : 0.0;
-        footprints.push_back({i, quality.low, quality.high - quality.low, metres});
+        all.push_back({i, quality.low, quality.high - quality.low, metres});
+        areas.push_back(areaOf(all.back()));
     }
-    const std::vector<PackedRect> rects = packDensest(scene, footprints, size);
-    for (size_t i = 0; i < footprints.size(); ++i) {
-        // The bounds lie on whole texels: charts aligned to texels inside the mesh's own rectangle stay so.
-        AtlasRect& rect = atlas.instances[footprints[i].instance];
-        const glm::dvec2 extent(rects[i].width, rects[i].height), corner(rects[i].x, rects[i].y);
-        const glm::dvec2 scale = extent / footprints[i].extent / double(size);
-        rect.scale = glm::vec2(scale);
-        rect.offset = glm::vec2(corner / double(size) - footprints[i].low * scale);
-    }
+    const std::vector<uint32_t> dealt = dealToPages(areas, atlas.pages.count);
+    std::vector<std::vector<Footprint>> pages(atlas.pages.count);
+    for (size_t i = 0; i < all.size(); ++i)
+        pages[dealt[i]].push_back(all[i]);
+    const uint32_t border = borderOf(atlas.pages);
+    if (size <= 2 * border)
+        throw Error(fmt::format("{}: pages of {} x {} texels are all border: use a larger --size", scene.path,
+                                size, size));
+    const std::vector<std::vector<PackedRect>> rects = packDensest(scene, pages, size - 2 * border);
+    for (size_t page = 0; page < pages.size(); ++page)
+        for (size_t i = 0; i < pages[page].size(); ++i) {
+            // The bounds lie on whole texels: charts aligned to texels inside the mesh's own rectangle stay
+            // so.
+            const Footprint& footprint = pages[page][i];
+            const PackedRect& packed = rects[page][i];
+            AtlasRect& rect = atlas.instances[footprint.instance];
+            const glm::dvec2 extent(packed.width, packed.height),
+                corner(packed.x + border, packed.y + border);
+            const glm::dvec2 scale = extent / footprint.extent / double(size);
+            rect.scale = glm::vec2(scale);
+            rect.offset = glm::vec2(corner / double(size) - footprint.low * scale);
+            rect.page = static_cast<uint32_t>(page);
+        }
     atlas.repacked = true;
 }
 
@@ -278,13 +323,19 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapA
 
 } // namespace
 
-LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped) {
+LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped,
+                         std::optional<LightmapPages> pages) {
     ASSERT(size > 0);
     LightmapAtlas atlas;
+    atlas.pages = pages.value_or(LightmapPages{scene.pages});
+    ASSERT(atlas.pages.count >= 1 && atlas.pages.count <= kMostPages);
     atlas.instances.resize(scene.instances.size());
+    for (size_t i = 0; i < scene.instances.size(); ++i)
+        atlas.instances[i].page = scene.instances[i].page;
     Warnings warnings;
     const std::vector<MeshChoice> choices = chooseSets(scene, unwrapped, atlas, warnings);
-    if (!formOneAtlas(scene, atlas)) repack(scene, choices, size, atlas);
+    const bool asItIs = atlas.pages.count == scene.pages && formOneAtlas(scene, atlas);
+    if (!asItIs) repack(scene, choices, size, atlas);
     atlas.warnings = warnings.lines(scene.path);
     return atlas;
 }
@@ -324,7 +375,10 @@ int lightmapSet(const Mesh& mesh) {
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size) {
     AtlasStatistics statistics;
     Stretch stretch;
-    UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
+    constexpr uint32_t kMostColumns =
+        4; // of pages that have as many cells each: the grid has a byte for each
+    UvGrid grid(kAtlasCells * std::min(atlas.pages.columns(), kMostColumns), glm::dvec2(0.0),
+                glm::dvec2(1.0));
     double uvSum = 0.0, worldSum = 0.0, densityMin = std::numeric_limits<double>::max();
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = atlas.instances[i];
@@ -335,14 +389,15 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
             if (!hasUvTriangles(primitive, rect.texCoord)) continue;
             const std::vector<glm::vec2>& uvs = uvSet(primitive, rect.texCoord);
             for (size_t t = 0; t < primitive.indices.size(); t += 3) {
-                std::array<glm::dvec2, 3> uv;
+                std::array<glm::dvec2, 3> uv, onSheet;
                 std::array<glm::dvec3, 3> p;
                 for (size_t k = 0; k < 3; ++k) {
                     const uint32_t v = primitive.indices[t + k];
                     uv[k] = glm::dvec2(uvs[v] * rect.scale + rect.offset);
+                    onSheet[k] = atlas.pages.count == 1 ? uv[k] : glm::dvec2(atlas.sheetUv(i, uvs[v]));
                     p[k] = linear * glm::dvec3(primitive.positions[v]);
                 }
-                grid.add(uv[0], uv[1], uv[2]);
+                grid.add(onSheet[0], onSheet[1], onSheet[2]);
                 const double uvArea = 0.5 * std::abs(cross(uv[1] - uv[0], uv[2] - uv[0]));
                 const double world = 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
                 uvSum += uvArea;
@@ -359,7 +414,10 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
             }
         }
     }
-    statistics.coverage = static_cast<double>(grid.covered()) / static_cast<double>(grid.cells());
+    // What is left over on the sheet is no page's.
+    const double cells = static_cast<double>(grid.cells()) * atlas.pages.count /
+                         (atlas.pages.columns() * atlas.pages.columns());
+    statistics.coverage = static_cast<double>(grid.covered()) / cells;
     if (grid.covered() > 0)
         statistics.overlap = static_cast<double>(grid.overlapped()) / static_cast<double>(grid.covered());
     if (worldSum > 0.0) statistics.texelDensityMean = size * std::sqrt(uvSum / worldSum);

@@ -1,6 +1,8 @@
 #include "assets/atlas/unwrap.h"
 
 #include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/page_deal.h"
+#include "assets/atlas/page_layout.h"
 #include "assets/atlas/unwrap_shapes.h"
 #include "assets/atlas/uv_writer.h"
 #include "assets/base/error.h"
@@ -23,15 +25,19 @@ constexpr uint32_t kMostTexels = 16384; // to a side of an atlas whose size the 
 constexpr uint32_t kLeastSize = 64;     // of a lightmap [texels]
 // Places are given up where so little of the atlas is still used: the file has become another one.
 constexpr double kStillUsed = 0.5;
-constexpr double kUsualFill = 0.85; // share of an atlas that charts cover, for a first guess
-constexpr double kTold = 0.995;     // of the density asked for: less is worth a warning
+constexpr double kTold = 0.995; // of the density asked for: less is worth a warning
 
 std::string nameOf(const Scene& scene, const Mesh& mesh) {
     return scene.path + ": mesh " + inQuotes(mesh.name);
 }
 
-bool isStillUsed(const ChartLayout& now, const ChartLayout& before) {
-    return static_cast<double>(now.touched) >= kStillUsed * static_cast<double>(before.touched);
+bool isStillUsed(const std::vector<ChartLayout>& now, const std::vector<ChartLayout>& before) {
+    uint64_t touched = 0, touchedBefore = 0;
+    for (const ChartLayout& layout : now)
+        touched += layout.touched;
+    for (const ChartLayout& layout : before)
+        touchedBefore += layout.touched;
+    return static_cast<double>(touched) >= kStillUsed * static_cast<double>(touchedBefore);
 }
 
 /// Makes the UVs of one scene.
@@ -45,13 +51,17 @@ private:
     bool choose();
     void sizeTexels();
     void cut();
-    std::vector<LayoutChart> charts() const;
+    ObjectCharts charts() const;
     double densityOf(const UnwrapObject& object) const;
-    uint32_t chooseSize(const std::vector<LayoutChart>& charts) const;
+    uint32_t chooseSize(const ObjectCharts& charts) const;
+    [[noreturn]] void failForTooLarge(const std::vector<LayoutChart>& charts) const;
     void layOut();
     /// Lays the charts out where the memory has them; returns false where that does not go.
-    bool layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size);
-    std::vector<std::optional<ChartPlace>> remembered(size_t charts);
+    bool layOutAgain(const ObjectCharts& charts);
+    std::vector<std::optional<ChartPlace>> remembered(const ObjectCharts& charts);
+    void dealTheRest(const ObjectCharts& charts, const std::vector<std::optional<ChartPlace>>& places);
+    PagedDesc paged() const { return {size_, desc_.density, pages_}; }
+    void tell();
     bool write();
     void remember();
 
@@ -63,9 +73,10 @@ private:
     std::vector<int> keptSet_; // per mesh, -1: it is cut, or left alone
     UnwrapParts parts_;
     std::vector<size_t> rememberedShape_; // per shape; memory's count: none
-    std::vector<size_t> firstChart_;      // per object
-    uint32_t size_ = 0;
-    ChartLayout layout_;
+    uint32_t size_ = 0;                   // of a page
+    uint32_t pages_ = 1;
+    std::vector<uint32_t> page_; // per object
+    PagedLayout layout_;
     UnwrapResult result_;
 };
 
@@ -114,7 +125,8 @@ void Unwrapper::sizeTexels() {
         largest[object.shape] = std::max(largest[object.shape], scale);
         area += areas[object.shape] * scale * scale;
     }
-    double texel = desc_.size > 0 ? std::sqrt(area / kUsualFill) / desc_.size : 0.0;
+    const bool bySize = desc_.size > 0 && desc_.pages > 0;
+    double texel = bySize ? std::sqrt(area / desc_.pages / kUsualFill) / desc_.size : 0.0;
     if (desc_.density > 0.0) texel = std::max(texel, 1.0 / desc_.density);
     for (size_t i = 0; i < largest.size(); ++i) {
         const double own = std::exp2(std::round(std::log2(texel / largest[i])));
@@ -156,17 +168,25 @@ double Unwrapper::densityOf(const UnwrapObject& object) const {
     return scene_.instances[object.instance].density;
 }
 
-std::vector<LayoutChart> Unwrapper::charts() const {
-    std::vector<LayoutChart> charts;
-    for (const UnwrapObject& object : parts_.objects)
+ObjectCharts Unwrapper::charts() const {
+    ObjectCharts charts;
+    for (const UnwrapObject& object : parts_.objects) {
+        charts.first.push_back(charts.charts.size());
         for (const PlanarChart& chart : parts_.shapes[object.shape].charts)
-            charts.push_back({&chart, object.scale * densityOf(object)});
+            charts.charts.push_back({&chart, object.scale * densityOf(object)});
+    }
     return charts;
 }
 
-uint32_t Unwrapper::chooseSize(const std::vector<LayoutChart>& charts) const {
+uint32_t Unwrapper::chooseSize(const ObjectCharts& charts) const {
     if (desc_.size > 0) return desc_.size;
-    if (const std::optional<uint32_t> size = sizeForCharts(charts, desc_.density, kMostTexels)) return *size;
+    const std::optional<uint32_t> size = sizeForPages(charts, paged(), kMostTexels);
+    if (!size) failForTooLarge(charts.charts);
+    return *size;
+}
+
+/// Throws the Error for a density that needs too large an atlas; it names the mesh of the longest chart.
+void Unwrapper::failForTooLarge(const std::vector<LayoutChart>& charts) const {
     const auto longest =
         std::max_element(charts.begin(), charts.end(), [](const LayoutChart& a, const LayoutChart& b) {
             const auto side = [](const LayoutChart& c) {
@@ -186,9 +206,10 @@ uint32_t Unwrapper::chooseSize(const std::vector<LayoutChart>& charts) const {
     throw Error(scene_.path + ": has no charts");
 }
 
-/// Returns the places that charts of objects had, by the objects' names first and their order else.
-std::vector<std::optional<ChartPlace>> Unwrapper::remembered(size_t charts) {
-    std::vector<std::optional<ChartPlace>> places(charts);
+/// Returns the places that charts of objects had, by the objects' names first and their order else, and notes
+/// their pages.
+std::vector<std::optional<ChartPlace>> Unwrapper::remembered(const ObjectCharts& charts) {
+    std::vector<std::optional<ChartPlace>> places(charts.charts.size());
     std::map<std::pair<size_t, std::string>, std::vector<size_t>> named; // the last first
     std::map<size_t, std::vector<size_t>> all;
     for (size_t i = memory_->objects.size(); i-- > 0;) {
@@ -200,7 +221,7 @@ std::vector<std::optional<ChartPlace>> Unwrapper::remembered(size_t charts) {
     for (const bool byName : {true, false})
         for (size_t i = 0; i < parts_.objects.size(); ++i) {
             const UnwrapObject& object = parts_.objects[i];
-            if (places[firstChart_[i]]) continue;
+            if (places[charts.first[i]]) continue;
             const size_t shape = rememberedShape_[object.shape];
             std::vector<size_t>& from =
                 byName ? named[{shape, scene_.instances[object.instance].name}] : all[shape];
@@ -208,28 +229,50 @@ std::vector<std::optional<ChartPlace>> Unwrapper::remembered(size_t charts) {
                 from.pop_back();
             if (from.empty()) continue;
             used[from.back()] = true;
+            page_[i] = memory_->objects[from.back()].page;
             const std::vector<ChartPlace>& own = memory_->objects[from.back()].places;
-            std::copy(own.begin(), own.end(), places.begin() + static_cast<std::ptrdiff_t>(firstChart_[i]));
+            std::copy(own.begin(), own.end(), places.begin() + static_cast<std::ptrdiff_t>(charts.first[i]));
         }
     return places;
 }
 
-bool Unwrapper::layOutAgain(const std::vector<LayoutChart>& charts, uint32_t size) {
-    if (!memory_ || memory_->size != size || memory_->asked != desc_.density) return false;
-    std::vector<std::optional<ChartPlace>> places = remembered(charts.size());
+/// Deals the objects that have no place to the pages with the most room.
+void Unwrapper::dealTheRest(const ObjectCharts& charts,
+                            const std::vector<std::optional<ChartPlace>>& places) {
+    const std::vector<double> areas = charts.areas();
+    std::vector<double> load(pages_, 0.0), unplaced;
+    std::vector<size_t> without;
+    for (size_t i = 0; i < areas.size(); ++i)
+        if (places[charts.first[i]]) {
+            load[page_[i]] += areas[i];
+        } else {
+            without.push_back(i);
+            unplaced.push_back(areas[i]);
+        }
+    const std::vector<uint32_t> dealt = dealToPages(unplaced, pages_, load);
+    for (size_t i = 0; i < without.size(); ++i)
+        page_[without[i]] = dealt[i];
+}
+
+bool Unwrapper::layOutAgain(const ObjectCharts& charts) {
+    if (!memory_ || memory_->size != size_ || memory_->asked != desc_.density ||
+        memory_->layouts.size() != pages_ || size_ == 0)
+        return false;
+    page_.assign(parts_.objects.size(), 0);
+    std::vector<std::optional<ChartPlace>> places = remembered(charts);
     // An object that is smaller or larger now looks for a new place; all its charts do.
     for (size_t i = 0; i < parts_.objects.size(); ++i) {
-        const size_t begin = firstChart_[i];
-        const size_t end = begin + parts_.shapes[parts_.objects[i].shape].charts.size();
+        const size_t begin = charts.first[i], end = charts.end(i);
         bool same = places[begin].has_value();
         for (size_t c = begin; same && c < end; ++c)
-            same = isAsBefore(charts[c], memory_->layout, size, *places[c]);
+            same = isAsBefore(charts.charts[c], memory_->layouts[page_[i]], innerSize(paged()), *places[c]);
         for (size_t c = begin; !same && c < end; ++c)
             places[c].reset();
         result_.stayed += same;
     }
-    std::optional<ChartLayout> layout = extendLayout(charts, {size, desc_.density}, memory_->layout, places);
-    if (layout && isStillUsed(*layout, memory_->layout)) {
+    dealTheRest(charts, places);
+    std::optional<PagedLayout> layout = extendPages(charts, paged(), memory_->layouts, page_, places);
+    if (layout && isStillUsed(layout->layouts, memory_->layouts)) {
         layout_ = std::move(*layout);
         return true;
     }
@@ -238,39 +281,36 @@ bool Unwrapper::layOutAgain(const std::vector<LayoutChart>& charts, uint32_t siz
 }
 
 void Unwrapper::layOut() {
-    firstChart_.clear();
-    size_t count = 0;
-    for (const UnwrapObject& object : parts_.objects) {
-        firstChart_.push_back(count);
-        count += parts_.shapes[object.shape].charts.size();
-    }
-    const std::vector<LayoutChart> all = charts();
-    size_ = memory_ && desc_.size == 0 && memory_->size > 0 && memory_->asked == desc_.density
-                ? memory_->size
-                : chooseSize(all);
-    if (layOutAgain(all, size_)) return;
-    if (desc_.size == 0) size_ = chooseSize(all);
+    const ObjectCharts all = charts();
+    const bool known = memory_ && memory_->size > 0 && memory_->asked == desc_.density;
+    pages_ = desc_.pages > 0 ? desc_.pages : known ? static_cast<uint32_t>(memory_->layouts.size()) : 1;
+    size_ = desc_.size > 0 ? desc_.size : known ? memory_->size : 0;
+    if (layOutAgain(all)) return;
+    size_ = chooseSize(all);
     try {
-        layout_ = layOutCharts(all, {size_, desc_.density}, pool_);
+        layout_ = desc_.pages == 0 ? layOutByDensity(all, paged(), pool_) : layOutPages(all, paged(), pool_);
     } catch (const Error& error) {
         throw Error(scene_.path + ": " + error.what());
     }
+    pages_ = layout_.pages.count;
 }
 
 /// Writes the UVs; returns whether all meshes that were cut are valid atlases.
 bool Unwrapper::write() {
     std::vector<Mesh> meshes(parts_.objects.size());
     std::vector<uint8_t> valid(meshes.size(), 1);
-    const double cells = double(size_) / layout_.texel;
+    const std::vector<size_t> first = charts().first;
+    const uint32_t border = borderOf(layout_.pages);
     pool_.run(static_cast<uint32_t>(meshes.size()), [&](uint32_t i) {
         tellWatch("unwrapping", double(i) / double(meshes.size()));
+        const double texel = layout_.layouts[layout_.page[i]].texel;
         const UnwrapObject& object = parts_.objects[i];
         const Mesh& mesh = scene_.meshes[parts_.meshOf[object.shape]];
         size_t triangles = 0;
         for (const Primitive& primitive : mesh.primitives)
             triangles += primitive.indices.size() / 3;
-        meshes[i] = withUvs(mesh, cornerUvs(parts_.shapes[object.shape].charts,
-                                            &layout_.places[firstChart_[i]], cells, triangles));
+        meshes[i] = withUvs(mesh, cornerUvs(parts_.shapes[object.shape].charts, &layout_.places[first[i]],
+                                            size_ / texel, border / texel, triangles));
         valid[i] = lightmapSet(meshes[i]) == 1;
     });
     bool again = false; // overlap finer than the grid that looks for it adds up in no known mesh
@@ -284,6 +324,7 @@ bool Unwrapper::write() {
     std::vector<bool> written(scene_.meshes.size());
     for (size_t i = 0; i < meshes.size(); ++i) {
         Instance& instance = scene_.instances[parts_.objects[i].instance];
+        instance.page = layout_.page[i];
         const auto mesh = static_cast<size_t>(instance.mesh);
         if (written[mesh]) {
             instance.mesh = static_cast<int>(scene_.meshes.size());
@@ -301,17 +342,18 @@ void Unwrapper::remember() {
     memory_->size = size_;
     memory_->asked = desc_.density;
     memory_->objects.clear();
+    const ObjectCharts all = charts();
     for (size_t i = 0; i < parts_.objects.size(); ++i) {
         const UnwrapObject& object = parts_.objects[i];
-        const auto begin = layout_.places.begin() + static_cast<std::ptrdiff_t>(firstChart_[i]);
-        const size_t count = parts_.shapes[object.shape].charts.size();
+        const auto begin = layout_.places.begin();
         memory_->objects.push_back({scene_.instances[object.instance].name,
                                     object.shape,
-                                    {begin, begin + static_cast<std::ptrdiff_t>(count)}});
+                                    layout_.page[i],
+                                    {begin + static_cast<std::ptrdiff_t>(all.first[i]),
+                                     begin + static_cast<std::ptrdiff_t>(all.end(i))}});
     }
     memory_->shapes = std::move(parts_.shapes);
-    memory_->layout = std::move(layout_);
-    memory_->layout.places.clear();
+    memory_->layouts = std::move(layout_.layouts);
 }
 
 UnwrapResult Unwrapper::run() {
@@ -325,20 +367,35 @@ UnwrapResult Unwrapper::run() {
     do
         layOut();
     while (!write());
+    scene_.pages = pages_;
+    tell();
+    if (memory_) remember();
+    return result_;
+}
+
+/// Fills the result, and warns about what fell short.
+void Unwrapper::tell() {
     result_.objects = static_cast<uint32_t>(parts_.objects.size());
     result_.charts = static_cast<uint32_t>(layout_.places.size());
     result_.size = size_;
-    result_.density = layout_.density;
-    result_.shortened = layout_.shortened;
-    result_.leastDensity = layout_.density * layout_.leastShare;
-    const double cells = double(size_) * size_ / (double(layout_.texel) * layout_.texel);
-    result_.covered = static_cast<double>(layout_.touched) / cells;
-    result_.reserved = static_cast<double>(layout_.reserved) / cells;
-    if (desc_.density > 0.0 && layout_.density < kTold * desc_.density)
-        spdlog::warn("{}: {:.4g} texels/m do not fit {} x {} texels, {:.4g} do: use a larger --size",
-                     scene_.path, desc_.density, size_, size_, layout_.density);
-    if (memory_) remember();
-    return result_;
+    result_.pages = pages_;
+    result_.density = result_.leastDensity = layout_.density();
+    for (const ChartLayout& layout : layout_.layouts) {
+        result_.shortened += layout.shortened;
+        if (layout.shortened > 0)
+            result_.leastDensity = std::min(result_.leastDensity, layout.density * layout.leastShare);
+        const double cells = double(size_) * size_ * pages_ / (double(layout.texel) * layout.texel);
+        result_.covered += static_cast<double>(layout.touched) / cells;
+        result_.reserved += static_cast<double>(layout.reserved) / cells;
+    }
+    const std::string pages = pages_ > 1 ? fmt::format("{} pages of ", pages_) : "";
+    if (desc_.density > 0.0 && result_.density < kTold * desc_.density)
+        spdlog::warn("{}: {:.4g} texels/m do not fit {}{} x {} texels, {:.4g} do: use a larger --size",
+                     scene_.path, desc_.density, pages, size_, size_, result_.density);
+    if (const uint32_t empty = layout_.emptyPages(); empty > 0)
+        spdlog::warn("{}: {} of {} pages stay empty, as an object lies on one page and there are {}: use "
+                     "fewer --pages",
+                     scene_.path, empty, pages_, parts_.objects.size());
 }
 
 bool hasArea(const Primitive& primitive, const glm::dmat3& linear) {
@@ -378,6 +435,9 @@ void requireArea(const Scene& scene) {
 
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory) {
     if (desc.size == 0 && !(desc.density > 0.0)) throw Error("an unwrap needs a size or a density");
+    if (desc.pages == 0 && (desc.size == 0 || !(desc.density > 0.0)))
+        throw Error("an unwrap needs a size and a density to choose the number of pages by");
+    ASSERT(desc.pages <= kMostPages);
     return Unwrapper(scene, desc, memory).run();
 }
 

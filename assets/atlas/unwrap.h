@@ -10,9 +10,10 @@ namespace relume {
 struct UnwrapDesc {
     double density =
         0.0;             // [texels/m]; 0, or more than fits: what fills an atlas of `size` with all instances
-    uint32_t size = 512; // of the atlas [texels]; 0: the least that takes the density
+    uint32_t size = 512; // of the atlas, of each page [texels]; 0: the least that takes the density
     bool onlyMissing = true; // leave meshes alone that have a valid set of lightmap UVs
     uint32_t threads = 0;    // 0: see WorkerPool
+    uint32_t pages = 1;      // of the atlas, up to kMostPages; 0: as many as the density needs at `size`
 };
 
 struct UnwrapResult {
@@ -20,22 +21,25 @@ struct UnwrapResult {
     uint32_t objects = 0;      // instances in the atlas, those of kept UVs included
     uint32_t charts = 0;       // of all objects
     uint32_t stayed = 0;       // objects that lie where the unwrap before put them
-    uint32_t size = 0;         // of the atlas [texels]
+    uint32_t size = 0;         // of the atlas, of each page [texels]
+    uint32_t pages = 0;        // of the atlas
     double density = 0.0;      // [texels/m] used, for objects whose own factor is 1; 0: for none
     uint32_t shortened = 0;    // charts that are longer than the atlas, and so are shortened to it
     double leastDensity = 0.0; // [texels/m] that one of these has along itself; density where there are none
-    double covered = 0.0;      // share of the atlas' texels that charts touch
+    double covered = 0.0;      // share of all pages' texels that charts touch
     double reserved = 0.0;     // share of these and of the gutters around them
 };
 
 /// Writes lightmap UVs into TEXCOORD_1, so that all instances form one atlas at one density, times the factor
 /// of each instance: charts in their true shapes, see layOutCharts. An instance of a mesh that others share
-/// gets a mesh of its own. Where a mesh has a valid set of UVs, this is kept as one chart, which moves and is
-/// scaled to the density; where all meshes have one, the scene stays as it is. Splits vertices where charts
-/// meet. Textures that read TEXCOORD_1 read another set from then on (freeSecondSet()); a mesh whose textures
-/// need three sets is left alone and warned about. With a memory, what did not change since the unwrap that
-/// left it stays where it is if all still fits; then the memory is that of this unwrap. Throws Error where
-/// there are more charts than texels, and for a density that would need absurdly many.
+/// gets a mesh of its own. Of several pages each instance lies on one, all its charts in 0 to 1 of that page
+/// (Instance::page), and the pages are filled alike. Where a mesh has a valid set of UVs, this is kept as one
+/// chart, which moves and is scaled to the density; where all meshes have one, the scene stays as it is.
+/// Splits vertices where charts meet. Textures that read TEXCOORD_1 read another set from then on
+/// (freeSecondSet()); a mesh whose textures need three sets is left alone and warned about. With a memory,
+/// what did not change since the unwrap that left it stays where it is if all still fits; then the memory is
+/// that of this unwrap. Throws Error where there are more charts than texels, and for a density that would
+/// need absurdly many. Where nothing is cut, the scene's pages stay what they are.
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory = nullptr);
 
 /// Throws Error for a scene of points and lines, which no lightmap UVs would help.

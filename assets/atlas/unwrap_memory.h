@@ -28,11 +28,12 @@ struct UnwrapMemory {
     struct Object {
         std::string name;
         size_t shape = 0;
+        uint32_t page = 0;
         std::vector<ChartPlace> places; // one per chart of the shape
     };
-    uint32_t size = 0;  // [texels]; 0: nothing is remembered
-    double asked = 0.0; // UnwrapDesc::density
-    ChartLayout layout; // without the places
+    uint32_t size = 0;                // of a page [texels]; 0: nothing is remembered
+    double asked = 0.0;               // UnwrapDesc::density
+    std::vector<ChartLayout> layouts; // of each page, without the places
     std::vector<UnwrapShape> shapes;
     std::vector<Object> objects;
 };

@@ -56,7 +56,7 @@ void applyUvs(const CornerUvs& uvs, size_t first, Primitive& primitive) {
 } // namespace
 
 CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* places, double cells,
-                    size_t triangles) {
+                    double border, size_t triangles) {
     CornerUvs uvs;
     uvs.uv.resize(3 * triangles);
     uvs.chart.assign(triangles, kNoNumber);
@@ -65,7 +65,7 @@ CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* pl
         for (size_t t = 0; t < chart.triangles.size(); ++t) {
             uvs.chart[chart.triangles[t]] = static_cast<uint32_t>(i);
             for (size_t k = 0; k < 3; ++k) {
-                const glm::dvec2 uv = places[i].texelOf(chart.uv[3 * t + k]) / cells;
+                const glm::dvec2 uv = (places[i].texelOf(chart.uv[3 * t + k]) + border) / cells;
                 uvs.uv[3 * chart.triangles[t] + k] = glm::clamp(glm::vec2(uv), 0.0f, 1.0f);
             }
         }

@@ -13,9 +13,10 @@ struct CornerUvs {
     std::vector<uint32_t> chart; // per triangle, kNoNumber: no area
 };
 
-/// Returns the UVs of `triangles` triangles whose charts lie at `places`; `cells` of them are one unit.
+/// Returns the UVs of `triangles` triangles whose charts lie at `places`; `cells` of them are one unit, and
+/// their origin lies `border` cells off that of the UVs.
 CornerUvs cornerUvs(const std::vector<PlanarChart>& charts, const ChartPlace* places, double cells,
-                    size_t triangles);
+                    double border, size_t triangles);
 
 /// Returns the mesh with the UVs as TEXCOORD_1; a vertex that has several UVs becomes several.
 Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs);

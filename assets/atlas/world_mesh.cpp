@@ -21,7 +21,7 @@ namespace {
 struct Part {
     const Scene* scene;
     const Primitive* primitive;
-    const AtlasRect* rect;
+    const LightmapAtlas* atlas;
     const std::vector<uint32_t>* charts; // nullptr: no lightmap UVs
     uint32_t chartBase, instance, material;
     glm::mat4 transform;
@@ -109,11 +109,11 @@ void Flattener::addNormals(const std::array<glm::vec3, 3>& positions, const uint
 
 void Flattener::addCorners(const Part& part, const uint32_t* corners) {
     const Primitive& primitive = *part.primitive;
-    const std::vector<glm::vec2>& uvs = uvSet(primitive, part.rect->texCoord);
+    const std::vector<glm::vec2>& uvs = uvSet(primitive, part.atlas->instances[part.instance].texCoord);
     for (int k = 0; k < 3; ++k) {
         mesh_.positions.push_back(positions_[corners[k]]);
         const glm::vec2 uv =
-            part.charts ? uvs[corners[k]] * part.rect->scale + part.rect->offset : glm::vec2(0.0f);
+            part.charts ? part.atlas->sheetUv(part.instance, uvs[corners[k]]) : glm::vec2(0.0f);
         mesh_.lightmapUv.push_back(glm::clamp(uv, 0.0f, 1.0f));
         mesh_.colors.push_back(primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[corners[k]]);
     }
@@ -189,7 +189,7 @@ private:
             const bool mapped = rect.texCoord >= 0 && !charts->chart[k].empty();
             const uint32_t material = primitive.material >= 0 ? static_cast<uint32_t>(primitive.material)
                                                               : static_cast<uint32_t>(scene.materials.size());
-            parts_.push_back({&scene, &primitive, &rect, mapped ? &charts->chart[k] : nullptr, nextChart_,
+            parts_.push_back({&scene, &primitive, &atlas, mapped ? &charts->chart[k] : nullptr, nextChart_,
                               static_cast<uint32_t>(index), material, instance.transform});
             triangles_ += primitive.indices.size() / 3;
         }
@@ -229,6 +229,7 @@ WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
     ASSERT(atlas.instances.size() == scene.instances.size());
     const PartList list(scene, atlas, instances);
     WorldMesh mesh;
+    mesh.pages = atlas.pages;
     Flattener flattener(mesh);
     flattener.reserve(list.triangles());
     const auto addParts = [&](bool masked) {

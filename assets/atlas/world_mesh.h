@@ -19,7 +19,7 @@ constexpr uint32_t kNoChart = 0xffffffffu;
 struct WorldMesh {
     std::vector<glm::vec3> positions;  // [m]
     std::vector<glm::vec3> normals;    // unit, shading
-    std::vector<glm::vec2> lightmapUv; // in the atlas, [0,1]; row = v * size
+    std::vector<glm::vec2> lightmapUv; // on the sheet of all pages, [0,1]; row = v * size
     std::vector<glm::vec2> baseUv;     // of the base colour texture, its transform applied
     std::vector<glm::vec2> emissionUv; // of the emission texture
     std::vector<glm::vec2> metallicUv; // of the metallic-roughness texture
@@ -29,6 +29,7 @@ struct WorldMesh {
     std::vector<uint32_t> chart;       // per triangle, kNoChart: no lightmap UV, blocks light only
     uint32_t chartCount = 0;           // a chart: triangles of one instance connected through shared UV edges
     uint32_t opaqueCount = 0;          // triangles before the first alpha-masked one
+    LightmapPages pages = {};          // of the lightmap
     uint32_t triangleCount() const { return static_cast<uint32_t>(material.size()); }
 };
 

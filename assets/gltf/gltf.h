@@ -32,11 +32,13 @@ void saveGlb(const Scene& scene, const std::string& path);
 
 /// Says what a file has for programs that show lightmaps.
 struct GlbLook {
-    int lightmap = -1;      // index into Scene::textures, -1: none; told by MOZ_lightmap, in TEXCOORD_1
-    float intensity = 1.0f; // what a 1 of its texels stands for [cd/m^2]
-    std::vector<bool> lit;  // by Scene::materials: those that it lights
-    std::vector<int> maps;  // textures in the lightmap's layout, which mipmaps would smear across charts
-    bool matte = false;     // no highlights (KHR_materials_specular), which would take from the diffuse light
+    std::vector<int> lightmaps; // of each page, indices into Scene::textures, or empty; told by MOZ_lightmap,
+                                // in TEXCOORD_1
+    float intensity = 1.0f;     // what a 1 of its texels stands for [cd/m^2]
+    std::vector<bool> lit;      // by Scene::materials: those that it lights
+    std::vector<uint32_t> page; // by Scene::materials: which page does; empty: there is one
+    std::vector<int> maps;      // textures in the lightmap's layout, which mipmaps would smear across charts
+    bool matte = false; // no highlights (KHR_materials_specular), which would take from the diffuse light
 };
 
 /// Returns the bytes that saveGlb() writes for a scene whose sky has no picture. `pictures`, where it is not

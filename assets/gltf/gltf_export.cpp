@@ -293,6 +293,7 @@ void GlbWriter::addNodes() {
             use(gltf::kVisibility);
         }
         if (instance.density != 1.0f) node["extras"]["relume"]["density"] = instance.density;
+        if (scene_.pages > 1) node["extras"]["relume"]["page"] = instance.page;
         nodes.push_back(std::move(node));
     }
     for (const gltf::Batch& batch : batches.batches)
@@ -310,6 +311,7 @@ void GlbWriter::addNodes() {
     if (!nodes.empty()) root["nodes"] = std::move(roots);
     if (!scene_.sky.preview && (scene_.sky.shines() || !skyFile_.empty()))
         root["extras"]["relume"]["sky"] = gltf::skyJson(scene_.sky, skyFile_);
+    if (scene_.pages > 1) root["extras"]["relume"]["pages"] = scene_.pages;
     json_["scenes"].push_back(std::move(root));
     if (!nodes.empty()) json_["nodes"] = std::move(nodes);
 }

@@ -100,9 +100,11 @@ void addLook(Json& json, const GlbLook& look, size_t material, UsedExtensions& u
         json["extensions"]["KHR_materials_specular"]["specularFactor"] = 0.0f;
         used["KHR_materials_specular"] = true;
     }
-    if (look.lightmap < 0 || material >= look.lit.size() || !look.lit[material]) return;
+    if (look.lightmaps.empty() || material >= look.lit.size() || !look.lit[material]) return;
+    const uint32_t page = look.page.empty() ? 0 : look.page[material];
+    if (look.lightmaps.size() > 1) json["extras"]["relume"]["page"] = page;
     Json& lightmap = json["extensions"]["MOZ_lightmap"];
-    lightmap["index"] = look.lightmap;
+    lightmap["index"] = look.lightmaps[page];
     lightmap["texCoord"] = 1;
     lightmap["intensity"] = look.intensity;
     used["MOZ_lightmap"] = true;

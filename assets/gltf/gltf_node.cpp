@@ -7,6 +7,7 @@
 #include "assets/gltf/gltf_instancing.h"
 #include "assets/gltf/gltf_node.h"
 #include "assets/gltf/file/gltf_value.h"
+#include "assets/model/lightmap_pages.h"
 #include "assets/model/scene_limits.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -76,6 +77,22 @@ float densityOf(Build& build, size_t index) {
     return 1.0f;
 }
 
+/// Returns the page of the lightmap for which a node's mesh has lightmap UVs; what is wrong with it is warned
+/// about.
+uint32_t pageOf(Build& build, size_t index) {
+    const json& node = build.nodes[index];
+    const json* value = ownExtra(node, "page");
+    if (!value) return 0;
+    const double page = value->is_number() ? value->get<double>() : -1.0;
+    if (page >= 0.0 && page < build.scene.pages && page == std::floor(page))
+        return static_cast<uint32_t>(page);
+    build.warnings.add(labelOf(node, index),
+                       fmt::format("its lightmap page is none of the {} that its scene tells of, page 0 is "
+                                   "used",
+                                   build.scene.pages));
+    return 0;
+}
+
 /// Adds the objects of a node: one, or one for each copy that it makes of its mesh.
 void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visible) {
     const json& node = build.nodes[index];
@@ -89,6 +106,7 @@ void addInstances(Build& build, size_t index, const glm::dmat4& world, bool visi
     instance.node = static_cast<int>(index);
     instance.hidden = !visible;
     instance.density = densityOf(build, index);
+    instance.page = pageOf(build, index);
     instance.bent = build.skinnedNodes.contains(index);
     instance.transform = instance.bent ? glm::mat4(1.0f) : glm::mat4(world);
     const std::vector<NodeCopy> copies = copiesOf(build, node, labelOf(node, index));
@@ -240,7 +258,21 @@ glm::dmat4 NodePlaces::parentWorld(size_t node) {
     return parents_[node] < 0 ? glm::dmat4(1.0) : world(static_cast<size_t>(parents_[node]));
 }
 
+/// Notes how many pages the lightmap has for which the scene's lightmap UVs are meant.
+void readPages(Build& build) {
+    if (build.scenes.empty()) return; // a file may do without scenes
+    const json* value = ownExtra(build.scenes[static_cast<size_t>(build.sceneNumber)], "pages");
+    if (!value) return;
+    const double pages = value->is_number() ? value->get<double>() : 0.0;
+    if (pages >= 1.0 && pages <= kMostPages && pages == std::floor(pages))
+        build.scene.pages = static_cast<uint32_t>(pages);
+    else
+        build.warnings.add(
+            "scene", fmt::format("its number of lightmap pages is none from 1 to {}, 1 is used", kMostPages));
+}
+
 void buildNodes(Build& build, NodePlaces& places) {
+    readPages(build);
     struct Visit {
         int node;
         glm::dmat4 parent;

@@ -86,6 +86,7 @@ struct Instance {
     glm::mat4 transform{1.0f}; // object to world
     bool hidden = false;       // left out: blocks no light, receives and sends none
     float density = 1.0f;      // factor on the texels per metre that an unwrap gives it, > 0
+    uint32_t page = 0;         // of the lightmap, in which its lightmap UVs are meant; below Scene::pages
     int node = -1;             // of the file
     int copy = -1;     // which of the node's instances (EXT_mesh_gpu_instancing); -1: the node has one
     bool bent = false; // by a skin, whose joints say where it stands: its node's transform does not
@@ -155,6 +156,7 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     Sky sky;
+    uint32_t pages = 1; // of the lightmap for which its UVs were made (lightmap_pages.h)
     // What the file offers to choose from: its scenes (a number stands for a scene without a name) and the
     // variants of its materials.
     std::vector<std::string> sceneNames, variantNames;

@@ -5,6 +5,7 @@
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
 #include "bake/baker/cover_search.h"
+#include "bake/baker/host_room.h"
 #include "bake/baker/inside_search.h"
 #include "bake/baker/object_mover.h"
 #include "bake/layers/layer_solver.h"
@@ -53,20 +54,30 @@ std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& set
         return deviceBytes(smaller, scene, device.info().software());
     };
     const uint64_t needed = bytes(size);
-    const uint32_t imageLimit = std::min(kMaxSize, device.limits().maxImageDimension2D);
+    // All pages are drawn side by side as one image.
+    const uint32_t sheetLimit = std::min(kMaxSheetSize, device.limits().maxImageDimension2D);
+    const uint32_t imageLimit = std::min(kMaxSize, scene.pages.edgeOf(sheetLimit));
     if (needed <= limit && size <= imageLimit) return "";
     constexpr uint32_t kStep = 64;
     uint32_t fits = std::min(size, imageLimit) / kStep * kStep;
     while (fits > 0 && bytes(fits) > limit)
         fits -= kStep;
-    return "--size " + std::to_string(size) + " needs " + std::to_string(needed >> 20) + " MiB on '" +
-           device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " +
-           (fits > 0 ? "--size " + std::to_string(fits) + " fits" : "no size fits, close other programs");
+    const std::string pages =
+        scene.pages.count > 1 ? " of " + std::to_string(scene.pages.count) + " pages" : "";
+    const std::string mend =
+        fits > 0 ? "--size " + std::to_string(fits) + pages + " fits" : "no size fits, close other programs";
+    if (needed <= limit)
+        return "--size " + std::to_string(size) + pages + " makes a map of " +
+               std::to_string(scene.pages.sheetOf(size)) + " texels a side, and '" + device.info().name +
+               "' takes " + std::to_string(scene.pages.sheetOf(imageLimit)) + ": " + mend;
+    return "--size " + std::to_string(size) + pages + " needs " + std::to_string(needed >> 20) + " MiB on '" +
+           device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " + mend;
 }
 
 uint64_t Baker::deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software) {
-    const uint64_t texels = uint64_t{settings.size} * settings.size;
-    const SolverExtent all{.chunkCount = static_cast<uint32_t>(texels / shader::kChunk + 1),
+    const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
+    const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size; // at the most
+    const SolverExtent all{.chunkCount = static_cast<uint32_t>(patches / shader::kChunk + 1),
                            .texels = texels,
                            .software = software,
                            .skyPixels = scene.skyPixels,
@@ -111,7 +122,13 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
 
 // Throws Error where the size does not fit. What a former bake has left is given up before.
 void Baker::requireRoom(BakeSurfaces& surfaces) const {
-    const SceneExtent extent = extentOf(scene_, surfaces.mesh.triangleCount());
+    const LightmapPages& pages = surfaces.mesh.pages;
+    if (pages.count > 1 && settings_.size % kPageStep != 0)
+        throw Error("--size " + std::to_string(settings_.size) + ": the lightmap has " +
+                    std::to_string(pages.count) + " pages, whose size is a multiple of " +
+                    std::to_string(kPageStep) + ": give --size " +
+                    std::to_string((settings_.size + kPageStep - 1) / kPageStep * kPageStep));
+    const SceneExtent extent = extentOf(scene_, surfaces.mesh);
     const auto problem = [&] {
         const auto free = static_cast<double>(device_.freeMemory());
         return sizeProblem(device_, settings_, extent, static_cast<uint64_t>(kMemoryShare * free));
@@ -122,20 +139,24 @@ void Baker::requireRoom(BakeSurfaces& surfaces) const {
         now = problem();
     }
     if (!now.empty()) throw Error(now);
+    const std::optional<uint64_t> host = freeHostMemory();
+    now = host ? hostProblem(settings_, extent, *host) : "";
+    if (!now.empty()) throw Error(now);
 }
 
 void Baker::makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock) {
     const TransportSettings& transport = settings_.solver.transport;
     onPhase("cit");
     const vk::MemoryOwner owner("cit");
-    const TextureGroup group = rasterizeTextureGroup(
-        device_, scene_, mesh,
-        {.size = settings_.size, .conservative = settings_.conservative, .rtrad = transport.rtrad});
+    const TextureGroup group = rasterizeTextureGroup(device_, scene_, mesh,
+                                                     {.size = mesh.pages.sheetOf(settings_.size),
+                                                      .conservative = settings_.conservative,
+                                                      .rtrad = transport.rtrad});
     clock.end("cit");
     onPhase("patches");
     const PatchDesc desc{
         .reflectivity = transport.reflectivity, .rtrad = transport.rtrad, .pool = &device_.workers()};
-    if (goesOnWith(former)) {
+    if (goesOnWith(former, mesh.pages)) {
         const KnownCovers known =
             knownCovers({former->scene, former->patches}, mesh, scene_.instances.size());
         patches_ = buildPatches(scene_, std::move(mesh), group, desc, known);
@@ -155,14 +176,15 @@ bool Baker::followsObjects() const {
 
 // Tells whether there is something to go on with. Directions that a chunk shares would be others where its
 // patches are.
-bool Baker::goesOnWith(const FormerBake* former) const {
-    return former != nullptr && followsObjects() && former->patches.scene.size == settings_.size &&
+bool Baker::goesOnWith(const FormerBake* former, const LightmapPages& pages) const {
+    return former != nullptr && followsObjects() && former->patches.scene.mesh.pages == pages &&
+           former->patches.scene.pageSize() == settings_.size &&
            settings_.solver.links.rotation != Rotation::Tile;
 }
 
 // Finds what stays of a former bake.
 std::optional<Baker::Carry> Baker::carryFrom(FormerBake* former) {
-    if (!goesOnWith(former)) return std::nullopt;
+    if (!goesOnWith(former, patches_.scene.mesh.pages)) return std::nullopt;
     Carry carry{.former = *former,
                 .patches = carryPatches({former->scene, former->patches}, {scene_, patches_})};
     carrySearches(carry.patches, former->patches, patches_);

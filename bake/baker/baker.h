@@ -32,7 +32,7 @@ struct MoveCounters {
 class Baker {
 public:
     /// The largest lightmap edge.
-    static constexpr uint32_t kMaxSize = kMaxLightmapSize;
+    static constexpr uint32_t kMaxSize = kMaxPageSize;
 
     /// Prepares everything. Throws Error when the size does not fit the device's memory (before anything is
     /// allocated), no texel is covered or the tracer cannot run. Device and scene must outlive it. phaseHook
@@ -103,7 +103,7 @@ private:
     Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
           const BakeSettings& settings, PhaseHook phaseHook);
     void requireRoom(BakeSurfaces& surfaces) const;
-    bool goesOnWith(const FormerBake* former) const;
+    bool goesOnWith(const FormerBake* former, const LightmapPages& pages) const;
     void makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock);
     void makeTracers(Carry* carry);
     bool followsObjects() const;

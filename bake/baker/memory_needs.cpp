@@ -44,10 +44,11 @@ uint64_t probeNeeds(const BakeSettings& settings, const SceneExtent& scene, cons
 
 } // namespace
 
-SceneExtent extentOf(const Scene& scene, uint64_t triangles) {
-    SceneExtent extent{.triangles = triangles,
+SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh) {
+    SceneExtent extent{.triangles = mesh.triangleCount(),
                        .skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
-                       .skyRows = scene.sky.height};
+                       .skyRows = scene.sky.height,
+                       .pages = mesh.pages};
     for (const Image& image : scene.images)
         extent.pictureBytes += uint64_t{image.width} * image.height * kPictureTexelBytes;
     return extent;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assets/atlas/world_mesh.h"
 #include "assets/model/scene.h"
 #include "bake/baker/bake_settings.h"
 #include "bake/solver/solver_extent.h"
@@ -11,8 +12,9 @@ struct SceneExtent {
     uint64_t triangles = 0;
     uint64_t pictureBytes = 0; // of textures, without mips
     uint64_t skyPixels = 0, skyRows = 0;
+    LightmapPages pages = {}; // for which its lightmap coordinates are
 };
-SceneExtent extentOf(const Scene& scene, uint64_t triangles);
+SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh);
 
 /// The device bytes of a bake, by what takes them. Caches that grow as long as there is memory are not
 /// counted, but for the links of one sample pass.
@@ -29,7 +31,7 @@ struct MemoryNeeds {
     /// Returns the most that is taken at a time.
     uint64_t total() const;
 };
-/// Returns what a bake needs; `solver.texels` is settings.size squared.
+/// Returns what a bake needs; `solver.texels` counts those of the sheet of all pages.
 MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver);
 
 /// Tells whether rays march through voxels, all or some of them.

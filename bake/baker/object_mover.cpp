@@ -25,7 +25,7 @@ static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
 
 // A bit in ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
 constexpr uint32_t kHome = 0x80000000u;
-static_assert(kHome > kMaxLightmapSize * kMaxLightmapSize);
+static_assert(kHome > kMaxSheetSize * kMaxSheetSize);
 
 bool liesInside(const shader::Patch& patch) {
     return patch.area > 0.0f && (patch.flags & shader::kPatchSends) == 0;
@@ -103,7 +103,7 @@ ObjectMover::ObjectMover(const On& on, bool conservative)
     const std::vector<shader::Patch>& patches = on.patches.scene.patches;
     texels_.resize(patches.size());
     for (uint32_t i = 0; i < patches.size(); ++i) {
-        const uint32_t texel = patches[i].flags >> 8;
+        const uint32_t texel = shader::patchTexel(patches[i].flags);
         texels_[i] = texel | (on.patches.scene.texelToPatch[texel] == i ? kHome : 0u);
     }
 }
@@ -197,7 +197,7 @@ std::optional<ObjectMover::Part> ObjectMover::makePart(const Moved& moved, const
         buildPatches(on_.scene, std::move(mesh), group, {.part = true, .pool = &on_.device.workers()});
     if (part.patches.count != part.slots.size()) return {};
     for (uint32_t i = 0; i < part.patches.count; ++i) {
-        const uint32_t texel = part.patches.scene.patches[i].flags >> 8;
+        const uint32_t texel = shader::patchTexel(part.patches.scene.patches[i].flags);
         const bool home = part.patches.scene.texelToPatch[place(texel)] == i;
         if (texels_[part.slots[i]] != (texel | (home ? kHome : 0u))) return {};
     }

@@ -64,10 +64,12 @@ private:
         return (flags & shader::kPatchSends) != 0 && (flags & shader::kPatchBackSide) == 0;
     }
     glm::ivec2 texelOf(uint32_t i) const {
-        const int key = static_cast<int>(set_.scene.patches[i].flags >> 8);
+        const int key = static_cast<int>(shader::patchTexel(set_.scene.patches[i].flags));
         return {key % size_, key / size_};
     }
-    bool placed(uint32_t i) const { return set_.scene.texelToPatch[set_.scene.patches[i].flags >> 8] == i; }
+    bool placed(uint32_t i) const {
+        return set_.scene.texelToPatch[shader::patchTexel(set_.scene.patches[i].flags)] == i;
+    }
     size_t windowIndex(glm::ivec2 window) const {
         return static_cast<size_t>(window.y) * static_cast<size_t>(windows_) + static_cast<size_t>(window.x);
     }
@@ -177,7 +179,7 @@ private:
         places_.push_back({i, set_.scene.patchChart[i], texelOf(i)});
         Patch receiver = set_.scene.patches[i];
         const auto key = static_cast<uint32_t>(window.y * size_ + window.x);
-        receiver.flags = (receiver.flags & 0xffu) | key << 8;
+        receiver.flags = (receiver.flags & shader::kFlagBits) | key << shader::kTexelShift;
         result_.receivers.push_back(receiver);
     }
 

@@ -97,7 +97,7 @@ inline void LineSmoother::load(uint32_t firstLine, uint32_t at, Place& place) co
         const uint32_t index = work_.texelToPatch[texel];
         if (index == kNoPatch) continue;
         const Patch& p = work_.patches[index];
-        if (p.flags >> 8 != texel) continue;
+        if (shader::patchTexel(p.flags) != texel) continue;
         place.patch[lane] = index;
         place.px[lane] = p.position.x, place.py[lane] = p.position.y, place.pz[lane] = p.position.z;
         place.gx[lane] = p.normal.x, place.gy[lane] = p.normal.y, place.gz[lane] = p.normal.z;
@@ -207,7 +207,7 @@ void resolveChunk(const HostResolve& work, uint32_t chunk, shader::ResolveSums& 
     const size_t count = size_t{work.chunkCount} * kChunk;
     for (size_t index = size_t{chunk} * kChunk, end = index + kChunk; index < end; ++index) {
         const Patch& p = work.patches[index];
-        const bool smooths = work.reach > 0 && work.texelToPatch[p.flags >> 8] == index;
+        const bool smooths = work.reach > 0 && work.texelToPatch[shader::patchTexel(p.flags)] == index;
         const glm::vec4* from = smooths ? work.rows : work.sums;
         Replicates raw{}, smoothed{}, moved{};
         for (size_t q = 0; q < kReplicates && work.scale > 0.0f; ++q) {

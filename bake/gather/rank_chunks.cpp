@@ -35,7 +35,8 @@ public:
     std::vector<uint32_t> tilesOf(uint32_t chunk) const {
         std::vector<uint32_t> tiles;
         for (uint32_t lane = 0; lane < shader::kChunk; ++lane) {
-            const uint32_t texel = scene_.patches[size_t{chunk} * shader::kChunk + lane].flags >> 8;
+            const uint32_t texel =
+                shader::patchTexel(scene_.patches[size_t{chunk} * shader::kChunk + lane].flags);
             const uint32_t x = texel % scene_.size / kTileTexels, y = texel / scene_.size / kTileTexels;
             const uint32_t tile = y * edge_ + x;
             if (y < edge_ && (tiles.empty() || std::find(tiles.begin(), tiles.end(), tile) == tiles.end()))

@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/worker_pool.h"
 #include "assets/images/finite_image.h"
+#include "assets/images/paged_image.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,7 @@ namespace {
 constexpr float kPatchCoverage = 1.0f, kFilledCoverage = 0.5f;
 
 struct Planes {
-    uint32_t size;
+    uint32_t size, page;                       // edges of the sheet, and of a page
     std::array<std::vector<float>*, 4> planes; // R, G, B, coverage
 
     glm::vec3 color(size_t i) const { return {(*planes[0])[i], (*planes[1])[i], (*planes[2])[i]}; }
@@ -40,6 +41,8 @@ bool fromNeighbours(const Planes& image, uint32_t x, uint32_t y, bool darkest, g
             const int nx = static_cast<int>(x) + dx, ny = static_cast<int>(y) + dy,
                       n = static_cast<int>(image.size);
             if ((dx == 0 && dy == 0) || nx < 0 || ny < 0 || nx >= n || ny >= n) continue;
+            if (image.page != image.size && !LightmapPages::together(image.page, {x, y}, {nx, ny}))
+                continue; // they are strangers
             const size_t i = static_cast<size_t>(ny) * image.size + static_cast<size_t>(nx);
             if (image.coverage(i) == 0.0f) continue;
             const glm::vec3 c = image.color(i);
@@ -89,6 +92,7 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
     for (const char* channel : {"R", "G", "B", "coverage"})
         image.add(channel);
     Planes planes{patches.scene.size,
+                  patches.scene.pageSize(),
                   {&image.planes[0], &image.planes[1], &image.planes[2], &image.planes[3]}};
     const size_t width = patches.scene.size, texels = patches.scene.texelToPatch.size();
     const auto scatter = [&](size_t texel) {
@@ -107,6 +111,7 @@ FloatImage makeLightmap(const PatchSet& patches, const std::vector<glm::vec4>& l
     });
     if (desc.sew) sewSeams(planes, desc);
     requireFiniteTexels(image);
+    noteLightmapPages(image, patches.scene.mesh.pages);
     return image;
 }
 

@@ -136,7 +136,7 @@ private:
 
 // Loads the senders that a chunk of receivers has before it.
 void SideGather::load(std::vector<SenderLanes>& lanes, uint32_t receivers) const {
-    const uint32_t key = work_.patches[size_t{receivers} * kChunk].flags >> 8;
+    const uint32_t key = shader::patchTexel(work_.patches[size_t{receivers} * kChunk].flags);
     for (uint32_t c = 0; c < lanes.size(); ++c) {
         if (!sends(c)) continue;
         SenderLanes& s = lanes[c];

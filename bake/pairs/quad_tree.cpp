@@ -59,7 +59,7 @@ private:
     std::array<Members, 4> quarters(const Members& members, uint32_t edge) const {
         std::array<Members, 4> result;
         for (uint32_t m : members) {
-            const uint32_t texel = set_.scene.patches[m].flags >> 8;
+            const uint32_t texel = shader::patchTexel(set_.scene.patches[m].flags);
             const uint32_t x = texel % set_.scene.size, y = texel / set_.scene.size;
             result[(x & edge / 2 ? 1 : 0) + (y & edge / 2 ? 2 : 0)].push_back(m);
         }
@@ -81,7 +81,7 @@ private:
     void addLeaf(const Members& leaf) {
         const bool dark =
             std::all_of(leaf.begin(), leaf.end(), [&](uint32_t m) { return isDark(radiance_[m]); });
-        if (!dark) list_.add(leaf, nearestToMiddle(set_, leaf), set_.scene.patches[leaf[0]].flags);
+        if (!dark) list_.add(leaf, nearestToMiddle(set_, leaf), senderKey(set_.scene.patches[leaf[0]]));
     }
 
     Node node(Members members, uint32_t edge) const {
@@ -172,7 +172,7 @@ SenderList quadTreeSenders(const PatchSet& patches, const std::vector<uint32_t>&
     const std::vector<float> weights = rtradWeights(patches, radiance, desc);
     SenderListBuilder builder(patches);
     for (uint32_t i = 0; i < patches.count; ++i) {
-        const float weight = weights[patches.scene.patches[i].flags >> 8];
+        const float weight = weights[shader::patchTexel(patches.scene.patches[i].flags)];
         if (weight > 0.0f && !isDark(radiance[i])) builder.addWeighted(i, weight);
     }
     return builder.finish();

@@ -55,7 +55,7 @@ std::vector<glm::vec4> mipRadiance(const PatchSet& set, const SenderList& list,
     const double scale = double(level.size) / set.scene.size;
     std::vector<glm::vec4> result(list.senders.size(), glm::vec4(0.0f));
     for (uint32_t i = 0; i < list.count; ++i) {
-        const uint32_t texel = list.patches[i].flags >> 8;
+        const uint32_t texel = shader::patchTexel(list.patches[i].flags);
         const glm::dvec2 corner(texel % set.scene.size, texel / set.scene.size);
         result[i] = list.weights[i] * level.sample((corner + 0.5 * window) * scale);
     }

@@ -13,7 +13,7 @@ using shader::kNoPatch;
 constexpr uint32_t kTile = 8; // windows, as tiles of texels: a full tile is one chunk
 
 glm::uvec2 texelPlace(const PatchSet& set, uint32_t patch) {
-    const uint32_t texel = set.scene.patches[patch].flags >> 8;
+    const uint32_t texel = shader::patchTexel(set.scene.patches[patch].flags);
     return {texel % set.scene.size, texel / set.scene.size};
 }
 
@@ -135,6 +135,13 @@ size_t nearestToMiddle(const PatchSet& set, const std::vector<uint32_t>& members
 
 // A back side has no chart of its own: it goes by its front's. Where the front is not to be found (in charts
 // that cover no texel centre) it stays alone.
+uint32_t senderKey(const shader::Patch& first) {
+    // Draws of earlier versions stay: a texel's number took 24 bits then. Above, two senders may share a key,
+    // which receivers mix with their own.
+    constexpr uint32_t kShift = 8;
+    return shader::patchTexel(first.flags) << kShift | (first.flags & shader::kFlagBits);
+}
+
 std::vector<uint32_t> mergeableParts(const PatchSet& set) {
     const uint32_t charts = set.scene.mesh.chartCount;
     uint32_t alone = 2 * charts;
@@ -142,7 +149,8 @@ std::vector<uint32_t> mergeableParts(const PatchSet& set) {
     for (uint32_t i = 0; i < parts.size(); ++i) {
         const shader::Patch& patch = set.scene.patches[i];
         const bool back = (patch.flags & shader::kPatchBackSide) != 0;
-        const uint32_t front = i < set.count ? set.scene.texelToPatch[patch.flags >> 8] : kNoPatch;
+        const uint32_t front =
+            i < set.count ? set.scene.texelToPatch[shader::patchTexel(patch.flags)] : kNoPatch;
         if (front != kNoPatch && set.scene.patches[front].position == patch.position)
             parts[i] = 2 * set.scene.patchChart[front] + (back ? 1 : 0);
         else
@@ -172,7 +180,7 @@ SenderList windowSenders(const PatchSet& set, uint32_t edge) {
         for (auto run = first; run != last;) {
             const auto end = std::find_if(run, last, [&](uint32_t p) { return parts[p] != parts[*run]; });
             members.assign(run, end);
-            builder.add(members, nearestToMiddle(set, members), set.scene.patches[members[0]].flags);
+            builder.add(members, nearestToMiddle(set, members), senderKey(set.scene.patches[members[0]]));
             run = end;
         }
     }

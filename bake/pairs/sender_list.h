@@ -51,6 +51,9 @@ private:
 /// Returns the index of the member nearest to the middle of all, in texels; of equals the first.
 size_t nearestToMiddle(const PatchSet& patches, const std::vector<uint32_t>& members);
 
+/// Returns the key of the random numbers of a sender that begins with this patch.
+uint32_t senderKey(const shader::Patch& first);
+
 /// Returns per patch the number of its chart's side: patches of one number may be merged.
 std::vector<uint32_t> mergeableParts(const PatchSet& patches);
 

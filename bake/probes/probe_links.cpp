@@ -30,7 +30,7 @@ Patch faceOf(const glm::vec3& point, uint32_t number) {
     constexpr float kNearest = 4.8e-7f; // eight units in the last place of a float
     patch.offset = kNearest * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z), 1e-3f});
     patch.normal = patch.shading = kAxes[number % kProbeFaces];
-    patch.flags = shader::kPatchSends | number << 8;
+    patch.flags = shader::kPatchSends | number << shader::kTexelShift;
     return patch;
 }
 

@@ -18,7 +18,7 @@ using shader::kChunk;
 using shader::kNoPatch;
 
 glm::ivec2 texelOf(const PatchSet& set, uint32_t patch) {
-    const uint32_t texel = set.scene.patches[patch].flags >> 8;
+    const uint32_t texel = shader::patchTexel(set.scene.patches[patch].flags);
     return {static_cast<int>(texel % set.scene.size), static_cast<int>(texel / set.scene.size)};
 }
 

@@ -181,7 +181,7 @@ private:
         ChartNumbers chartsThen, chartsNow;
         return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](uint32_t i, uint32_t k) {
             const shader::Patch &x = was.scene.patches[i], &y = is.scene.patches[k];
-            const uint32_t texel = x.flags >> 8;
+            const uint32_t texel = shader::patchTexel(x.flags);
             return x.position == y.position && x.offset == y.offset && x.normal == y.normal &&
                    x.area == y.area && x.shading == y.shading &&
                    (x.flags | shader::kPatchSends) == (y.flags | shader::kPatchSends) &&

@@ -8,8 +8,12 @@
 namespace relume {
 
 constexpr uint32_t kTileTexels = 8; // along an edge
-/// The largest edge of a lightmap [texels]: texels are numbered by 24 bits in Patch::flags.
-constexpr uint32_t kMaxLightmapSize = 4096;
+/// The largest edge of a lightmap's page [texels].
+constexpr uint32_t kMaxPageSize = 8192;
+/// The largest edge of the sheet of all pages [texels]: texels are numbered by 29 bits in Patch::flags.
+constexpr uint32_t kMaxSheetSize = 23168;
+static_assert(uint64_t{kMaxSheetSize} * kMaxSheetSize <= uint64_t{1} << (32 - shader::kTexelShift));
+static_assert(kMaxSheetSize % kPageStep == 0 && kPageStep % kTileTexels == 0);
 
 /// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
 /// one entry per patch, padding included. Patches of objects that were hidden later look like padding.

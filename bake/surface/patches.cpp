@@ -225,7 +225,7 @@ private:
                 const NewPatch p = thinPatch(thin);
                 // Where no other patch has its texel it is shown there: else neighbours would fill it, which
                 // are strangers where charts lie side by side.
-                const uint32_t texel = p.patch.flags >> 8;
+                const uint32_t texel = shader::patchTexel(p.patch.flags);
                 uint32_t& shown =
                     set_.scene.texelToPatch[group_.window.index(texel % group_.size, texel / group_.size)];
                 if (shown == kNoPatch) shown = next;
@@ -329,7 +329,7 @@ private:
         p.patch.shading = shading;
         p.patch.area = area;
         p.patch.offset = rtrad_ ? 0.0f : kOffset * std::sqrt(area) + kFloatError * reach;
-        p.patch.flags = shader::kPatchSends | texel << 8;
+        p.patch.flags = shader::kPatchSends | texel << shader::kTexelShift;
     }
 
     // Tells whether there is a patch on the back, too, where the texel has this emission for a factor of 1.

@@ -16,7 +16,8 @@ constexpr uint32_t kNeighbours = 8;
 class SeamPlanBuilder {
 public:
     SeamPlanBuilder(const PatchSet& set, uint32_t rings)
-        : size_(set.scene.size), ring_(size_t{size_} * size_, kEmpty), place_(ring_.size(), 0) {
+        : size_(set.scene.size), page_(set.scene.pageSize()), ring_(size_t{size_} * size_, kEmpty),
+          place_(ring_.size(), 0) {
         ASSERT(rings < kEmpty);
         plan_.rings = rings;
         plan_.chunkCount = set.chunkCount();
@@ -37,7 +38,7 @@ public:
     }
 
 private:
-    // Calls f(index of the neighbour, its texel) for those within the lightmap.
+    // Calls f(index of the neighbour, its texel) for those within its page.
     template<typename F>
     void forNeighbours(uint32_t texel, const F& f) const {
         const auto x = static_cast<int>(texel % size_), y = static_cast<int>(texel / size_);
@@ -45,6 +46,7 @@ private:
             const glm::ivec2 to = glm::ivec2(x, y) + shader::seamOffset(n);
             const auto last = static_cast<int>(size_) - 1;
             if (to.x < 0 || to.y < 0 || to.x > last || to.y > last) continue;
+            if (page_ != size_ && !LightmapPages::together(page_, {x, y}, to)) continue; // strangers
             f(n, static_cast<uint32_t>(to.y) * size_ + static_cast<uint32_t>(to.x));
         }
     }
@@ -59,7 +61,8 @@ private:
             });
         }
         std::sort(texels.begin(), texels.end()); // neighbouring lanes then write neighbouring texels
-        std::vector<uint32_t> fills, counts(size_t{plan_.chunkCount} + 1, 0);
+        std::vector<glm::uvec2> fills;
+        std::vector<uint32_t> counts(size_t{plan_.chunkCount} + 1, 0);
         for (uint32_t texel : texels) {
             fills.push_back(fillOf(texel, ring));
             for (uint32_t chunk : chunksOf(texel))
@@ -78,7 +81,7 @@ private:
     }
 
     // Notes which chunks the texel depends on and returns its entry.
-    uint32_t fillOf(uint32_t texel, uint8_t ring) {
+    glm::uvec2 fillOf(uint32_t texel, uint8_t ring) {
         std::vector<uint32_t> chunks;
         uint32_t mask = 0;
         forNeighbours(texel, [&](uint32_t n, uint32_t from) {
@@ -96,7 +99,7 @@ private:
         place_[texel] = static_cast<uint32_t>(chunkLists_.size());
         chunkLists_.push_back(static_cast<uint32_t>(chunks.size()));
         chunkLists_.insert(chunkLists_.end(), chunks.begin(), chunks.end());
-        return texel << 8 | mask;
+        return {texel, mask};
     }
 
     std::span<const uint32_t> chunksOf(uint32_t filled) const {
@@ -104,7 +107,7 @@ private:
         return std::span(chunkLists_).subspan(size_t{at} + 1, chunkLists_[at]);
     }
 
-    const uint32_t size_;
+    const uint32_t size_, page_;
     SeamPlan plan_;
     std::vector<uint8_t> ring_;        // per texel: 0 shows a patch, kEmpty nothing
     std::vector<uint32_t> place_;      // per texel: its chunk; of a filled one where its list begins

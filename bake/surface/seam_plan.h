@@ -12,11 +12,11 @@ namespace relume {
 struct SeamPlan {
     uint32_t rings = 0;      // filled one after the other
     uint32_t chunkCount = 0; // of patches
-    // An entry is texel << 8 | bits of its neighbours that are filled before it (shader::seamOffset); its
+    // An entry is a texel, and bits of its neighbours that are filled before it (shader::seamOffset); its
     // light is their mean. The entries of ring r (from 1 on) that depend on chunk c, through other fills or
     // at once, are fills[starts[at(r, c)]] .. fills[starts[at(r, c) + 1]]; a texel that depends on several
     // chunks is listed with each.
-    std::vector<uint32_t> fills;
+    std::vector<glm::uvec2> fills;
     std::vector<uint32_t> starts;
 
     size_t at(uint32_t ring, uint32_t chunk) const { return size_t{ring - 1} * chunkCount + chunk; }

@@ -28,7 +28,7 @@ TileParts makeTileParts(const PatchSet& patches) {
     std::vector<std::pair<uint32_t, uint32_t>> here; // objects of this tile, and their parts
     uint32_t tile = UINT32_MAX;
     for (size_t i = 0; i < all.size(); ++i) {
-        const uint32_t texel = all[i].flags >> 8, size = patches.scene.size;
+        const uint32_t texel = shader::patchTexel(all[i].flags), size = patches.scene.size;
         const uint32_t own = texel / size / kTileTexels * size + texel % size / kTileTexels;
         if (own != tile) here.clear();
         tile = own;

@@ -13,7 +13,7 @@ namespace relume {
 /// turn a hit into a patch. It outlives its tracers, which Tracer::update() tells when it changes.
 struct TraceScene {
     WorldMesh mesh;
-    uint32_t size = 0;                  // lightmap edge [texels]
+    uint32_t size = 0;                  // edge of the sheet of all pages [texels]
     bool rtrad = false;                 // RTRad's ray intervals (--preset rtrad)
     std::vector<shader::Patch> patches; // tile order, padded with patches that send nothing to whole chunks
     std::vector<uint32_t> patchChart;   // per patch; kNoChart for padding and back sides
@@ -24,6 +24,7 @@ struct TraceScene {
     std::vector<shader::AlphaMaterial> alphaMaterials;
     std::vector<uint8_t> alphaTexels; // 8-bit alpha of all masked textures
 
+    uint32_t pageSize() const { return mesh.pages.edgeOf(size); } // [texels]
     uint32_t chunkCount() const { return static_cast<uint32_t>(patches.size() / shader::kChunk); }
 };
 

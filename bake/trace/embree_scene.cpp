@@ -235,7 +235,7 @@ uint32_t EmbreeScene::Impl::trace(const Block& block, uint32_t* bits) const {
 uint32_t EmbreeScene::Impl::listBlock(const OcclusionArrays& work, uint32_t row, uint32_t column,
                                       uint32_t* bits) const {
     std::array<Patch, kChunk> patches{};
-    const uint32_t rowKey = scene.patches[size_t{row} * kChunk].flags >> 8;
+    const uint32_t rowKey = shader::patchTexel(scene.patches[size_t{row} * kChunk].flags);
     std::array<uint32_t, kChunk> index;
     for (uint32_t j = 0; j < kChunk; ++j) {
         const shader::Sender& sender = work.senders[size_t{column} * kChunk + j];

@@ -77,7 +77,7 @@ FUNCTION vec3 aroundNormal(vec3 n, vec3 d) {
     return d.x * t + d.y * u + d.z * n;
 }
 
-FUNCTION uint seedKey(Patch p) { return p.flags >> 8; }
+FUNCTION uint seedKey(Patch p) { return patchTexel(p.flags); }
 
 // Samples take turns among kReplicates sequences: these return which one, as a seed for the scrambling, and
 // the place in it.

@@ -4,7 +4,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Sen
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MemberList { uint items[]; };
 
 // Returns what a chunk of receivers draws by: the texel of its first patch.
-uint chunkKey(ADDRESS patches, uint chunk) { return Rows(patches).items[chunk * kChunk * 3u + 2u].w >> 8u; }
+uint chunkKey(ADDRESS patches, uint chunk) { return patchTexel(Rows(patches).items[chunk * kChunk * 3u + 2u].w); }
 
 // Returns the patch that stands for a sender before receivers of this key; kNoPatch for padding.
 uint drawnMember(ADDRESS senders, ADDRESS members, uint index, uint rowKey) {

@@ -38,7 +38,7 @@ struct Taps {
 
 Taps smoothingTaps(uint own, ivec2 axis) {
     Patch centre = loadPatch(push.patches, own);
-    uint chart = Words(push.patchChart).items[own], texelIndex = centre.flags >> 8;
+    uint chart = Words(push.patchChart).items[own], texelIndex = patchTexel(centre.flags);
     ivec2 texel = ivec2(texelIndex % push.size, texelIndex / push.size);
     bool placed = Words(push.texelToPatch).items[texelIndex] == own; // else it stands for a whole thin chart
     float distance = Floats(push.distances).items[own];

@@ -47,7 +47,7 @@ Source loadSource(uint index, uint rowKey) {
     s.position = a.xyz;
     s.normal = b.xyz;
     s.area = b.w;
-    s.texel = kRtrad != 0u ? rows.items[s.index * 3u + 2u].w >> 8u : 0u;
+    s.texel = kRtrad != 0u ? patchTexel(rows.items[s.index * 3u + 2u].w) : 0u;
     s.radiance = count * Vec4s(push.radiance).items[s.index];
     return s;
 }
@@ -70,7 +70,7 @@ float closeFactor(Patch receiver, Source s) {
 
 // RTRad leaves out samples that lie within a window to the right of and below the receiver.
 bool inOwnWindow(Patch receiver, Source s) {
-    uint texel = receiver.flags >> 8u;
+    uint texel = patchTexel(receiver.flags);
     uvec2 d = uvec2(s.texel % push.size, s.texel / push.size) - uvec2(texel % push.size, texel / push.size);
     return d.x < push.window && d.y < push.window; // what lies to the left or above wraps around
 }

@@ -29,12 +29,12 @@ void showPatches(uint chunk, uint lane) {
     if (texel != kNoTexel) store(texel, vec4(value * push.scale, kShown));
 }
 
-vec3 fromNeighbours(uint fill) {
-    ivec2 at = ivec2(int((fill >> 8) % push.size), int((fill >> 8) / push.size));
+vec3 fromNeighbours(uvec2 fill) {
+    ivec2 at = ivec2(int(fill.x % push.size), int(fill.x / push.size));
     vec3 sum = vec3(0.0), low = vec3(0.0);
     uint count = 0u;
     for (uint n = 0u; n < 8u; ++n) {
-        if ((fill >> n & 1u) == 0u) continue;
+        if ((fill.y >> n & 1u) == 0u) continue;
         ivec2 from = at + seamOffset(n);
         uvec2 halves = UVec2s(push.texels).items[uint(from.y) * push.size + uint(from.x)];
         vec3 value = vec3(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y).x);
@@ -56,7 +56,7 @@ void main() {
     uint at = (push.ring - 1u) * push.chunkCount + chunk;
     uint end = Words(push.starts).items[at + 1u];
     for (uint i = Words(push.starts).items[at] + lane; i < end; i += kChunk) {
-        uint fill = Words(push.fills).items[i];
-        store(fill >> 8, vec4(fromNeighbours(fill), kFilled));
+        uvec2 fill = UVec2s(push.fills).items[i];
+        store(fill.x, vec4(fromNeighbours(fill), kFilled));
     }
 }

@@ -129,7 +129,7 @@ private:
             const glm::vec2 uv((float(x) + 0.5f) / float(kCellWidth), (float(y) + 0.5f) / float(kCellHeight));
             const uint32_t texel = (chart / 4 * kCellHeight + y) * kSize + chart % 4 * kCellWidth + x;
             shader::Patch patch = patchAt(part, uv);
-            if (part.look.receives) patch.flags = shader::kPatchSends | texel << 8;
+            if (part.look.receives) patch.flags = shader::kPatchSends | texel << shader::kTexelShift;
             if (part.look.receives) scene.texelToPatch[texel] = uint32_t(scene.patches.size());
             scene.patches.push_back(patch);
             scene.patchChart.push_back(part.look.receives ? chart : kNoChart);

@@ -45,7 +45,7 @@ std::vector<LitPoint> pointsOf(const PatchSet& patches, const FloatImage& refere
     for (uint32_t i = 0; i < patches.count; ++i) {
         const shader::Patch& patch = patches.scene.patches[i];
         if (!shader::patchIsShown(patch.flags)) continue;
-        const uint32_t texel = patch.flags >> 8;
+        const uint32_t texel = shader::patchTexel(patch.flags);
         points.push_back({.position = patch.position,
                           .normal = patch.normal,
                           .area = patch.area,

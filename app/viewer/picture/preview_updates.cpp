@@ -21,13 +21,13 @@ bool PreviewUpdates::follow(const std::vector<LightSource>& lights, const std::v
     ScenePane& pane = picture_.pane();
     const Document& document = session_.document();
     const ViewCamera& camera = picture_.camera().camera();
-    Shown now{camera, scene->number, document.edits.placements, document.bake.size};
+    Shown now{camera, scene->number, document.edits.placements, mapSize(session_)};
     if (picture_.rests(time) && !held && !pane.surfacesPending() && shown_ != now) {
         shown_ = std::move(now);
         pane.askSurfaces(camera);
     }
     if (std::optional<LightPreviews::Surfaces> surfaces = pane.surfaces())
-        bake_.askProbes(previews_.see(std::move(*surfaces), document.bake.size));
+        bake_.askProbes(previews_.see(std::move(*surfaces), mapSize(session_)));
     if (std::optional<LayerProbe> probe = bake_.exchange().takeProbe()) previews_.take(std::move(*probe));
     std::vector<LightSource> sources = lights;
     for (const LightGroup& group : groups)

@@ -32,7 +32,7 @@ const PublishedMap* SceneView::map() const {
 }
 
 ScenePane::Look SceneView::look() const {
-    LightmapTexture lightmap{.size = session_.document().bake.size, .version = kNoMapVersion};
+    LightmapTexture lightmap{.size = mapSize(session_), .version = kNoMapVersion};
     if (map() != nullptr) {
         lightmap = bridge_.texture();
         lightmap.version = mapVersion_;

@@ -125,7 +125,7 @@ void Viewer::onClick(const WindowEvent& event) {
     const size_t seen = viewIndex("seen");
     const bool patch = (event.mods & GLFW_MOD_CONTROL) != 0 || view.view == seen;
     if (patch && pick && pick->lightmapUv) {
-        view.seenTexel = pick->texel.y * session_.document().bake.size + pick->texel.x;
+        view.seenTexel = pick->texel.y * mapSize(session_) + pick->texel.x;
         view.view = seen;
         feedback_.tell("action", "see from " + std::to_string(*view.seenTexel));
     } else if (!patch && !view.uv) {

@@ -15,7 +15,7 @@ bool voxelSet(ivec3 v) {
 
 // Mixed with another tracer, voxels serve one sender in `ratio`, by its texel as RTRad has it, one group of
 // samples, one target.
-bool voxelsServe(Patch sender) { return (sender.flags >> 8) % grid.ratio == 0u; }
+bool voxelsServe(Patch sender) { return patchTexel(sender.flags) % grid.ratio == 0u; }
 bool voxelsServeTarget(uint target) { return target % grid.ratio == 0u; }
 bool voxelsServeSamples(uint group) { return group % grid.ratio == 0u; }
 

@@ -95,7 +95,7 @@ TEST(PatchInspector, MipsAreMeansOfWindowsWithinCharts) {
         const PatchValues means = box.inspector.mip(values, mip);
         std::map<std::array<uint32_t, 3>, std::pair<glm::dvec3, double>> windows;
         const auto key = [&](uint32_t i) {
-            const uint32_t texel = box.patch(i).flags >> 8;
+            const uint32_t texel = shader::patchTexel(box.patch(i).flags);
             return std::array{box.set().scene.patchChart[i], texel % 64 >> mip, texel / 64 >> mip};
         };
         for (uint32_t i = 0; i < box.set().count; ++i) {
@@ -268,7 +268,7 @@ TEST(PatchInspector, FindsPatchesBesideCharts) {
         maker.quad(glm::vec3(0), glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), maker.material(0.5f), {12, 12});
     Inspected scene(maker.scene());
     const uint32_t corner = scene.at(floor, 11, 11);
-    EXPECT_EQ(scene.patch(corner).flags >> 8, (floor.y + 11) * 64 + floor.x + 11);
+    EXPECT_EQ(shader::patchTexel(scene.patch(corner).flags), (floor.y + 11) * 64 + floor.x + 11);
     EXPECT_EQ(scene.at(floor, 13, 13), corner);
     EXPECT_EQ(scene.at(floor, 14, 11), corner);
     EXPECT_EQ(scene.at(floor, 30, 30), kNoPatch);

@@ -160,8 +160,7 @@ TEST_P(BakeMemoryOf, WhatIsEstimatedIsWhatIsTaken) {
 
     const BakeSettings settings = settingsOf(desc);
     const SolverExtent extent = extentOf(desc, patches, taken);
-    const MemoryNeeds needs =
-        memoryNeeds(settings, extentOf(scene, patches.scene.mesh.triangleCount()), extent);
+    const MemoryNeeds needs = memoryNeeds(settings, extentOf(scene, patches.scene.mesh), extent);
     expectClose(needs.cit, taken.cit, "images of the CIT pass");
     expectClose(needs.surface, taken.surface, "patches and their light");
     EXPECT_GE(needs.trace, taken.trace);
@@ -182,9 +181,8 @@ TEST_P(BakeMemoryOf, WhatIsEstimatedIsWhatIsTaken) {
     unknown.receivers.reset();
     unknown.nodes.reset();
     EXPECT_GE(solverBytes(unknown, settings.solver), needs.solver);
-    EXPECT_GE(
-        Baker::deviceBytes(settings, extentOf(scene, patches.scene.mesh.triangleCount()), extent.software),
-        taken.all - taken.layers - (linksCounted ? 0 : taken.caches));
+    EXPECT_GE(Baker::deviceBytes(settings, extentOf(scene, patches.scene.mesh), extent.software),
+              taken.all - taken.layers - (linksCounted ? 0 : taken.caches));
 }
 
 constexpr CacheSettings kNoCache{.kind = CacheSettings::Kind::None};

@@ -21,7 +21,7 @@ std::string caseName(const testing::TestParamInfo<IndirectScaleCase>& info) {
 }
 
 glm::vec2 texelOf(const shader::Patch& patch, uint32_t size) {
-    const uint32_t key = patch.flags >> 8;
+    const uint32_t key = shader::patchTexel(patch.flags);
     return {static_cast<float>(key % size), static_cast<float>(key / size)};
 }
 

@@ -75,7 +75,7 @@ TEST(Penumbra, PartsAreThoseOfOneTileAndObject) {
     const TileParts parts = makeTileParts(set);
     std::vector<std::set<std::pair<uint32_t, uint32_t>>> tiles(parts.count); // and objects
     for (size_t i = 0; i < set.scene.patches.size(); ++i) {
-        const uint32_t texel = set.scene.patches[i].flags >> 8, size = set.scene.size;
+        const uint32_t texel = shader::patchTexel(set.scene.patches[i].flags), size = set.scene.size;
         tiles[parts.ofPatch[i]].insert({texel / size / 8 * size + texel % size / 8, set.instance[i]});
         const auto own = parts.of(static_cast<uint32_t>(i / shader::kChunk));
         EXPECT_NE(std::find(own.begin(), own.end(), parts.ofPatch[i]), own.end());

@@ -151,8 +151,7 @@ TEST(ProbeLayers, TakeNoMoreMemoryThanIsPlanned) {
         const SolverExtent extent{.chunkCount = patches.chunkCount(),
                                   .texels = 64 * 64,
                                   .software = testDevice().info().software()};
-        const uint64_t planned =
-            memoryNeeds(settings, extentOf(scene, patches.scene.mesh.triangleCount()), extent).probes;
+        const uint64_t planned = memoryNeeds(settings, extentOf(scene, patches.scene.mesh), extent).probes;
         const uint64_t before = ledger.bytes();
         ledger.resetPeak();
         (void)bakeProbes(testDevice(), scene, *baker, plan, kSides, 1.0f);

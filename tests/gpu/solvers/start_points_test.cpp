@@ -206,7 +206,7 @@ TEST(PatchCover, LiesOnTheSurface) {
 // Samples of a whole texel lie all over it, as evenly as their numbers are.
 TEST(PatchCover, PointsFillATexel) {
     shader::Patch patch{};
-    patch.flags = shader::kPatchSends | 1234u << 8;
+    patch.flags = shader::kPatchSends | 1234u << shader::kTexelShift;
     const shader::PatchCover cover{kX, shader::kCoverCells | shader::kCoverWhole, kY,
                                    shader::kCoverPlaces / 2 | shader::kCoverPlaces / 2 << 16};
     constexpr uint32_t kSamples = 4 * 256;
@@ -226,7 +226,7 @@ TEST(PatchCover, ChunksHaveThePointsOfTheirPatches) {
     for (uint32_t i = 0; i < shader::kChunk; ++i) {
         const auto x = static_cast<float>(i);
         patches[i].position = {x, 2 * x, 3};
-        patches[i].flags = shader::kPatchSends | (7 * i) << 8;
+        patches[i].flags = shader::kPatchSends | (7 * i) << shader::kTexelShift;
         const uint32_t part = (0x9e3779b9u * (i + 1)) & shader::kCoverCells;
         covers[i] = {kX + kZ,
                      i % 3 == 0   ? 0

@@ -28,7 +28,8 @@ PatchSet randomPatches(uint32_t size, double share, uint32_t seed) {
             const uint32_t x = tile % tiles * 8 + in % 8, y = tile / tiles * 8 + in / 8;
             if (x >= size || y >= size || !covered || uniform(random) > 0.9) continue;
             shader::Patch patch{};
-            patch.flags = (y * size + x) << 8 | (uniform(random) < 0.9 ? shader::kPatchSends : 0u);
+            patch.flags =
+                (y * size + x) << shader::kTexelShift | (uniform(random) < 0.9 ? shader::kPatchSends : 0u);
             set.scene.texelToPatch[y * size + x] = static_cast<uint32_t>(set.scene.patches.size());
             set.scene.patches.push_back(patch);
         }
@@ -55,11 +56,11 @@ void follow(const PatchSet& set, const SeamPlan& plan, const std::vector<uint32_
         for (uint32_t chunk : chunks) {
             for (uint32_t f = plan.starts[plan.at(ring, chunk)]; f < plan.starts[plan.at(ring, chunk) + 1];
                  ++f) {
-                const auto texel = static_cast<int>(plan.fills[f] >> 8);
+                const auto texel = static_cast<int>(plan.fills[f].x);
                 double sum = 0;
                 int count = 0;
                 for (uint32_t n = 0; n < 8; ++n) {
-                    if ((plan.fills[f] >> n & 1u) == 0) continue;
+                    if ((plan.fills[f].y >> n & 1u) == 0) continue;
                     const glm::ivec2 from = glm::ivec2(texel % size, texel / size) + shader::seamOffset(n);
                     sum += texels[static_cast<size_t>(from.y * size + from.x)].light;
                     ++count;
@@ -111,6 +112,35 @@ TEST(SeamPlan, FillsWhatMakeLightmapFills) {
     }
 }
 
+// Pages lie side by side, but no page's empty texels are filled from another one.
+TEST(SeamPlan, NoPageFillsAnother) {
+    PatchSet set = randomPatches(48, 0.3, 5);
+    set.scene.mesh.pages = {9}; // of 16 texels
+    const SeamPlan plan = buildSeamPlan(set, 4);
+    std::vector<uint32_t> all;
+    for (uint32_t c = 0; c < set.chunkCount(); ++c)
+        all.push_back(c);
+    const std::vector<glm::vec4> light = randomLight(set.scene.patches.size(), 7);
+    std::vector<Texel> texels(size_t{48} * 48);
+    follow(set, plan, all, light, texels);
+    const FloatImage paged = makeLightmap(set, light, {});
+    expectSame(texels, paged);
+    for (uint32_t page = 0; page < 9; ++page) {
+        // With the light of one page alone, that page is the same, and the others are black.
+        std::vector<glm::vec4> own(light.size(), glm::vec4(0.0f));
+        const auto pageOf = [](size_t texel) { return texel / 48 / 16 * 3 + texel % 48 / 16; };
+        for (size_t t = 0; t < set.scene.texelToPatch.size(); ++t)
+            if (const uint32_t patch = set.scene.texelToPatch[t];
+                patch != shader::kNoPatch && pageOf(t) == page)
+                own[patch] = light[patch];
+        const FloatImage alone = makeLightmap(set, own, {});
+        for (size_t t = 0; t < texels.size(); ++t)
+            ASSERT_EQ(alone.planes[0][t], pageOf(t) == page ? paged.planes[0][t] : 0.0f) << page << " " << t;
+    }
+    set.scene.mesh.pages = {1};
+    EXPECT_NE(makeLightmap(set, light, {}).planes, paged.planes) << "as one page, charts meet";
+}
+
 // After one chunk's light has changed, nothing but its own part of the plan is followed.
 TEST(SeamPlan, FollowsOneChunkAtATime) {
     const PatchSet set = randomPatches(48, 0.4, 3);
@@ -136,8 +166,9 @@ TEST(SeamPlan, NamesATexelOncePerChunk) {
     const SeamPlan plan = buildSeamPlan(set, 4);
     ASSERT_EQ(plan.starts.size(), size_t{4} * set.chunkCount() + 1);
     for (size_t i = 0; i + 1 < plan.starts.size(); ++i) {
-        const std::set<uint32_t> once(plan.fills.begin() + plan.starts[i],
-                                      plan.fills.begin() + plan.starts[i + 1]);
+        std::set<uint32_t> once;
+        for (uint32_t f = plan.starts[i]; f < plan.starts[i + 1]; ++f)
+            once.insert(plan.fills[f].x);
         EXPECT_EQ(once.size(), plan.starts[i + 1] - plan.starts[i]);
     }
     EXPECT_EQ(plan.starts.back(), plan.fills.size());

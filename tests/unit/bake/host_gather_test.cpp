@@ -36,7 +36,7 @@ struct World {
                           .normal = normal,
                           .area = edge * edge,
                           .shading = glm::normalize(normal + 0.3f * glm::vec3(draw(), 0, draw())),
-                          .flags = shader::kPatchSends | i << 8};
+                          .flags = shader::kPatchSends | i << shader::kTexelShift};
             edges[i] = {{edge, 0, 0}, {0, 0, edge}};
             radiance[i] = {draw(), draw(), draw(), 1};
         }
@@ -172,7 +172,7 @@ TEST(HostGather, drawnSendersStandForTheirRun) {
     for (glm::vec3& sum : sums)
         sum *= 0.5f;
     expectSums(world, sums, [&](uint32_t i, uint32_t j) {
-        const uint32_t key = world.patches[i / kChunk * kChunk].flags >> 8;
+        const uint32_t key = shader::patchTexel(world.patches[i / kChunk * kChunk].flags);
         return members[2 * j + shader::drawMember(senders[j], key)];
     });
 }

@@ -48,7 +48,7 @@ public:
             shader::Patch& made = set.scene.patches.emplace_back();
             made.position = {x, static_cast<float>(i), 0};
             made.area = 1.0f;
-            made.flags = shader::kPatchSends | texel << 8;
+            made.flags = shader::kPatchSends | texel << shader::kTexelShift;
             set.scene.patchChart.push_back(chart);
             set.edges.emplace_back();
             set.covers.emplace_back().cells = shader::kCoverWhole;

@@ -39,7 +39,7 @@ PatchSet patchesOf(const std::vector<Chart>& charts) {
             p.position = charts[c].position(u, v);
             p.normal = p.shading = charts[c].normal(u, v);
             p.area = charts[c].area;
-            p.flags = shader::kPatchSends | texel << 8;
+            p.flags = shader::kPatchSends | texel << shader::kTexelShift;
             set.scene.texelToPatch[texel] = set.count++;
             set.scene.patches.push_back(p);
             set.scene.patchChart.push_back(c);

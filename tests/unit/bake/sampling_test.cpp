@@ -169,9 +169,9 @@ TEST(Sampling, turnsAreUnitVectorsAllAround) {
 TEST(Sampling, interleavedPatchesShareTheirKeys) {
     Patch first{}, a{}, b{};
     constexpr uint32_t size = 128;
-    first.flags = 5 << 8;
-    a.flags = (9 * size + 6) << 8; // row 9, column 6
-    b.flags = (13 * size + 2) << 8;
+    first.flags = 5 << shader::kTexelShift;
+    a.flags = (9 * size + 6) << shader::kTexelShift; // row 9, column 6
+    b.flags = (13 * size + 2) << shader::kTexelShift;
     EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
     EXPECT_EQ(shader::rotationKey(b, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
     EXPECT_EQ(shader::rotationKey(a, first, shader::kRotatePatch, size), 9 * size + 6);

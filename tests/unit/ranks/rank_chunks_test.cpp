@@ -17,7 +17,7 @@ TraceScene tiledScene(uint32_t tiles) {
             const uint32_t x = tile % tiles * kTileTexels + lane % kTileTexels;
             const uint32_t y = tile / tiles * kTileTexels + lane / kTileTexels;
             scene.patches.push_back({});
-            scene.patches.back().flags = (y * scene.size + x) << 8;
+            scene.patches.back().flags = (y * scene.size + x) << shader::kTexelShift;
         }
     return scene;
 }

@@ -275,7 +275,7 @@ TEST(Embree, listsGiveTheBitsOfTheDrawnPatches) {
                     .members = members});
     uint32_t seen = 0, others = 0;
     for (uint32_t i = 0; i < scene.patches.size(); i += 3) {
-        const uint32_t key = scene.patches[i / kChunk * kChunk].flags >> 8;
+        const uint32_t key = shader::patchTexel(scene.patches[i / kChunk * kChunk].flags);
         for (uint32_t j = 0; j < senders.size(); ++j) {
             if (senders[j].count == 0) {
                 ASSERT_FALSE(bits.at(i, j));

@@ -37,23 +37,32 @@ async function loadHalfFloats(scene, url) {
 }
 
 async function loadLevel(scene, folder) {
-    const lit = new Set(); // names of the materials that the lightmap lights
+@ONE@    const lit = new Set(); // names of the materials that the lightmap lights
+@MANY@    const lit = new Map(); // from names of the materials that the lightmap lights to its page that does
     const plugin = BABYLON.SceneLoader.OnPluginActivatedObservable.addOnce((loader) => {
         loader.onParsedObservable?.add(({ json }) => {
-            for (const material of json.materials ?? []) if (material.extensions?.MOZ_lightmap) lit.add(material.name);
+@ONE@            for (const material of json.materials ?? []) if (material.extensions?.MOZ_lightmap) lit.add(material.name);
+@MANY@            for (const material of json.materials ?? [])
+@MANY@                if (material.extensions?.MOZ_lightmap) lit.set(material.name, material.extras?.relume?.page ?? 0);
         });
     });
-    const [level, lightmap] = await Promise.all([
-        BABYLON.SceneLoader.AppendAsync(folder, 'scene.glb', scene),
-        loadHalfFloats(scene, folder + 'lightmap.ktx2'),
-    ]);
+@ONE@    const [level, lightmap] = await Promise.all([
+@ONE@        BABYLON.SceneLoader.AppendAsync(folder, 'scene.glb', scene),
+@ONE@        loadHalfFloats(scene, folder + 'lightmap.ktx2'),
+@ONE@    ]);
+@MANY@    const [level, ...lightmaps] = await Promise.all([
+@MANY@        BABYLON.SceneLoader.AppendAsync(folder, 'scene.glb', scene),
+@MANY@        ...Array.from({ length: @PAGES@ }, (_, page) => loadHalfFloats(scene, `${folder}lightmap.${page}.ktx2`)),
+@MANY@    ]);
     BABYLON.SceneLoader.OnPluginActivatedObservable.remove(plugin);
-    lightmap.coordinatesIndex = 1; // TEXCOORD_1
+@ONE@    lightmap.coordinatesIndex = 1; // TEXCOORD_1
+@MANY@    for (const lightmap of lightmaps) lightmap.coordinatesIndex = 1; // TEXCOORD_1
     for (const material of scene.materials) {
         for (const map of [material.albedoTexture, material.metallicTexture, material.emissiveTexture])
             if (map) map.anisotropicFilteringLevel = 16;
         if (!lit.has(material.name)) continue;
-        material.lightmapTexture = lightmap;
+@ONE@        material.lightmapTexture = lightmap;
+@MANY@        material.lightmapTexture = lightmaps[lit.get(material.name)];
         new LightmapTimesAlbedo(material);
     }
     return level;

@@ -18,17 +18,25 @@ async function loadHalfFloats(pc, device, url) {
 }
 
 export async function loadLevel(pc, app, folder) {
-    const lit = new Set(); // names of the materials that the lightmap lights
+@ONE@    const lit = new Set(); // names of the materials that the lightmap lights
+@MANY@    const lit = new Map(); // from materials that the lightmap lights to its page that does
     const asset = new pc.Asset('level', 'container', { url: folder + 'scene.glb' }, {}, {
-        material: { postprocess: (json, material) => { if (json.extensions?.MOZ_lightmap) lit.add(material); } },
+@ONE@        material: { postprocess: (json, material) => { if (json.extensions?.MOZ_lightmap) lit.add(material); } },
+@MANY@        material: { postprocess: (json, material) => {
+@MANY@            if (json.extensions?.MOZ_lightmap) lit.set(material, json.extras?.relume?.page ?? 0);
+@MANY@        } },
     });
     const loaded = new Promise((resolve, reject) => { asset.ready(resolve); asset.once('error', reject); });
     app.assets.add(asset);
     app.assets.load(asset);
-    const [, lightmap] = await Promise.all([loaded, loadHalfFloats(pc, app.graphicsDevice, folder + 'lightmap.ktx2')]);
+@ONE@    const [, lightmap] = await Promise.all([loaded, loadHalfFloats(pc, app.graphicsDevice, folder + 'lightmap.ktx2')]);
+@MANY@    const [, ...lightmaps] = await Promise.all([loaded, ...Array.from(
+@MANY@        { length: @PAGES@ }, (_, page) => loadHalfFloats(pc, app.graphicsDevice, `${folder}lightmap.${page}.ktx2`))]);
     for (const { resource: texture } of asset.resource.textures) texture.anisotropy = 16;
-    for (const material of lit) {
-        material.lightMap = lightmap;
+@ONE@    for (const material of lit) {
+@ONE@        material.lightMap = lightmap;
+@MANY@    for (const [material, page] of lit) {
+@MANY@        material.lightMap = lightmaps[page];
         material.lightMapUv = 1; // TEXCOORD_1
         material.update();
     }
