@@ -147,7 +147,7 @@ void Viewer::follow(double time) {
     picture_.fly(input_.flight(), time);
     if (previews_.follow(lights_.list().sources(), baking_.status().groups, mover_.held(), time)) {
         feedback_.tell("preview", "drawn");
-        feedback_.pacer().statusChanged();
+        feedback_.pacer().smallPictureChanged();
     }
     followMiddle();
     const std::optional<OpenFailure>& failure = files_.opening().failure();

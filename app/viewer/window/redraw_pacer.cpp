@@ -40,7 +40,7 @@ double RedrawPacer::wait(double now, double idle) const {
 
 void RedrawPacer::drawn(const Redraw& what, double end, double cost) {
     settling_ = std::max(settling_ - 1, 0);
-    status_ = false;
+    status_ = smallPicture_ = false;
     lastEnd_ = end;
     lastCost_ = cost;
     if (!what.scene) return;

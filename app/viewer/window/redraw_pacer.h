@@ -20,11 +20,13 @@ public:
     void newMap() { map_ = true; }
     /// Says that figures beside the scene may have changed.
     void statusChanged() { status_ = true; }
+    /// Says that a picture beside the scene has changed. It is drawn with the figures, and waited for.
+    void smallPictureChanged() { status_ = smallPicture_ = true; }
     /// Says whether something moves by itself: then every frame is drawn.
     void animate(bool on) { animated_ = on; }
 
-    /// Tells whether all that the user did, and every map that came, has been drawn.
-    bool settled() const { return settling_ == 0 && !scene_ && !map_ && !animated_; }
+    /// Tells whether all that the user did, and every map and picture that came, has been drawn.
+    bool settled() const { return settling_ == 0 && !scene_ && !map_ && !smallPicture_ && !animated_; }
 
     Redraw due(double now) const;
     /// Returns how long nothing will be due unless something is told, `idle` at most.
@@ -37,7 +39,7 @@ private:
     double nextPaced() const;
 
     int settling_ = 3; // frames that are drawn whatever happens
-    bool scene_ = true, map_ = false, status_ = false, animated_ = false;
+    bool scene_ = true, map_ = false, status_ = false, smallPicture_ = false, animated_ = false;
     double lastEnd_ = 0, lastCost_ = 0;
     double sceneCost_ = 0; // of the last picture of the scene
 };

@@ -121,6 +121,20 @@ TEST(RedrawPacer, FiguresComeTenTimesASecond) {
     EXPECT_FALSE(pacer.due(0.05).any);
     EXPECT_NEAR(pacer.wait(0.05, 1.0), 0.05, 1e-9);
     EXPECT_TRUE(pacer.due(0.1001).any);
+    EXPECT_TRUE(pacer.settled()); // nobody waits for figures
+}
+
+TEST(RedrawPacer, PicturesBesideTheSceneComeWithFiguresAndAreWaitedFor) {
+    RedrawPacer pacer = settled();
+    pacer.drawn({false, true}, 0, 0.001);
+    pacer.smallPictureChanged();
+    EXPECT_FALSE(pacer.settled());
+    EXPECT_FALSE(pacer.due(0.05).any);
+    const Redraw redraw = pacer.due(0.1001);
+    EXPECT_TRUE(redraw.any);
+    EXPECT_FALSE(redraw.scene);
+    pacer.drawn(redraw, 0.11, 0.001);
+    EXPECT_TRUE(pacer.settled());
 }
 
 Box boxAroundOrigin() {
