@@ -19,18 +19,23 @@ using shader::kCoverWhole;
 
 // The aim of one submit [ms]; a wish to stop waits for as long.
 constexpr double kCoverBatchMs = 20.0;
-// A batch has at most so many chunks, whose targets are 6 MiB.
-constexpr uint32_t kMostCoverChunks = 256;
+// A batch has at most so many chunks, whose targets are 4 MiB, on a GPU, which fewer would not fill, 64 MiB.
+constexpr uint32_t kMostCoverChunks = 4096, kMostCoverChunksOfSoftware = 256;
 constexpr uint32_t kPlaces = shader::kCoverEdge * shader::kCoverEdge;
 static_assert(kRimPlaces <= kPlaces && kPlaces <= kTargetsPerWord);
 // A place nearer to the patch's own point than this share of the texel is seen without asking.
 constexpr float kHere = 1e-3f;
 
+uint32_t mostCoverChunks(uint32_t chunks, bool software) {
+    return std::min(chunks, software ? kMostCoverChunksOfSoftware : kMostCoverChunks);
+}
+
 // Asks which places of texels the patches' own points see.
 class CoverBatches {
 public:
     explicit CoverBatches(const CoverSearch& search)
-        : search_(search), most_(std::min(search.patches.chunkCount(), kMostCoverChunks)),
+        : search_(search),
+          most_(mostCoverChunks(search.patches.chunkCount(), search.device.info().software())),
           commands_(search.device),
           targets_(search.device, {.size = uint64_t{most_} * kPlaces * kChunk * sizeof(glm::vec4),
                                    .memory = vk::Memory::Host,
@@ -152,8 +157,8 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
     return others;
 }
 
-uint64_t coverSearchBytes(uint32_t chunks) {
-    return uint64_t{std::min(chunks, kMostCoverChunks)} * kChunk *
+uint64_t coverSearchBytes(uint32_t chunks, bool software) {
+    return uint64_t{mostCoverChunks(chunks, software)} * kChunk *
                (kPlaces * sizeof(glm::vec4) + sizeof(uint32_t)) +
            shader::kRayCounters * sizeof(uint32_t);
 }

@@ -24,7 +24,7 @@ std::vector<uint32_t> coveredPatches(const PatchSet& patches);
 /// wall stands in front of them, or they lie inside something. The covers begin with what the surface has.
 /// Returns the patches whose cover is another one than before, ascending.
 std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which);
-/// Returns the device bytes that it takes.
-uint64_t coverSearchBytes(uint32_t chunks);
+/// Returns the device bytes that it takes, on a software device or a GPU.
+uint64_t coverSearchBytes(uint32_t chunks, bool software);
 
 } // namespace relume

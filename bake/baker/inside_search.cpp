@@ -14,13 +14,17 @@ using shader::kChunk;
 
 // The aim of one submit [ms]; a wish to stop waits for as long.
 constexpr double kInsideBatchMs = 20.0;
-// A batch has at most so many chunks, whose links are 8 MiB. On a device that does a billion rays a second
-// these are 2 ms.
-constexpr uint32_t kMostInsideChunks = 1024;
+// A batch has at most so many chunks: on a GPU, which fewer would not fill, their links are 64 MiB. On a
+// device that does a billion rays a second these are 16 ms.
+constexpr uint32_t kMostInsideChunks = 8192, kMostInsideChunksOfSoftware = 1024;
 // In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
 // needed. Tracers that record take eight directions at a time.
 constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
 constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
+
+uint32_t mostInsideChunks(uint32_t chunks, bool software) {
+    return std::min(chunks, software ? kMostInsideChunksOfSoftware : kMostInsideChunks);
+}
 
 /// The backs and sky that the directions of one patch have met so far.
 struct Met {
@@ -30,9 +34,9 @@ struct Met {
 /// One batch of chunks.
 class InsideBatch {
 public:
-    InsideBatch(const InsideSearch& search, uint32_t mostChunks)
+    InsideBatch(const InsideSearch& search, uint32_t most)
         : search_(search), commands_(search.device),
-          links_(search.device, {.size = insideBytes(mostChunks, search.samples),
+          links_(search.device, {.size = uint64_t{most} * search.samples * kChunk * sizeof(uint32_t),
                                  .memory = vk::Memory::Host,
                                  .name = "links"}) {}
 
@@ -125,12 +129,12 @@ private:
 
 } // namespace
 
-uint64_t insideBytes(uint32_t chunks, uint32_t samples) {
-    return uint64_t{std::min(chunks, kMostInsideChunks)} * samples * kChunk * sizeof(uint32_t);
+uint64_t insideBytes(uint32_t chunks, uint32_t samples, bool software) {
+    return uint64_t{mostInsideChunks(chunks, software)} * samples * kChunk * sizeof(uint32_t);
 }
 
 std::vector<uint32_t> findInside(const InsideSearch& search) {
-    const uint32_t most = std::min(search.patches.chunkCount(), kMostInsideChunks);
+    const uint32_t most = mostInsideChunks(search.patches.chunkCount(), search.device.info().software());
     InsideBatch batch(search, most);
     BatchRate rate(!search.device.info().software());
     std::vector<uint32_t> inside;

@@ -26,7 +26,7 @@ struct InsideSearch {
 /// Returns the patches of these chunks that lie inside something (liesInside), ascending. It works in short
 /// batches of closest hits.
 std::vector<uint32_t> findInside(const InsideSearch& search);
-/// Returns the device bytes that it takes.
-uint64_t insideBytes(uint32_t chunks, uint32_t samples);
+/// Returns the device bytes that it takes, on a software device or a GPU.
+uint64_t insideBytes(uint32_t chunks, uint32_t samples, bool software);
 
 } // namespace relume

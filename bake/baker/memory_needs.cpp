@@ -76,8 +76,9 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
     // Its pass has the tables once more.
     if (usesVoxels(settings)) needs.trace += VoxelMap::bytes(settings.voxels.resolution) + 2 * tables;
     if (!settings.solver.transport.rtrad)
-        needs.inside = std::max(insideBytes(solver.chunkCount, ObjectMover::kInsideSamples),
-                                startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount) : 0);
+        needs.inside = std::max(
+            insideBytes(solver.chunkCount, ObjectMover::kInsideSamples, solver.software),
+            startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount, solver.software) : 0);
     needs.solver = solverBytes(solver, settings.solver);
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
     needs.probes = probeNeeds(settings, scene, solver, tables);

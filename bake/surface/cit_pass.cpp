@@ -112,11 +112,9 @@ std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector
 
 // Copies an image in TRANSFER_SRC_OPTIMAL to the host and returns one row of values per texel row.
 template<typename T>
-std::vector<T> readImage(const vk::Device& device, vk::Commands& commands, const vk::Image2D& image,
+std::vector<T> readImage(const vk::Buffer& staging, vk::Commands& commands, const vk::Image2D& image,
                          const TexelWindow& window) {
-    const vk::Buffer staging(
-        device,
-        {.size = window.size() * sizeof(T), .memory = vk::Memory::Host, .name = "texture group readback"});
+    ASSERT(window.size() * sizeof(T) <= staging.size());
     VkCommandBuffer cmd = commands.begin();
     const VkBufferImageCopy region{
         .bufferOffset = 0,
@@ -241,11 +239,15 @@ TextureGroup CitPass::draw(const Scene& scene, const WorldMesh& mesh, const CitD
     TextureGroup group;
     group.size = desc.size;
     group.window = window;
-    group.pos = readImage<glm::vec4>(device, commands, images[0], window);
-    group.nrm = readImage<glm::vec4>(device, commands, images[1], window);
-    group.mat = readImage<glm::vec4>(device, commands, images[2], window);
-    group.emission = readImage<glm::vec4>(device, commands, images[3], window);
-    group.triangle = readImage<uint32_t>(device, commands, images[4], window);
+    // One for all: a device takes longer to make such a buffer than to fill it.
+    const vk::Buffer staging(device, {.size = window.size() * sizeof(glm::vec4),
+                                      .memory = vk::Memory::Host,
+                                      .name = "texture group readback"});
+    group.pos = readImage<glm::vec4>(staging, commands, images[0], window);
+    group.nrm = readImage<glm::vec4>(staging, commands, images[1], window);
+    group.mat = readImage<glm::vec4>(staging, commands, images[2], window);
+    group.emission = readImage<glm::vec4>(staging, commands, images[3], window);
+    group.triangle = readImage<uint32_t>(staging, commands, images[4], window);
     return group;
 }
 

@@ -47,9 +47,11 @@ struct LightBuffers {
     /// Returns their bytes for patches in so many chunks, with covers or without.
     static uint64_t bytes(uint32_t chunks, bool withCovers) {
         constexpr uint64_t kLight = 5 * sizeof(glm::vec4); // albedo, emission, radiance, ligIn, ligOut
-        return uint64_t{chunks} * (shader::kChunk * (sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
-                                                     kLight + (withCovers ? sizeof(shader::PatchCover) : 0)) +
-                                   sizeof(shader::ChunkBounds) + sizeof(uint32_t));
+        constexpr uint64_t kWhole = 16;                    // devices make buffers multiples of so many bytes
+        const auto ofChunks = [&](uint64_t each) { return (chunks * each + kWhole - 1) / kWhole * kWhole; };
+        return ofChunks(shader::kChunk * (sizeof(shader::Patch) + sizeof(shader::PatchEdges) + kLight +
+                                          (withCovers ? sizeof(shader::PatchCover) : 0))) +
+               ofChunks(sizeof(shader::ChunkBounds)) + ofChunks(sizeof(uint32_t));
     }
     static VkDeviceSize lightBytes(const PatchSet& set) {
         return set.scene.patches.size() * sizeof(glm::vec4);

@@ -34,8 +34,9 @@ constexpr float kLeastCosine = 0.9f;
 
 // A triangle in the lightmap [texels].
 struct TexelTriangle {
-    std::array<glm::dvec2, 3> corner;
-    double det = 0; // twice its area, signed
+    std::array<glm::dvec2, 3> corner, edge; // edges from each corner to the next
+    std::array<double, 3> least{}; // how far beyond each edge is still there, times the edge's length
+    double det = 0;                // twice its area, signed
 
     // Returns the weights of corners 1 and 2 there.
     glm::dvec2 weights(const glm::dvec2& at) const {
@@ -45,9 +46,9 @@ struct TexelTriangle {
     // Tells whether a point lies in it, or no farther beyond its edges than rounding does.
     bool has(const glm::dvec2& at) const {
         for (size_t k = 0; k < 3; ++k) {
-            const glm::dvec2 edge = corner[(k + 1) % 3] - corner[k], way = at - corner[k];
-            const double side = (edge.x * way.y - edge.y * way.x) * (det > 0 ? 1.0 : -1.0);
-            if (side < -kEdgeRounding * glm::length(edge)) return false;
+            const glm::dvec2 way = at - corner[k];
+            const double side = (edge[k].x * way.y - edge[k].y * way.x) * (det > 0 ? 1.0 : -1.0);
+            if (side < least[k]) return false;
         }
         return true;
     }
@@ -146,11 +147,19 @@ private:
         return group_.triangle[group_.window.index(x, y)] - 1;
     }
 
+    // Returns where a corner of a triangle lies in the lightmap [texels].
+    glm::dvec2 texelsOf(uint32_t t, size_t k) const {
+        return glm::dvec2(set_.scene.mesh.lightmapUv[size_t{t} * 3 + k]) * double(group_.size);
+    }
+
     TexelTriangle texelTriangle(uint32_t t) const {
-        const glm::vec2* uv = &set_.scene.mesh.lightmapUv[size_t{t} * 3];
         TexelTriangle result;
         for (size_t k = 0; k < 3; ++k)
-            result.corner[k] = glm::dvec2(uv[k]) * double(group_.size);
+            result.corner[k] = texelsOf(t, k);
+        for (size_t k = 0; k < 3; ++k) {
+            result.edge[k] = result.corner[(k + 1) % 3] - result.corner[k];
+            result.least[k] = -kEdgeRounding * glm::length(result.edge[k]);
+        }
         const glm::dvec2 a = result.corner[1] - result.corner[0], b = result.corner[2] - result.corner[0];
         result.det = a.x * b.y - a.y * b.x;
         return result;
@@ -164,8 +173,7 @@ private:
         const double uu = glm::dot(du, du), uv = glm::dot(du, dv), vv = glm::dot(dv, dv);
         const double det = uu * vv - uv * uv, a = glm::dot(way, du), b = glm::dot(way, dv);
         if (!(det > 0)) return glm::vec2(0.5f);
-        const glm::dvec2 at =
-            texelTriangle(triangle).corner[0] + glm::dvec2(a * vv - b * uv, b * uu - a * uv) / det;
+        const glm::dvec2 at = texelsOf(triangle, 0) + glm::dvec2(a * vv - b * uv, b * uu - a * uv) / det;
         const glm::dvec2 place = glm::clamp(at - glm::dvec2(texel), glm::dvec2(0.0), glm::dvec2(1.0));
         // A point that was not moved there lies in the middle, whatever the position has lost by rounding.
         constexpr double kMiddle = 1e-3;

@@ -78,7 +78,7 @@ TEST_F(CommandLine, WhatTheParserTellsIsOneLine) {
     EXPECT_EQ(told({"bake", "r.glb", "-o", "o.exr", "--density", "-1"}),
               "error: --density: '-1' is not allowed: give a number above 0, at most 1000000\n");
     EXPECT_EQ(told({"bake", "r.glb", "--size="}),
-              "error: --size: '' is not allowed: give a whole number from 8 to 4096\n");
+              "error: --size: '' is not allowed: give a whole number from 8 to 8192\n");
     EXPECT_EQ(told({"bench", "frames", "r.glb", "--display", "x"}),
               "error: --display: 'x' is not allowed: choose auto, shared or copied\n");
     EXPECT_EQ(told({"bench", "frames"}),
