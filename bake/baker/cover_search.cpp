@@ -128,6 +128,7 @@ private:
 
 std::vector<uint32_t> coveredPatches(const PatchSet& patches) {
     std::vector<uint32_t> which;
+    which.reserve(patches.coverCells.size());
     for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
         if (patches.coverCells[i] != 0) which.push_back(i);
     return which;
@@ -137,6 +138,8 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
     if (which.empty()) return {};
     std::vector<shader::PatchCover>& covers = search.patches.covers;
     std::vector<uint32_t> before, whole, parts;
+    before.reserve(which.size());
+    whole.reserve(which.size());
     for (const uint32_t patch : which) {
         before.push_back(covers[patch].cells);
         covers[patch].cells = search.patches.coverCells[patch];

@@ -20,10 +20,17 @@ constexpr uint32_t kMostInsideChunks = 8192, kMostInsideChunksOfSoftware = 1024;
 // In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
 // needed. Tracers that record take eight directions at a time.
 constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
+// Chunks that are decided are asked on where so many at most lie between others that are not: a GPU takes
+// longer for each range than for these. What they meet decides nothing else.
+constexpr uint32_t kMostGap = 32;
 constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
 
 uint32_t mostInsideChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostInsideChunksOfSoftware : kMostInsideChunks);
+}
+
+uint64_t batchBytes(uint32_t chunks, uint32_t samples) {
+    return uint64_t{chunks} * samples * kChunk * sizeof(uint32_t);
 }
 
 /// The backs and sky that the directions of one patch have met so far.
@@ -35,10 +42,16 @@ struct Met {
 class InsideBatch {
 public:
     InsideBatch(const InsideSearch& search, uint32_t most)
-        : search_(search), commands_(search.device),
-          links_(search.device, {.size = uint64_t{most} * search.samples * kChunk * sizeof(uint32_t),
-                                 .memory = vk::Memory::Host,
-                                 .name = "links"}) {}
+        : search_(search), gap_(search.device.info().software() ? 0 : kMostGap), commands_(search.device),
+          links_(search.device, {.size = batchBytes(most, search.samples),
+                                 .memory = search.tracer.records() ? vk::Memory::Device : vk::Memory::Host,
+                                 .name = "links"}) {
+        // A GPU writes its own memory and sends it in one go faster than it writes each link to the host's.
+        if (links_.mapped() == nullptr)
+            back_ = vk::Buffer(
+                search.device,
+                {.size = links_.size(), .memory = vk::Memory::Host, .name = "links that come back"});
+    }
 
     void run(uint32_t first, uint32_t count, std::vector<uint32_t>& inside) {
         first_ = first;
@@ -46,7 +59,7 @@ public:
         if (search_.onLinks) {
             trace({{first, count}}, 0, search_.samples);
             const uint64_t links = uint64_t{count} * search_.samples * kChunk;
-            search_.onLinks(first, {static_cast<const uint32_t*>(links_.mapped()), links});
+            search_.onLinks(first, {found(), links});
         } else {
             std::vector<ChunkRange> left = {{first, count}};
             for (uint32_t done = 0; done < search_.samples && !left.empty();) {
@@ -77,10 +90,15 @@ private:
             offset += uint64_t{range.count} * samples * kChunk;
         }
         if (records) {
+            if (back_) {
+                vk::barrier(cmd);
+                const VkBufferCopy region{0, 0, offset * sizeof(uint32_t)};
+                vkCmdCopyBuffer(cmd, links_.handle(), back_.handle(), 1, &region);
+            }
             vk::hostBarrier(cmd);
             commands_.run();
         }
-        const auto* link = static_cast<const uint32_t*>(links_.mapped());
+        const uint32_t* link = found();
         std::vector<uint32_t> traced; // chunks of the batch, in the order of their links
         for (const ChunkRange& range : ranges)
             for (uint32_t chunk = 0; chunk < range.count; ++chunk)
@@ -91,6 +109,11 @@ private:
             for (uint32_t k = portion * kChunksAtATime; k < end; ++k)
                 countMet(&met_[size_t{traced[k]} * kChunk], link + size_t{k} * samples * kChunk, samples);
         });
+    }
+
+    /// Returns the links of the last trace.
+    const uint32_t* found() const {
+        return static_cast<const uint32_t*>(back_ ? back_.mapped() : links_.mapped());
     }
 
     static void countMet(Met* met, const uint32_t* link, uint32_t samples) {
@@ -112,8 +135,8 @@ private:
                     return liesInside(met.backs + rest, met.sky, search_.samples);
                 });
                 if (!open) continue;
-                if (!left.empty() && left.back().first + left.back().count == chunk)
-                    ++left.back().count;
+                if (!left.empty() && chunk - left.back().first - left.back().count <= gap_)
+                    left.back().count = chunk + 1 - left.back().first;
                 else
                     left.push_back({chunk, 1});
             }
@@ -121,8 +144,9 @@ private:
     }
 
     const InsideSearch& search_;
+    const uint32_t gap_; // between ranges
     vk::Commands commands_;
-    vk::Buffer links_;
+    vk::Buffer links_, back_; // back_ where the host does not see links_
     uint32_t first_ = 0;
     std::vector<Met> met_; // of the batch
 };
@@ -130,7 +154,7 @@ private:
 } // namespace
 
 uint64_t insideBytes(uint32_t chunks, uint32_t samples, bool software) {
-    return uint64_t{mostInsideChunks(chunks, software)} * samples * kChunk * sizeof(uint32_t);
+    return (software ? 1 : 2) * batchBytes(mostInsideChunks(chunks, software), samples);
 }
 
 std::vector<uint32_t> findInside(const InsideSearch& search) {

@@ -1,5 +1,6 @@
 #include "bake/surface/patch_cover.h"
 
+#include "assets/base/error.h"
 #include "assets/base/worker_pool.h"
 #include "bake/surface/known_covers.h"
 
@@ -32,12 +33,27 @@ constexpr float kMostRise = 0.5f;
 // Normals that differ by more than some 25 degrees are another surface's.
 constexpr float kLeastCosine = 0.9f;
 
+enum class Part { No, Some, All };
+
 // A triangle in the lightmap [texels].
 struct TexelTriangle {
     std::array<glm::dvec2, 3> corner, edge; // edges from each corner to the next
     std::array<double, 3> least{}; // how far beyond each edge is still there, times the edge's length
     double det = 0;                // twice its area, signed
 
+    // Tells whether the triangle has a texel or a part of it, or what may be one for all that rounding does.
+    Part ofTexel(const glm::dvec2& texel) const {
+        Part part = Part::All;
+        for (size_t k = 0; k < 3; ++k) {
+            const glm::dvec2 way = texel - corner[k];
+            const double turn = det > 0 ? 1.0 : -1.0;
+            const double side = (edge[k].x * way.y - edge[k].y * way.x) * turn;
+            const double right = -edge[k].y * turn, up = edge[k].x * turn; // what a texel's edges add
+            if (side + std::max(right, 0.0) + std::max(up, 0.0) < 2 * least[k]) return Part::No;
+            if (side + std::min(right, 0.0) + std::min(up, 0.0) < 0) part = Part::Some;
+        }
+        return part;
+    }
     // Returns the weights of corners 1 and 2 there.
     glm::dvec2 weights(const glm::dvec2& at) const {
         const glm::dvec2 a = corner[1] - corner[0], b = corner[2] - corner[0], q = at - corner[0];
@@ -59,7 +75,7 @@ public:
     CoverBuilder(PatchSet& set, const TextureGroup& group, std::span<const TriangleFrame> frames,
                  const KnownCovers* known)
         : set_(set), group_(group), frames_(frames), known_(known), rims_(set.scene.patches.size(), 0) {
-        set_.covers.assign(set.scene.patches.size(), shader::PatchCover{});
+        ASSERT(set.covers.size() == set.scene.patches.size()); // and all are empty
     }
 
     // Texels are worked on in bands of rows, each by one thread, so that nobody else writes to their covers.
@@ -68,7 +84,6 @@ public:
         const TexelWindow& w = group_.window;
         const uint32_t bands = (w.rows + kBandRows - 1) / kBandRows;
         const std::vector<std::vector<uint32_t>> triangles = trianglesOfBands(bands);
-        set_.coverCells.assign(set_.covers.size(), 0);
         runWatched(pool, "patches", bands, [&](uint32_t band) {
             const Rows rows{w.row + band * kBandRows, w.row + std::min(w.rows, (band + 1) * kBandRows) - 1};
             for (uint32_t y = rows.first; known_ && y <= rows.last; ++y)
@@ -206,8 +221,11 @@ private:
         shader::PatchCover& c = set_.covers[patch];
         if (rims_[patch] == kDone || (c.cells == kCoverCells && rims_[patch] == kRim)) return;
         const glm::dvec2 corner(texel);
+        const Part part = triangle.ofTexel(corner);
+        if (part == Part::No) return;
         const auto inside = [&](double x, double y) { return triangle.has(corner + glm::dvec2(x, y)); };
-        if (t == own && inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)) {
+        if (t == own &&
+            (part == Part::All || (inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)))) {
             c.cells = kCoverCells;
             rims_[patch] = kRim;
             return;

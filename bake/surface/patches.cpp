@@ -10,7 +10,9 @@
 #include "bake/surface/triangle_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -157,14 +159,24 @@ private:
         return glm::uvec2(p);
     }
 
+    // Makes all that is there for each patch: to clear gigabytes takes one thread longer than all to fill
+    // them.
     void resize(uint32_t count) {
-        set_.scene.patches.resize(count);
-        set_.scene.patchChart.resize(count);
-        set_.edges.resize(count);
-        set_.albedoPattern.resize(count);
-        set_.emissionPattern.resize(count);
-        set_.material.resize(count);
-        set_.instance.resize(count);
+        const std::array<std::function<void()>, 11> all = {
+            [&] { set_.scene.patches.resize(count); },
+            [&] { set_.edges.resize(count); },
+            [&] { set_.covers.resize(rtrad_ ? 0 : count); },
+            [&] { set_.albedoPattern.resize(count); },
+            [&] { set_.emissionPattern.resize(count); },
+            [&] { set_.albedo.resize(count); },
+            [&] { set_.emission.resize(count); },
+            [&] { set_.coverCells.resize(rtrad_ ? 0 : count); },
+            [&] { set_.scene.patchChart.resize(count); },
+            [&] { set_.material.resize(count); },
+            [&] { set_.instance.resize(count); },
+        };
+        runWatched(pool_, kPatchesPhase, static_cast<uint32_t>(all.size()),
+                   [&](uint32_t which) { all[which](); });
     }
 
     void put(uint32_t index, const NewPatch& p) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "assets/base/worker_pool.h"
+
 namespace relume::vk {
 namespace {
 
@@ -11,6 +13,17 @@ constexpr VkDeviceSize kKeptBytes = VkDeviceSize{4} << 20;
 // Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
 // always available.
 constexpr VkDeviceSize kLargeBytes = VkDeviceSize{32} << 20;
+
+// What a thread copies at a time [bytes]: one core does not fill PCIe.
+constexpr VkDeviceSize kCopiedAtATime = VkDeviceSize{2} << 20;
+
+void copyByAll(const Device& device, void* to, const void* from, VkDeviceSize size) {
+    const auto portions = static_cast<uint32_t>((size + kCopiedAtATime - 1) / kCopiedAtATime);
+    device.workers().run(portions, [&](uint32_t portion) {
+        const VkDeviceSize begin = portion * kCopiedAtATime, count = std::min(kCopiedAtATime, size - begin);
+        std::memcpy(static_cast<char*>(to) + begin, static_cast<const char*>(from) + begin, count);
+    });
+}
 
 void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, const Buffer& to,
           VkDeviceSize toOffset, VkDeviceSize size) {
@@ -38,14 +51,14 @@ void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, 
     if (buffer.mapped() != nullptr) {
         barrier(commands_.begin()); // earlier work may still use the buffer
         commands_.run();
-        std::memcpy(static_cast<char*>(buffer.mapped()) + offset, data, size);
+        copyByAll(device_, static_cast<char*>(buffer.mapped()) + offset, data, size);
         return;
     }
     Buffer large;
     const Buffer& window = windowFor(size, large);
     for (VkDeviceSize done = 0; done < size; done += window.size()) {
         const VkDeviceSize piece = std::min(window.size(), size - done);
-        std::memcpy(window.mapped(), static_cast<const char*>(data) + done, piece);
+        copyByAll(device_, window.mapped(), static_cast<const char*>(data) + done, piece);
         VkCommandBuffer cmd = commands_.begin();
         barrier(cmd);
         copy(cmd, window, 0, buffer, offset + done, piece);
