@@ -414,7 +414,7 @@ AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uin
             }
         }
     }
-    // What is left over on the sheet is no page's.
+    // The places of the sheet that are no page's do not count.
     const double cells = static_cast<double>(grid.cells()) * atlas.pages.count /
                          (atlas.pages.columns() * atlas.pages.columns());
     statistics.coverage = static_cast<double>(grid.covered()) / cells;

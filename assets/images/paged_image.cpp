@@ -14,7 +14,7 @@
 namespace relume {
 namespace {
 
-// Of a sheet how many pages it has; of a page's file also which one it is, and a hash of the whole lightmap.
+// A sheet says how many pages it has; a page's file says also which one it is, and has a hash of the whole.
 constexpr const char* kPages = "relume:pages";
 constexpr const char* kPage = "relume:page";
 constexpr const char* kWhole = "relume:lightmap";

@@ -14,7 +14,7 @@ constexpr VkDeviceSize kKeptBytes = VkDeviceSize{4} << 20;
 // always available.
 constexpr VkDeviceSize kLargeBytes = VkDeviceSize{32} << 20;
 
-// What a thread copies at a time [bytes]: one core does not fill PCIe.
+// A thread copies so much at a time [bytes]; one core alone does not fill PCIe.
 constexpr VkDeviceSize kCopiedAtATime = VkDeviceSize{2} << 20;
 
 void copyByAll(const Device& device, void* to, const void* from, VkDeviceSize size) {

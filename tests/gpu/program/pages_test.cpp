@@ -12,8 +12,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace relume {
@@ -22,11 +20,6 @@ namespace {
 using PageWords = std::vector<std::string>;
 
 constexpr uint32_t kPages = 3;
-
-std::string fileText(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 class PagedFiles : public testing::Test {
 protected:
@@ -52,7 +45,7 @@ protected:
         std::string bytes;
         for (const std::string& file : lightmapFiles(lightmap, {kPages})) {
             EXPECT_TRUE(std::filesystem::exists(file)) << file;
-            bytes += fileText(file);
+            bytes += bytesOf(file);
         }
         return bytes;
     }
@@ -82,7 +75,7 @@ TEST_F(PagedFiles, ASceneThatIsWrittenWithThemHasTheSameLight) {
     // Pictures are lit by all pages, and by none alone.
     run({"shot", lit, "--lightmap", path("b.exr"), "--size", "64x48", "-o", path("b.png")});
     run({"shot", kScene, "--lightmap", path("a.exr"), "--size", "64x48", "-o", path("a.png")});
-    EXPECT_EQ(fileText(path("a.png")), fileText(path("b.png")));
+    EXPECT_EQ(bytesOf(path("a.png")), bytesOf(path("b.png")));
     const ProcessResult one =
         runRelume({"shot", lit, "--lightmap", path("b.1.exr"), "--size", "64x48", "-o", path("c.png")});
     EXPECT_EQ(one.status, 1);
@@ -124,7 +117,7 @@ TEST_F(PagedFiles, HaveLayersThatAreMixedAndJoined) {
 TEST_F(PagedFiles, AsManyAsADensityNeeds) {
     run({"bake", kScene, "--size", "48", "--samples", "8", "--pages", "auto", "--density", "6", "-o",
          path("a.exr"), "--json", path("a.json")});
-    const auto json = nlohmann::json::parse(fileText(path("a.json")));
+    const auto json = nlohmann::json::parse(bytesOf(path("a.json")));
     // The scene has lightmap UVs, which stay as they are.
     EXPECT_FALSE(json.contains("pages"));
     run({"unwrap", kScene, "--all", "--size", "48", "--pages", "auto", "--density", "8", "-o",
@@ -133,7 +126,7 @@ TEST_F(PagedFiles, AsManyAsADensityNeeds) {
 }
 
 nlohmann::json jsonOfGlb(const std::string& path) {
-    const std::string bytes = fileText(path);
+    const std::string bytes = bytesOf(path);
     uint32_t length = 0;
     std::memcpy(&length, bytes.data() + 12, sizeof length);
     return nlohmann::json::parse(bytes.substr(20, length));
@@ -168,7 +161,7 @@ TEST_F(PagedFiles, AreATextureEachForEnginesThatLoadThem) {
         const FloatImage texture = readImage(path("web/lightmap." + std::to_string(page) + ".ktx2"));
         EXPECT_EQ(texture.width, 48u);
     }
-    const std::string loader = fileText(path("web/loader.js"));
+    const std::string loader = bytesOf(path("web/loader.js"));
     EXPECT_TRUE(contains(loader, "{ length: 3 }")) << loader;
     EXPECT_FALSE(contains(loader, "@")) << loader;
     // Godot gets one texture with all of them.

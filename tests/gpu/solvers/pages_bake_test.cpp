@@ -59,7 +59,7 @@ TEST(PagedBake, HasTheLightOfTheSameTexelsOnOneMap) {
     }
     EXPECT_GT(covered, 2500u);
     EXPECT_EQ(differing, 0u);
-    // What is left over on the sheet stays empty.
+    // The place of the sheet that is no page's stays empty.
     for (uint32_t y = kPage; y < 2 * kPage; ++y)
         for (uint32_t x = kPage; x < 2 * kPage; ++x)
             ASSERT_EQ(paged.planes[3][size_t{y} * paged.width + x], 0.0f);

@@ -3,12 +3,11 @@
 
 #include "assets/base/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace relume {
 namespace {
@@ -47,11 +46,6 @@ LayeredImage layered(uint32_t count) {
     return image;
 }
 
-std::string pageBytes(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class PagedImage : public testing::Test {
 protected:
     std::string path(const std::string& name) const { return folder_.path(name); }
@@ -82,7 +76,7 @@ TEST_F(PagedImage, OnePageIsAFileAsEver) {
     const FloatImage image = sheet(1);
     writeLightmap(path("a.exr"), image);
     writeImage(path("b.exr"), image);
-    EXPECT_EQ(pageBytes(path("a.exr")), pageBytes(path("b.exr")));
+    EXPECT_EQ(bytesOf(path("a.exr")), bytesOf(path("b.exr")));
     EXPECT_EQ(readLightmapFile(path("a.exr")).planes, image.planes);
 }
 
