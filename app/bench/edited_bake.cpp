@@ -59,7 +59,7 @@ double EditedBake::restart(const std::vector<Light>& lights, const SolverSetting
 const Layer* EditedBake::movedLayer() {
     for (const std::unique_ptr<Layer>& layer : solver().layers())
         if (layer->source.key == kMoved && layer->has() &&
-            layer->pattern.light.transform == scene_.lights.front().transform)
+            layer->cacheKey.light.transform == scene_.lights.front().transform)
             return layer.get();
     return nullptr;
 }
@@ -134,9 +134,9 @@ void EditedBake::undo(const std::vector<Light>& lights, const PatchLight& first,
 }
 
 // Bakes to the end of an edit after which this member of all cache keys is no more what it was.
-EditedBake::Seen EditedBake::seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch) {
+EditedBake::Seen EditedBake::seeLayers(uint64_t LightCacheKey::*changed, uint64_t before, Stopwatch& watch) {
     const auto ready = [&](const std::unique_ptr<Layer>& layer) {
-        return layer->pattern.*changed != before && layer->has();
+        return layer->cacheKey.*changed != before && layer->has();
     };
     const PatchSet& patches = baker_->patches();
     PatchLight picture;
@@ -161,17 +161,17 @@ EditedBake::Seen EditedBake::seeLayers(uint64_t LightPattern::*changed, uint64_t
 }
 
 EditedBake::Seen EditedBake::repaint(uint32_t material, const glm::vec4& baseColor) {
-    const uint64_t before = solver().layers().front()->pattern.surfaces;
+    const uint64_t before = solver().layers().front()->cacheKey.surfaces;
     SceneEdits edits = editsOf(scene_);
     edits.materials[material].baseColor = baseColor;
     Stopwatch watch;
     watch([&] { apply(edits); });
-    return seeLayers(&LightPattern::surfaces, before, watch);
+    return seeLayers(&LightCacheKey::surfaces, before, watch);
 }
 
 std::optional<EditedBake::Replacement> EditedBake::place(uint32_t instance, const glm::mat4& transform,
                                                          const LightmapAtlas& atlas) {
-    const uint64_t objects = solver().layers().front()->pattern.objects;
+    const uint64_t objects = solver().layers().front()->cacheKey.objects;
     SceneEdits edits = editsOf(scene_);
     edits.placements[instance].transform = transform;
     const double before = baker_->moves().seconds;
@@ -182,7 +182,7 @@ std::optional<EditedBake::Replacement> EditedBake::place(uint32_t instance, cons
     if (applied == Applied::NeedsNewBake) return {};
     Replacement times;
     times.follow = baker_->moves().seconds - before;
-    times.seen = seeLayers(&LightPattern::objects, objects, watch);
+    times.seen = seeLayers(&LightCacheKey::objects, objects, watch);
     return times;
 }
 

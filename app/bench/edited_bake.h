@@ -71,7 +71,7 @@ private:
     void apply(const SceneEdits& edits);
     SceneEdits editsTo(const std::vector<Light>& lights) const;
     const Layer* movedLayer();
-    Seen seeLayers(uint64_t LightPattern::*changed, uint64_t before, Stopwatch& watch);
+    Seen seeLayers(uint64_t LightCacheKey::*changed, uint64_t before, Stopwatch& watch);
 
     const vk::Device& device_;
     Scene scene_; // which the baker edits

@@ -25,7 +25,7 @@ std::optional<LayerProbe> LayerProbes::next(const LayerSolver& solver, const Pat
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         const Layer* shown = layer->shown();
         if (shown == nullptr) continue;
-        const Told now{shown->pattern, shown->level};
+        const Told now{shown->cacheKey, shown->level};
         const auto found = told_.find(layer->source.key);
         if (found != told_.end() && found->second == now) continue;
         told_.insert_or_assign(layer->source.key, now);

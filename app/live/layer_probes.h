@@ -29,7 +29,7 @@ public:
 private:
     /// The cache key and level, which decide a layer's bytes.
     struct Told {
-        LightPattern pattern;
+        LightCacheKey cacheKey;
         LayerLevel level;
 
         bool operator==(const Told&) const = default;

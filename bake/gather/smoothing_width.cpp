@@ -34,7 +34,7 @@ double smoothedVariance(const shader::ResolveSums& sums) {
     return sums.indirect + std::max(0.0f, sums.bias);
 }
 
-shader::ResolveSums SmoothingWidth::settle(const std::function<shader::ResolveSums(double)>& resolve) {
+shader::ResolveSums SmoothingWidth::converge(const std::function<shader::ResolveSums(double)>& resolve) {
     shader::ResolveSums sums = resolve(sigma);
     double best = sigma, least = smoothedVariance(sums);
     for (uint32_t tries = 1; tries < kSigmaTries; ++tries) {

@@ -13,7 +13,7 @@ struct SmoothingWidth {
 
     /// Makes the result by `resolve` (which takes a width) with the best of a few widths, the present one
     /// first, and leaves it there. Returns that one's sums.
-    shader::ResolveSums settle(const std::function<shader::ResolveSums(double)>& resolve);
+    shader::ResolveSums converge(const std::function<shader::ResolveSums(double)>& resolve);
     /// Changes to the width that suits what the sums of another one have shown.
     void adapt(const shader::ResolveSums& sums);
 };

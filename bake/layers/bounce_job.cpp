@@ -1,7 +1,7 @@
 #include "bake/layers/bounce_job.h"
 
 #include "assets/base/clock.h"
-#include "bake/base/settling.h"
+#include "bake/base/bounce_convergence.h"
 #include "bake/layers/layer_bounces.h"
 
 #include <algorithm>

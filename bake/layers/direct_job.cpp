@@ -18,7 +18,7 @@ constexpr uint32_t kGap = 256, kPenumbraGap = 2048;
 
 DirectJob::End DirectJob::begin(bool pauses) {
     tools_->penumbra.drop(); // what was aborted had set
-    if (!layer_->stale.empty()) return beginMending(pauses);
+    if (!layer_->dirty.empty()) return beginRepair(pauses);
     round_ = layer_->directRounds;
     if (round_ >= target_.directRounds) return End::Made;
     const bool dark = layer_->rays() == 0;
@@ -33,19 +33,19 @@ DirectJob::End DirectJob::begin(bool pauses) {
 
 // Begins to repair direct light of dirty chunks, with the same sample passes in the same steps as that of all
 // others. Meanwhile ligOut, which nobody else needs, holds the layer's direct light.
-DirectJob::End DirectJob::beginMending(bool pauses) {
-    if (layer_->rays() == 0) return End::Mended;
+DirectJob::End DirectJob::beginRepair(bool pauses) {
+    if (layer_->rays() == 0) return End::Repaired;
     LinkKit& kit = tools_->kit;
-    mended_ = layer_->begun ? 1 : 0;
+    repairStep_ = layer_->begun ? 1 : 0;
     round_ = layer_->begun ? layer_->directSteps.front() : 0;
     if (layer_->begun) {
         VkCommandBuffer cmd = kit.commands.begin();
-        recordCopy(cmd, *layer_->direct, kit.input.light.ligOut, rangesOf(mendedMarks(), true));
+        recordCopy(cmd, *layer_->direct, kit.input.light.ligOut, rangesOf(repairedMarks(), true));
         kit.run(cmd);
         setPenumbra(); // else the first sample pass finds it
     }
     beginPass();
-    return seekRound() ? End::NotYet : endMendingStep(pauses);
+    return seekRound() ? End::NotYet : endRepairStep(pauses);
 }
 
 void DirectJob::beginPass() {
@@ -86,9 +86,9 @@ DirectJob::End DirectJob::batch(bool pauses) {
         if (records) kit.run(cmd);
     } else if (round_ == 0) {
         end = endFirstRound(records ? cmd : kit.commands.begin(), pauses);
-    } else if (mended_) {
+    } else if (repairStep_) {
         if (records) kit.run(cmd);
-        end = endMendingStep(pauses);
+        end = endRepairStep(pauses);
     } else {
         end = endStep(records ? cmd : kit.commands.begin());
     }
@@ -112,7 +112,7 @@ void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
     if (tools_->lights.onCpu(portion.part)) {
         // The first part of a layer's first sample pass, with all patches, writes all sums; else they are
         // added to.
-        portion.newSums = round_ == 0 && part_ == 0 && !mended_;
+        portion.newSums = round_ == 0 && part_ == 0 && !repairStep_;
         const vk::Buffer& sums = kit.buffers.directSums;
         if (!begun_ && !portion.newSums) std::memset(sums.as<uint8_t>(), 0, sums.size());
         if (!begun_ && round_ == 0) penumbra.clearOnCpu();
@@ -130,14 +130,14 @@ void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
 
 // Returns the sample pass before which this step ends.
 uint32_t DirectJob::endOfStep() const {
-    if (mended_) return layer_->directSteps[*mended_];
+    if (repairStep_) return layer_->directSteps[*repairStep_];
     return std::min(nextDirectStep(layer_->directRounds), target_.directRounds);
 }
 
-std::vector<uint8_t> DirectJob::mendedMarks() const {
-    std::vector<uint8_t> marks(layer_->stale.size());
+std::vector<uint8_t> DirectJob::repairedMarks() const {
+    std::vector<uint8_t> marks(layer_->dirty.size());
     for (size_t i = 0; i < marks.size(); ++i)
-        marks[i] = layer_->mends(i);
+        marks[i] = layer_->repairs(i);
     return marks;
 }
 
@@ -146,7 +146,7 @@ bool DirectJob::orderRound() {
     LinkKit& kit = tools_->kit;
     const TileParts& parts = tools_->penumbra.parts();
     kit.beginPass();
-    std::vector<uint8_t> take = mended_ ? mendedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
+    std::vector<uint8_t> take = repairStep_ ? repairedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
     const bool penumbraAlone = round_ % shader::kPenumbraRounds != 0;
     if (penumbraAlone && penumbra_.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
@@ -156,7 +156,7 @@ bool DirectJob::orderRound() {
         take[i] &= penumbra_[i];
     if (!kit.input.tracer.onCpu())
         closeGaps(take, penumbraAlone ? kPenumbraGap : kGap);
-    else if (!mended_) // of all chunks those between have few patches that take part
+    else if (!repairStep_) // of all chunks those between have few patches that take part
         closeGaps(take, kGap);
     for (const ChunkRange& range : rangesOf(take, false))
         kit.order.finish(range);
@@ -178,7 +178,7 @@ bool DirectJob::nextPart() {
         return true;
     }
     part_ = 0;
-    if (round_ == 0 && (mended_ || endOfStep() > 1)) return false;
+    if (round_ == 0 && (repairStep_ || endOfStep() > 1)) return false;
     ++round_;
     return seekRound();
 }
@@ -189,7 +189,7 @@ DirectJob::End DirectJob::endFirstRound(VkCommandBuffer cmd, bool pauses) {
     learnPenumbra();
     ++round_;
     if (seekRound()) return End::NotYet;
-    return mended_ ? endMendingStep(pauses) : endStep(tools_->kit.commands.begin());
+    return repairStep_ ? endRepairStep(pauses) : endStep(tools_->kit.commands.begin());
 }
 
 DirectJob::End DirectJob::endStep(VkCommandBuffer cmd) {
@@ -217,11 +217,11 @@ DirectJob::End DirectJob::endStep(VkCommandBuffer cmd) {
     return seekRound() ? End::NotYet : endStep(kit.commands.begin());
 }
 
-DirectJob::End DirectJob::endMendingStep(bool pauses) {
+DirectJob::End DirectJob::endRepairStep(bool pauses) {
     LinkKit& kit = tools_->kit;
     const LightBuffers& light = kit.input.light;
     Layer& layer = *layer_;
-    const uint32_t step = *mended_;
+    const uint32_t step = *repairStep_;
     const uint32_t before = step > 0 ? layer.directSteps[step - 1] : 0;
     VkCommandBuffer cmd = kit.commands.begin();
     tools_->penumbra.recordUpload(cmd);
@@ -230,23 +230,23 @@ DirectJob::End DirectJob::endMendingStep(bool pauses) {
         cmd, light,
         {.direct = light.ligOut, .sums = kit.buffers.directSums, .before = before, .added = round_ - before},
         tools_->penumbra.onDevice());
-    mended_ = step + 1;
+    repairStep_ = step + 1;
     begun_ = false;
     const bool last = step + 1 == layer.directSteps.size();
-    const bool some = std::find(layer.stale.begin(), layer.stale.end(), Layer::kBegun) != layer.stale.end();
+    const bool some = std::find(layer.dirty.begin(), layer.dirty.end(), Layer::kBegun) != layer.dirty.end();
     if (!last && !(step == 0 && (some || pauses))) {
         kit.run(cmd);
-        return seekRound() ? End::NotYet : endMendingStep(pauses);
+        return seekRound() ? End::NotYet : endRepairStep(pauses);
     }
     vk::barrier(cmd);
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd);
     vk::barrier(cmd);
-    recordCopy(cmd, light.ligOut, *layer.direct, rangesOf(mendedMarks(), true));
+    recordCopy(cmd, light.ligOut, *layer.direct, rangesOf(repairedMarks(), true));
     kit.recordRayCount(cmd);
     kit.run(cmd);
     kit.countRays();
-    if (last) return End::Mended;
-    std::replace(layer.stale.begin(), layer.stale.end(), Layer::kStale, Layer::kBegun);
+    if (last) return End::Repaired;
+    std::replace(layer.dirty.begin(), layer.dirty.end(), Layer::kDirty, Layer::kBegun);
     layer.begun = true;
     return End::Paused;
 }
@@ -254,7 +254,7 @@ DirectJob::End DirectJob::endMendingStep(bool pauses) {
 // Learns where the penumbra is; in a repair only of parts that are repaired as a whole. Chunks beside dirty
 // ones are done with where it is what it was.
 void DirectJob::learnPenumbra() {
-    if (mended_) return learnMendedPenumbra();
+    if (repairStep_) return learnRepairedPenumbra();
     const PenumbraMap& penumbra = tools_->penumbra;
     layer_->penumbra.resize(penumbra.parts().count);
     for (size_t i = 0; i < layer_->penumbra.size(); ++i)
@@ -262,23 +262,23 @@ void DirectJob::learnPenumbra() {
     penumbra_.clear();
 }
 
-void DirectJob::learnMendedPenumbra() {
+void DirectJob::learnRepairedPenumbra() {
     const PenumbraMap& penumbra = tools_->penumbra;
     const TileParts& parts = penumbra.parts();
     Layer& layer = *layer_;
     std::vector<uint8_t> cut(parts.count, 0), differs(parts.count, 0);
-    for (uint32_t i = 0; i < layer.stale.size(); ++i)
-        if (!layer.mends(i)) parts.mark(i, cut);
+    for (uint32_t i = 0; i < layer.dirty.size(); ++i)
+        if (!layer.repairs(i)) parts.mark(i, cut);
     for (size_t i = 0; i < parts.count; ++i) {
         const auto within = static_cast<uint8_t>(penumbra.within(i));
         differs[i] = cut[i] == 0 && layer.penumbra[i] != within;
         if (differs[i] != 0) layer.penumbra[i] = within;
     }
-    for (uint32_t i = 0; i < layer.stale.size(); ++i) {
-        uint8_t& stale = layer.stale[i];
-        if (stale != Layer::kBeside && stale != Layer::kBesideBegun) continue;
-        const uint8_t as = stale == Layer::kBeside ? 0 : Layer::kBegun;
-        stale = parts.any(i, differs) ? Layer::kStale : as;
+    for (uint32_t i = 0; i < layer.dirty.size(); ++i) {
+        uint8_t& dirty = layer.dirty[i];
+        if (dirty != Layer::kBeside && dirty != Layer::kBesideBegun) continue;
+        const uint8_t as = dirty == Layer::kBeside ? 0 : Layer::kBegun;
+        dirty = parts.any(i, differs) ? Layer::kDirty : as;
     }
     setPenumbra();
 }
@@ -287,12 +287,12 @@ void DirectJob::learnMendedPenumbra() {
 void DirectJob::setPenumbra() {
     const TileParts& parts = tools_->penumbra.parts();
     std::vector<uint8_t> within = layer_->penumbra;
-    if (mended_) {
-        std::vector<uint8_t> mended(parts.count, 0);
-        for (uint32_t i = 0; i < layer_->stale.size(); ++i)
-            if (layer_->mends(i)) parts.mark(i, mended);
+    if (repairStep_) {
+        std::vector<uint8_t> repaired(parts.count, 0);
+        for (uint32_t i = 0; i < layer_->dirty.size(); ++i)
+            if (layer_->repairs(i)) parts.mark(i, repaired);
         for (size_t i = 0; i < within.size(); ++i)
-            within[i] &= mended[i];
+            within[i] &= repaired[i];
     }
     tools_->penumbra.set(within);
     penumbra_.clear();

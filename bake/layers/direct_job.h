@@ -25,10 +25,10 @@ public:
     };
     /// Tells what has come of a batch.
     enum class End : uint8_t {
-        NotYet, // there is more to do
-        Made,   // the layer has the direct light of its level
-        Paused, // the first step of dirty chunks is there, and all lights are to be seen in one
-        Mended  // no chunk is dirty any more
+        NotYet,  // there is more to do
+        Made,    // the layer has the direct light of its level
+        Paused,  // the first step of dirty chunks is there, and all lights are to be seen in one
+        Repaired // no chunk is dirty any more
     };
     /// The layer must stay where it is. With `alone` bounces wait for other layers to come along.
     DirectJob(Tools& tools, Layer& layer, LayerLevel target, bool alone)
@@ -43,19 +43,19 @@ public:
     bool alone() const { return alone_; }
 
 private:
-    End beginMending(bool pauses);
+    End beginRepair(bool pauses);
     void beginPass();
     void trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark);
     bool nextPart();
     uint32_t endOfStep() const;
     bool orderRound();
     bool seekRound();
-    std::vector<uint8_t> mendedMarks() const;
+    std::vector<uint8_t> repairedMarks() const;
     End endFirstRound(VkCommandBuffer cmd, bool pauses);
     End endStep(VkCommandBuffer cmd);
-    End endMendingStep(bool pauses);
+    End endRepairStep(bool pauses);
     void learnPenumbra();
-    void learnMendedPenumbra();
+    void learnRepairedPenumbra();
     void setPenumbra();
     std::shared_ptr<vk::Buffer> recordOwnDirect(VkCommandBuffer cmd);
 
@@ -63,11 +63,11 @@ private:
     Layer* layer_;
     LayerLevel target_;
     bool alone_;
-    uint32_t round_ = 0;             // sample pass
-    uint32_t part_ = 0;              // of Layer::parts, within a sample pass
-    std::vector<uint8_t> penumbra_;  // chunks with a part of Layer::penumbra; empty: not known yet
-    bool begun_ = false;             // a batch of this step has been made
-    std::optional<uint32_t> mended_; // step of Layer::directSteps; set while dirty chunks are repaired
+    uint32_t round_ = 0;                 // sample pass
+    uint32_t part_ = 0;                  // of Layer::parts, within a sample pass
+    std::vector<uint8_t> penumbra_;      // chunks with a part of Layer::penumbra; empty: not known yet
+    bool begun_ = false;                 // a batch of this step has been made
+    std::optional<uint32_t> repairStep_; // step of Layer::directSteps; set while dirty chunks are repaired
 };
 
 } // namespace relume

@@ -33,10 +33,10 @@ LightPlace placeOfLamp(const Light& light, float reach) {
     return grown({LightPlace::Kind::Box, at - extent, at + extent});
 }
 
-LightPlace placeOfEmitter(const WorldMesh& mesh, const LightPattern& pattern) {
+LightPlace placeOfEmitter(const WorldMesh& mesh, const LightCacheKey& cacheKey) {
     LightPlace place{LightPlace::Kind::Box, glm::vec3(1e30f), glm::vec3(-1e30f)};
     for (size_t corner = 0; corner < mesh.positions.size(); ++corner) {
-        if (mesh.instance[corner / 3] != pattern.instance || mesh.material[corner / 3] != pattern.material)
+        if (mesh.instance[corner / 3] != cacheKey.instance || mesh.material[corner / 3] != cacheKey.material)
             continue;
         place.lo = glm::min(place.lo, mesh.positions[corner]);
         place.hi = glm::max(place.hi, mesh.positions[corner]);
@@ -44,50 +44,50 @@ LightPlace placeOfEmitter(const WorldMesh& mesh, const LightPattern& pattern) {
     return grown(place);
 }
 
-LightPlace placeOf(const MoveReach& moved, const LightPattern& pattern) {
-    if (pattern.kind == Kind::Lamp) return placeOfLamp(pattern.light, moved.reach);
-    if (pattern.kind == Kind::Emitter) return placeOfEmitter(moved.patches.scene.mesh, pattern);
+LightPlace placeOf(const MoveReach& moved, const LightCacheKey& cacheKey) {
+    if (cacheKey.kind == Kind::Lamp) return placeOfLamp(cacheKey.light, moved.reach);
+    if (cacheKey.kind == Kind::Emitter) return placeOfEmitter(moved.patches.scene.mesh, cacheKey);
     return {};
 }
 
 // Returns 1 for those chunks whose direct light of one light may change with what moved.
-std::vector<uint8_t> chunksOf(const MoveReach& moved, const LightPattern& pattern) {
+std::vector<uint8_t> chunksOf(const MoveReach& moved, const LightCacheKey& cacheKey) {
     const std::vector<uint32_t>& instances = moved.move.instances;
-    const bool far = pattern.kind == Kind::Sky ||
-                     (pattern.kind == Kind::Lamp && pattern.light.type == LightType::Directional);
-    const bool itself = pattern.kind == Kind::Emitter &&
-                        std::find(instances.begin(), instances.end(), pattern.instance) != instances.end();
+    const bool far = cacheKey.kind == Kind::Sky ||
+                     (cacheKey.kind == Kind::Lamp && cacheKey.light.type == LightType::Directional);
+    const bool itself = cacheKey.kind == Kind::Emitter &&
+                        std::find(instances.begin(), instances.end(), cacheKey.instance) != instances.end();
     if (itself || (far && moved.farther)) return std::vector<uint8_t>(moved.patches.chunkCount(), 1);
-    return chunksReached(moved.pool, moved.patches, placeOf(moved, pattern), moved.move);
+    return chunksReached(moved.pool, moved.patches, placeOf(moved, cacheKey), moved.move);
 }
 
 // Marks neighbours of what is dirty, too, as it decides on their sample passes.
-void growToParts(const TileParts& tileParts, std::vector<uint8_t>& stale) {
+void growToParts(const TileParts& tileParts, std::vector<uint8_t>& dirty) {
     std::vector<uint8_t> parts(tileParts.count, 0);
-    for (uint32_t i = 0; i < stale.size(); ++i)
-        if (stale[i] == Layer::kStale) tileParts.mark(i, parts);
-    for (uint32_t i = 0; i < stale.size(); ++i) {
-        if (stale[i] == 0 && tileParts.any(i, parts)) stale[i] = Layer::kBeside;
-        if (stale[i] == Layer::kBegun && tileParts.any(i, parts)) stale[i] = Layer::kBesideBegun;
+    for (uint32_t i = 0; i < dirty.size(); ++i)
+        if (dirty[i] == Layer::kDirty) tileParts.mark(i, parts);
+    for (uint32_t i = 0; i < dirty.size(); ++i) {
+        if (dirty[i] == 0 && tileParts.any(i, parts)) dirty[i] = Layer::kBeside;
+        if (dirty[i] == Layer::kBegun && tileParts.any(i, parts)) dirty[i] = Layer::kBesideBegun;
     }
 }
 
 } // namespace
 
 void markDirty(const MoveReach& moved, Layer& layer) {
-    layer.stale.resize(moved.patches.chunkCount(), 0);
-    const auto add = [&](const LightPattern& pattern) {
-        const std::vector<uint8_t> reached = chunksOf(moved, pattern);
+    layer.dirty.resize(moved.patches.chunkCount(), 0);
+    const auto add = [&](const LightCacheKey& cacheKey) {
+        const std::vector<uint8_t> reached = chunksOf(moved, cacheKey);
         for (size_t i = 0; i < reached.size(); ++i)
-            if (reached[i] != 0) layer.stale[i] = Layer::kStale;
+            if (reached[i] != 0) layer.dirty[i] = Layer::kDirty;
     };
-    if (layer.pattern.kind != Kind::Group) add(layer.pattern);
-    for (const LightPattern& member : layer.pattern.members)
+    if (layer.cacheKey.kind != Kind::Group) add(layer.cacheKey);
+    for (const LightCacheKey& member : layer.cacheKey.members)
         add(member);
-    growToParts(moved.parts, layer.stale);
+    growToParts(moved.parts, layer.dirty);
     layer.begun =
-        layer.begun && std::find(layer.stale.begin(), layer.stale.end(), Layer::kStale) == layer.stale.end();
-    if (std::count(layer.stale.begin(), layer.stale.end(), 0) == std::ssize(layer.stale)) layer.stale.clear();
+        layer.begun && std::find(layer.dirty.begin(), layer.dirty.end(), Layer::kDirty) == layer.dirty.end();
+    if (std::count(layer.dirty.begin(), layer.dirty.end(), 0) == std::ssize(layer.dirty)) layer.dirty.clear();
 }
 
 } // namespace relume

@@ -16,7 +16,7 @@ struct MoveReach {
     bool farther = false; // they end elsewhere than before the move
 };
 
-/// Marks the chunks of the layer (Layer::stale) whose direct light may be another one after the move, and
+/// Marks the chunks of the layer (Layer::dirty) whose direct light may be another one after the move, and
 /// those beside them.
 void markDirty(const MoveReach& moved, Layer& layer);
 

@@ -8,37 +8,37 @@
 namespace relume {
 namespace {
 
-LightPattern patternOf(const Scene& scene, const LightKey& key) {
-    LightPattern pattern{.kind = key.kind};
+LightCacheKey cacheKeyOf(const Scene& scene, const LightKey& key) {
+    LightCacheKey cacheKey{.kind = key.kind};
     switch (key.kind) {
     case LightKey::Kind::Emitter:
-        pattern.instance = key.index;
-        pattern.material = key.material;
+        cacheKey.instance = key.index;
+        cacheKey.material = key.material;
         break;
     case LightKey::Kind::Lamp:
-        pattern.light = scene.lights[key.index];
-        pattern.light.name.clear();
-        pattern.light.color = glm::vec3(1.0f);
-        pattern.light.intensity = 1.0f;
-        pattern.light.node = -1;
-        pattern.light.preview = false;
+        cacheKey.light = scene.lights[key.index];
+        cacheKey.light.name.clear();
+        cacheKey.light.color = glm::vec3(1.0f);
+        cacheKey.light.intensity = 1.0f;
+        cacheKey.light.node = -1;
+        cacheKey.light.preview = false;
         break;
     case LightKey::Kind::Sky:
-        pattern.rotation = scene.sky.rotation;
-        pattern.file = scene.sky.file;
+        cacheKey.rotation = scene.sky.rotation;
+        cacheKey.file = scene.sky.file;
         break;
     case LightKey::Kind::Group:
         break;
     }
-    return pattern;
+    return cacheKey;
 }
 
-bool alike(const LightPattern& group, size_t i, const LightPattern& other, size_t k) {
+bool alike(const LightCacheKey& group, size_t i, const LightCacheKey& other, size_t k) {
     return group.members[i] == other.members[k] && group.weights[i] == other.weights[k];
 }
 
 // Counts how many of a group's members are alike from the start on.
-size_t alikeFromTheStart(const LightPattern& a, const LightPattern& b) {
+size_t alikeFromTheStart(const LightCacheKey& a, const LightCacheKey& b) {
     size_t i = 0;
     while (i < std::min(a.members.size(), b.members.size()) && alike(a, i, b, i))
         ++i;
@@ -47,7 +47,7 @@ size_t alikeFromTheStart(const LightPattern& a, const LightPattern& b) {
 
 // Tells what changed. One name stands for it: a member that is lit otherwise, or one that is off or gone.
 std::string groupReason(const Layer& layer, const Layer& shown) {
-    const LightPattern &now = layer.pattern, &then = shown.pattern;
+    const LightCacheKey &now = layer.cacheKey, &then = shown.cacheKey;
     if (now.members == then.members && now.weights == then.weights) return "";
     const size_t first = alikeFromTheStart(now, then);
     const bool fewer = now.members.size() < then.members.size();
@@ -64,14 +64,14 @@ std::string groupReason(const Layer& layer, const Layer& shown) {
 
 } // namespace
 
-LightPattern patternOf(const Scene& scene, const LightGroup& group) {
-    LightPattern pattern = patternOf(scene, group.source.key);
+LightCacheKey cacheKeyOf(const Scene& scene, const LightGroup& group) {
+    LightCacheKey cacheKey = cacheKeyOf(scene, group.source.key);
     for (const LightSource& member : group.members) {
         if (member.weight == glm::vec3(0.0f)) continue;
-        pattern.members.push_back(patternOf(scene, member.key));
-        pattern.weights.push_back(member.weight);
+        cacheKey.members.push_back(cacheKeyOf(scene, member.key));
+        cacheKey.weights.push_back(member.weight);
     }
-    return pattern;
+    return cacheKey;
 }
 
 // The first step is that of the first level, which is in haste.
@@ -100,12 +100,12 @@ std::string staleReason(const Layer& layer) {
     const std::string light = (group ? "group '" : "light '") + layer.source.name + "' ";
     const Layer* shown = layer.shown();
     if (!shown) return light + "is not baked yet";
-    const LightPattern &now = layer.pattern, &then = shown->pattern;
+    const LightCacheKey &now = layer.cacheKey, &then = shown->cacheKey;
     if (group)
         if (std::string reason = groupReason(layer, *shown); !reason.empty()) return reason;
     if (now.light.transform != then.light.transform) return light + "moved";
     if (now.rotation != then.rotation) return light + "turned";
-    LightPattern recoloured = then;
+    LightCacheKey recoloured = then;
     recoloured.surfaces = now.surfaces;
     if (recoloured == now) return light + "meets surfaces of other colours";
     recoloured.objects = now.objects;

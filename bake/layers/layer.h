@@ -14,21 +14,21 @@ namespace relume {
 
 /// The cache key of a light's layer: it says where the light is and which form it has, but neither intensity,
 /// nor colour, nor name. In a group, intensity and colour decide how its members are weighed.
-struct LightPattern {
+struct LightCacheKey {
     LightKey::Kind kind = LightKey::Kind::Sky;
     uint32_t instance = 0, material = 0; // Emitter
     Light light;                         // Lamp: without name, white, of intensity 1
     float rotation = 0;                  // Sky [rad]
     std::string file;                    // Sky
     // A group lists the members that shine, in the order of lightSources(), without the fields that follow.
-    std::vector<LightPattern> members;
+    std::vector<LightCacheKey> members;
     std::vector<glm::vec3> weights; // of these members
     uint64_t surfaces = 0;          // SceneState of the surfaces' base colours
     uint64_t objects = 0;           // SceneState of where objects stand
 
-    bool operator==(const LightPattern&) const = default;
+    bool operator==(const LightCacheKey&) const = default;
 };
-LightPattern patternOf(const Scene& scene, const LightGroup& group);
+LightCacheKey cacheKeyOf(const Scene& scene, const LightGroup& group);
 
 /// A level tells how far a layer is. The layer at a level is a pure function of the cache key, the geometry
 /// and the surfaces' colours.
@@ -60,7 +60,7 @@ struct LayerPlan {
 /// One light's share of the lightmap for a unit of its weight, or a group's share: direct light and all
 /// bounces.
 struct Layer {
-    LightPattern pattern;
+    LightCacheKey cacheKey;
     LightSource source;               // as it is now; weight: with its switches, 0 where it is off
     std::vector<LightSource> members; // of a group, likewise
     std::vector<DirectPart> parts;
@@ -75,12 +75,12 @@ struct Layer {
     // There is a 1 for each part of a tile (TileParts) in which rays of the first sample pass met the light's
     // penumbra or the edge of its shadow. Patches elsewhere take only every kPenumbraRounds-th sample pass.
     std::vector<uint8_t> penumbra;
-    // A chunk is kStale where direct is of objects that have moved since, and kBeside where its neighbours
+    // A chunk is kDirty where direct is of objects that have moved since, and kBeside where its neighbours
     // are: it is made anew only where these now are in a penumbra or are no longer. In kBegun chunks the
     // first of directSteps is there again; kBesideBegun ones are these beside dirty chunks. Empty stands for
     // nowhere.
-    static constexpr uint8_t kStale = 1, kBeside = 2, kBegun = 3, kBesideBegun = 4;
-    std::vector<uint8_t> stale;
+    static constexpr uint8_t kDirty = 1, kBeside = 2, kBegun = 3, kBesideBegun = 4;
+    std::vector<uint8_t> dirty;
     bool begun = false;          // all dirty chunks have begun
     LayerLevel level;            // of result; no sample passes: there is none yet
     SmoothingWidth width;        // of the last result
@@ -103,9 +103,9 @@ struct Layer {
     bool shines() const { return source.weight != glm::vec3(0.0f); }
     bool isGroup() const { return source.key.kind == LightKey::Kind::Group; }
     /// Tells whether direct is somewhere still of where objects were.
-    bool isOutdated() const { return !stale.empty() && !begun; }
+    bool isOutdated() const { return !dirty.empty() && !begun; }
     /// Tells whether the next step of repairing direct light takes the chunk, too.
-    bool mends(size_t chunk) const { return stale[chunk] != 0 && (begun || stale[chunk] != kBegun); }
+    bool repairs(size_t chunk) const { return dirty[chunk] != 0 && (begun || dirty[chunk] != kBegun); }
     bool has() const { return level.linkRounds > 0 || level.directRounds > 0; }
     /// Returns what is to be seen of it: the layer itself or the one before; nullptr for nothing.
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }

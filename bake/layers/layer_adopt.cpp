@@ -21,18 +21,18 @@ void LayerSolver::edit(const LightMix& mix, bool repainted) {
 // Weighs the layers that stay what they are; what is not known yet comes with adopt().
 void LayerSolver::weigh() {
     const std::vector<WantedLayer> wanted = wantedNow();
-    const auto has = [&](const LightPattern& pattern) {
+    const auto has = [&](const LightCacheKey& cacheKey) {
         return std::any_of(layers().begin(), layers().end(),
-                           [&](const std::unique_ptr<Layer>& layer) { return layer->pattern == pattern; });
+                           [&](const std::unique_ptr<Layer>& layer) { return layer->cacheKey == cacheKey; });
     };
     for (size_t i = 0; i < layers().size(); ++i) {
         Layer& layer = *layers()[i];
         auto now = std::find_if(wanted.begin(), wanted.end(),
-                                [&](const WantedLayer& w) { return w.pattern == layer.pattern; });
+                                [&](const WantedLayer& w) { return w.cacheKey == layer.cacheKey; });
         // One that was moved shines on from where it was.
         if (now == wanted.end())
             now = std::find_if(wanted.begin(), wanted.end(), [&](const WantedLayer& w) {
-                return w.source.key == layer.source.key && !has(w.pattern);
+                return w.source.key == layer.source.key && !has(w.cacheKey);
             });
         if (now == wanted.end() && isRegrouped(layer, wanted)) continue;
         const glm::vec3 weight = now != wanted.end() ? now->source.weight : glm::vec3(0.0f);
@@ -103,9 +103,9 @@ void LayerSolver::adoptLayers() {
         return bounce && bounce->needs(layer);
     };
     // A layer that is under way must be the same one afterwards, not another one at its place in memory.
-    std::vector<std::pair<const Layer*, LightPattern>> underWay;
+    std::vector<std::pair<const Layer*, LightCacheKey>> underWay;
     for (const std::unique_ptr<Layer>& layer : layers())
-        if (isUnderWay(layer.get())) underWay.emplace_back(layer.get(), layer->pattern);
+        if (isUnderWay(layer.get())) underWay.emplace_back(layer.get(), layer->cacheKey);
     const std::vector<WantedLayer> wanted = wantedNow();
     std::vector<std::unique_ptr<Layer>> taken = store_.take(wanted);
     const StandInPlan plan = planStandIn(wanted, taken, layers());
@@ -113,9 +113,9 @@ void LayerSolver::adoptLayers() {
     store_.replace(wanted, std::move(taken), plan.covered,
                    [&](const Layer& from, Layer& to) { inherit(from, to); });
     endStandIn();
-    for (const auto& [layer, pattern] : underWay) {
+    for (const auto& [layer, cacheKey] : underWay) {
         const bool dark = store_.holds(layer) && layer->isGroup() && !layer->shines(); // has no parts
-        if (!store_.holds(layer) || !(layer->pattern == pattern) || dark) abortPass();
+        if (!store_.holds(layer) || !(layer->cacheKey == cacheKey) || dark) abortPass();
     }
 }
 
@@ -124,16 +124,16 @@ void LayerSolver::adoptLayers() {
 // already be that of its next level. The direct light of a group that was dark while objects moved has not
 // followed them.
 void LayerSolver::inherit(const Layer& from, Layer& to) const {
-    LightPattern alike = from.pattern;
-    alike.surfaces = to.pattern.surfaces;
-    alike.objects = to.pattern.objects;
-    const bool followed = from.pattern.objects == states_.before().objects;
-    if (!(alike == to.pattern) || !followed || from.directRounds == 0) return;
+    LightCacheKey alike = from.cacheKey;
+    alike.surfaces = to.cacheKey.surfaces;
+    alike.objects = to.cacheKey.objects;
+    const bool followed = from.cacheKey.objects == states_.before().objects;
+    if (!(alike == to.cacheKey) || !followed || from.directRounds == 0) return;
     to.direct = from.direct;
     to.directRounds = from.directRounds;
     to.directSteps = from.directSteps;
     to.penumbra = from.penumbra;
-    to.stale = from.stale;
+    to.dirty = from.dirty;
     to.begun = from.begun;
     if (moved_)
         markDirty({.pool = kit_.input.device.workers(),

@@ -20,9 +20,9 @@ bool isEmpty(const ObjectMove& move) {
                                              [](const glm::uvec2& bits) { return (bits.x | bits.y) == 0; });
 }
 
-LightPattern withoutState(LightPattern pattern) {
-    pattern.surfaces = pattern.objects = 0;
-    return pattern;
+LightCacheKey withoutState(LightCacheKey cacheKey) {
+    cacheKey.surfaces = cacheKey.objects = 0;
+    return cacheKey;
 }
 
 // Does what the other one does, on all cores.
@@ -51,12 +51,12 @@ public:
 
     // Tells whether there was such a layer; `whole` says whether it shows what it did.
     bool layer(Layer& to, bool& whole) {
-        const std::unique_ptr<Layer> from = take(to.pattern);
+        const std::unique_ptr<Layer> from = take(to.cacheKey);
         whole = false;
         if (!from || from->directRounds == 0) return false;
         direct(*from, to);
         whole = carry_.patches.same && isEmpty(carry_.move) && carry_.sameColours && from->has() &&
-                from->pattern.surfaces == carry_.former.state.surfaces;
+                from->cacheKey.surfaces == carry_.former.state.surfaces;
         whole ? result(*from, to) : redo(*from, to);
         return true;
     }
@@ -77,12 +77,12 @@ public:
 private:
     // Takes the former layer of the light, nullptr where there is none. A group that was dark while objects
     // moved has not followed them.
-    std::unique_ptr<Layer> take(const LightPattern& pattern) {
-        const std::optional<LightPattern> then = formerPattern(pattern, carry_);
+    std::unique_ptr<Layer> take(const LightCacheKey& cacheKey) {
+        const std::optional<LightCacheKey> then = formerCacheKey(cacheKey, carry_);
         std::vector<std::unique_ptr<Layer>>& all = carry_.former.layers;
         const auto found = std::find_if(all.begin(), all.end(), [&](const std::unique_ptr<Layer>& layer) {
-            return then && layer->pattern.objects == carry_.former.state.objects &&
-                   withoutState(layer->pattern) == *then;
+            return then && layer->cacheKey.objects == carry_.former.state.objects &&
+                   withoutState(layer->cacheKey) == *then;
         });
         if (found == all.end()) return nullptr;
         std::unique_ptr<Layer> layer = std::move(*found);
@@ -97,7 +97,7 @@ private:
         if (inPlace_) to.direct = from.direct; // what is other there is made anew
         if (patches.same) {
             to.penumbra = from.penumbra;
-            to.stale = from.stale;
+            to.dirty = from.dirty;
             to.begun = from.begun;
         } else {
             if (!inPlace_) values(from, to);
@@ -130,16 +130,16 @@ private:
     void marks(const Layer& from, Layer& to) {
         const std::vector<uint32_t>& former = carry_.patches.former;
         to.penumbra.assign(reach_.parts.count, 0);
-        to.stale.assign(kit_.chunkCount(), 0);
+        to.dirty.assign(kit_.chunkCount(), 0);
         for (uint32_t i = 0; i < former.size(); ++i) {
             if (former[i] == kNoPatch) continue;
             if (!from.penumbra.empty())
                 to.penumbra[reach_.parts.ofPatch[i]] = from.penumbra[carry_.former.partOfPatch[former[i]]];
-            if (!from.stale.empty() && from.stale[former[i] / kChunk] != 0)
-                to.stale[i / kChunk] = Layer::kStale;
+            if (!from.dirty.empty() && from.dirty[former[i] / kChunk] != 0)
+                to.dirty[i / kChunk] = Layer::kDirty;
         }
-        const bool clean = std::all_of(to.stale.begin(), to.stale.end(), [](uint8_t s) { return s == 0; });
-        if (clean) to.stale.clear();
+        const bool clean = std::all_of(to.dirty.begin(), to.dirty.end(), [](uint8_t s) { return s == 0; });
+        if (clean) to.dirty.clear();
     }
 
     static void redo(const Layer& from, Layer& to) {
@@ -274,16 +274,16 @@ std::vector<glm::vec4> carryShown(const LayerCarry& carry, const PatchSet& patch
     return light;
 }
 
-std::optional<LightPattern> formerPattern(const LightPattern& pattern, const LayerCarry& carry) {
-    LightPattern then = withoutState(pattern);
+std::optional<LightCacheKey> formerCacheKey(const LightCacheKey& cacheKey, const LayerCarry& carry) {
+    LightCacheKey then = withoutState(cacheKey);
     if (then.kind == LightKey::Kind::Sky && !carry.sameSky) return std::nullopt;
     if (then.kind == LightKey::Kind::Emitter) {
         const auto light = carry.patches.formerLight(then.instance, then.material);
         if (!light) return std::nullopt;
         std::tie(then.instance, then.material) = *light;
     }
-    for (LightPattern& member : then.members) {
-        const std::optional<LightPattern> was = formerPattern(member, carry);
+    for (LightCacheKey& member : then.members) {
+        const std::optional<LightCacheKey> was = formerCacheKey(member, carry);
         if (!was) return std::nullopt;
         member = *was;
     }

@@ -64,7 +64,7 @@ std::vector<glm::vec4> carryShown(const LayerCarry& carry, const PatchSet& patch
 
 /// Returns the cache key that a layer of this light had in the former scene, of no state; nothing where it
 /// had none, or its light cannot be told apart.
-std::optional<LightPattern> formerPattern(const LightPattern& pattern, const LayerCarry& carry);
+std::optional<LightCacheKey> formerCacheKey(const LightCacheKey& cacheKey, const LayerCarry& carry);
 
 /// Tells what has come along.
 struct CarriedWork {

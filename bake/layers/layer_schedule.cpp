@@ -1,6 +1,6 @@
 #include "bake/layers/layer_schedule.h"
 
-#include "bake/base/settling.h"
+#include "bake/base/bounce_convergence.h"
 #include "bake/layers/composite.h"
 #include "bake/layers/layer_bounces.h"
 
@@ -234,7 +234,7 @@ std::vector<size_t> LayerSchedule::companions(const Layers& layers, size_t index
     std::vector<size_t> others;
     for (size_t i = 0; rules_.together && i < layers.size(); ++i) {
         const Layer& layer = *layers[i];
-        const bool waits = !layer.plan.converged && layer.stale.empty() && layer.shines();
+        const bool waits = !layer.plan.converged && layer.dirty.empty() && layer.shines();
         if (i == index || !waits) continue;
         const LayerLevel own = targetOf(layer);
         if (own.linkRounds == target.linkRounds && isHasty(own) == isHasty(target)) others.push_back(i);
@@ -301,7 +301,7 @@ std::optional<size_t> LayerSchedule::dirtyLayer(const Layers& layers) const {
     std::optional<size_t> dirty;
     for (size_t i = 0; rules_.live && i < layers.size(); ++i) {
         const Layer& layer = *layers[i];
-        if (!layer.shines() || layer.stale.empty()) continue;
+        if (!layer.shines() || layer.dirty.empty()) continue;
         if (layer.isOutdated()) return i;
         if (!dirty) dirty = i;
     }

@@ -21,7 +21,7 @@ constexpr double kFirstSigma = 3.0;
 
 // Returns the width that is likely best [texels]: noise falls as samples come in, so that the best width
 // falls, too, as in the Cornell rooms and an atrium, where it is 2 to 4 with 50 directions per patch and .5
-// to .7 with 2000. settle() finds what it is.
+// to .7 with 2000. converge() finds what it is.
 double likelyWidth(uint32_t samples) {
     constexpr double kLeast = 0.5;
     return std::max(kLeast, kFirstSigma * std::pow(32.0 / std::max(samples, 32u), 0.4));
@@ -158,8 +158,8 @@ void LayerSolver::endDirectBatch(DirectJob::End end) {
         break;
     case DirectJob::End::Paused:
         break;
-    case DirectJob::End::Mended:
-        return endMending();
+    case DirectJob::End::Repaired:
+        return endRepair();
     }
     job_ = std::monostate();
     sumDue_ = canSum();
@@ -167,11 +167,11 @@ void LayerSolver::endDirectBatch(DirectJob::End end) {
 
 // Ends a repair. A viewer gets the first step of all direct light first, then all of it, and the sum of all
 // lights after either.
-void LayerSolver::endMending() {
+void LayerSolver::endRepair() {
     const DirectJob job = std::get<DirectJob>(job_);
     Layer& layer = job.layer();
     const bool outdated = layer.isOutdated();
-    layer.stale.clear();
+    layer.dirty.clear();
     layer.begun = false;
     const bool more = schedule_.dirtyLayer(layers()).has_value();
     sumDue_ = canSum() && (outdated || !more);
@@ -223,7 +223,7 @@ LevelSums LayerSolver::resolveLevel(const BounceJob::Lane& lane, uint32_t index)
     const bool smooths = links > 0 && kit_.buffers.rows;
     bounceTools_.distancesKnown = bounceTools_.distancesKnown || links > 0;
     if (smooths && !(lane.target == schedule_.firstLevel()))
-        layer.width.settle(at);
+        layer.width.converge(at);
     else
         at(smooths ? kFirstSigma : 0.0);
     return sums;

@@ -80,7 +80,7 @@ private:
     void batch();
     void begin(const LayerSchedule::BeginLayer& next);
     void endDirectBatch(DirectJob::End end);
-    void endMending();
+    void endRepair();
     void beginBounces(Layer& leader, LayerLevel target);
     void bounceBatch();
     void finishLevel(const BounceJob::Lane& lane, uint32_t index, uint32_t gathers);

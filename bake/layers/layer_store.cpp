@@ -42,7 +42,7 @@ std::vector<std::unique_ptr<Layer>> LayerStore::take(const std::vector<WantedLay
 std::unique_ptr<Layer> LayerStore::takeOne(const WantedLayer& wanted) {
     const auto fits = [&](const std::unique_ptr<Layer>& layer) {
         return layer && (wanted.isDarkGroup() ? layer->source.key == wanted.source.key
-                                              : layer->pattern == wanted.pattern);
+                                              : layer->cacheKey == wanted.cacheKey);
     };
     for (std::vector<std::unique_ptr<Layer>>* from : {&layers_, &former_}) {
         const auto found = std::find_if(from->begin(), from->end(), fits);
@@ -67,7 +67,7 @@ void LayerStore::replace(const std::vector<WantedLayer>& wanted, std::vector<std
         }
         taken[i] = std::make_unique<Layer>();
         Layer& layer = *taken[i];
-        layer.pattern = wanted[i].pattern;
+        layer.cacheKey = wanted[i].cacheKey;
         layer.covered = covered[i];
         const auto same =
             std::find_if(layers_.begin(), layers_.end(), [&](const std::unique_ptr<Layer>& former) {
@@ -120,12 +120,12 @@ std::vector<std::unique_ptr<Layer>> LayerStore::release() {
 // Records a layer. One on its way to a level that it had is in the records already.
 void LayerStore::remember(const Layer& layer) {
     if (layer.redo) return;
-    std::erase_if(records_, [&](const Record& record) { return record.pattern == layer.pattern; });
+    std::erase_if(records_, [&](const Record& record) { return record.cacheKey == layer.cacheKey; });
     const std::vector<uint32_t>& steps = layer.directSteps; // those made ahead are of no level yet
     const auto end = std::upper_bound(steps.begin(), steps.end(), layer.level.directRounds);
-    records_.push_back({layer.pattern, layer.level, {steps.begin(), end}});
+    records_.push_back({layer.cacheKey, layer.level, {steps.begin(), end}});
     const auto count = [](size_t sum, const Record& record) {
-        return sum + 1 + record.pattern.members.size();
+        return sum + 1 + record.cacheKey.members.size();
     };
     size_t recorded = std::accumulate(records_.begin(), records_.end(), size_t{0}, count);
     for (; recorded > kMostRecorded && records_.size() > 1; records_.erase(records_.begin()))
@@ -136,7 +136,7 @@ void LayerStore::remember(const Layer& layer) {
 // Direct light that it got from another layer must have been made likewise.
 void LayerStore::recall(Layer& layer) const {
     const auto found = std::find_if(records_.begin(), records_.end(),
-                                    [&](const Record& record) { return record.pattern == layer.pattern; });
+                                    [&](const Record& record) { return record.cacheKey == layer.cacheKey; });
     if (found == records_.end()) return;
     const std::vector<uint32_t>& steps = found->directSteps;
     const auto differs =
@@ -145,7 +145,7 @@ void LayerStore::recall(Layer& layer) const {
         layer.direct.reset();
         layer.directRounds = 0;
         layer.directSteps.clear();
-        layer.stale.clear();
+        layer.dirty.clear();
         layer.begun = false;
         layer.penumbra.clear();
     }

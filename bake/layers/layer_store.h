@@ -42,7 +42,7 @@ public:
 private:
     /// The record of a layer that memory was short for.
     struct Record {
-        LightPattern pattern;
+        LightCacheKey cacheKey;
         LayerLevel level;
         std::vector<uint32_t> directSteps;
     };

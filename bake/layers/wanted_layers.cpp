@@ -13,7 +13,7 @@ namespace {
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
 // Tells whether a light of this cache key is among those that shine in the group.
-bool isIn(const LightPattern& group, LightPattern light) {
+bool isIn(const LightCacheKey& group, LightCacheKey light) {
     light.surfaces = light.objects = 0; // the group has them
     return std::find(group.members.begin(), group.members.end(), light) != group.members.end();
 }
@@ -24,13 +24,13 @@ bool isDark(const LightSource& source) {
 
 // Tells whether the wanted layer has its light in a group that nobody took, or is a new group, which has it
 // once it is baked.
-bool standsIn(const LightPattern& pattern, bool isNew, const std::vector<std::unique_ptr<Layer>>& left) {
-    const bool group = pattern.kind == LightKey::Kind::Group;
+bool standsIn(const LightCacheKey& cacheKey, bool isNew, const std::vector<std::unique_ptr<Layer>>& left) {
+    const bool group = cacheKey.kind == LightKey::Kind::Group;
     const bool among = std::any_of(left.begin(), left.end(), [&](const std::unique_ptr<Layer>& layer) {
         const Layer* shown = layer->shown();
-        const auto holds = [&](const LightPattern& light) { return isIn(shown->pattern, light); };
-        return shown &&
-               (group ? std::any_of(pattern.members.begin(), pattern.members.end(), holds) : holds(pattern));
+        const auto holds = [&](const LightCacheKey& light) { return isIn(shown->cacheKey, light); };
+        return shown && (group ? std::any_of(cacheKey.members.begin(), cacheKey.members.end(), holds)
+                               : holds(cacheKey));
     });
     return among || (group && isNew);
 }
@@ -60,17 +60,17 @@ std::vector<WantedLayer> wantedLayers(const Scene& scene, const LightMix& mix, u
             weigh(group.source);
         else if (std::all_of(members.begin(), members.end(), isDark))
             group.source.weight = glm::vec3(0.0f);
-        LightPattern pattern = patternOf(scene, group);
-        pattern.surfaces = state.surfaces;
-        pattern.objects = state.objects;
-        wanted.push_back({std::move(pattern), std::move(group.source), std::move(members)});
+        LightCacheKey cacheKey = cacheKeyOf(scene, group);
+        cacheKey.surfaces = state.surfaces;
+        cacheKey.objects = state.objects;
+        wanted.push_back({std::move(cacheKey), std::move(group.source), std::move(members)});
     }
     return wanted;
 }
 
 bool isRegrouped(const Layer& layer, const std::vector<WantedLayer>& wanted) {
     return layer.isGroup() || std::any_of(wanted.begin(), wanted.end(), [&](const WantedLayer& group) {
-               return isIn(group.pattern, layer.pattern);
+               return isIn(group.cacheKey, layer.cacheKey);
            });
 }
 
@@ -79,15 +79,15 @@ StandInPlan planStandIn(const std::vector<WantedLayer>& wanted,
                         const std::vector<std::unique_ptr<Layer>>& left) {
     StandInPlan plan;
     for (size_t i = 0; i < wanted.size(); ++i) {
-        const LightPattern& pattern = wanted[i].pattern;
-        plan.covered.push_back(standsIn(pattern, !taken[i], left));
-        plan.regroups = plan.regroups || (plan.covered.back() && pattern.kind != LightKey::Kind::Group);
+        const LightCacheKey& cacheKey = wanted[i].cacheKey;
+        plan.covered.push_back(standsIn(cacheKey, !taken[i], left));
+        plan.regroups = plan.regroups || (plan.covered.back() && cacheKey.kind != LightKey::Kind::Group);
     }
     for (const std::unique_ptr<Layer>& layer : left) {
         if (!layer->shown() || layer->covered || !layer->shines()) continue;
         bool joins = false;
         for (size_t i = 0; i < wanted.size(); ++i)
-            joins = joins || (plan.covered[i] && isIn(wanted[i].pattern, layer->pattern));
+            joins = joins || (plan.covered[i] && isIn(wanted[i].cacheKey, layer->cacheKey));
         plan.regroups = plan.regroups || joins;
         if (joins || layer->isGroup()) plan.sum.push_back(layer.get());
     }

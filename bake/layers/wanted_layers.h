@@ -13,12 +13,12 @@ namespace relume {
 
 /// A layer as the scene is to have it now.
 struct WantedLayer {
-    LightPattern pattern;
+    LightCacheKey cacheKey;
     LightSource source; // weight: with its switches, here and of members
     std::vector<LightSource> members;
 
     /// Tells whether it is a group of which nothing shines: nothing is known of its members' weights then.
-    bool isDarkGroup() const { return !members.empty() && pattern.members.empty(); }
+    bool isDarkGroup() const { return !members.empty() && cacheKey.members.empty(); }
 };
 
 /// Returns the layers of a scene in this state, as the switches have it: no more than there is room for, in

@@ -64,7 +64,7 @@ void LinkSolver::resolve() {
     }
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
     const bool isNew = state_.median == 0;
-    shader::ResolveSums sums = kit_.buffers.rows ? state_.width.settle(at) : at(0.0);
+    shader::ResolveSums sums = kit_.buffers.rows ? state_.width.converge(at) : at(0.0);
     state_.median = errors_.local().median;
     // What local error is relative to hangs on the median, which hardly changes once it is known.
     if (isNew && state_.median > 0) sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
@@ -102,7 +102,7 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
         return;
     }
     ++live_.resolves;
-    live_.complete = live_.complete || kit_.settings.passes > 0 || state_.settling.left <= kMostDimmer;
+    live_.complete = live_.complete || kit_.settings.passes > 0 || state_.convergence.left <= kMostDimmer;
 }
 
 // Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
@@ -298,7 +298,7 @@ void LinkSolver::abortPass() {
         progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
     } else if (state_.linkRounds == 0) { // convergence begins anew
         state_.series = {};
-        state_.settling = {};
+        state_.convergence = {};
     }
     progress_.passes -= state_.bounce;
     progress_.passFraction = 0;

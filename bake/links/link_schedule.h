@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bake/base/light_error.h"
-#include "bake/base/settling.h"
+#include "bake/base/bounce_convergence.h"
 #include "bake/gather/chunk_plan.h"
 #include "bake/gather/smoothing_width.h"
 
@@ -25,7 +25,7 @@ struct LinkState {
     SmoothingWidth width;
     double directChoice = 0, linkChoice = 0; // variances, of any one unit, that the next sample pass goes by
     uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
-    Settling settling;                            // of the first sample pass, then of the result
+    BounceConvergence convergence;                // of the first sample pass, then of the result
     bool scaled = false;                          // chunks have sample passes of their own, of both kinds
     double raysToLights = 0;                      // of a patch, in the last sample pass of direct light
     double median = 0;                            // light of all texels [cd/m^2]

@@ -438,26 +438,26 @@ void LinkSolver::endBounce() {
     if (coarse_.count > 0) interpolate();
     kit_.shareCounters();
     ++progress_.passes;
-    const bool settling = schedule_.converges(state_);
-    if (settling) {
+    const bool converges = schedule_.converges(state_);
+    if (converges) {
         const glm::dvec4 total = errors_.change();
         const double mean = state_.series.learn(total);
-        if (state_.bounce == 0) state_.settling.add(total.w / std::max(1.0, 3.0 * total.z));
-        state_.settling.add(mean);
+        if (state_.bounce == 0) state_.convergence.add(total.w / std::max(1.0, 3.0 * total.z));
+        state_.convergence.add(mean);
     }
     if (state_.last) carry();
     kit_.input.light.turn();
     ++state_.bounce;
     if (!state_.last) {
-        if (settling) state_.last = schedule_.hasConverged(state_);
+        if (converges) state_.last = schedule_.hasConverged(state_);
         return beginBounce();
     }
     if (kit_.settings.passes == 0) {
         state_.series.error *= state_.series.ratio; // this bounce's own share
         if (state_.linkRounds == 0)
-            state_.settling.bounce();
+            state_.convergence.bounce();
         else
-            state_.settling.round(state_.linkRounds);
+            state_.convergence.round(state_.linkRounds);
     } else
         state_.series.error = 0; // what more bounces would add is not asked for
     endPass();

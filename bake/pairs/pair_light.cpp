@@ -41,9 +41,9 @@ std::optional<double> PairLight::measure(WorkerPool& pool) {
     const std::optional<SeriesRest> rest = seriesRest(state_.lastChange, change, mean);
     if (rest) left_ = static_cast<float>(rest->ratio < 1.0 ? rest->ratio / (1.0 - rest->ratio) : 1.0);
     state_.lastChange = change;
-    const bool first = state_.settling.mean < 0;
-    if (first && dark_) state_.settling.add(0.0);
-    state_.settling.add(mean);
+    const bool first = state_.convergence.mean < 0;
+    if (first && dark_) state_.convergence.add(0.0);
+    state_.convergence.add(mean);
     return rest ? std::optional(rest->error) : std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assets/base/worker_pool.h"
-#include "bake/base/settling.h"
+#include "bake/base/bounce_convergence.h"
 #include "bake/surface/patch_set.h"
 
 namespace relume {
@@ -16,7 +16,7 @@ public:
     /// Tells what a checkpoint keeps of it, beside the light.
     struct State {
         double lastChange = 0; // RMS [cd/m^2] of the last pass; 0: nothing yet
-        Settling settling;
+        BounceConvergence convergence;
     };
     /// Starts from this light; `dark` says that nothing of the scene's light is in it.
     PairLight(const PatchSet& patches, std::vector<glm::vec4> start, bool dark);
@@ -28,7 +28,7 @@ public:
     /// Returns how far each patch's light may still be off; empty until it can be told.
     std::vector<float> errors() const;
     /// Returns the share of the mean light that is still to come, 1 until it can be told.
-    double missing() const { return state_.settling.left; }
+    double missing() const { return state_.convergence.left; }
 
     const State& state() const { return state_; }
     void restore(const State& state, std::vector<glm::vec4> light);

@@ -248,7 +248,7 @@ SolverState PairSolver::state() {
                     .ringTurn = bits_.turn(),
                     .lastChange = solved_.state().lastChange,
                     .threshold = threshold_,
-                    .settling = solved_.state().settling};
+                    .convergence = solved_.state().convergence};
     if (state.inPass) { // bits of a part of a super-block are traced again
         state.row = walk_.place().row;
         state.column = walk_.place().column;
@@ -272,7 +272,7 @@ void PairSolver::restore(const SolverState& from) {
     lamps_.resume({.rounds = state.lampRounds, .chunk = state.lampChunk});
     bits_.resume(state.ringTurn);
     threshold_ = state.threshold;
-    solved_.restore({.lastChange = state.lastChange, .settling = state.settling},
+    solved_.restore({.lastChange = state.lastChange, .convergence = state.convergence},
                     vk::readBuffer<glm::vec4>(device_, light_.ligIn, patches_.scene.patches.size()));
     view_.startOver();
     walk_.leave();

@@ -23,7 +23,7 @@ struct PairState {
     uint64_t ringTurn = 0;        // super-blocks of the pass that were not kept
     double lastChange = 0;        // RMS [cd/m^2] of the last pass
     double threshold = 0;         // of the quad-tree in this pass
-    Settling settling;
+    BounceConvergence convergence;
 };
 
 /// Solves with the pair methods. A pass gathers every patch's light from all senders and adds one bounce;

@@ -91,7 +91,7 @@ Publisher::Publisher(const vk::Device& device, const PatchSet& patches, const De
     report_ = vk::Buffer(
         device, {.size = changed_.size(), .memory = vk::Memory::Host, .name = "changed regions, read"});
     std::iota(allChunks_.begin(), allChunks_.end(), 0u);
-    stale_.fill(std::vector<uint8_t>(regions, 1));
+    outdated_.fill(std::vector<uint8_t>(regions, 1));
     VkCommandBuffer cmd = commands_.begin();
     vkCmdFillBuffer(cmd, texels_.handle(), 0, VK_WHOLE_SIZE, 0);
     vk::barrier(cmd);
@@ -163,7 +163,7 @@ void Publisher::recordUpdate(VkCommandBuffer cmd, shader::PublishPush push,
 
 void Publisher::readReport() {
     const auto* changed = report_.as<uint32_t>();
-    for (std::vector<uint8_t>& slot : stale_)
+    for (std::vector<uint8_t>& slot : outdated_)
         for (size_t r = 0; r < slot.size(); ++r)
             slot[r] |= static_cast<uint8_t>(changed[r]);
     glm::dvec4 sum(0.0);
@@ -173,7 +173,7 @@ void Publisher::readReport() {
 }
 
 void Publisher::forget() {
-    for (std::vector<uint8_t>& slot : stale_)
+    for (std::vector<uint8_t>& slot : outdated_)
         std::fill(slot.begin(), slot.end(), uint8_t{1});
 }
 
@@ -192,11 +192,13 @@ std::vector<TexelArea> Publisher::changedAreas(uint32_t slot) const {
             areas.push_back(run);
     };
     for (uint32_t y = 0; y < row; ++y) {
-        const auto stale = [&](uint32_t x) { return x < row && stale_[slot][size_t{y} * row + x] != 0; };
+        const auto outdated = [&](uint32_t x) {
+            return x < row && outdated_[slot][size_t{y} * row + x] != 0;
+        };
         const uint32_t top = y * kRegion, height = std::min(kRegion, size_ - top);
         for (uint32_t x = 0; x < row; ++x) {
             const uint32_t first = x;
-            while (stale(x))
+            while (outdated(x))
                 ++x;
             const uint32_t left = first * kRegion;
             if (x > first) add({left, top, std::min(x * kRegion, size_) - left, height});
@@ -228,7 +230,7 @@ std::vector<TexelArea> Publisher::publish(const vk::SharedImage& image, uint32_t
         image.release(cmd);
         commands_.run();
     });
-    std::fill(stale_[slot].begin(), stale_[slot].end(), uint8_t{0});
+    std::fill(outdated_[slot].begin(), outdated_[slot].end(), uint8_t{0});
     return areas;
 }
 
@@ -270,7 +272,7 @@ std::vector<TexelArea> Publisher::publish(std::span<std::byte> texels, uint32_t 
             std::memcpy(texels.data() + at, from + at, a.width * kTexelBytes);
         }
     }
-    std::fill(stale_[slot].begin(), stale_[slot].end(), uint8_t{0});
+    std::fill(outdated_[slot].begin(), outdated_[slot].end(), uint8_t{0});
     return areas;
 }
 

@@ -90,8 +90,8 @@ private:
     vk::Buffer report_;  // the same on the host
     vk::Buffer staging_; // the texels on the host, where it does not see those of the device
     std::vector<uint32_t> allChunks_;
-    std::vector<uint8_t> hasFills_;                  // per chunk
-    std::array<std::vector<uint8_t>, kSlots> stale_; // per region: a slot's copy is an old one
+    std::vector<uint8_t> hasFills_;                     // per chunk
+    std::array<std::vector<uint8_t>, kSlots> outdated_; // per region: a slot's copy is an old one
     glm::vec3 mean_{0.0f};
     bool updated_ = false;
 };

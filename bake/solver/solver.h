@@ -206,8 +206,9 @@ public:
     virtual void restore(const SolverState& state) = 0;
 
 protected:
-    /// This share of the mean light may be missing from light that is called complete, as Settling tells it:
-    /// ratios of the first bounces are too small, so it may be twice as much, which cannot be foreseen.
+    /// This share of the mean light may be missing from light that is called complete, as BounceConvergence
+    /// tells it: ratios of the first bounces are too small, so it may be twice as much, which cannot be
+    /// foreseen.
     static constexpr double kMostDimmer = 0.01;
 
     /// Make the state with a solver's own plain struct, and take it back.

@@ -56,14 +56,14 @@ uint32_t FakeBake::randomOf(const Layer& layer, uint32_t what) const {
         return hash ^ (hash >> 29);
     };
     uint64_t hash = mixed(desc_.seed, what);
-    const auto add = [&](const LightPattern& pattern) {
+    const auto add = [&](const LightCacheKey& cacheKey) {
         for (int k = 0; k < 3; ++k)
-            hash = mixed(hash, std::bit_cast<uint32_t>(pattern.light.transform[3][k]));
+            hash = mixed(hash, std::bit_cast<uint32_t>(cacheKey.light.transform[3][k]));
     };
-    add(layer.pattern);
-    for (const LightPattern& member : layer.pattern.members)
+    add(layer.cacheKey);
+    for (const LightCacheKey& member : layer.cacheKey.members)
         add(member);
-    return static_cast<uint32_t>(mixed(mixed(hash, layer.pattern.surfaces), layer.pattern.objects) >> 32);
+    return static_cast<uint32_t>(mixed(mixed(hash, layer.cacheKey.surfaces), layer.cacheKey.objects) >> 32);
 }
 
 void FakeBake::step() {
@@ -118,14 +118,14 @@ void FakeBake::checkStep(const LayerSchedule::Step& step, bool dropped) {
     require(next->target.directRounds >= layer.level.directRounds &&
                 next->target.linkRounds >= layer.level.linkRounds,
             "a level is below the one before");
-    require(next->target != layer.level || !layer.stale.empty(), "a level is made that is there");
-    require(!next->directAlone || layer.directRounds < next->target.directRounds || !layer.stale.empty(),
+    require(next->target != layer.level || !layer.dirty.empty(), "a level is made that is there");
+    require(!next->directAlone || layer.directRounds < next->target.directRounds || !layer.dirty.empty(),
             "direct light is made that is there");
-    const bool later = layer.has() && !next->directAlone && layer.stale.empty();
+    const bool later = layer.has() && !next->directAlone && layer.dirty.empty();
     require(!later || std::all_of(layers().begin(), layers().end(),
                                   [](const auto& other) { return other->has() || !other->shines(); }),
             "a later level comes before a first one");
-    if (!desc_.rules.live || !layer.stale.empty()) return;
+    if (!desc_.rules.live || !layer.dirty.empty()) return;
     require(std::none_of(layers().begin(), layers().end(),
                          [](const auto& other) { return other->shines() && other->isOutdated(); }),
             "a viewer waits for what moved");
@@ -140,7 +140,7 @@ void FakeBake::checkLanes(const Bounce& job) {
         require(lane.target.linkRounds == leader.target.linkRounds, "lanes want other links");
         require(schedule_.isHasty(lane.target) == schedule_.isHasty(leader.target), "not all are hasty");
         require(lane.layer->directRounds >= lane.target.directRounds, "a lane lacks direct light");
-        require(lane.layer->stale.empty(), "dirty direct light bounces");
+        require(lane.layer->dirty.empty(), "dirty direct light bounces");
         require(lane.layer->shines() || &lane == &leader, "what is dark bounces along");
     }
 }
@@ -164,31 +164,31 @@ void FakeBake::begin(const LayerSchedule::BeginLayer& next) {
 
 FakeBake::End FakeBake::beginDirect() {
     auto& job = std::get<Direct>(job_);
-    if (job.layer->stale.empty())
+    if (job.layer->dirty.empty())
         return job.layer->directRounds >= job.target.directRounds ? End::Made : End::NotYet;
-    if (job.layer->rays() == 0) return End::Mended;
-    job.mended = job.layer->begun ? 1 : 0;
+    if (job.layer->rays() == 0) return End::Repaired;
+    job.repaired = job.layer->begun ? 1 : 0;
     return End::NotYet;
 }
 
 // Makes a step of direct light in one batch.
 FakeBake::End FakeBake::directBatch() {
     auto& job = std::get<Direct>(job_);
-    if (job.mended) return mendBatch(job);
+    if (job.repaired) return repairBatch(job);
     Layer& layer = *job.layer;
     layer.directRounds = std::min(nextDirectStep(layer.directRounds), job.target.directRounds);
     layer.directSteps.push_back(layer.directRounds);
     return layer.directRounds == job.target.directRounds ? End::Made : End::NotYet;
 }
 
-FakeBake::End FakeBake::mendBatch(Direct& job) {
+FakeBake::End FakeBake::repairBatch(Direct& job) {
     Layer& layer = *job.layer;
-    const uint32_t step = (*job.mended)++;
+    const uint32_t step = (*job.repaired)++;
     const bool last = step + 1 == layer.directSteps.size();
-    const bool some = std::find(layer.stale.begin(), layer.stale.end(), Layer::kBegun) != layer.stale.end();
-    if (last) return End::Mended;
+    const bool some = std::find(layer.dirty.begin(), layer.dirty.end(), Layer::kBegun) != layer.dirty.end();
+    if (last) return End::Repaired;
     if (step != 0 || (!some && !wantsSum())) return End::NotYet;
-    std::replace(layer.stale.begin(), layer.stale.end(), Layer::kStale, Layer::kBegun);
+    std::replace(layer.dirty.begin(), layer.dirty.end(), Layer::kDirty, Layer::kBegun);
     layer.begun = true;
     return End::Paused;
 }
@@ -196,16 +196,16 @@ FakeBake::End FakeBake::mendBatch(Direct& job) {
 void FakeBake::endDirect(End end) {
     const Direct job = std::get<Direct>(job_);
     if (end == End::NotYet) return;
-    if (end == End::Mended) return endMending();
+    if (end == End::Repaired) return endRepair();
     if (end == End::Made && !job.alone) return beginBounces(*job.layer, job.target);
     job_ = std::monostate();
     sumDue_ = canSum();
 }
 
-void FakeBake::endMending() {
+void FakeBake::endRepair() {
     const Direct job = std::get<Direct>(job_);
     const bool outdated = job.layer->isOutdated();
-    job.layer->stale.clear();
+    job.layer->dirty.clear();
     job.layer->begun = false;
     const bool more = schedule_.dirtyLayer(layers()).has_value();
     sumDue_ = canSum() && (outdated || !more);
@@ -309,16 +309,16 @@ void FakeBake::edit() {
 
 void FakeBake::weigh() {
     const std::vector<WantedLayer> all = wanted();
-    const auto has = [&](const LightPattern& pattern) {
+    const auto has = [&](const LightCacheKey& cacheKey) {
         return std::any_of(layers().begin(), layers().end(),
-                           [&](const auto& layer) { return layer->pattern == pattern; });
+                           [&](const auto& layer) { return layer->cacheKey == cacheKey; });
     };
     for (const std::unique_ptr<Layer>& layer : layers()) {
         auto wants = std::find_if(all.begin(), all.end(),
-                                  [&](const WantedLayer& one) { return one.pattern == layer->pattern; });
+                                  [&](const WantedLayer& one) { return one.cacheKey == layer->cacheKey; });
         if (wants == all.end())
             wants = std::find_if(all.begin(), all.end(), [&](const WantedLayer& one) {
-                return one.source.key == layer->source.key && !has(one.pattern);
+                return one.source.key == layer->source.key && !has(one.cacheKey);
             });
         if (wants == all.end() && isRegrouped(*layer, all)) continue;
         layer->source.weight = wants != all.end() ? wants->source.weight : glm::vec3(0.0f);
@@ -342,19 +342,19 @@ void FakeBake::adopt() {
 }
 
 void FakeBake::adoptLayers() {
-    std::vector<std::pair<const Layer*, LightPattern>> underWay;
+    std::vector<std::pair<const Layer*, LightCacheKey>> underWay;
     for (const std::unique_ptr<Layer>& layer : layers())
-        if (isUnderWay(layer.get())) underWay.emplace_back(layer.get(), layer->pattern);
+        if (isUnderWay(layer.get())) underWay.emplace_back(layer.get(), layer->cacheKey);
     const std::vector<WantedLayer> all = wanted();
     store_->replace(all, store_->take(all), std::vector<bool>(all.size(), false),
                     [&](const Layer& from, Layer& to) { inherit(from, to); });
     for (const std::unique_ptr<Layer>& layer : layers()) {
-        const size_t lamps = layer->isGroup() ? layer->pattern.members.size() : 1;
+        const size_t lamps = layer->isGroup() ? layer->cacheKey.members.size() : 1;
         layer->parts = {{.rays = kRaysOfLamp * static_cast<uint32_t>(lamps)}};
     }
-    for (const auto& [layer, pattern] : underWay) {
+    for (const auto& [layer, cacheKey] : underWay) {
         const bool dark = store_->holds(layer) && layer->isGroup() && !layer->shines();
-        if (!store_->holds(layer) || !(layer->pattern == pattern) || dark) abort();
+        if (!store_->holds(layer) || !(layer->cacheKey == cacheKey) || dark) abort();
     }
 }
 
@@ -366,14 +366,14 @@ bool FakeBake::isUnderWay(const Layer* layer) const {
 }
 
 void FakeBake::inherit(const Layer& from, Layer& to) const {
-    LightPattern alike = from.pattern;
-    alike.surfaces = to.pattern.surfaces;
-    alike.objects = to.pattern.objects;
-    const bool followed = from.pattern.objects == states_.before().objects;
-    if (!(alike == to.pattern) || !followed || from.directRounds == 0) return;
+    LightCacheKey alike = from.cacheKey;
+    alike.surfaces = to.cacheKey.surfaces;
+    alike.objects = to.cacheKey.objects;
+    const bool followed = from.cacheKey.objects == states_.before().objects;
+    if (!(alike == to.cacheKey) || !followed || from.directRounds == 0) return;
     to.directRounds = from.directRounds;
     to.directSteps = from.directSteps;
-    to.stale = from.stale;
+    to.dirty = from.dirty;
     to.begun = from.begun;
     if (moved_) markMoved(to);
     to.redo = from.redo;
@@ -383,12 +383,12 @@ void FakeBake::inherit(const Layer& from, Layer& to) const {
 
 // Marks chunks of which nobody knows why it is they.
 void FakeBake::markMoved(Layer& layer) const {
-    layer.stale.resize(kFakeChunks, 0);
+    layer.dirty.resize(kFakeChunks, 0);
     for (uint32_t i = 0; i < kFakeChunks; ++i)
-        if (randomOf(layer, i) % 3 == 0) layer.stale[i] = Layer::kStale;
+        if (randomOf(layer, i) % 3 == 0) layer.dirty[i] = Layer::kDirty;
     layer.begun =
-        layer.begun && std::find(layer.stale.begin(), layer.stale.end(), Layer::kStale) == layer.stale.end();
-    if (std::count(layer.stale.begin(), layer.stale.end(), 0) == std::ssize(layer.stale)) layer.stale.clear();
+        layer.begun && std::find(layer.dirty.begin(), layer.dirty.end(), Layer::kDirty) == layer.dirty.end();
+    if (std::count(layer.dirty.begin(), layer.dirty.end(), 0) == std::ssize(layer.dirty)) layer.dirty.clear();
 }
 
 std::string FakeBake::steps() const {

@@ -54,7 +54,7 @@ private:
         Layer* layer = nullptr;
         LayerLevel target;
         bool alone = false;
-        std::optional<uint32_t> mended; // step, while dirty chunks are repaired
+        std::optional<uint32_t> repaired; // step, while dirty chunks are repaired
     };
     struct Lane {
         Layer* layer = nullptr;
@@ -65,7 +65,7 @@ private:
         std::vector<Lane> lanes;
         bool sum = false;
     };
-    enum class End : uint8_t { NotYet, Made, Paused, Mended };
+    enum class End : uint8_t { NotYet, Made, Paused, Repaired };
 
     ScheduleState now() const;
     bool isBusy() const { return !std::holds_alternative<std::monostate>(job_); }
@@ -80,9 +80,9 @@ private:
     void begin(const LayerSchedule::BeginLayer& next);
     End beginDirect();
     End directBatch();
-    End mendBatch(Direct& job);
+    End repairBatch(Direct& job);
     void endDirect(End end);
-    void endMending();
+    void endRepair();
     void beginBounces(Layer& leader, LayerLevel target);
     void beginSum();
     void bounceBatch();

@@ -78,17 +78,17 @@ public:
     }
     /// Direct light is somewhere of where objects were.
     LayerFacts& outdated() {
-        layer_->stale = {0, Layer::kStale};
+        layer_->dirty = {0, Layer::kDirty};
         return *this;
     }
     /// It is of where objects were only beside what is anew.
     LayerFacts& beside() {
-        layer_->stale = {0, Layer::kBeside};
+        layer_->dirty = {0, Layer::kBeside};
         return *this;
     }
     /// Its first step has been made anew everywhere.
     LayerFacts& begun() {
-        layer_->stale = {0, Layer::kBegun};
+        layer_->dirty = {0, Layer::kBegun};
         layer_->begun = true;
         return *this;
     }

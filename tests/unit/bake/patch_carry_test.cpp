@@ -246,26 +246,26 @@ TEST(LayerCarry, ACacheKeyIsTranslated) {
     FormerLayers former;
     const ObjectMove move;
     LayerCarry carry{.former = former, .patches = patches, .move = move, .sameSky = false};
-    LightPattern light;
+    LightCacheKey light;
     light.kind = LightKey::Kind::Emitter;
     light.material = 2;
     light.surfaces = 3;
     light.objects = 9;
-    const auto then = formerPattern(light, carry);
+    const auto then = formerCacheKey(light, carry);
     ASSERT_TRUE(then);
     EXPECT_EQ(then->instance, 4u);
     EXPECT_EQ(then->material, 1u);
     EXPECT_EQ(then->surfaces + then->objects, 0u);
-    LightPattern sky;
+    LightCacheKey sky;
     sky.file = "sky.hdr";
-    EXPECT_FALSE(formerPattern(sky, carry)) << "it has another picture";
+    EXPECT_FALSE(formerCacheKey(sky, carry)) << "it has another picture";
     carry.sameSky = true;
-    EXPECT_TRUE(formerPattern(sky, carry));
-    LightPattern group;
+    EXPECT_TRUE(formerCacheKey(sky, carry));
+    LightCacheKey group;
     group.kind = LightKey::Kind::Group;
     group.members = {light, sky};
-    ASSERT_TRUE(formerPattern(group, carry));
-    EXPECT_EQ(formerPattern(group, carry)->members[0].instance, 4u);
+    ASSERT_TRUE(formerCacheKey(group, carry));
+    EXPECT_EQ(formerCacheKey(group, carry)->members[0].instance, 4u);
 }
 
 } // namespace

@@ -131,7 +131,7 @@ TEST_P(EditedBake, EndsWithAllLayersDone) {
         for (const std::unique_ptr<Layer>& layer : bake.layers()) {
             if (!layer->shines()) continue;
             EXPECT_TRUE(layer->plan.converged) << layer->source.name;
-            EXPECT_TRUE(layer->stale.empty()) << layer->source.name;
+            EXPECT_TRUE(layer->dirty.empty()) << layer->source.name;
             EXPECT_FALSE(layer->redo) << layer->source.name;
         }
     }
@@ -399,7 +399,7 @@ TEST(SeveralEdits, TheNewestCounts) {
     }
     while (bake.waits())
         bake.step();
-    EXPECT_EQ(bake.layers()[0]->pattern.light.transform[3].y, 5.0f);
+    EXPECT_EQ(bake.layers()[0]->cacheKey.light.transform[3].y, 5.0f);
     EXPECT_EQ(levelsOf(bake, "lamp 0").size(), made + 1) << "places between were not taken";
     bake.finish();
     EXPECT_EQ(bake.wrong(), "");

@@ -11,8 +11,8 @@ WantedLayer lampAt(float place, uint32_t lamp = 0) {
     WantedLayer wanted;
     wanted.source.key = {LightKey::Kind::Lamp, lamp, 0};
     wanted.source.weight = glm::vec3(1.0f);
-    wanted.pattern.kind = LightKey::Kind::Lamp;
-    wanted.pattern.light.transform[3] = glm::vec4(place, static_cast<float>(lamp), 0.0f, 1.0f);
+    wanted.cacheKey.kind = LightKey::Kind::Lamp;
+    wanted.cacheKey.light.transform[3] = glm::vec4(place, static_cast<float>(lamp), 0.0f, 1.0f);
     return wanted;
 }
 
@@ -20,11 +20,11 @@ WantedLayer lampAt(float place, uint32_t lamp = 0) {
 WantedLayer groupOf(const std::vector<float>& places) {
     WantedLayer wanted;
     wanted.source.key = {LightKey::Kind::Group, 0, 0};
-    wanted.pattern.kind = LightKey::Kind::Group;
+    wanted.cacheKey.kind = LightKey::Kind::Group;
     wanted.members.resize(3);
     for (const float place : places) {
-        wanted.pattern.members.push_back(lampAt(place).pattern);
-        wanted.pattern.weights.emplace_back(1.0f);
+        wanted.cacheKey.members.push_back(lampAt(place).cacheKey);
+        wanted.cacheKey.weights.emplace_back(1.0f);
     }
     wanted.source.weight = glm::vec3(places.empty() ? 0.0f : 1.0f);
     return wanted;
@@ -235,7 +235,7 @@ TEST(LayerStore, ALayerInheritsFromTheFormerOneOfItsLight) {
     replaceBy(store, {lampAt(1, 0), lampAt(2, 1)});
     std::vector<std::pair<float, float>> heard;
     replaceBy(store, {lampAt(1, 0), lampAt(5, 1), lampAt(6, 2)}, [&](const Layer& from, Layer& to) {
-        heard.emplace_back(from.pattern.light.transform[3].x, to.pattern.light.transform[3].x);
+        heard.emplace_back(from.cacheKey.light.transform[3].x, to.cacheKey.light.transform[3].x);
         to.directRounds = 3;
     });
     EXPECT_EQ(heard, (std::vector<std::pair<float, float>>{{2.0f, 5.0f}}));
@@ -251,12 +251,12 @@ TEST(LayerStore, DirectLightThatWasInheritedInOtherStepsIsNotTaken) {
         replaceBy(store, {lampAt(1)}, [&](const Layer&, Layer& to) {
             to.directSteps = steps;
             to.directRounds = steps.back();
-            to.stale = {Layer::kStale};
+            to.dirty = {Layer::kDirty};
             to.begun = true;
             to.penumbra = {1};
         });
         const Layer& layer = layerIn(store);
-        EXPECT_EQ(layer.stale.empty(), layer.directRounds == 0);
+        EXPECT_EQ(layer.dirty.empty(), layer.directRounds == 0);
         EXPECT_EQ(layer.begun, layer.directRounds > 0);
         EXPECT_EQ(layer.penumbra.empty(), layer.directRounds == 0);
         EXPECT_EQ(layer.redo, (LayerLevel{16, 8}));
@@ -276,7 +276,7 @@ TEST(LayerStore, AGroupOfWhichNothingShinesStaysAsItIs) {
     replaceBy(store, {groupOf({})});
     EXPECT_EQ(&layerIn(store), group);
     EXPECT_FALSE(layerIn(store).shines());
-    EXPECT_EQ(layerIn(store).pattern.members.size(), 3u) << "it may shine again as it did";
+    EXPECT_EQ(layerIn(store).cacheKey.members.size(), 3u) << "it may shine again as it did";
     replaceBy(store, {groupOf({1, 2, 3})});
     EXPECT_EQ(&layerIn(store), group);
     EXPECT_TRUE(layerIn(store).shines());

@@ -47,7 +47,7 @@ WantedLayer onlyOf(const Scene& scene, const LightMix& mix = {}) {
 
 std::unique_ptr<Layer> layerOf(const WantedLayer& wanted) {
     auto layer = std::make_unique<Layer>();
-    layer->pattern = wanted.pattern;
+    layer->cacheKey = wanted.cacheKey;
     layer->source = wanted.source;
     layer->members = wanted.members;
     layer->level = {2, 2};
@@ -94,31 +94,31 @@ TEST(WantedLayer, IsALightInItsSurroundings) {
         wantedLayers(sceneOfLamps(2), {}, kRoomForAll, {.surfaces = 7, .objects = 9});
     ASSERT_EQ(wanted.size(), 2u);
     for (const WantedLayer& layer : wanted) {
-        EXPECT_EQ(layer.pattern.surfaces, 7u);
-        EXPECT_EQ(layer.pattern.objects, 9u);
+        EXPECT_EQ(layer.cacheKey.surfaces, 7u);
+        EXPECT_EQ(layer.cacheKey.objects, 9u);
         EXPECT_TRUE(layer.members.empty());
     }
     EXPECT_EQ(wanted[1].source.name, "lamp 1");
-    EXPECT_NE(wanted[0].pattern, wanted[1].pattern);
+    EXPECT_NE(wanted[0].cacheKey, wanted[1].cacheKey);
 }
 
 TEST(WantedLayer, KnowsNothingOfColourIntensityAndName) {
     Scene scene = sceneOfLamps(1);
-    const LightPattern pattern = onlyOf(scene).pattern;
+    const LightCacheKey cacheKey = onlyOf(scene).cacheKey;
     scene.lights[0].name = "other";
     scene.lights[0].color = glm::vec3(0.5f, 0.25f, 1.0f);
     scene.lights[0].intensity = 8.0f;
     scene.lights[0].node = 4;
-    EXPECT_EQ(onlyOf(scene).pattern, pattern);
+    EXPECT_EQ(onlyOf(scene).cacheKey, cacheKey);
     EXPECT_EQ(onlyOf(scene).source.weight, glm::vec3(4.0f, 2.0f, 8.0f));
 }
 
 TEST(WantedLayer, KnowsPlaceAndForm) {
-    const LightPattern pattern = onlyOf(sceneOfLamps(1)).pattern;
+    const LightCacheKey cacheKey = onlyOf(sceneOfLamps(1)).cacheKey;
     const auto differs = [&](auto&& edit) {
         Scene scene = sceneOfLamps(1);
         edit(scene.lights[0]);
-        return onlyOf(scene).pattern != pattern;
+        return onlyOf(scene).cacheKey != cacheKey;
     };
     EXPECT_TRUE(differs([](Light& lamp) { lamp.transform[3].z = 1.0f; }));
     EXPECT_TRUE(differs([](Light& lamp) { lamp.range = 3.0f; }));
@@ -131,7 +131,7 @@ TEST(WantedLayer, WhatIsMutedHasNoWeight) {
     const std::vector<WantedLayer> wanted = wantedOf(sceneOfLamps(2), kRoomForAll, muted({1}));
     EXPECT_EQ(wanted[0].source.weight, glm::vec3(1.0f));
     EXPECT_EQ(wanted[1].source.weight, glm::vec3(0.0f));
-    EXPECT_EQ(wanted[1].pattern, wantedOf(sceneOfLamps(2), kRoomForAll)[1].pattern);
+    EXPECT_EQ(wanted[1].cacheKey, wantedOf(sceneOfLamps(2), kRoomForAll)[1].cacheKey);
 }
 
 TEST(WantedLayer, BesideASoloOthersHaveNoWeight) {
@@ -148,19 +148,19 @@ TEST(WantedLayer, OfAGroupKnowsWhoShinesInItAndHow) {
     ASSERT_EQ(wanted.size(), 2u);
     EXPECT_EQ(wanted[1].source.weight, glm::vec3(1.0f));
     EXPECT_EQ(wanted[1].members.size(), 3u);
-    ASSERT_EQ(wanted[1].pattern.members.size(), 2u) << "one is muted";
-    EXPECT_EQ(wanted[1].pattern.weights, (std::vector<glm::vec3>{glm::vec3(1.0f), glm::vec3(3.0f)}));
+    ASSERT_EQ(wanted[1].cacheKey.members.size(), 2u) << "one is muted";
+    EXPECT_EQ(wanted[1].cacheKey.weights, (std::vector<glm::vec3>{glm::vec3(1.0f), glm::vec3(3.0f)}));
     EXPECT_EQ(wanted[1].members[2].weight, glm::vec3(0.0f));
 }
 
 TEST(WantedLayer, OfAGroupIsAnotherForOtherWeights) {
     Scene scene = sceneOfLamps(4);
-    const LightPattern pattern = wantedOf(scene, kRoomForTwo)[1].pattern;
+    const LightCacheKey cacheKey = wantedOf(scene, kRoomForTwo)[1].cacheKey;
     scene.lights[2].intensity = 3.0f;
-    EXPECT_NE(wantedOf(scene, kRoomForTwo)[1].pattern, pattern);
+    EXPECT_NE(wantedOf(scene, kRoomForTwo)[1].cacheKey, cacheKey);
     scene.lights[2].intensity = 1.0f;
     scene.lights[2].name = "other";
-    EXPECT_EQ(wantedOf(scene, kRoomForTwo)[1].pattern, pattern);
+    EXPECT_EQ(wantedOf(scene, kRoomForTwo)[1].cacheKey, cacheKey);
 }
 
 TEST(DarkGroup, IsOneOfWhichNothingShines) {
@@ -179,8 +179,8 @@ TEST(DarkGroup, IsNoSingleLight) {
 TEST(IsRegrouped, ALightThatIsInAGroupNow) {
     const std::unique_ptr<Layer> lamp = layerOf(wantedOf(sceneOfLamps(2), kRoomForTwo)[1]);
     EXPECT_TRUE(isRegrouped(*lamp, wantedOf(sceneOfLamps(4), kRoomForTwo)));
-    lamp->pattern.surfaces = 5;
-    lamp->pattern.objects = 6;
+    lamp->cacheKey.surfaces = 5;
+    lamp->cacheKey.objects = 6;
     EXPECT_TRUE(isRegrouped(*lamp, wantedOf(sceneOfLamps(4), kRoomForTwo)));
 }
 
@@ -343,7 +343,7 @@ TEST(NamedLayers, AreThoseOfTheseLightsInTheScenesOrder) {
         wantedLayers(scene, {}, kRoomForAll, {.surfaces = 1, .objects = 1}, names);
     EXPECT_EQ(namesOf(named), "lamp 1, lamp 3");
     const std::vector<WantedLayer> all = wantedOf(scene, kRoomForAll);
-    EXPECT_EQ(named[0].pattern, all[1].pattern);
+    EXPECT_EQ(named[0].cacheKey, all[1].cacheKey);
     EXPECT_EQ(named[1].source.key, all[3].source.key);
 }
 

@@ -19,7 +19,7 @@ inline double keptIterationAim(double error) {
 
 /// Tells how much of the mean light is still to come, if what each bounce adds goes on as a geometric series.
 /// It goes by the mean, for the root mean square says little while a few bright texels make most of it.
-struct Settling {
+struct BounceConvergence {
     double mean = -1; // after the last bounce; negative: none yet
     double gain = 0;  // what the last bounce added
     double ratio = 0; // the last gain over the one before
