@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -76,6 +77,11 @@ bool copyAccessList(const std::string& from, int to) {
     std::vector<char> list(static_cast<size_t>(size));
     const ssize_t read = getxattr(from.c_str(), kName, list.data(), list.size());
     return read > 0 && fsetxattr(to, kName, list.data(), static_cast<size_t>(read), 0) == 0;
+}
+
+std::string problemOf(int error) {
+    return "cannot write: " + std::generic_category().message(error) +
+           (isLackOfSpace(error) ? ": free some space or choose another folder" : ": choose another folder");
 }
 
 // Gives a result that is kept its name and returns it, or "" where none could be given.
@@ -187,6 +193,11 @@ int AtomicFile::takeName() {
     return 0;
 }
 
+int AtomicFile::flush() const {
+    if (way_ != WriteWay::Replace) return 0;
+    return noRoom_ != 0 ? noRoom_ : spool_.flush();
+}
+
 void AtomicFile::commit() {
     int error = 0;
     if (way_ == WriteWay::Replace) error = noRoom_ != 0 ? noRoom_ : takeName();
@@ -210,10 +221,7 @@ void AtomicFile::fail(int error) {
     const bool whole = spool_.descriptor() >= 0 && onFailure_ == OnFailure::Keep;
     const std::string saved = whole ? saveElsewhere() : "";
     spool_ = Spool(); // leaves nothing else behind
-    const std::string mend =
-        isLackOfSpace(error) ? "free some space or choose another folder" : "choose another folder";
-    const std::string problem =
-        problem_.empty() ? "cannot write: " + std::generic_category().message(error) + ": " + mend : problem_;
+    const std::string problem = problem_.empty() ? problemOf(error) : problem_;
     throw Error(target_.path + ": " + problem +
                 (saved.empty() ? "" : ": it was saved as '" + saved + "', move it where it belongs"));
 }
@@ -222,6 +230,42 @@ void writeFileAtomically(const std::string& path, std::string_view bytes, OnFail
     AtomicFile file(path, onFailure);
     file.write(bytes);
     file.commit();
+}
+
+void AtomicFiles::add(const std::string& path, std::string_view bytes) {
+    try {
+        files_.push_back({path, std::make_unique<AtomicFile>(path)});
+        files_.back().content->write(bytes);
+    } catch (...) {
+        files_.clear(); // some of them without the others are of no use
+        throw;
+    }
+}
+
+void AtomicFiles::commit() {
+    std::vector<File> files = std::exchange(files_, {});
+    for (const File& file : files) {
+        const int error = file.content->flush();
+        if (error == 0) continue;
+        std::string saved;
+        for (const File& other : files) {
+            const std::string name = other.content->saveElsewhere();
+            saved += (saved.empty() ? "'" : ", '") + (name.empty() ? other.path + "' (lost)" : name + "'");
+        }
+        throw Error(fmt::format("{}: {}: all {} files were saved as {}, move them where they belong",
+                                file.path, problemOf(error), files.size(), saved));
+    }
+    // What fails now is one file's own; the others take their names all the same, for all that is left is
+    // to tell which one is missing.
+    std::exception_ptr failure;
+    for (const File& file : files) {
+        try {
+            file.content->commit();
+        } catch (const Error&) {
+            if (!failure) failure = std::current_exception();
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
 }
 
 void checkFileWritable(const std::string& path, uint64_t bytes) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "assets/base/spool.h"
 #include "assets/base/write_plan.h"
@@ -38,6 +40,12 @@ public:
     /// Flushes to the disk and gives the file its name.
     void commit();
 
+    /// Does of commit() what can still fail and changes nothing: flushes to the disk. Returns errno, or 0.
+    int flush() const;
+    /// Gives what is written another name, as where commit() fails, and returns it, or "" where that fails,
+    /// too. There is nothing to commit then.
+    std::string saveElsewhere();
+
 private:
     bool takeRefuge(std::string_view rest);
     void keepRights() const;
@@ -45,7 +53,6 @@ private:
     int overwrite() const;
     int pour() const;
     [[noreturn]] void fail(int error);
-    std::string saveElsewhere();
 
     WriteTarget target_;
     WriteWay way_ = WriteWay::Refuse;
@@ -58,6 +65,24 @@ private:
 /// Writes a file as AtomicFile does, in one go. Throws Error, leaving no temporary file.
 void writeFileAtomically(const std::string& path, std::string_view bytes,
                          OnFailure onFailure = OnFailure::Keep);
+
+/// Writes files that belong together, each as AtomicFile does: none takes its name before all are whole and
+/// on the disk. Where one does not fit, all keep what they held, and the new content of all is kept beside
+/// them, as of one file.
+class AtomicFiles {
+public:
+    /// Takes the content of one more file. Throws Error, after which there is nothing to commit.
+    void add(const std::string& path, std::string_view bytes);
+    /// Gives all files their names. Throws Error.
+    void commit();
+
+private:
+    struct File {
+        std::string path;
+        std::unique_ptr<AtomicFile> content;
+    };
+    std::vector<File> files_;
+};
 
 /// Throws Error where writing `path` is sure to fail (see planWrite()), or where there is no space for
 /// `bytes`. Changes nothing.

@@ -159,25 +159,25 @@ std::string encodePng(const FloatImage& image, const std::string& name) {
     return writePng(encodeSrgb(image, name), image.width, image.height, 3, name);
 }
 
-void writeImage(const std::string& path, const FloatImage& image, ExrType type, ExrCompression compression) {
+std::string encodeImage(const std::string& path, const FloatImage& image, ExrType type,
+                        ExrCompression compression) {
     ASSERT(image.width > 0 && image.height > 0 && image.channels.size() == image.planes.size());
     for (const std::vector<float>& plane : image.planes)
         ASSERT(plane.size() == size_t(image.width) * image.height);
-    std::string bytes;
-    if (formatOf(path, Access::Write) == Format::Png) {
-        bytes = encodePng(image, path);
-    } else {
-        try {
-            bytes = encodeExr(path, image, type, compression);
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const Error&) { // of who watches
-            throw;
-        } catch (const std::exception& error) {
-            throw Error(path + ": cannot be encoded as OpenEXR: " + error.what());
-        }
+    if (formatOf(path, Access::Write) == Format::Png) return encodePng(image, path);
+    try {
+        return encodeExr(path, image, type, compression);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const Error&) { // of who watches
+        throw;
+    } catch (const std::exception& error) {
+        throw Error(path + ": cannot be encoded as OpenEXR: " + error.what());
     }
-    writeFileAtomically(path, bytes);
+}
+
+void writeImage(const std::string& path, const FloatImage& image, ExrType type, ExrCompression compression) {
+    writeFileAtomically(path, encodeImage(path, image, type, compression));
 }
 
 void checkWritable(const std::string& path, uint64_t bytes) {

@@ -19,6 +19,10 @@ FloatImage readImage(const std::string& path, uint64_t mostPixels = kMostImagePi
 void writeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
                 ExrCompression compression = kExrCompression);
 
+/// Returns the bytes that writeImage writes. Throws Error.
+std::string encodeImage(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
+                        ExrCompression compression = kExrCompression);
+
 /// Returns R, G and B of each pixel as writeImage writes them to a .png: 8 bits, sRGB encoded. Throws Error,
 /// naming the image `name`, without these channels.
 std::string encodeSrgb(const FloatImage& image, const std::string& name);

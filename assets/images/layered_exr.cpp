@@ -149,15 +149,14 @@ std::string oneLine(std::string text) {
 
 } // namespace
 
-void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type,
-                     ExrCompression compression) {
+std::string encodeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type,
+                             ExrCompression compression) {
     for (const LayeredImage::Layer& layer : image.layers)
         ASSERT(layer.image.width == image.composite.width && layer.image.height == image.composite.height);
     checkWritable(path);
     if (!path.ends_with(".exr")) throw Error(path + ": layers are kept in OpenEXR only: give a name in .exr");
-    std::string bytes;
     try {
-        bytes = encode(path, image, type, compression);
+        return encode(path, image, type, compression);
     } catch (const Error&) { // of who watches
         throw;
     } catch (const std::bad_alloc&) {
@@ -165,7 +164,11 @@ void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType
     } catch (const std::exception& error) {
         throw Error(path + ": cannot be encoded as OpenEXR: " + oneLine(error.what()));
     }
-    writeFileAtomically(path, bytes);
+}
+
+void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type,
+                     ExrCompression compression) {
+    writeFileAtomically(path, encodeLayeredExr(path, image, type, compression));
 }
 
 void roundLayers(const std::string& path, LayeredImage& image, ExrType type) {

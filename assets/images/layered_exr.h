@@ -41,6 +41,10 @@ struct LayeredImage {
 void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float,
                      ExrCompression compression = kExrCompression);
 
+/// Returns the bytes that writeLayeredExr writes. Throws Error.
+std::string encodeLayeredExr(const std::string& path, const LayeredImage& image,
+                             ExrType type = ExrType::Float, ExrCompression compression = kExrCompression);
+
 /// Rounds the layers' pixels to what a file of this type holds; warns, naming `path`, where they are cut.
 void roundLayers(const std::string& path, LayeredImage& image, ExrType type);
 

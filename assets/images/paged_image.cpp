@@ -1,6 +1,7 @@
 #include "assets/images/paged_image.h"
 
 #include "assets/base/error.h"
+#include "assets/base/file_write.h"
 #include "assets/base/numbering.h"
 
 #include <spdlog/fmt/fmt.h>
@@ -224,11 +225,14 @@ void writeLightmap(const std::string& path, const FloatImage& image, ExrType typ
     const LightmapPages pages = lightmapPagesOf(image);
     if (pages.count == 1) return writeImage(path, image, type, compression);
     const std::string whole = wholeOf(hashOf(image, 0));
+    AtomicFiles files;
     for (uint32_t page = 0; page < pages.count; ++page) {
         FloatImage own = cutOut(image, pages, page);
         notePage(own, page, whole);
-        writeImage(pagePath(path, page), own, type, compression);
+        const std::string name = pagePath(path, page);
+        files.add(name, encodeImage(name, own, type, compression));
     }
+    files.commit();
 }
 
 void writeLayeredLightmap(const std::string& path, const LayeredImage& image, ExrType type,
@@ -238,14 +242,17 @@ void writeLayeredLightmap(const std::string& path, const LayeredImage& image, Ex
     uint64_t hash = hashOf(image.composite, 0);
     for (const LayeredImage::Layer& layer : image.layers)
         hash = hashOf(layer.image, hash);
+    AtomicFiles files;
     for (uint32_t page = 0; page < pages.count; ++page) {
         LayeredImage own{cutOut(image.composite, pages, page), {}};
         notePage(own.composite, page, wholeOf(hash));
         for (const LayeredImage::Layer& layer : image.layers)
             own.layers.push_back(
                 {layer.name, layer.weight, layer.attributes, cutOut(layer.image, pages, page)});
-        writeLayeredExr(pagePath(path, page), own, type, compression);
+        const std::string name = pagePath(path, page);
+        files.add(name, encodeLayeredExr(name, own, type, compression));
     }
+    files.commit();
 }
 
 FloatImage readLightmapFile(const std::string& path, uint64_t mostPixels) {

@@ -25,7 +25,8 @@ std::string pagePath(const std::string& path, uint32_t page);
 /// Returns the files of a lightmap that is written to `path`.
 std::vector<std::string> lightmapFiles(const std::string& path, const LightmapPages& pages);
 
-/// Writes an image as writeImage does, each page into a file of its own.
+/// Writes an image as writeImage does, each page into a file of its own; no page takes its name before all
+/// are whole.
 void writeLightmap(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
                    ExrCompression compression = kExrCompression);
 /// Does the same with layers, as writeLayeredExr does.

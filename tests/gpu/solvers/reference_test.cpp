@@ -116,7 +116,7 @@ TEST(Reference, voxelRatioMixesMarchesAndRays) {
 
 // The bake of the adaptive picture is too long for a test; run it by hand:
 //   relume bake CornellLucy.glb --preset rtrad --method adaptive --passes 2 --size 512 -o MAP.exr
-//   tools/rtrad_dfpr.py MAP.exr 512_T05.png --nearest
+//   relume compare MAP.exr 512_T05.png --metric dfpr
 TEST(Reference, monteCarloPresetMatchesRtradsPictures) {
     if (!std::filesystem::exists(kScene)) GTEST_SKIP() << kScene << " is not there";
     std::string why;

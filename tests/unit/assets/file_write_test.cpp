@@ -2,6 +2,7 @@
 
 #include "assets/base/error.h"
 #include "tests/temporary_folder.h"
+#include "tests/text.h"
 
 #include <gtest/gtest.h>
 
@@ -304,6 +305,51 @@ TEST_F(FileWrite, AFullDiskLosesNothing) {
         EXPECT_EQ(rightsOf(saved) & 077, 0u);
         fs::remove(saved);
     }
+}
+
+TEST_F(FileWrite, FilesThatBelongTogetherTakeTheirNamesTogether) {
+    make("a.exr", "before a");
+    make("b.exr", "before b");
+    AtomicFiles files;
+    files.add(path("a.exr"), "after a");
+    files.add(path("b.exr"), "after b");
+    EXPECT_EQ(contentOf(path("a.exr")), "before a") << "the other was not whole yet";
+    files.commit();
+    EXPECT_EQ(contentOf(path("a.exr")), "after a");
+    EXPECT_EQ(contentOf(path("b.exr")), "after b");
+    EXPECT_EQ(folder_.files(), (Names{"a.exr", "b.exr"}));
+}
+
+TEST_F(FileWrite, OfFilesThatBelongTogetherTheOthersAreNamedWhereOneCannotBe) {
+    AtomicFiles files;
+    for (const char* name : {"a.exr", "b.exr", "c.exr"})
+        files.add(path(name), name);
+    fs::create_directory(path("b.exr")); // meanwhile
+    EXPECT_TRUE(contains(errorOf([&] { files.commit(); }), "it was saved as '" + path("b.saved.exr") + "'"));
+    EXPECT_EQ(contentOf(path("b.saved.exr")), "b.exr");
+    EXPECT_EQ(contentOf(path("c.exr")), "c.exr");
+}
+
+TEST_F(FileWrite, AFullDiskKeepsAllFilesThatBelongTogether) {
+    fs::create_directory(path("small"));
+    if (mount("none", path("small").c_str(), "tmpfs", 0, "size=64k") != 0)
+        GTEST_SKIP() << "no file system can be mounted here";
+    const std::string little(1000, 'a'), much(1u << 20, 'b');
+    for (const char* name : {"small/0.exr", "small/1.exr"})
+        make(name, "before");
+    AtomicFiles files;
+    files.add(path("small/0.exr"), little);
+    files.add(path("small/1.exr"), much);
+    const std::string error = errorOf([&] { files.commit(); });
+    EXPECT_EQ(contentOf(path("small/0.exr")), "before") << "the old pages are a whole lightmap";
+    EXPECT_EQ(contentOf(path("small/1.exr")), "before");
+    EXPECT_EQ(contentOf(path("small/0.saved.exr")), little);
+    umount(path("small").c_str());
+    EXPECT_TRUE(contains(error, "small/1.exr: cannot write: No space left on device")) << error;
+    const size_t from = error.rfind("', '") + 4;
+    const std::string saved = error.substr(from, error.find('\'', from) - from);
+    EXPECT_TRUE(contentOf(saved) == much) << error;
+    fs::remove(saved);
 }
 
 TEST(SavedName, IsShortEnough) {
