@@ -25,7 +25,8 @@ uint32_t wordsOfPoints(uint32_t targets) {
 EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links, bool allOver)
     : device_(device), links_(links), allOver_(allOver),
       batchChunks_(mostChunks(patches.chunkCount(), device.info().software())),
-      samples_(device, "emitter_samples"), gather_(device, "direct") {}
+      samples_(vk::ComputeProgram::builtAtFirstUse(device, "emitter_samples")),
+      gather_(vk::ComputeProgram::builtAtFirstUse(device, "direct")) {}
 
 void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     groups_.clear();

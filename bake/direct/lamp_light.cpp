@@ -101,8 +101,11 @@ void LampLight::group(const std::vector<uint32_t>& sets) {
     else
         lamps_ = vk::makeBuffer(device_, lamps, "lamps");
     if (room_ == 0) {
-        samples_ = vk::ComputeProgram(device_, "lamp_samples");
-        gather_ = vk::ComputeProgram(device_, "lamp_gather");
+        programs_ = {vk::ComputeProgram::builtAtFirstUse(device_, "lamp_samples"),
+                     vk::ComputeProgram::builtAtFirstUse(device_, "lamp_gather")};
+        skyPrograms_ = {
+            vk::ComputeProgram::builtAtFirstUse(device_, "lamp_samples", {1u << shader::kLampSky}),
+            vk::ComputeProgram::builtAtFirstUse(device_, "lamp_gather", {1u << shader::kLampSky})};
     }
     if (most <= room_) return;
     room_ = most;
@@ -161,6 +164,15 @@ bool LampLight::onCpu(uint32_t group) const {
                         [](const shader::Lamp& lamp) { return lamp.type == shader::kLampSky; });
 }
 
+// A software device builds the programs for all types for half a second, and the CPU has all lights but the
+// sky: those for the sky alone are a fifth of that. The driver of a GPU builds one faster than two.
+const LampLight::Programs& LampLight::programsOf(uint32_t group) const {
+    const auto first = set_.lamps.begin() + groups_[group].first;
+    const bool sky = std::all_of(first, first + groups_[group].count,
+                                 [](const shader::Lamp& lamp) { return lamp.type == shader::kLampSky; });
+    return sky && device_.info().software() ? skyPrograms_ : programs_;
+}
+
 HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
     const vk::Buffer* covers = light.coversIf(desc_.allOver);
@@ -196,7 +208,7 @@ void LampLight::gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const W
 void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
     shader::LampPush p = push(light, work);
     p.direct = work.soFar ? work.soFar->address() : 0;
-    samples_.dispatch(cmd, p, work.range.count, groups_[work.group].count);
+    programsOf(work.group).samples.dispatch(cmd, p, work.range.count, groups_[work.group].count);
 }
 
 SegmentWork LampLight::segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const {
@@ -217,7 +229,7 @@ void LampLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, con
     shader::LampPush p = push(light, work);
     p.sums = sums.address();
     p.direct = direct.address();
-    gather_.dispatch(cmd, p, work.range.count);
+    programsOf(work.group).gather.dispatch(cmd, p, work.range.count);
 }
 
 } // namespace relume

@@ -90,12 +90,16 @@ public:
 
 private:
     LampDesc lampDesc() const;
+    struct Programs {
+        vk::ComputeProgram samples, gather;
+    };
     struct Group {
         uint32_t first = 0, count = 0; // lights
         uint32_t targets = 0;          // per patch
         uint32_t set = 0;
     };
     void group(const std::vector<uint32_t>& sets); // of each light
+    const Programs& programsOf(uint32_t group) const;
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
     HostLamps host(const LightBuffers& light, const Work& work) const;
 
@@ -108,7 +112,7 @@ private:
     uint32_t room_ = 0;                      // targets per patch that there is memory for
     vk::Buffer lamps_, skyPixels_, skyRows_; // Lamp[], vec4[], float[]
     vk::Buffer targets_, bits_;              // of one batch
-    vk::ComputeProgram samples_, gather_;
+    Programs programs_, skyPrograms_; // for all types of lights; for groups of the sky alone
 };
 
 } // namespace relume

@@ -38,9 +38,9 @@ LayerBounces::LayerBounces(const vk::Device& device, const LightBuffers& light, 
 void LayerBounces::makeSent(uint32_t lanes) {
     const uint64_t places = uint64_t{lanes} * light_.chunkCount * kChunk;
     for (vk::Buffer& sent : sent_)
-        sent = vk::Buffer(device_, {.size = places * sizeof(glm::uvec2), .name = "packed radiance"});
-    changes_ = vk::Buffer(device_, {.size = kPasses * lanes * light_.chunkCount * sizeof(glm::vec4),
-                                    .name = "changes of chunks"});
+        sent = vk::Buffer(device_, {.size = places * sizeof(glm::uvec2), .name = kPacked});
+    changes_ = vk::Buffer(
+        device_, {.size = kPasses * lanes * light_.chunkCount * sizeof(glm::vec4), .name = kChanges});
 }
 
 bool LayerBounces::grow(uint32_t lanes) {
@@ -50,9 +50,9 @@ bool LayerBounces::grow(uint32_t lanes) {
     if (static_cast<double>(bytes) > kShare * static_cast<double>(device_.freeMemory())) return false;
     makeSent(lanes);
     for (; room_ < lanes; ++room_)
-        beside_.push_back({vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
-                           vk::Buffer(device_, {.size = light, .name = "light of a layer"}),
-                           vk::Buffer(device_, {.size = sums, .name = "link sums"})});
+        beside_.push_back({vk::Buffer(device_, {.size = light, .name = kBesideLight}),
+                           vk::Buffer(device_, {.size = light, .name = kBesideLight}),
+                           vk::Buffer(device_, {.size = sums, .name = kBesideSums})});
     return true;
 }
 

@@ -20,6 +20,9 @@ namespace relume {
 class LayerBounces {
 public:
     static constexpr uint32_t kMostLanes = 8;
+    /// Names in the ledger of memory: what a lane beside the first one takes, and what grows with the lanes.
+    static constexpr const char *kBesideLight = "light of a layer beside", *kBesideSums = "link sums beside",
+                                *kPacked = "packed radiance", *kChanges = "changes of chunks";
     static constexpr uint32_t kMostRounds = std::extent_v<decltype(shader::BouncePush::links)>;
 
     /// Takes the first lane's light and its sums over links from `light` and `sums`; both must stay where

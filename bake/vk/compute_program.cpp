@@ -9,9 +9,19 @@ ComputeProgram::ComputeProgram(const Device& device, std::span<const uint32_t> c
                                const Constants& constants)
     : device_(&device), pipeline_(std::make_shared<const ComputePipeline>(device, code, name, constants)) {}
 
+ComputeProgram ComputeProgram::builtAtFirstUse(const Device& device, const std::string& shader,
+                                               const Constants& constants) {
+    ComputeProgram program;
+    program.device_ = &device;
+    program.shader_ = shader;
+    program.constants_ = constants;
+    return program;
+}
+
 void ComputeProgram::dispatchBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t x,
                                    uint32_t y, uint32_t z) const {
-    ASSERT(pipeline_ != nullptr);
+    ASSERT(device_ != nullptr);
+    if (!pipeline_) pipeline_ = device_->computePipelines().get(*device_, shader_, constants_);
     const uint32_t* limit = device_->limits().maxComputeWorkGroupCount;
     ASSERT(x <= limit[0] && y <= limit[1] && z <= limit[2]);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_->handle());

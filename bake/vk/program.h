@@ -23,6 +23,10 @@ public:
     ComputeProgram() = default;
     /// Takes a shader of the library, whose pipeline all its programs on this device share. Throws Error.
     ComputeProgram(const Device& device, const std::string& shader, const Constants& constants = {});
+    /// Takes a shader of the library, which is built when it is dispatched first: for what many bakes have no
+    /// use of, as a software device takes a third of a second for the largest. dispatch() throws Error then.
+    static ComputeProgram builtAtFirstUse(const Device& device, const std::string& shader,
+                                          const Constants& constants = {});
     /// Makes the program from SPIR-V; `name` is for messages.
     ComputeProgram(const Device& device, std::span<const uint32_t> code, const std::string& name,
                    const Constants& constants = {});
@@ -38,7 +42,9 @@ private:
     void dispatchBytes(VkCommandBuffer cmd, const void* push, uint32_t size, uint32_t x, uint32_t y,
                        uint32_t z) const;
     const Device* device_ = nullptr;
-    std::shared_ptr<const ComputePipeline> pipeline_;
+    std::string shader_; // of builtAtFirstUse, else ""
+    Constants constants_;
+    mutable std::shared_ptr<const ComputePipeline> pipeline_;
 };
 
 /// A ray tracing pipeline: one raygen, one miss, one hit group (closest hit and any hit, either may be "").

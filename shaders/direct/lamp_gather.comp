@@ -13,7 +13,7 @@ uint chunk, lane;
 
 // Returns what was sampled; the sky's light, of three colours, is made again.
 LampRay sampled(Lamp l, Patch p, PatchCover cover, uint s) {
-    if (l.type == kLampSky) return lampRay(l, p, cover, s);
+    if (isLamp(l, kLampSky)) return lampRay(l, p, cover, s);
     float light = Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane].w;
     return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
 }

@@ -17,7 +17,7 @@ void main() {
         vec4 target = vec4(0.0);
         if (!leftOut) {
             LampRay ray = lampRay(l, p, cover, s);
-            float light = l.type == kLampSky ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
+            float light = isLamp(l, kLampSky) ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
             target = vec4(ray.target, ray.traced ? light : -light);
         }
         Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane] = target;

@@ -3,6 +3,8 @@
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
 #include "lib/light/polygon_sample.glsl"
+layout(constant_id = 0) const uint kLampTypes = 0x3fu;
+#define LAMP_TYPES kLampTypes
 #include "lib/light/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
 #include "lib/light/penumbra_rounds.glsl"
@@ -23,18 +25,18 @@ struct LampRay {
     bool traced;
 };
 
-// Makes sample s of patch p, which starts at another point of its texel.
-LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
+// Makes sample s of patch p, which starts at another point of its texel. skySize is that of the sky's picture, 0:
+// none.
+LampRay lampRayUnder(uvec2 skySize, Lamp l, Patch p, PatchCover cover, uint s) {
     uint number = push.round * l.samples + s, index = replicateIndex(number);
     vec3 own = p.position;
     p = startingPatch(p, cover, number);
     uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
-    if (l.type == kLampSky) {
+    if (isLamp(l, kLampSky)) {
         // With a picture, samples come in pairs, one by each way, that share their numbers.
-        uvec2 size = uvec2(push.skySize & 0xffffu, push.skySize >> 16);
-        uint turn = size.x > 0u ? index / 2u : index;
-        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, size, push.skyRotation);
+        uint turn = skySize.x > 0u ? index / 2u : index;
+        SkySample sky = skySample(p, sobolPoint(turn, seed), index % 2u != 0u, skySize, push.skyRotation);
         ray.target = p.position + push.reach * sky.direction;
         ray.light = sky.light;
     } else {
@@ -47,6 +49,10 @@ LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
     return ray;
 }
 
+LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
+    return lampRayUnder(uvec2(push.skySize & 0xffffu, push.skySize >> 16), l, p, cover, s);
+}
+
 // Returns the bit of a light in notes and penumbrae.
 uint lampBit(uint indexInGroup) {
     return push.parts == 0ul ? 1u << ((push.firstLamp + indexInGroup) % kNotedLamps) : 1u << (indexInGroup % 32u);
@@ -54,7 +60,7 @@ uint lampBit(uint indexInGroup) {
 
 // Returns the light of a whole one, unshadowed, per unit of its colour; negative where only samples tell.
 vec3 wholeLight(Lamp l, Patch p) {
-    if (l.type == kLampSky && push.skySize == 0u) return lampRay(l, p, PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), 0u).light;
+    if (isLamp(l, kLampSky) && push.skySize == 0u) return lampRayUnder(uvec2(0u), l, p, PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), 0u).light;
     return vec3(lampWhole(l, p));
 }
 

@@ -13,6 +13,14 @@ CONST float kNearestLamp2 = 1e-12f;
 // The salt keeps the numbers of analytic lights apart from those of directions and of mesh lights.
 CONST uint kLampSalt = 0x85ebca6bu;
 
+// A kernel may say of which types its lights can be, a bit each: it is compiled for no others then.
+#ifndef LAMP_TYPES
+#define LAMP_TYPES 0x3fu
+#endif
+FUNCTION bool isLamp(Lamp l, uint type) {
+    return LAMP_TYPES == (1u << type) || (((LAMP_TYPES >> type) & 1u) != 0u && l.type == type);
+}
+
 // Returns the seed that scrambles sample `number` of all sample passes; key is seedKey of the patch.
 FUNCTION uint lampSeed(Lamp l, uint key, uint number) { return hash32((replicateSeed(key, number) ^ kLampSalt) + l.seed); }
 
@@ -24,7 +32,7 @@ FUNCTION float lampFade(Lamp l, vec3 d) {
         float share = distance2 / (l.range * l.range);
         fade = max(0.0f, 1.0f - share * share);
     }
-    if (l.type != kLampSpot) return fade;
+    if (!isLamp(l, kLampSpot)) return fade;
     float cone = clamp(-dot(l.axis, d) / sqrt(max(distance2, 1e-30f)) * l.coneScale + l.coneOffset, 0.0f, 1.0f);
     return fade * cone * cone;
 }
@@ -55,12 +63,12 @@ FUNCTION PolygonPart rectanglePart(Lamp l) {
 // Returns the factor of the whole light, unshadowed; negative where only samples tell. A sphere or sun that
 // stands above the horizon as a whole lights like its centre.
 FUNCTION float lampWhole(Lamp l, Patch p) {
-    if (l.type == kLampDisc || l.type == kLampSky) return -1.0f;
-    if (l.type == kLampRectangle) {
+    if (isLamp(l, kLampDisc) || isLamp(l, kLampSky)) return -1.0f;
+    if (isLamp(l, kLampRectangle)) {
         PolygonPart q = rectanglePart(l);
         return polygonFormFactor(p.position, p.shading, q.a, q.b, q.c, q.d);
     }
-    if (l.type == kLampSun) {
+    if (isLamp(l, kLampSun)) {
         float c = -dot(p.shading, l.axis);
         if (l.radius > 0.0f && abs(c) < l.radius) return -1.0f;
         return kInvPi * max(c, 0.0f);
@@ -84,16 +92,16 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 own, vec2 u, float reach) {
     LampSample s;
     s.target = l.position;
     s.factor = 0.0f;
-    if (l.type == kLampSun) {
+    if (isLamp(l, kLampSun)) {
         float sine2 = l.radius * l.radius;
         vec3 w = coneDirection(-l.axis, sine2, u);
         s.target = p.position + reach * w;
         s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (1.0f + sqrt(1.0f - sine2));
         return s;
     }
-    if (l.type == kLampRectangle || l.type == kLampDisc) {
+    if (isLamp(l, kLampRectangle) || isLamp(l, kLampDisc)) {
         float area = length(cross(l.edgeU, l.edgeV));
-        if (l.type == kLampDisc) {
+        if (isLamp(l, kLampDisc)) {
             vec3 c = cosineDirection(u);
             s.target = l.position + l.radius * (c.x * l.edgeU + c.y * l.edgeV);
             area = 3.14159265f * l.radius * l.radius;

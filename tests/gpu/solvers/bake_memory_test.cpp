@@ -3,6 +3,7 @@
 #include "bake/baker/make_solver.h"
 #include "bake/gather/coarse_patches.h"
 #include "bake/gather/link_cache.h"
+#include "bake/layers/layer_bounces.h"
 #include "bake/links/patch_pyramid.h"
 #include "bake/pairs/bits_cache.h"
 #include "bake/pairs/sender_list.h"
@@ -50,8 +51,8 @@ struct Taken {
     uint64_t solver = 0;  // at most at a time, caches and layers included
     uint64_t caches = 0;  // as they say it
     uint64_t counted = 0; // the same, as the ledger says it
-    uint64_t layers = 0;
-    uint64_t all = 0; // at most at a time
+    uint64_t layers = 0;  // with what their bounces side by side take where memory is free
+    uint64_t all = 0;     // at most at a time
     uint64_t senders = 0;
 };
 
@@ -66,6 +67,15 @@ uint64_t bytesNamed(const vk::MemoryLedger& ledger, const std::array<const char*
 
 constexpr std::array kLayerNames = {"layer", "direct light of a layer", "direct light of all layers",
                                     "light of lights grouped anew"};
+
+/// Returns what bounces of several layers side by side take beyond those of one.
+uint64_t besideBytes(const vk::MemoryLedger& ledger, uint64_t chunks) {
+    const uint64_t beside =
+        bytesNamed(ledger, std::array{LayerBounces::kBesideLight, LayerBounces::kBesideSums});
+    const uint64_t lanes = bytesNamed(ledger, std::array{LayerBounces::kPacked, LayerBounces::kChanges});
+    const uint64_t ofOne = 2 * chunks * (shader::kChunk * sizeof(glm::uvec2) + sizeof(glm::vec4));
+    return beside + lanes - std::min(lanes, ofOne);
+}
 
 /// Bakes to the end; `patches` gets what was baked.
 Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
@@ -99,8 +109,8 @@ Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
     taken.trace = ledger.bytesOf("trace");
     taken.caches = baker.solver().progress().cacheBytes;
     taken.counted = ledger.bytesOf(BitsCache::kOwner) + ledger.bytesOf(LinkCache::kOwner);
-    taken.layers = bytesNamed(ledger, kLayerNames);
     patches = baker.patches();
+    taken.layers = bytesNamed(ledger, kLayerNames) + besideBytes(ledger, patches.chunkCount());
     return taken;
 }
 
