@@ -22,7 +22,6 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kInsideSamples = ObjectMover::kInsideSamples;
 // A bake may take this share of the free memory: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
 
@@ -292,17 +291,13 @@ void Baker::findInvalid(Carry* carry) {
 }
 
 void Baker::searchInside() {
+    std::vector<MetBits> met;
     InsideSearch search{.device = device_,
                         .tracer = *tracer_,
                         .patches = patches_,
-                        .samples = kInsideSamples,
                         .chunks = {},
-                        .onLinks = {},
+                        .met = mover_ ? &met : nullptr,
                         .onBatch = [this](double done) { onPhase("validity", done); }};
-    if (mover_)
-        search.onLinks = [this](uint32_t first, std::span<const uint32_t> links) {
-            mover_->noteInside(first, links);
-        };
     const ChunkDeal dealt = deal();
     const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
     search.chunks.assign(own.begin(), own.end());
@@ -317,6 +312,7 @@ void Baker::searchInside() {
             if (marks[patch] != 0) inside.push_back(patch);
     }
     invalid_ = static_cast<uint32_t>(inside.size());
+    if (mover_) mover_->noteInside(std::move(met), invalid_);
     if (invalid_ == 0) return;
     for (const uint32_t patch : inside)
         patches_.scene.patches[patch].flags &= ~shader::kPatchSends;

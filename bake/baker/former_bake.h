@@ -4,6 +4,7 @@
 
 #include "assets/atlas/world_mesh.h"
 #include "assets/model/scene.h"
+#include "bake/baker/met_bits.h"
 #include "bake/layers/layer_carry.h"
 #include "bake/surface/patch_set.h"
 
@@ -14,7 +15,7 @@ namespace relume {
 struct FormerBake {
     Scene scene; // as it was baked; Baker::release() leaves that to its caller, whose scene it is
     PatchSet patches;
-    std::vector<glm::uvec2> inside; // as ObjectMover has them
+    std::vector<MetBits> inside; // per patch, as ObjectMover has them
     FormerLayers layers;
 };
 

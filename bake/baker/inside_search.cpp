@@ -14,14 +14,13 @@ using shader::kChunk;
 
 // The aim of one submit [ms]; a wish to stop waits for as long.
 constexpr double kInsideBatchMs = 20.0;
-// A batch has at most so many chunks: on a GPU, which fewer would not fill, their links are 64 MiB. On a
-// device that does a billion rays a second these are 16 ms.
+// A batch has at most so many chunks: on a GPU, which fewer would not fill, the links of one step are 16 MiB.
 constexpr uint32_t kMostInsideChunks = 8192, kMostInsideChunksOfSoftware = 1024;
-// In closed rooms all of half the directions meet fronts, which settles it; outdoors three quarters are
-// needed. Tracers that record take eight directions at a time.
-constexpr uint32_t kFirstSamples = 16, kMoreSamples = 8;
-// Chunks that are decided are asked on where so many at most lie between others that are not: a GPU takes
-// longer for each range than for these. What they meet decides nothing else.
+// So many directions are followed in a step: tracers that record take eight at a time.
+constexpr uint32_t kStep = kFirstDirections;
+static_assert(kInsideDirections % kStep == 0);
+// On a GPU, chunks that are decided are asked on where so many at most lie between others that are not: it
+// takes longer for each range than for these. What they meet decides nothing else.
 constexpr uint32_t kMostGap = 32;
 constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
 
@@ -29,113 +28,150 @@ uint32_t mostInsideChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostInsideChunksOfSoftware : kMostInsideChunks);
 }
 
-uint64_t batchBytes(uint32_t chunks, uint32_t samples) {
-    return uint64_t{chunks} * samples * kChunk * sizeof(uint32_t);
+uint64_t stepBytes(uint32_t chunks) {
+    return uint64_t{chunks} * kStep * kChunk * sizeof(uint32_t);
 }
 
-/// The backs and sky that the directions of one patch have met so far.
-struct Met {
-    uint16_t backs = 0, sky = 0;
+/// Follows directions, at most so many chunks of patches at a time. A CPU follows those of single patches, a
+/// GPU those of whole chunks.
+class DirectionSteps {
+public:
+    DirectionSteps(const vk::Device& device, Tracer& tracer, uint32_t most)
+        : device_(device), tracer_(tracer), commands_(device),
+          links_(device, {.size = stepBytes(most),
+                          .memory = tracer.records() ? vk::Memory::Device : vk::Memory::Host,
+                          .name = "links"}) {
+        // A GPU writes its own memory and sends it in one go faster than it writes each link to the host's.
+        if (links_.mapped() == nullptr)
+            back_ = vk::Buffer(
+                device, {.size = links_.size(), .memory = vk::Memory::Host, .name = "links that come back"});
+    }
+
+    /// Follows a step's directions of chunks of the scene, or of patches that stand in for its. hear(chunk,
+    /// links[kStep][64]) hears of each, counted from the first one.
+    template<typename Hear>
+    void follow(const std::vector<ChunkRange>& ranges, uint32_t firstDirection, const Hear& hear,
+                const shader::Patch* receivers = nullptr, const vk::Buffer* onDevice = nullptr) {
+        VkCommandBuffer cmd = tracer_.records() ? commands_.begin() : VK_NULL_HANDLE;
+        uint32_t count = 0;
+        for (const ChunkRange& range : ranges) {
+            tracer_.closest(cmd, {.receivers = onDevice,
+                                  .receiversHost = receivers,
+                                  .firstChunk = range.first,
+                                  .chunkCount = range.count,
+                                  .firstSample = firstDirection,
+                                  .sampleCount = kStep,
+                                  .rotation = Rotation::Patch,
+                                  .links = &links_,
+                                  .linksOffset = uint64_t{count} * kStep * kChunk});
+            count += range.count;
+        }
+        if (tracer_.records()) {
+            if (back_) {
+                vk::barrier(cmd);
+                const VkBufferCopy region{0, 0, stepBytes(count)};
+                vkCmdCopyBuffer(cmd, links_.handle(), back_.handle(), 1, &region);
+            }
+            vk::hostBarrier(cmd);
+            commands_.run();
+        }
+        const auto* links = static_cast<const uint32_t*>(back_ ? back_.mapped() : links_.mapped());
+        device_.workers().run((count + kChunksAtATime - 1) / kChunksAtATime, [&](uint32_t portion) {
+            const uint32_t end = std::min(count, (portion + 1) * kChunksAtATime);
+            for (uint32_t k = portion * kChunksAtATime; k < end; ++k)
+                hear(k, links + size_t{k} * kStep * kChunk);
+        });
+    }
+
+    /// Follows a step's directions of these patches, whose bits are met[patch - first].
+    void followPatches(const PatchSet& patches, std::span<const uint32_t> which, uint32_t firstDirection,
+                       MetBits* met, uint32_t first) {
+        const auto chunks = static_cast<uint32_t>((which.size() + kChunk - 1) / kChunk);
+        std::vector<shader::Patch> receivers(size_t{chunks} * kChunk);
+        for (size_t i = 0; i < which.size(); ++i) {
+            receivers[i] = patches.scene.patches[which[i]];
+            receivers[i].flags |= shader::kPatchSends; // no ray leaves a patch that was found to lie inside
+        }
+        vk::Buffer onDevice;
+        if (tracer_.records()) onDevice = vk::makeBuffer(device_, receivers, "patches that are asked");
+        const auto hear = [&](uint32_t chunk, const uint32_t* links) {
+            const size_t begin = size_t{chunk} * kChunk, end = std::min(which.size(), begin + kChunk);
+            for (size_t i = begin; i < end; ++i)
+                for (uint32_t k = 0; k < kStep; ++k)
+                    met[which[i] - first].note(firstDirection + k, links[size_t{k} * kChunk + i - begin]);
+        };
+        follow({{0, chunks}}, firstDirection, hear, receivers.data(), onDevice ? &onDevice : nullptr);
+    }
+
+private:
+    const vk::Device& device_;
+    Tracer& tracer_;
+    vk::Commands commands_;
+    vk::Buffer links_, back_; // back_ where the host does not see links_
 };
 
 /// One batch of chunks.
 class InsideBatch {
 public:
     InsideBatch(const InsideSearch& search, uint32_t most)
-        : search_(search), gap_(search.device.info().software() ? 0 : kMostGap), commands_(search.device),
-          links_(search.device, {.size = batchBytes(most, search.samples),
-                                 .memory = search.tracer.records() ? vk::Memory::Device : vk::Memory::Host,
-                                 .name = "links"}) {
-        // A GPU writes its own memory and sends it in one go faster than it writes each link to the host's.
-        if (links_.mapped() == nullptr)
-            back_ = vk::Buffer(
-                search.device,
-                {.size = links_.size(), .memory = vk::Memory::Host, .name = "links that come back"});
-    }
+        : search_(search), steps_(search.device, search.tracer, most) {}
 
     void run(uint32_t first, uint32_t count, std::vector<uint32_t>& inside) {
         first_ = first;
-        met_.assign(size_t{count} * kChunk, Met{});
-        if (search_.onLinks) {
-            trace({{first, count}}, 0, search_.samples);
-            const uint64_t links = uint64_t{count} * search_.samples * kChunk;
-            search_.onLinks(first, {found(), links});
-        } else {
+        met_.assign(size_t{count} * kChunk, MetBits{});
+        followChunks({{first, count}}, 0);
+        if (search_.tracer.records()) {
             std::vector<ChunkRange> left = {{first, count}};
-            for (uint32_t done = 0; done < search_.samples && !left.empty();) {
-                const uint32_t wanted = done == 0 ? kFirstSamples : kMoreSamples;
-                const uint32_t samples = std::min(wanted, search_.samples - done);
-                trace(left, done, samples);
-                done += samples;
-                left = undecided(left, done);
+            for (uint32_t done = kStep; done < kInsideDirections; done += kStep) {
+                left = undecided(left);
+                if (left.empty()) break;
+                followChunks(left, done);
+            }
+        } else {
+            std::vector<uint32_t> left;
+            for (uint32_t i = 0; i < met_.size(); ++i)
+                if (isOpen(first * kChunk + i)) left.push_back(first * kChunk + i);
+            for (uint32_t done = kStep; done < kInsideDirections && !left.empty(); done += kStep) {
+                steps_.followPatches(search_.patches, left, done, met_.data(), first * kChunk);
+                std::erase_if(left, [&](uint32_t patch) { return !isOpen(patch); });
             }
         }
-        for (uint32_t i = 0; i < met_.size() && first * kChunk + i < search_.patches.count; ++i)
-            if (liesInside(met_[i].backs, met_[i].sky, search_.samples)) inside.push_back(first * kChunk + i);
+        for (uint32_t i = 0; i < met_.size(); ++i)
+            if (isPatch(first * kChunk + i) && insideBy(met_[i]) == Inside::Yes)
+                inside.push_back(first * kChunk + i);
+        if (search_.met) std::copy(met_.begin(), met_.end(), search_.met->begin() + first * kChunk);
     }
 
 private:
-    void trace(const std::vector<ChunkRange>& ranges, uint32_t firstSample, uint32_t samples) {
-        const bool records = search_.tracer.records();
-        VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
-        uint64_t offset = 0;
-        for (const ChunkRange& range : ranges) {
-            search_.tracer.closest(cmd, {.firstChunk = range.first,
-                                         .chunkCount = range.count,
-                                         .firstSample = firstSample,
-                                         .sampleCount = samples,
-                                         .rotation = Rotation::Patch,
-                                         .links = &links_,
-                                         .linksOffset = offset});
-            offset += uint64_t{range.count} * samples * kChunk;
-        }
-        if (records) {
-            if (back_) {
-                vk::barrier(cmd);
-                const VkBufferCopy region{0, 0, offset * sizeof(uint32_t)};
-                vkCmdCopyBuffer(cmd, links_.handle(), back_.handle(), 1, &region);
-            }
-            vk::hostBarrier(cmd);
-            commands_.run();
-        }
-        const uint32_t* link = found();
-        std::vector<uint32_t> traced; // chunks of the batch, in the order of their links
+    bool isPatch(uint32_t patch) const { return patch < search_.patches.count; }
+    bool isOpen(uint32_t patch) const {
+        return isPatch(patch) && insideBy(met_[patch - first_ * kChunk]) == Inside::Unknown;
+    }
+
+    void followChunks(const std::vector<ChunkRange>& ranges, uint32_t firstDirection) {
+        std::vector<uint32_t> chunks; // of the batch, in the order of their links
         for (const ChunkRange& range : ranges)
             for (uint32_t chunk = 0; chunk < range.count; ++chunk)
-                traced.push_back(range.first - first_ + chunk);
-        const auto count = static_cast<uint32_t>(traced.size());
-        search_.device.workers().run((count + kChunksAtATime - 1) / kChunksAtATime, [&](uint32_t portion) {
-            const uint32_t end = std::min(count, (portion + 1) * kChunksAtATime);
-            for (uint32_t k = portion * kChunksAtATime; k < end; ++k)
-                countMet(&met_[size_t{traced[k]} * kChunk], link + size_t{k} * samples * kChunk, samples);
+                chunks.push_back(range.first - first_ + chunk);
+        steps_.follow(ranges, firstDirection, [&](uint32_t k, const uint32_t* links) {
+            MetBits* met = &met_[size_t{chunks[k]} * kChunk];
+            for (uint32_t step = 0; step < kStep; ++step)
+                for (uint32_t i = 0; i < kChunk; ++i)
+                    met[i].note(firstDirection + step, links[step * kChunk + i]);
         });
     }
 
-    /// Returns the links of the last trace.
-    const uint32_t* found() const {
-        return static_cast<const uint32_t*>(back_ ? back_.mapped() : links_.mapped());
-    }
-
-    static void countMet(Met* met, const uint32_t* link, uint32_t samples) {
-        for (uint32_t k = 0; k < samples; ++k)
-            for (uint32_t i = 0; i < kChunk; ++i, ++link) {
-                met[i].backs = static_cast<uint16_t>(met[i].backs + (*link == shader::kLinkBack));
-                met[i].sky = static_cast<uint16_t>(met[i].sky + shader::linkIsSky(*link));
-            }
-    }
-
-    /// Returns those of these chunks of which a patch could still turn out to lie inside something.
-    std::vector<ChunkRange> undecided(const std::vector<ChunkRange>& ranges, uint32_t traced) const {
+    /// Returns those of these chunks that have patches of which it is not known whether they lie inside
+    /// something.
+    std::vector<ChunkRange> undecided(const std::vector<ChunkRange>& ranges) const {
         std::vector<ChunkRange> left;
-        const uint32_t rest = search_.samples - traced;
         for (const ChunkRange& range : ranges)
             for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
-                const auto begin = met_.begin() + std::ptrdiff_t{chunk - first_} * kChunk;
-                const bool open = std::any_of(begin, begin + kChunk, [&](const Met& met) {
-                    return liesInside(met.backs + rest, met.sky, search_.samples);
-                });
+                bool open = false;
+                for (uint32_t i = chunk * kChunk; i < (chunk + 1) * kChunk && !open; ++i)
+                    open = isOpen(i);
                 if (!open) continue;
-                if (!left.empty() && chunk - left.back().first - left.back().count <= gap_)
+                if (!left.empty() && chunk - left.back().first - left.back().count <= kMostGap)
                     left.back().count = chunk + 1 - left.back().first;
                 else
                     left.push_back({chunk, 1});
@@ -144,23 +180,22 @@ private:
     }
 
     const InsideSearch& search_;
-    const uint32_t gap_; // between ranges
-    vk::Commands commands_;
-    vk::Buffer links_, back_; // back_ where the host does not see links_
+    DirectionSteps steps_;
     uint32_t first_ = 0;
-    std::vector<Met> met_; // of the batch
+    std::vector<MetBits> met_; // of the batch
 };
 
 } // namespace
 
-uint64_t insideBytes(uint32_t chunks, uint32_t samples, bool software) {
-    return (software ? 1 : 2) * batchBytes(mostInsideChunks(chunks, software), samples);
+uint64_t insideBytes(uint32_t chunks, bool software) {
+    return (software ? 1 : 2) * stepBytes(mostInsideChunks(chunks, software));
 }
 
 std::vector<uint32_t> findInside(const InsideSearch& search) {
     const uint32_t most = mostInsideChunks(search.patches.chunkCount(), search.device.info().software());
     InsideBatch batch(search, most);
     BatchRate rate(!search.device.info().software());
+    if (search.met) search.met->assign(size_t{search.patches.chunkCount()} * kChunk, MetBits{});
     std::vector<uint32_t> inside;
     uint32_t all = 0, done = 0;
     for (const ChunkRange& range : search.chunks)
@@ -178,6 +213,19 @@ std::vector<uint32_t> findInside(const InsideSearch& search) {
         }
     }
     return inside;
+}
+
+void followAll(const vk::Device& device, Tracer& tracer, const PatchSet& patches,
+               std::span<const uint32_t> which, std::vector<MetBits>& met) {
+    if (which.empty()) return;
+    const auto chunks = static_cast<uint32_t>((which.size() + kChunk - 1) / kChunk);
+    const uint32_t most = mostInsideChunks(chunks, device.info().software());
+    DirectionSteps steps(device, tracer, most);
+    for (size_t at = 0; at < which.size(); at += size_t{most} * kChunk)
+        for (uint32_t direction = 0; direction < kInsideDirections; direction += kStep)
+            steps.followPatches(patches,
+                                which.subspan(at, std::min(which.size() - at, size_t{most} * kChunk)),
+                                direction, met.data(), 0);
 }
 
 } // namespace relume

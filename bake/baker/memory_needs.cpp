@@ -77,7 +77,7 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
     if (usesVoxels(settings)) needs.trace += VoxelMap::bytes(settings.voxels.resolution) + 2 * tables;
     if (!settings.solver.transport.rtrad)
         needs.inside = std::max(
-            insideBytes(solver.chunkCount, ObjectMover::kInsideSamples, solver.software),
+            insideBytes(solver.chunkCount, solver.software),
             startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount, solver.software) : 0);
     needs.solver = solverBytes(solver, settings.solver);
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);

@@ -2,11 +2,11 @@
 
 #include "assets/base/error.h"
 #include "bake/baker/cover_search.h"
+#include "bake/baker/inside_search.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -29,11 +29,6 @@ static_assert(kHome > kMaxSheetSize * kMaxSheetSize);
 
 bool liesInside(const shader::Patch& patch) {
     return patch.area > 0.0f && (patch.flags & shader::kPatchSends) == 0;
-}
-
-bool liesInside(const glm::uvec2& bits) {
-    return relume::liesInside(static_cast<uint32_t>(std::popcount(bits.x)),
-                              static_cast<uint32_t>(std::popcount(bits.y)), ObjectMover::kInsideSamples);
 }
 
 void sortUnique(std::vector<uint32_t>& list) {
@@ -85,7 +80,7 @@ struct ObjectMover::Buffers {
                  {.size = listedBytes(), .memory = vk::Memory::Host, .name = "links that were traced"}),
           rays(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}), commands(device) {}
 
-    uint64_t words() const { return uint64_t{chunks} * kInsideSamples * kChunk; }
+    uint64_t words() const { return uint64_t{chunks} * kInsideDirections * kChunk; }
     // Returns the bytes of the list that come back with its batch: more is seldom listed, and read
     // afterwards.
     VkDeviceSize listedBytes() const {
@@ -110,20 +105,9 @@ ObjectMover::ObjectMover(const On& on, bool conservative)
 
 ObjectMover::~ObjectMover() = default;
 
-void ObjectMover::noteInside(uint32_t firstChunk, std::span<const uint32_t> links) {
-    const std::vector<shader::Patch>& patches = on_.patches.scene.patches;
-    inside_.resize(patches.size(), glm::uvec2(0));
-    const size_t first = size_t{firstChunk} * kChunk, count = links.size() / kInsideSamples;
-    for (size_t i = 0; i < count; ++i) {
-        glm::uvec2& bits = inside_[first + i];
-        const size_t base = i / kChunk * kInsideSamples * kChunk + i % kChunk;
-        for (uint32_t k = 0; k < kInsideSamples; ++k) {
-            const uint32_t link = links[base + size_t{k} * kChunk];
-            bits.x |= uint32_t{link == shader::kLinkBack} << k;
-            bits.y |= uint32_t{shader::linkIsSky(link)} << k;
-        }
-        invalid_ += patches[first + i].area > 0.0f && liesInside(bits);
-    }
+void ObjectMover::noteInside(std::vector<MetBits> met, uint32_t invalid) {
+    inside_ = std::move(met);
+    invalid_ = invalid;
 }
 
 // Returns the objects that have moved, or nothing where some of them were hidden from the beginning.
@@ -301,17 +285,15 @@ void ObjectMover::upload(const std::vector<uint32_t>& slots, const ObjectMove& m
 }
 
 void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others) {
-    const glm::uvec2 before = inside_[patch];
-    glm::uvec2& bits = inside_[patch];
-    bits.x = (bits.x & ~(1u << sample)) | uint32_t{link == shader::kLinkBack} << sample;
-    bits.y = (bits.y & ~(1u << sample)) | uint32_t{shader::linkIsSky(link)} << sample;
-    if (bits != before) others.push_back(patch);
+    const MetBits before = inside_[patch];
+    inside_[patch].note(sample, link);
+    if (inside_[patch] != before) others.push_back(patch);
 }
 
 // Follows directions again that may meet what has moved, those of patches inside something, too. Returns the
 // patches whose directions meet something else now.
 std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
-    const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideSamples * kChunk;
+    const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideDirections * kChunk;
     if (!buffers_) buffers_ = std::make_unique<Buffers>(on_.device, chunks);
     Buffers& b = *buffers_;
     const vk::Buffer boxes = vk::makeBuffer(on_.device, move.boxes, "boxes");
@@ -322,15 +304,15 @@ std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove&
     for (uint32_t first = 0; first < chunks; first += b.chunks) {
         const uint32_t count = std::min(b.chunks, chunks - first);
         const auto note = [&](uint32_t at) {
-            noteLink((first + at / perChunk) * kChunk + at % kChunk, at / kChunk % kInsideSamples, links[at],
-                     others);
+            noteLink((first + at / perChunk) * kChunk + at % kChunk, at / kChunk % kInsideDirections,
+                     links[at], others);
         };
         if (tracer.onCpu()) std::fill_n(b.links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
         VkCommandBuffer cmd = b.commands.begin();
         tracer.retrace(cmd, {.closest = {.firstChunk = first,
                                          .chunkCount = count,
                                          .firstSample = 0,
-                                         .sampleCount = kInsideSamples,
+                                         .sampleCount = kInsideDirections,
                                          .rotation = Rotation::Patch,
                                          .links = &b.links},
                              .boxes = &boxes,
@@ -363,12 +345,19 @@ std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove&
 
 // Tells again which of these patches lie inside something. Returns those that were not and are, or the other
 // way round.
-std::vector<uint32_t> ObjectMover::findInside(const std::vector<uint32_t>& patches, ObjectMove& move) {
+std::vector<uint32_t> ObjectMover::findInside(Tracer& tracer, const std::vector<uint32_t>& patches,
+                                              ObjectMove& move) {
+    // The first directions told enough of these before.
+    std::vector<uint32_t> unknown;
+    for (const uint32_t i : patches)
+        if (on_.patches.scene.patches[i].area > 0.0f && insideBy(inside_[i]) == Inside::Unknown)
+            unknown.push_back(i);
+    followAll(on_.device, tracer, on_.patches, unknown, inside_);
     std::vector<uint32_t> others;
     for (const uint32_t i : patches) {
         shader::Patch& patch = on_.patches.scene.patches[i];
         if (patch.area <= 0.0f) continue;
-        const bool before = liesInside(patch), now = liesInside(inside_[i]);
+        const bool before = liesInside(patch), now = insideBy(inside_[i]) == Inside::Yes;
         if (before == now) continue;
         patch.flags ^= shader::kPatchSends;
         now ? ++invalid_ : --invalid_;
@@ -407,7 +396,7 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     ObjectMove move;
     move.changed.assign(patches.chunkCount(), glm::uvec2(0));
     move.instances = carry.changed;
-    inside_.assign(patches.scene.patches.size(), glm::uvec2(0));
+    inside_.assign(patches.scene.patches.size(), MetBits{});
     std::vector<uint32_t> slots;
     for (uint32_t i = 0; i < patches.count; ++i) {
         if (carry.former[i] != kNoPatch) {
@@ -433,7 +422,7 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
 
 // Looks anew which patches lie inside something and where samples start, near a move of these patches.
 ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
-    const std::vector<uint32_t> others = findInside(merged(slots, traceInside(tracer, move)), move);
+    const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
     findCovers(tracer, slots, move);
     ObjectMove result;

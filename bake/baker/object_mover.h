@@ -7,6 +7,7 @@
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/model/scene_edits.h"
+#include "bake/baker/met_bits.h"
 #include "bake/layers/object_move.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/light_buffers.h"
@@ -28,21 +29,19 @@ public:
         PatchSet& patches;
         LightBuffers& light;
     };
-    /// So many directions of each patch told whether it lies inside something.
-    static constexpr uint32_t kInsideSamples = 32;
     ObjectMover(const On& on, bool conservative);
     ~ObjectMover();
 
-    /// Takes note of what the directions of these chunks meet: links as findInside tells them. All chunks
-    /// come once.
-    void noteInside(uint32_t firstChunk, std::span<const uint32_t> links);
+    /// Takes over what directions of patches meet, as findInside tells it, and how many patches lie inside
+    /// something.
+    void noteInside(std::vector<MetBits> met, uint32_t invalid);
     /// Holds what a mover leaves for one of the same level, whose objects were edited.
     struct FormerSurfaces {
         const PatchSet& patches;
-        size_t instances = 0;                  // of its scene
-        const std::vector<glm::uvec2>& inside; // as giveInside() has it
+        size_t instances = 0;               // of its scene
+        const std::vector<MetBits>& inside; // as giveInside() has it
     };
-    std::vector<glm::uvec2> giveInside() { return std::move(inside_); }
+    std::vector<MetBits> giveInside() { return std::move(inside_); }
     /// Goes on from a former mover in place of noteInside(): patches that were there have what it knew of
     /// them (carrySearches() was done). Returns what is other than before, as of objects that have moved.
     ObjectMove takeOver(const FormerSurfaces& former, const PatchCarry& carry, Tracer& tracer);
@@ -75,7 +74,7 @@ private:
     std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);
     std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
     void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
-    std::vector<uint32_t> findInside(const std::vector<uint32_t>& patches, ObjectMove& move);
+    std::vector<uint32_t> findInside(Tracer& tracer, const std::vector<uint32_t>& patches, ObjectMove& move);
     void findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
     ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;
@@ -88,7 +87,7 @@ private:
     std::vector<uint8_t> known_;       // per instance: it was there from the beginning
     ObjectMembers triangles_, slots_;  // slots: places among patches
     std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown
-    std::vector<glm::uvec2> inside_;   // per patch: a bit for each direction that meets a back, the sky
+    std::vector<MetBits> inside_;      // per patch
     std::unique_ptr<Buffers> buffers_; // once something moves
     std::unique_ptr<CitPass> cit_;     // of what moved last
 };

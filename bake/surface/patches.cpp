@@ -475,10 +475,4 @@ shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk) {
     return b;
 }
 
-bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount) {
-    // Half of what a texel just below a floor looks at is the floor's back, the other half nothing at all.
-    constexpr double kLeastBacks = 0.4;
-    return backs >= kLeastBacks * sampleCount && 2 * backs + sky > sampleCount;
-}
-
 } // namespace relume

@@ -26,8 +26,4 @@ PatchSet buildPatches(const Scene& scene, WorldMesh mesh, const TextureGroup& gr
 /// Returns the bounds of a chunk's patches, without padding.
 shader::ChunkBounds chunkBounds(const PatchSet& patches, uint32_t chunk);
 
-/// Tells whether a patch lies inside something by what so many of its directions meet: at least two in five
-/// meet backs, and more meet backs than fronts.
-bool liesInside(uint32_t backs, uint32_t sky, uint32_t sampleCount);
-
 } // namespace relume

@@ -5,7 +5,6 @@
 #include "assets/atlas/unwrap.h"
 #include "assets/atlas/world_mesh.h"
 #include "assets/gltf/gltf.h"
-#include "bake/surface/patches.h"
 #include "tests/unit/glb_builder.h"
 #include "tests/unit/shapes.h"
 
@@ -108,24 +107,6 @@ TEST(Watch, EveryPhaseBeforeABakeCanBeEnded) {
         atlas.instances.resize(1);
         flatten(scene, atlas);
     });
-}
-
-// A search may leave out a patch's further directions only where they could not change what is found.
-TEST(InsideSearch, WhatFirstDirectionsSettleStaysSettled) {
-    constexpr uint32_t kSamples = 32;
-    uint32_t settled = 0;
-    for (uint32_t first : {8u, 16u, 24u})
-        for (uint32_t backs = 0; backs <= first; ++backs)
-            for (uint32_t sky = 0; sky + backs <= first; ++sky) {
-                const uint32_t rest = kSamples - first;
-                if (liesInside(backs + rest, sky, kSamples)) continue;
-                ++settled;
-                for (uint32_t moreBacks = 0; moreBacks <= rest; ++moreBacks)
-                    for (uint32_t moreSky = 0; moreSky + moreBacks <= rest; ++moreSky)
-                        EXPECT_FALSE(liesInside(backs + moreBacks, sky + moreSky, kSamples));
-            }
-    EXPECT_GT(settled, 100u);
-    EXPECT_FALSE(liesInside(16, 0, kSamples)); // all of the first half meet fronts: no more is asked
 }
 
 } // namespace relume
