@@ -217,8 +217,8 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     clock.end("write");
 
     logSolver(request.bake.solver.method, progress);
-    spdlog::info("wrote {} ({} in all)",
-                 fmt::format("{}", fmt::join(lightmapFiles(o.files.output, prepared.atlas.pages), ", ")),
+    const std::vector<std::string> files = lightmapFiles(o.files.output, prepared.atlas.pages);
+    spdlog::info("wrote {}{} ({} in all)", files.front(), files.size() > 1 ? " to " + files.back() : "",
                  formatDuration(secondsSince(start)));
     failOnValidation(device.validationMessages());
     addOther(phases, startSeconds + secondsSince(start), cpuSeconds() - startCpu);

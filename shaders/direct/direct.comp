@@ -16,7 +16,7 @@ uint chunk, lane;
 
 bool seen(uint target) {
     uint words = (push.pickCount * push.pointCount + kTargetsPerWord - 1u) / kTargetsPerWord;
-    uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
+    uint word = WORD_AT(push.bits, (chunk * words + target / kTargetsPerWord) * kChunk + lane);
     return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
 }
 
@@ -30,14 +30,14 @@ void main() {
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     for (uint pick = 0u; pick < push.pickCount; ++pick) {
-        vec3 light = Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane].rgb;
+        vec3 light = VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane).rgb;
         uint first = pick * push.pointCount;
         float sum = 0.0, visible = 0.0;
         float part[kReplicates], partVisible[kReplicates]; // of each replicate's points
         for (uint q = 0u; q < kReplicates; ++q) part[q] = partVisible[q] = 0.0;
         for (uint s = 0u; s < push.pointCount; s += kReplicates) {
             for (uint q = 0u; q < kReplicates; ++q) {
-                float w = Vec4s(push.targets).items[(chunk * push.pickCount * push.pointCount + first + s + q) * kChunk + lane].w;
+                float w = VEC4_AT(push.targets, (chunk * push.pickCount * push.pointCount + first + s + q) * kChunk + lane).w;
                 float f = abs(w), v = w > 0.0 && seen(first + s + q) ? f : 0.0;
                 part[q] += f;
                 partVisible[q] += v;
@@ -62,9 +62,9 @@ void main() {
     vec3 total = vec3(0.0);
     Vec4s sums = Vec4s(push.sums);
     for (uint q = 0u; q < kReplicates; ++q) {
-        vec3 s = sums.items[q * push.patchCount + index].rgb + value[q];
-        sums.items[q * push.patchCount + index] = vec4(s, 0.0);
+        vec3 s = VEC4_AT(sums, q * push.patchCount + index).rgb + value[q];
+        VEC4_AT(sums, q * push.patchCount + index) = vec4(s, 0.0);
         total += s;
     }
-    Vec4s(push.direct).items[index] = vec4(max(total * push.scale, 0.0), 1.0);
+    VEC4_AT(push.direct, index) = vec4(max(total * push.scale, 0.0), 1.0);
 }

@@ -72,8 +72,8 @@ void main() {
             bool above = dot(y.point - from.position, from.normal) > from.offset;
             point = vec4(y.point + off, above ? y.factor : -y.factor);
         }
-        Vec4s(push.targets).items[(base + s) * kChunk + lane] = point;
+        VEC4_AT(push.targets, (base + s) * kChunk + lane) = point;
     }
     if (near) light = e.radiance * (factors / (float(push.pointCount) * probability));
-    Vec4s(push.picks).items[(chunk * push.pickCount + pick) * kChunk + lane] = vec4(light, 0.0);
+    VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane) = vec4(light, 0.0);
 }

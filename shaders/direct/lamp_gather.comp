@@ -14,13 +14,13 @@ uint chunk, lane;
 // Returns what was sampled; the sky's light, of three colours, is made again.
 LampRay sampled(Lamp l, Patch p, PatchCover cover, uint s) {
     if (isLamp(l, kLampSky)) return lampRay(l, p, cover, s);
-    float light = Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane].w;
+    float light = VEC4_AT(push.targets, (chunk * targetCount() + l.firstTarget + s) * kChunk + lane).w;
     return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
 }
 
 bool seen(uint target) {
     uint words = (targetCount() + kTargetsPerWord - 1u) / kTargetsPerWord;
-    uint word = Words(push.bits).items[(chunk * words + target / kTargetsPerWord) * kChunk + lane];
+    uint word = WORD_AT(push.bits, (chunk * words + target / kTargetsPerWord) * kChunk + lane);
     return ((word >> (target % kTargetsPerWord)) & 1u) != 0u;
 }
 
@@ -83,9 +83,9 @@ void main() {
     vec3 total = vec3(0.0);
     Vec4s sums = Vec4s(push.sums);
     for (uint q = 0u; q < kReplicates; ++q) {
-        vec3 s = sums.items[q * push.patchCount + index].rgb + value[q];
-        sums.items[q * push.patchCount + index] = vec4(s, 0.0);
+        vec3 s = VEC4_AT(sums, q * push.patchCount + index).rgb + value[q];
+        VEC4_AT(sums, q * push.patchCount + index) = vec4(s, 0.0);
         total += s;
     }
-    Vec4s(push.direct).items[index] = vec4(max(total * push.scale, 0.0), 1.0);
+    VEC4_AT(push.direct, index) = vec4(max(total * push.scale, 0.0), 1.0);
 }

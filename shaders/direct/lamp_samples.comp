@@ -20,6 +20,6 @@ void main() {
             float light = isLamp(l, kLampSky) ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
             target = vec4(ray.target, ray.traced ? light : -light);
         }
-        Vec4s(push.targets).items[(chunk * targetCount() + l.firstTarget + s) * kChunk + lane] = target;
+        VEC4_AT(push.targets, (chunk * targetCount() + l.firstTarget + s) * kChunk + lane) = target;
     }
 }

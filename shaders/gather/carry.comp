@@ -11,9 +11,9 @@ void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
     Vec4s carried = Vec4s(push.carried), light = Vec4s(push.light);
-    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
+    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
     if (push.share > 0.0)
-        carried.items[index] = vec4(mix(carried.items[index].rgb, light.items[index].rgb - direct, push.share), 0.0);
+        VEC4_AT(carried, index) = vec4(mix(VEC4_AT(carried, index).rgb, VEC4_AT(light, index).rgb - direct, push.share), 0.0);
     else
-        light.items[index] = vec4(max(direct + carried.items[index].rgb, 0.0), 1.0);
+        VEC4_AT(light, index) = vec4(max(direct + VEC4_AT(carried, index).rgb, 0.0), 1.0);
 }

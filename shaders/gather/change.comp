@@ -16,12 +16,12 @@ void main() {
     uint flags = loadPatch(push.patches, index).flags;
     vec4 term = vec4(0.0);
     if (patchIsShown(flags)) {
-        vec3 now = Vec4s(push.ligOut).items[index].rgb, before = Vec4s(push.ligIn).items[index].rgb, change = now - before;
+        vec3 now = VEC4_AT(push.ligOut, index).rgb, before = VEC4_AT(push.ligIn, index).rgb, change = now - before;
         term = vec4(dot(change, change), now.r + now.g + now.b, 1.0, before.r + before.g + before.b);
     }
     terms[lane] = term;
     barrier();
     if (lane != 0u) return;
     for (uint i = 1u; i < kChunk; ++i) term += terms[i];
-    Vec4s(push.sums).items[chunk] = term;
+    VEC4_AT(push.sums, chunk) = term;
 }

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 shared vec4 terms[kChunk];
 
-vec3 light(uint q, uint index) { return push.scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb; }
+vec3 light(uint q, uint index) { return push.scale * VEC4_AT(push.sums, q * push.patchCount + index).rgb; }
 
 vec2 compared(uint own, uint before, uint after, float share) {
     if (before == own) return vec2(0.0);
@@ -32,5 +32,5 @@ void main() {
     barrier();
     if (lane != 0u) return;
     for (uint i = 1u; i < kChunk; ++i) term += terms[i];
-    Vec4s(push.chunkSums).items[chunk] = term;
+    VEC4_AT(push.chunkSums, chunk) = term;
 }

@@ -12,8 +12,8 @@ void main() {
     if (chunk >= push.chunkCount) return;
     uint index = (push.firstChunk + chunk) * kChunk + gl_LocalInvocationID.x;
     vec3 sum = vec3(0.0);
-    for (uint q = 0u; q < kReplicates; ++q) sum += Vec4s(push.sums).items[q * push.patchCount + index].rgb;
-    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
+    for (uint q = 0u; q < kReplicates; ++q) sum += VEC4_AT(push.sums, q * push.patchCount + index).rgb;
+    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
     float scale = push.scales != 0ul ? Vec2s(push.scales).items[index / kChunk][push.sampled] / float(kReplicates) : push.scale;
-    Vec4s(push.light).items[index] = vec4(max(direct + sum * scale, 0.0), 1.0);
+    VEC4_AT(push.light, index) = vec4(max(direct + sum * scale, 0.0), 1.0);
 }

@@ -5,7 +5,6 @@
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { InterpolatePush push; };
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Floats { float items[]; };
 
 layout(local_size_x = 64) in;
 
@@ -21,20 +20,20 @@ void main() {
     for (uint t = 0u; t < 4u; ++t) {
         if (weights[t] == 0.0) continue;
         for (uint q = 0u; q < kReplicates; ++q)
-            sum[q] += weights[t] * Vec4s(push.coarse).items[q * push.receiverCount + receivers[t]].rgb;
+            sum[q] += weights[t] * VEC4_AT(push.coarse, q * push.receiverCount + receivers[t]).rgb;
     }
     if (push.distances != 0ul) { // harmonic means, like these themselves
         float inverse = 0.0;
         for (uint t = 0u; t < 4u; ++t) {
-            if (weights[t] != 0.0) inverse += weights[t] / Floats(push.coarseDistances).items[receivers[t]];
+            if (weights[t] != 0.0) inverse += weights[t] / FLOAT_AT(push.coarseDistances, receivers[t]);
         }
-        Floats(push.distances).items[index] = 1.0 / max(inverse, 1e-30);
+        FLOAT_AT(push.distances, index) = 1.0 / max(inverse, 1e-30);
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
-    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
-    Vec4s(push.ligOut).items[index] = vec4(direct + push.scale * total, 1.0);
+    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
+    VEC4_AT(push.ligOut, index) = vec4(direct + push.scale * total, 1.0);
     if (push.sums != 0ul) {
         Vec4s sums = Vec4s(push.sums);
-        for (uint q = 0u; q < kReplicates; ++q) sums.items[q * push.patchCount + index].rgb += sum[q];
+        for (uint q = 0u; q < kReplicates; ++q) VEC4_AT(sums, q * push.patchCount + index).rgb += sum[q];
     }
 }

@@ -5,7 +5,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 layout(push_constant, scalar) uniform Push { LinkDistancePush push; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Floats { float items[]; };
 
 layout(local_size_x = 64) in;
 
@@ -16,12 +15,12 @@ void main() {
     vec3 own = loadPatch(push.receivers, index).position;
     float sum = 0.0;
     for (uint k = 0u; k < push.sampleCount; ++k) {
-        uint link = Words(push.links).items[(chunk * push.sampleCount + k) * kChunk + lane];
+        uint link = WORD_AT(push.links, (chunk * push.sampleCount + k) * kChunk + lane);
         if (link >= kLinkFirstSpecial) continue; // nothing, or what sends no light
         vec3 end = link < push.patchCount ? loadPatch(push.patches, link).position
                                           : PyramidNodes(push.nodes).items[link - push.patchCount].position;
         vec3 d = end - own;
         sum += inversesqrt(max(dot(d, d), 1e-30));
     }
-    Floats(push.distances).items[index] = sum > 0.0 ? float(push.sampleCount) / sum : 1e30;
+    FLOAT_AT(push.distances, index) = sum > 0.0 ? float(push.sampleCount) / sum : 1e30;
 }

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 vec3 sent(uint link) {
     if (link >= kLinkFirstSpecial) return link == kLinkSky ? push.sky : vec3(0.0);
-    return unpackLight(UVec2s(push.packed).items[link]);
+    return unpackLight(UVEC2_AT(push.packed, link));
 }
 
 void main() {
@@ -22,13 +22,13 @@ void main() {
     for (uint q = 0u; q < kReplicates; ++q) sum[q] = vec3(0.0);
     for (uint k = 0u; k < push.sampleCount; k += kReplicates) {
         uint row = (chunk * push.sampleCount + k) * kChunk + lane;
-        for (uint q = 0u; q < kReplicates; ++q) sum[q] += sent(links.items[row + q * kChunk]);
+        for (uint q = 0u; q < kReplicates; ++q) sum[q] += sent(WORD_AT(links, row + q * kChunk));
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
-    vec3 direct = push.direct != 0ul ? Vec4s(push.direct).items[index].rgb : vec3(0.0);
-    if (push.ligOut != 0ul) Vec4s(push.ligOut).items[index] = vec4(direct + total / float(push.sampleCount), 1.0);
+    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
+    if (push.ligOut != 0ul) VEC4_AT(push.ligOut, index) = vec4(direct + total / float(push.sampleCount), 1.0);
     if (push.sums != 0ul) {
         Vec4s sums = Vec4s(push.sums);
-        for (uint q = 0u; q < kReplicates; ++q) sums.items[q * push.patchCount + index].rgb += sum[q];
+        for (uint q = 0u; q < kReplicates; ++q) VEC4_AT(sums, q * push.patchCount + index).rgb += sum[q];
     }
 }

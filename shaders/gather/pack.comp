@@ -10,5 +10,5 @@ layout(local_size_x = 64) in;
 void main() {
     uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (i >= push.count) return;
-    UVec2s(push.packed).items[i] = packLight(Vec4s(push.radiance).items[i].rgb);
+    UVEC2_AT(push.packed, i) = packLight(VEC4_AT(push.radiance, i).rgb);
 }

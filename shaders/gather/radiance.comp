@@ -18,16 +18,16 @@ void main() {
     uint i = chunk * kChunk + lane;
     vec4 radiance = vec4(0.0);
     if ((loadPatch(push.patches, i).flags & kPatchSends) != 0u) {
-        vec4 ligIn = Vec4s(push.ligIn).items[i];
+        vec4 ligIn = VEC4_AT(push.ligIn, i);
         radiance = ligIn;
         if (push.rtrad == 0u) {
-            vec3 reflected = push.reflectivity * Vec4s(push.albedo).items[i].rgb * ligIn.rgb;
-            vec3 emitted = push.reflected != 0u ? vec3(0.0) : Vec4s(push.emission).items[i].rgb;
+            vec3 reflected = push.reflectivity * VEC4_AT(push.albedo, i).rgb * ligIn.rgb;
+            vec3 emitted = push.reflected != 0u ? vec3(0.0) : VEC4_AT(push.emission, i).rgb;
             radiance = vec4(emitted + reflected, 0.0);
         }
     }
-    Vec4s(push.radiance).items[i] = radiance;
+    VEC4_AT(push.radiance, i) = radiance;
     if (radiance.r != 0.0 || radiance.g != 0.0 || radiance.b != 0.0) atomicOr(sends, 1u);
     barrier();
-    if (lane == 0u) Words(push.chunkSends).items[chunk] = sends;
+    if (lane == 0u) WORD_AT(push.chunkSends, chunk) = sends;
 }

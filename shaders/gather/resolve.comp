@@ -54,9 +54,9 @@ void main() {
     vec2 scales = push.scales != 0ul ? Vec2s(push.scales).items[chunk] : vec2(push.scale, push.directScale);
     float rowScale = push.scales != 0ul ? 1.0 : push.scale; // else rows are of means
     for (uint q = 0u; q < kReplicates; ++q) {
-        direct[q] = push.directSums != 0ul ? scales.y * Vec4s(push.directSums).items[q * push.patchCount + index].rgb
+        direct[q] = push.directSums != 0ul ? scales.y * VEC4_AT(push.directSums, q * push.patchCount + index).rgb
                                            : vec3(0.0);
-        raw[q] = scales.x * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+        raw[q] = scales.x * VEC4_AT(push.sums, q * push.patchCount + index).rgb;
         smoothed[q] = vec3(0.0);
     }
     if (push.reach > 0u) {
@@ -64,7 +64,7 @@ void main() {
         for (uint t = 0u; t < 2u * push.reach + 1u; ++t) {
             if (taps.weight[t] == 0.0) continue;
             for (uint q = 0u; q < kReplicates; ++q) {
-                vec3 row = Vec4s(push.rows).items[q * push.patchCount + taps.index[t]].rgb;
+                vec3 row = VEC4_AT(push.rows, q * push.patchCount + taps.index[t]).rgb;
                 smoothed[q] += rowScale * taps.weight[t] * row;
             }
         }
@@ -90,7 +90,7 @@ void main() {
     }
     if (push.local != 0ul)
         localTerms[lane] = patchIsShown(flags) ? localTerm(light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0);
-    Vec4s(push.result).items[index] = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
+    VEC4_AT(push.result, index) = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
     terms[lane] = term;
     barrier();
     if (lane != 0u) return;

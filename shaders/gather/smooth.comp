@@ -19,7 +19,7 @@ void main() {
         if (taps.weight[t] == 0.0) continue;
         float weight = taps.weight[t] * (push.scales != 0ul ? Vec2s(push.scales).items[taps.index[t] / kChunk].x : 1.0);
         for (uint q = 0u; q < kReplicates; ++q)
-            value[q] += weight * Vec4s(push.sums).items[q * push.patchCount + taps.index[t]].rgb;
+            value[q] += weight * VEC4_AT(push.sums, q * push.patchCount + taps.index[t]).rgb;
     }
-    for (uint q = 0u; q < kReplicates; ++q) Vec4s(push.rows).items[q * push.patchCount + index] = vec4(value[q], 0.0);
+    for (uint q = 0u; q < kReplicates; ++q) VEC4_AT(push.rows, q * push.patchCount + index) = vec4(value[q], 0.0);
 }

@@ -19,5 +19,5 @@ void main() {
         barrier();
         if (i < step) terms[i] += terms[i + step];
     }
-    if (i == 0u) Words(push.sums).items[group * push.width + value] = floatBitsToUint(terms[0]);
+    if (i == 0u) WORD_AT(push.sums, group * push.width + value) = floatBitsToUint(terms[0]);
 }

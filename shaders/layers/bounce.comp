@@ -27,15 +27,15 @@ Vec4s lightNext() { return Vec4s(has(push.from) ? lane.lightA : lane.lightB); }
 void gather(uint chunk, out vec3 sums[kReplicates]) {
     for (uint q = 0u; q < kReplicates; ++q) {
         sums[q] = vec3(0.0);
-        if (push.sums == kMoreSums) sums[q] = kPackScale * Vec4s(lane.sums).items[q * push.patchCount + index].rgb;
+        if (push.sums == kMoreSums) sums[q] = kPackScale * VEC4_AT(lane.sums, q * push.patchCount + index).rgb;
     }
     for (uint r = 0u; r < push.rounds; ++r) {
         Words links = Words(push.links[r]);
         for (uint k = 0u; k < push.sampleCount; k += kReplicates) {
             uint row = (chunk * push.sampleCount + k) * kChunk + i;
             for (uint q = 0u; q < kReplicates; ++q) {
-                uint link = links.items[row + q * kChunk];
-                if (link < kLinkFirstSpecial) sums[q] += unpackScaled(UVec2s(push.packed).items[link * LANES + l]);
+                uint link = WORD_AT(links, row + q * kChunk);
+                if (link < kLinkFirstSpecial) sums[q] += unpackScaled(UVEC2_AT(push.packed, link * LANES + l));
             }
         }
     }
@@ -45,15 +45,15 @@ void gather(uint chunk, out vec3 sums[kReplicates]) {
 // Sends the light of a bounce that ends.
 void send(vec3 light) {
     uint flags = loadPatch(push.patches, index).flags;
-    vec3 albedo = Vec4s(push.albedo).items[index].rgb;
+    vec3 albedo = VEC4_AT(push.albedo, index).rgb;
     bool sends = (flags & kPatchSends) != 0u;
     if (push.changes != 0ul) {
-        vec3 before = lightNow().items[index].rgb, change = light - before;
+        vec3 before = VEC4_AT(lightNow(), index).rgb, change = light - before;
         float weight = patchIsShown(flags) ? 1.0 : 0.0;
         terms[l][i] = weight * vec4(dot(change, change), light.r + light.g + light.b, 1.0, before.r + before.g + before.b);
     }
-    if (push.rounds > 0u && has(push.live)) lightNext().items[index] = vec4(light, 1.0);
-    UVec2s(push.sent).items[index * LANES + l] = packLight(sends ? push.reflectivity * albedo * light : vec3(0.0));
+    if (push.rounds > 0u && has(push.live)) VEC4_AT(lightNext(), index) = vec4(light, 1.0);
+    UVEC2_AT(push.sent, index * LANES + l) = packLight(sends ? push.reflectivity * albedo * light : vec3(0.0));
 }
 
 void main() {
@@ -67,11 +67,11 @@ void main() {
     gather(chunk, sums);
     if (push.sums != kNoSums && has(push.live)) {
         for (uint q = 0u; q < kReplicates; ++q)
-            Vec4s(lane.sums).items[q * push.patchCount + index] = vec4(sums[q], 0.0);
+            VEC4_AT(lane.sums, q * push.patchCount + index) = vec4(sums[q], 0.0);
     }
     if (push.sent != 0ul) {
         vec3 total = sums[0] + sums[1] + sums[2] + sums[3];
-        send(push.rounds > 0u ? Vec4s(lane.direct).items[index].rgb + total * push.scale : lightNow().items[index].rgb);
+        send(push.rounds > 0u ? VEC4_AT(lane.direct, index).rgb + total * push.scale : VEC4_AT(lightNow(), index).rgb);
     }
     if (push.changes == 0ul) return;
     barrier();
@@ -79,5 +79,5 @@ void main() {
     if (l >= LANES) return;
     vec4 total = terms[l][0];
     for (uint k = 1u; k < kChunk; ++k) total += terms[l][k];
-    Vec4s(push.changes).items[l * push.allChunks + push.firstChunk + chunk] = total;
+    VEC4_AT(push.changes, l * push.allChunks + push.firstChunk + chunk) = total;
 }

@@ -17,7 +17,7 @@ void main() {
     if (share == 0.0) return;
     vec3 value[kReplicates], sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) {
-        value[q] = scale * Vec4s(push.sums).items[q * push.patchCount + index].rgb;
+        value[q] = scale * VEC4_AT(push.sums, q * push.patchCount + index).rgb;
         sum += value[q];
     }
     vec3 mean = max(sum / float(kReplicates), 0.0);
@@ -25,8 +25,8 @@ void main() {
     if (share < 1.0) {
         // The points of all sample passes together are spread evenly, so that the variance falls faster than if
         // these were independent of those before. That it falls as one over their number is the least.
-        mean = mix(Vec4s(push.direct).items[index].rgb, mean, share);
+        mean = mix(VEC4_AT(push.direct, index).rgb, mean, share);
         variance *= share;
     }
-    Vec4s(push.direct).items[index] = vec4(mean, variance);
+    VEC4_AT(push.direct, index) = vec4(mean, variance);
 }

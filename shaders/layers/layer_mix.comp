@@ -11,11 +11,11 @@ layout(local_size_x = 64) in;
 void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
-    vec4 sum = push.base != 0ul ? Vec4s(push.base).items[index] : vec4(0.0);
+    vec4 sum = push.base != 0ul ? VEC4_AT(push.base, index) : vec4(0.0);
     for (uint i = 0u; i < push.layerCount; ++i) {
         LayerWeight layer = Weights(push.layers).items[i];
-        vec4 light = Vec4s(layer.light).items[index];
+        vec4 light = VEC4_AT(layer.light, index);
         sum += vec4(layer.weight * light.rgb, max(max(layer.weight.r, layer.weight.g), layer.weight.b) * light.w);
     }
-    Vec4s(push.light).items[index] = sum;
+    VEC4_AT(push.light, index) = sum;
 }

@@ -14,9 +14,9 @@ void main() {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < push.layerCount; ++i) {
         LayerWeight layer = Weights(push.layers).items[i];
-        vec4 direct = Vec4s(layer.light).items[index];
+        vec4 direct = VEC4_AT(layer.light, index);
         float strongest = max(max(layer.weight.r, layer.weight.g), layer.weight.b);
         sum += vec4(layer.weight * direct.rgb, strongest * sqrt(direct.w));
     }
-    Vec4s(push.light).items[index] = vec4(sum.rgb, sum.w * sum.w);
+    VEC4_AT(push.light, index) = vec4(sum.rgb, sum.w * sum.w);
 }

@@ -13,10 +13,10 @@ void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     if (chunk >= push.chunkCount) return;
     uint index = chunk * kChunk + lane;
-    vec4 direct = Vec4s(push.direct).items[index];
-    vec4 indirect = push.indirect != 0ul ? Vec4s(push.indirect).items[index] : vec4(0.0);
+    vec4 direct = VEC4_AT(push.direct, index);
+    vec4 indirect = push.indirect != 0ul ? VEC4_AT(push.indirect, index) : vec4(0.0);
     vec3 light = direct.rgb + indirect.rgb;
-    Vec4s(push.result).items[index] = vec4(light, sqrt(direct.w / 3.0 + indirect.w * indirect.w));
+    VEC4_AT(push.result, index) = vec4(light, sqrt(direct.w / 3.0 + indirect.w * indirect.w));
     uint flags = loadPatch(push.patches, index).flags;
     bool counts = patchIsShown(flags);
     terms[lane] = counts ? vec4(light.r + light.g + light.b, direct.w, 1.0, 0.0) : vec4(0.0);
@@ -24,5 +24,5 @@ void main() {
     if (lane != 0u) return;
     vec4 sum = terms[0];
     for (uint i = 1u; i < kChunk; ++i) sum += terms[i];
-    Vec4s(push.chunkSums).items[chunk] = sum;
+    VEC4_AT(push.chunkSums, chunk) = sum;
 }

@@ -22,7 +22,7 @@ void main() {
         if (!patchIsShown(loadPatch(push.patches, index).flags)) continue;
         vec3 value[kReplicates], mean = vec3(0.0);
         for (uint q = 0u; q < kReplicates; ++q) {
-            value[q] = Vec4s(push.sums).items[q * patchCount + index].rgb;
+            value[q] = VEC4_AT(push.sums, q * patchCount + index).rgb;
             mean += value[q];
         }
         mean *= 1.0 / float(kReplicates);

@@ -6,11 +6,18 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vec2s { vec2 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer UVec2s { uvec2 items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Words { uint items[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Floats { float items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PyramidNodes { PyramidNode items[]; };
 
-Patch loadPatch(ADDRESS patches, uint index) {
-    Rows rows = Rows(patches);
-    uvec4 a = rows.items[index * 3u], b = rows.items[index * 3u + 1u], c = rows.items[index * 3u + 2u];
+// An element of an array that may be larger than 4 GiB: a driver may compute items[index] with an offset of 32
+// bits. `array` is an address, or a buffer.
+#define VEC4_AT(array, index) Vec4s(uint64_t(array) + 16ul * uint64_t(index)).items[0]
+#define UVEC2_AT(array, index) UVec2s(uint64_t(array) + 8ul * uint64_t(index)).items[0]
+#define WORD_AT(array, index) Words(uint64_t(array) + 4ul * uint64_t(index)).items[0]
+#define FLOAT_AT(array, index) Floats(uint64_t(array) + 4ul * uint64_t(index)).items[0]
+Rows rowsAt(ADDRESS array, uint index, uint count) { return Rows(array + 16ul * uint64_t(count) * uint64_t(index)); }
+
+Patch patchOfRows(uvec4 a, uvec4 b, uvec4 c) {
     Patch p;
     p.position = uintBitsToFloat(a.xyz);
     p.offset = uintBitsToFloat(a.w);
@@ -21,9 +28,21 @@ Patch loadPatch(ADDRESS patches, uint index) {
     return p;
 }
 
+Patch loadPatch(ADDRESS patches, uint index) {
+    Rows rows = rowsAt(patches, index, 3u);
+    return patchOfRows(rows.items[0], rows.items[1], rows.items[2]);
+}
+
+// Does the same where all pairs of patches are looked at, which are never so many that offsets need more than 32
+// bits: a GPU traces a fifth more pairs by these.
+Patch loadPairedPatch(ADDRESS patches, uint index) {
+    Rows rows = Rows(patches);
+    return patchOfRows(rows.items[index * 3u], rows.items[index * 3u + 1u], rows.items[index * 3u + 2u]);
+}
+
 PatchCover loadCover(ADDRESS covers, uint index) {
-    Rows rows = Rows(covers);
-    uvec4 a = rows.items[index * 2u], b = rows.items[index * 2u + 1u];
+    Rows rows = rowsAt(covers, index, 2u);
+    uvec4 a = rows.items[0], b = rows.items[1];
     PatchCover c;
     c.du = uintBitsToFloat(a.xyz);
     c.cells = a.w;

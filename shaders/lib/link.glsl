@@ -1,8 +1,8 @@
 // Tells what a ray from a patch meets, as a link. The includer's push constants have the tables.
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer HitTriangles { HitTriangle items[]; };
 
-uint texelPatch(uint texel) { return Words(push.texelToPatch).items[texel]; }
-uint chartOfPatch(uint index) { return Words(push.patchChart).items[index]; }
+uint texelPatch(uint texel) { return WORD_AT(push.texelToPatch, texel); }
+uint chartOfPatch(uint index) { return WORD_AT(push.patchChart, index); }
 #ifdef TRACER_VOXEL
 uint closestLink(Patch p, vec3 direction) { return voxelLink(p, direction); }
 #else

@@ -1,7 +1,6 @@
 // Smooths indirect light within a chart along one direction; the smoothing is separable. The includer's push
 // constants hold patches, patchChart, texelToPatch, distances, size, sigma and reach.
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Floats { float items[]; };
 
 const uint kMaxReach = 8u; // texels
 // Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly
@@ -13,8 +12,8 @@ const float kDistanceShare = 0.3;
 float tapWeight(Patch centre, float sigma, uint chart, ivec2 texel, out uint index) {
     index = kNoPatch;
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(push.size)))) return 0.0;
-    index = Words(push.texelToPatch).items[uint(texel.y) * push.size + uint(texel.x)];
-    if (index == kNoPatch || Words(push.patchChart).items[index] != chart) return 0.0;
+    index = WORD_AT(push.texelToPatch, uint(texel.y) * push.size + uint(texel.x));
+    if (index == kNoPatch || WORD_AT(push.patchChart, index) != chart) return 0.0;
     Patch other = loadPatch(push.patches, index);
     if ((other.flags & kPatchSends) == 0u) return 0.0;
     vec3 d = other.position - centre.position;
@@ -38,10 +37,10 @@ struct Taps {
 
 Taps smoothingTaps(uint own, ivec2 axis) {
     Patch centre = loadPatch(push.patches, own);
-    uint chart = Words(push.patchChart).items[own], texelIndex = patchTexel(centre.flags);
+    uint chart = WORD_AT(push.patchChart, own), texelIndex = patchTexel(centre.flags);
     ivec2 texel = ivec2(texelIndex % push.size, texelIndex / push.size);
-    bool placed = Words(push.texelToPatch).items[texelIndex] == own; // else it stands for a whole thin chart
-    float distance = Floats(push.distances).items[own];
+    bool placed = WORD_AT(push.texelToPatch, texelIndex) == own; // else it stands for a whole thin chart
+    float distance = FLOAT_AT(push.distances, own);
     float sigma = min(push.sigma, kDistanceShare * distance / sqrt(max(centre.area, 1e-30)));
     placed = placed && sigma > 0.1;
     Taps taps;

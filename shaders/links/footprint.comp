@@ -18,10 +18,10 @@ void main() {
     UVec2s steps = UVec2s(push.steps);
     for (uint k = 0u; k < push.sampleCount; ++k) {
         uint at = (chunk * push.sampleCount + k) * kChunk + lane;
-        uint link = links.items[at];
+        uint link = WORD_AT(links, at);
         if (link >= kLinkFirstSpecial) continue;
         float area = footprintArea(own, loadPatch(push.patches, link).position, push.samples);
         for (uvec2 next = steps.items[link]; uintBitsToFloat(next.y) <= area; next = steps.items[link]) link = next.x;
-        links.items[at] = link;
+        WORD_AT(links, at) = link;
     }
 }

@@ -16,6 +16,6 @@ void main() {
     uvec4 children = PyramidNodes(push.nodes).items[node].children;
     vec4 shares = PyramidNodes(push.nodes).items[node].shares;
     vec4 mean = vec4(0.0);
-    for (uint c = 0u; c < 4u; ++c) mean += shares[c] * radiance.items[children[c]];
-    radiance.items[push.patchCount + node] = mean;
+    for (uint c = 0u; c < 4u; ++c) mean += shares[c] * VEC4_AT(radiance, children[c]);
+    VEC4_AT(radiance, push.patchCount + node) = mean;
 }

@@ -164,7 +164,7 @@ void main() {
     uint receiverChunk = receiverSuper * kSuper + r;
     if (receiverChunk >= push.rowCount || (side == 1u && super.row == super.column)) return;
 
-    Patch receiver = loadPatch(push.patches, receiverChunk * kChunk + lane);
+    Patch receiver = loadPairedPatch(push.patches, receiverChunk * kChunk + lane);
     uint rowKey = kSenders == kDrawn ? chunkKey(push.patches, receiverChunk) : 0u;
     vec3 albedo = vec3(0.0);
     if (kRtrad != 0u) albedo = Vec4s(push.albedo).items[receiverChunk * kChunk + lane].rgb;

@@ -17,15 +17,15 @@ void store(uint texel, vec4 value) {
     value.rgb = clamp(value.rgb, vec3(-kLargestHalf), vec3(kLargestHalf));
     uvec2 halves = uvec2(packHalf2x16(value.rg), packHalf2x16(value.ba));
     UVec2s texels = UVec2s(push.texels);
-    if (texels.items[texel] == halves) return;
-    texels.items[texel] = halves;
+    if (UVEC2_AT(texels, texel) == halves) return;
+    UVEC2_AT(texels, texel) = halves;
     uint region = texel / push.size / kRegion * ((push.size + kRegion - 1u) / kRegion) + texel % push.size / kRegion;
-    Words(push.changed).items[region] = 1u;
+    WORD_AT(push.changed, region) = 1u;
 }
 
 void showPatches(uint chunk, uint lane) {
-    uint index = chunk * kChunk + lane, texel = Words(push.patchTexels).items[index];
-    vec3 value = Vec4s(push.values).items[index].rgb;
+    uint index = chunk * kChunk + lane, texel = WORD_AT(push.patchTexels, index);
+    vec3 value = VEC4_AT(push.values, index).rgb;
     if (texel != kNoTexel) store(texel, vec4(value * push.scale, kShown));
 }
 
@@ -36,7 +36,7 @@ vec3 fromNeighbours(uvec2 fill) {
     for (uint n = 0u; n < 8u; ++n) {
         if ((fill.y >> n & 1u) == 0u) continue;
         ivec2 from = at + seamOffset(n);
-        uvec2 halves = UVec2s(push.texels).items[uint(from.y) * push.size + uint(from.x)];
+        uvec2 halves = UVEC2_AT(push.texels, uint(from.y) * push.size + uint(from.x));
         vec3 value = vec3(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y).x);
         sum += value;
         if (count == 0u || length(value) < length(low)) low = value;
@@ -48,15 +48,15 @@ vec3 fromNeighbours(uvec2 fill) {
 void main() {
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     if (group >= push.count) return;
-    uint chunk = Words(push.chunks).items[push.first + group];
+    uint chunk = WORD_AT(push.chunks, push.first + group);
     if (push.ring == 0u) {
         showPatches(chunk, lane);
         return;
     }
     uint at = (push.ring - 1u) * push.chunkCount + chunk;
-    uint end = Words(push.starts).items[at + 1u];
-    for (uint i = Words(push.starts).items[at] + lane; i < end; i += kChunk) {
-        uvec2 fill = UVec2s(push.fills).items[i];
+    uint end = WORD_AT(push.starts, at + 1u);
+    for (uint i = WORD_AT(push.starts, at) + lane; i < end; i += kChunk) {
+        uvec2 fill = UVEC2_AT(push.fills, i);
         store(fill.x, vec4(fromNeighbours(fill), kFilled));
     }
 }

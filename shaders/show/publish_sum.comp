@@ -10,10 +10,10 @@ layout(local_size_x = 64) in;
 void main() {
     uint index = gl_WorkGroupID.x * 64u + gl_LocalInvocationID.x;
     if (index >= push.count) return;
-    uint chunk = Words(push.chunks).items[push.first + index];
+    uint chunk = WORD_AT(push.chunks, push.first + index);
     vec4 sum = vec4(0.0);
     for (uint i = chunk * kChunk; i < (chunk + 1u) * kChunk; ++i) {
-        if (Words(push.patchTexels).items[i] != kNoTexel) sum += vec4(Vec4s(push.values).items[i].rgb, 1.0);
+        if (WORD_AT(push.patchTexels, i) != kNoTexel) sum += vec4(VEC4_AT(push.values, i).rgb, 1.0);
     }
-    Vec4s(push.sums).items[chunk] = sum;
+    VEC4_AT(push.sums, chunk) = sum;
 }

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 void main() {
     uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (i >= push.patchCount) return;
-    vec4 base = Vec4s(push.baseColors).items[Words(push.materials).items[i]];
+    vec4 base = VEC4_AT(push.baseColors, WORD_AT(push.materials, i));
     if (base.a < 0.0) return;
-    Vec4s(push.albedo).items[i] = min(base * Vec4s(push.pattern).items[i], vec4(push.maxAlbedo));
+    VEC4_AT(push.albedo, i) = min(base * VEC4_AT(push.pattern, i), vec4(push.maxAlbedo));
 }

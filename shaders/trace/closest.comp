@@ -70,6 +70,6 @@ void main() {
         Patch p = loadPatch(push.patches, firstPatch + other);
         uint key = rotationKey(p, p, push.rotation, push.size);
         uint link = linkOfSample(p, coverOf(firstPatch + other), key, push.firstSample + local);
-        Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + other] = link;
+        WORD_AT(push.links, (chunk * push.sampleCount + local) * kChunk + other) = link;
     }
 }

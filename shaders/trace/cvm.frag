@@ -16,27 +16,27 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vox
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer HitTriangles { HitTriangle items[]; };
 VoxelGrid grid = VoxelGrids(geometry.accel).items[0];
 
-uint texelPatch(uint texel) { return Words(push.texelToPatch).items[texel]; }
-uint chartOfPatch(uint index) { return Words(push.patchChart).items[index]; }
+uint texelPatch(uint texel) { return WORD_AT(push.texelToPatch, texel); }
+uint chartOfPatch(uint index) { return WORD_AT(push.patchChart, index); }
 #include "lib/rays/hit.glsl"
 
 uint voxelIndex(uvec3 v) { return (v.z * grid.resolution + v.y) * grid.resolution + v.x; }
 
 void setVoxel(uvec3 v) {
     uint i = voxelIndex(v);
-    atomicOr(Words(grid.bits).items[i >> 5], 1u << (i & 31u));
+    atomicOr(WORD_AT(grid.bits, i >> 5), 1u << (i & 31u));
 }
 
 // The lowest patch of each side stays, so that the order of the fragments does not matter.
 void storePatch(uvec3 v, VoxelTriangle t, vec2 centre) {
-    uint i = voxelIndex(v), word = Words(grid.bits).items[i >> 5];
-    uint rank = Words(grid.ranks).items[i >> 5] + uint(bitCount(word & ((1u << (i & 31u)) - 1u)));
+    uint i = voxelIndex(v), word = WORD_AT(grid.bits, i >> 5);
+    uint rank = WORD_AT(grid.ranks, i >> 5) + uint(bitCount(word & ((1u << (i & 31u)) - 1u)));
     HitTriangle hit = HitTriangles(push.hitTriangles).items[id.x];
     vec2 weights = cornerWeights(t, centre);
     uint link = hit.representative == kNoPatch ? kLinkDark : patchAtHit(hit, weights.x, weights.y, push.size);
     uint side = id.y * 2u + (hit.normal[id.y] < 0.0 ? 1u : 0u);
-    atomicMin(Words(grid.patches).items[rank * kVoxelSides + side], link);
-    if (hit.doubleSided != 0u) atomicMin(Words(grid.patches).items[rank * kVoxelSides + (side ^ 1u)], kLinkDark);
+    atomicMin(WORD_AT(grid.patches, rank * kVoxelSides + side), link);
+    if (hit.doubleSided != 0u) atomicMin(WORD_AT(grid.patches, rank * kVoxelSides + (side ^ 1u)), kLinkDark);
 }
 
 // Tells whether a triangle is solid in this column: a masked one blocks if it is solid at one of 4 x 4 points

@@ -17,9 +17,9 @@ const uint kSamplesPerInvocation = 8u;
 
 void list(uint marks, uint base) {
     if (marks == 0u) return;
-    uint at = atomicAdd(Words(push.list).items[0], uint(bitCount(marks)));
+    uint at = atomicAdd(WORD_AT(push.list, 0), uint(bitCount(marks)));
     for (; marks != 0u; marks &= marks - 1u)
-        Words(push.list).items[1u + at++] = base + uint(findLSB(marks)) * kChunk;
+        WORD_AT(push.list, 1u + at++) = base + uint(findLSB(marks)) * kChunk;
 }
 
 void main() {
@@ -27,7 +27,7 @@ void main() {
     uint first = (push.firstChunk + chunk) * kChunk;
     Patch p = loadPatch(push.patches, first + lane);
     uint base = (chunk * push.sampleCount + firstLocal) * kChunk + lane;
-    uint changed = Words(push.changed).items[(push.firstChunk + chunk) * 2u + lane / 32u];
+    uint changed = WORD_AT(push.changed, (push.firstChunk + chunk) * 2u + lane / 32u);
     bool asks = asksAgain(p, push.silent);
     uint marks = (changed >> (lane % 32u)) & 1u;
     if (marks != 0u) {
@@ -49,5 +49,5 @@ void main() {
     }
     list(marks, base);
     if (marks != 0u && asks)
-        atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], uint(bitCount(marks)));
+        atomicAdd(WORD_AT(push.rays, (push.firstChunk + chunk) % kRayCounters), uint(bitCount(marks)));
 }

@@ -9,8 +9,8 @@ layout(constant_id = 0) const uint kLampTypes = 0x3fu;
 layout(push_constant, scalar) uniform Push { LampPush push; };
 #include "lib/light/penumbra_rounds.glsl"
 #include "lib/rays/starts.glsl"
-vec4 skyPixel(uint index) { return Vec4s(push.skyPixels).items[index]; }
-float skyRow(uint index) { return uintBitsToFloat(Words(push.skyRows).items[index]); }
+vec4 skyPixel(uint index) { return VEC4_AT(push.skyPixels, index); }
+float skyRow(uint index) { return uintBitsToFloat(WORD_AT(push.skyRows, index)); }
 #include "lib/light/sky.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
@@ -72,7 +72,7 @@ LightNote lampNote(Lamp l, Patch p, uint patchIndex, uint indexInGroup) {
     uint light = push.firstLamp + indexInGroup;
     LightNote note = lightNote(patchIndex, lampBit(indexInGroup), light);
     if (!takesNotes() || push.round == 0u || note.known || l.samples == 1u) return note;
-    vec3 whole = wholeLight(l, p) * l.color, soFar = Vec4s(push.direct).items[patchIndex].rgb;
+    vec3 whole = wholeLight(l, p) * l.color, soFar = VEC4_AT(push.direct, patchIndex).rgb;
     bool minor = whole.r >= 0.0 && whole.r + whole.g + whole.b <= kMinorShare * (soFar.r + soFar.g + soFar.b);
     return minor ? LightNote(true, isAsked(patchIndex, light), 0.0) : note;
 }

@@ -6,6 +6,6 @@
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Penumbrae { uvec2 items[]; };
 
 bool inPenumbra(uint patchIndex) {
-    uvec2 lights = Penumbrae(push.penumbra).items[Words(push.parts).items[patchIndex]];
+    uvec2 lights = Penumbrae(push.penumbra).items[WORD_AT(push.parts, patchIndex)];
     return (lights.x & lights.y) != 0u;
 }

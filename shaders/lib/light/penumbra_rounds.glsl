@@ -14,7 +14,7 @@ void noteLights(uint patchIndex, uint reached, uint hidden) {
         takeNote(patchIndex, reached, hidden);
         return;
     }
-    uint part = Words(push.parts).items[patchIndex];
+    uint part = WORD_AT(push.parts, patchIndex);
     uvec2 lights = Penumbrae(push.penumbra).items[part];
     if ((reached & ~lights.x) != 0u) atomicOr(Penumbrae(push.penumbra).items[part].x, reached);
     if ((hidden & ~lights.y) != 0u) atomicOr(Penumbrae(push.penumbra).items[part].y, hidden);

@@ -29,7 +29,7 @@ void traceLinks(uint chunk, uint sampleGroup, uint lane) {
     PatchCover cover = coverOf(index);
     for (uint k = 0u; k < kSamplesPerInvocation; ++k) {
         uint local = sampleGroup * kSamplesPerInvocation + k;
-        Words(push.links).items[(chunk * push.sampleCount + local) * kChunk + lane] =
+        WORD_AT(push.links, (chunk * push.sampleCount + local) * kChunk + lane) =
             linkOfSample(p, cover, key, push.firstSample + local);
     }
 }

@@ -26,12 +26,12 @@ void traceWord(uint unit, uint word, uint lane) {
     uint receiver = row * kChunk + lane;
     uint first = column * kChunk + word * 32u;
     uint rowKey = symmetric ? 0u : chunkKey(push.patches, row);
-    Patch a = loadPatch(push.patches, receiver);
+    Patch a = loadPairedPatch(push.patches, receiver);
     uint facing = 0u;
     for (uint j = 0u; j < 32u; ++j) {
         uint sender = columnPatch(first + j, rowKey);
         if (sender == kNoPatch) continue;
-        Patch b = loadPatch(push.patches, sender);
+        Patch b = loadPairedPatch(push.patches, sender);
         if ((!symmetric || sender > receiver) && pairFaces(a, b)) facing |= 1u << j;
     }
     bool rtrad = (push.flags & kOcclusionRtrad) != 0u, reversed = (push.flags & kOcclusionReversed) != 0u;
@@ -39,7 +39,7 @@ void traceWord(uint unit, uint word, uint lane) {
     uint marched = 0u; // bits that are not another tracer's
     for (uint j = 0u; j < 32u; ++j) {
         uint sender = columnPatch(first + j, rowKey);
-        if (reversed ? voxelsServe(a) : sender != kNoPatch && voxelsServe(loadPatch(push.patches, sender)))
+        if (reversed ? voxelsServe(a) : sender != kNoPatch && voxelsServe(loadPairedPatch(push.patches, sender)))
             marched |= 1u << j;
     }
     facing &= marched;
@@ -53,7 +53,7 @@ void traceWord(uint unit, uint word, uint lane) {
     for (uint j = 0u; j < 32u; ++j) {
         if ((facing >> j & 1u) == 0u) continue;
         uint sender = columnPatch(first + j, rowKey);
-        Patch b = loadPatch(push.patches, sender);
+        Patch b = loadPairedPatch(push.patches, sender);
         // The ray starts at the lower index, whichever end asks; RTRad's rays start at the receiver.
         bool turned = rtrad ? reversed : sender < receiver;
         if (turned ? patchesSee(b, a, rtrad) : patchesSee(a, b, rtrad)) seen |= 1u << j;

@@ -13,6 +13,6 @@ void retraceLinks(uint first, uint step) {
         uint sampleNumber = push.firstSample + local;
         if (asksAgain(p, push.silent))
             link = linkAround(startingPatch(p, coverOf(chunk * kChunk + lane), sampleNumber), localDirection(key, sampleNumber));
-        Words(push.links).items[at] = link;
+        WORD_AT(push.links, at) = link;
     }
 }

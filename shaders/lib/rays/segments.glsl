@@ -13,7 +13,7 @@ void traceTargets(uint chunk, uint word, uint lane) {
     uint marched = 0u; // bits that are not another tracer's
 #endif
     for (uint s = 0u; s < count; ++s) {
-        vec4 target = Vec4s(push.targets).items[(chunk * push.targetCount + first + s) * kChunk + lane];
+        vec4 target = VEC4_AT(push.targets, (chunk * push.targetCount + first + s) * kChunk + lane);
 #ifdef TRACER_VOXEL
         if (!voxelsServeTarget(first + s)) continue;
         marched |= 1u << s;
@@ -23,11 +23,11 @@ void traceTargets(uint chunk, uint word, uint lane) {
         Patch start = startingPatch(p, cover, startNumber(first + s, push.round, push.turn, push.run));
         if (pointSeen(start, target.xyz)) seen |= 1u << s;
     }
-    if (rays != 0u) atomicAdd(Words(push.rays).items[(push.firstChunk + chunk) % kRayCounters], rays);
+    if (rays != 0u) atomicAdd(WORD_AT(push.rays, (push.firstChunk + chunk) % kRayCounters), rays);
     uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
     uint at = (chunk * words + word) * kChunk + lane;
 #ifdef TRACER_VOXEL
-    if (grid.ratio > 1u) seen |= Words(push.bits).items[at] & ~marched;
+    if (grid.ratio > 1u) seen |= WORD_AT(push.bits, at) & ~marched;
 #endif
-    Words(push.bits).items[at] = seen;
+    WORD_AT(push.bits, at) = seen;
 }

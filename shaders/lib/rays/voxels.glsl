@@ -9,7 +9,7 @@ bool voxelInside(ivec3 v) { return all(lessThan(uvec3(v), uvec3(grid.resolution)
 bool voxelSet(ivec3 v) {
     if (!voxelInside(v)) return false;
     uint i = voxelIndex(v);
-    return (Words(grid.bits).items[i >> 5] >> (i & 31u) & 1u) != 0u;
+    return (WORD_AT(grid.bits, i >> 5) >> (i & 31u) & 1u) != 0u;
 }
 #include "lib/rays/voxel_walk.glsl"
 
@@ -35,12 +35,12 @@ bool patchesSee(Patch from, Patch to, bool rtrad) {
 // Returns what stands for the surface in a set voxel, as a ray going `direction` meets it: the patch that
 // faces the ray most, else kLinkDark for geometry that is no receiver, else kNoPatch.
 uint facingPatch(ivec3 voxel, vec3 direction) {
-    uint i = voxelIndex(voxel), word = Words(grid.bits).items[i >> 5];
-    uint rank = Words(grid.ranks).items[i >> 5] + uint(bitCount(word & ((1u << (i & 31u)) - 1u)));
+    uint i = voxelIndex(voxel), word = WORD_AT(grid.bits, i >> 5);
+    uint rank = WORD_AT(grid.ranks, i >> 5) + uint(bitCount(word & ((1u << (i & 31u)) - 1u)));
     uint found = kNoPatch;
     float most = 0.0;
     for (uint side = 0u; side < kVoxelSides; ++side) {
-        uint link = Words(grid.patches).items[rank * kVoxelSides + side];
+        uint link = WORD_AT(grid.patches, rank * kVoxelSides + side);
         if (link == kNoPatch) continue;
         if (link == kLinkDark) {
             float along = direction[side >> 1];
