@@ -112,7 +112,7 @@ private:
     uint32_t room_ = 0;                      // targets per patch that there is memory for
     vk::Buffer lamps_, skyPixels_, skyRows_; // Lamp[], vec4[], float[]
     vk::Buffer targets_, bits_;              // of one batch
-    Programs programs_, skyPrograms_; // for all types of lights; for groups of the sky alone
+    Programs programs_, skyPrograms_;        // for all types of lights; for groups of the sky alone
 };
 
 } // namespace relume

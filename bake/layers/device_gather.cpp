@@ -10,7 +10,6 @@ namespace {
 
 // These are floats per chunk.
 constexpr uint32_t kResolveValues = sizeof(shader::ResolveSums) / sizeof(float);
-constexpr VkDeviceSize kSketchAt = 256; // where it is read back, behind sums
 constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
 
 } // namespace

@@ -9,6 +9,7 @@
 namespace relume {
 
 constexpr uint32_t kSketchEntries = shader::kSketchStride * shader::kSketchParts * shader::kReplicates;
+constexpr uint64_t kSketchAt = 256; // where a GPU's is read back, behind sums [bytes]
 
 /// The error of a layer's indirect light in a few numbers: how far each replicate is from their mean, summed
 /// over patches that share an entry, each with a random sign. What two layers' sketches have in common (the

@@ -5,6 +5,7 @@
 #include "bake/direct/emitter_light.h"
 #include "bake/direct/lamp_light.h"
 #include "bake/gather/link_cache.h"
+#include "bake/layers/error_sketch.h"
 #include "bake/layers/layer_lights.h"
 
 namespace relume {
@@ -40,13 +41,16 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
                               .links = links,
                               .batch = linkBatchChunks(extent.chunkCount, extent.software)});
     const uint64_t parts = count * sizeof(uint32_t) + kPartsOfTile * chunks * sizeof(glm::uvec2);
-    const uint64_t back =
-        chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4)) + shader::kRayCounters * sizeof(uint32_t);
     const bool onCpu = extent.software && !settings.transport.deviceGather;
+    // A GPU tells a sketch of the error, which is read back.
+    const uint64_t sketch = onCpu ? 0 : kSketchEntries * sizeof(glm::vec3);
+    const uint64_t sums =
+        chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4)) + shader::kRayCounters * sizeof(uint32_t);
+    const uint64_t back = std::max(sums, kSketchAt + sketch);
     const uint64_t bounces = onCpu ? 0 : kTurns * (count * sizeof(glm::uvec2) + chunks * sizeof(glm::vec4));
     // The composite, and where somebody watches the sum of the layers that do not change.
     const uint64_t mixed = (settings.live ? 2 : 1) * count * sizeof(glm::vec4);
-    return direct + LinkBuffers::bytes(extent, desc, 0) + staging + parts + back + bounces + mixed;
+    return direct + LinkBuffers::bytes(extent, desc, 0) + staging + parts + back + sketch + bounces + mixed;
 }
 
 } // namespace relume
