@@ -255,7 +255,7 @@ void AtomicFiles::commit() {
         throw Error(fmt::format("{}: {}: all {} files were saved as {}, move them where they belong",
                                 file.path, problemOf(error), files.size(), saved));
     }
-    // What fails now is one file's own; the others take their names all the same, for all that is left is
+    // A failure is one file's own now; the others take their names all the same, for all that is left is
     // to tell which one is missing.
     std::exception_ptr failure;
     for (const File& file : files) {

@@ -165,7 +165,8 @@ bool LampLight::onCpu(uint32_t group) const {
 }
 
 // A software device builds the programs for all types for half a second, and the CPU has all lights but the
-// sky: those for the sky alone are a fifth of that. The driver of a GPU builds one faster than two.
+// sky: those for the sky alone are built in two thirds of that. The driver of a GPU builds one faster than
+// two.
 const LampLight::Programs& LampLight::programsOf(uint32_t group) const {
     const auto first = set_.lamps.begin() + groups_[group].first;
     const bool sky = std::all_of(first, first + groups_[group].count,
