@@ -27,6 +27,10 @@ protected:
     }
 };
 
+/// Suites of their own, which go beside the others.
+class ViewerLightViews : public ViewerLights {};
+class ViewerSky : public ViewerTest {};
+
 TEST_F(ViewerLights, AreAddedSetDraggedAndUndone) {
     auto viewer = openConverged();
     const FloatImage before = screenshot(*viewer);
@@ -130,7 +134,7 @@ TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
     quit(*viewer);
 }
 
-TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
+TEST_F(ViewerLightViews, AWipeShowsTheLightBeforeTheEdit) {
     auto viewer = openConverged();
     const FloatImage before = screenshot(*viewer);
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
@@ -154,7 +158,7 @@ TEST_F(ViewerLights, AWipeShowsTheLightBeforeTheEdit) {
     quit(*viewer);
 }
 
-TEST_F(ViewerLights, ASkyIsSeenBehindTheSceneAndMuted) {
+TEST_F(ViewerSky, IsSeenBehindTheSceneAndMuted) {
     auto viewer = openConverged();
     viewer->moveTo(800, 400);
     viewer->wheel(-12); // so far away that there is nothing in the corners
@@ -206,7 +210,7 @@ TEST_F(ViewerLights, AreSavedAndAskedAboutBeforeTheyAreLost) {
 }
 
 // No edit, and the same as solo shows.
-TEST_F(ViewerLights, AreLookedAtAlone) {
+TEST_F(ViewerLightViews, ShowOneAlone) {
     auto viewer = openConverged();
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
     const FloatImage both = screenshot(*viewer);
@@ -229,7 +233,7 @@ TEST_F(ViewerLights, AreLookedAtAlone) {
     quit(*viewer);
 }
 
-TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
+TEST_F(ViewerLightViews, HaveAPreviewOfWhatTheyLight) {
     auto viewer = openConverged();
     edit(*viewer, "edit: Add Point", [&] { viewer->keys({"ctrl+1"}); });
     viewer->keys({"alt+4"});
@@ -266,7 +270,7 @@ TEST_F(ViewerLights, HaveAPreviewOfWhatTheyLight) {
     quit(*viewer);
 }
 
-TEST_F(ViewerLights, TheSkyTakesAPicture) {
+TEST_F(ViewerSky, TakesAPicture) {
     const std::string file = home_.path("scene.glb"), picture = home_.path("sky.exr");
     std::filesystem::copy_file(kScenes + "cornell_small.glb", file);
     FloatImage image{.width = 16, .height = 8, .channels = {}, .planes = {}, .attributes = {}};
