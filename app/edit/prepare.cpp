@@ -3,8 +3,8 @@
 #include "assets/atlas/unwrap.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/foreign/load_scene.h"
 #include "assets/base/watch.h"
+#include "assets/foreign/load_scene.h"
 #include "assets/survey/preview_light.h"
 
 #include <algorithm>
@@ -25,10 +25,16 @@ uint32_t sizeOf(const Scene& scene, const PrepareDesc& desc) {
     if (desc.leastDensity <= 0) return desc.size;
     constexpr double kCovered = 0.85; // share of an atlas that charts cover
     const double area = surfaceArea(scene);
-    const uint32_t size = std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMostFitted));
+    const uint32_t wanted =
+        std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMaxPageSize));
+    const LightmapPages pages{std::max(desc.pages.value_or(scene.pages), 1u)};
+    const uint32_t size = wanted > desc.size && desc.fitting ? desc.fitting(scene, pages, wanted) : wanted;
     spdlog::info(
-        "{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m",
-        desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)));
+        "{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m{}",
+        desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)),
+        size < wanted
+            ? fmt::format(", as half of the memory that is free does not do for {} x {}", wanted, wanted)
+            : "");
     return size;
 }
 

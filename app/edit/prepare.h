@@ -13,9 +13,6 @@
 
 namespace relume {
 
-/// A lightmap that is chosen to fit a level is at most so large [texels]: devices of 2 GiB hold its bake.
-constexpr uint32_t kMostFitted = 2048;
-
 /// Says what a level gets that its file lacks.
 struct Furnishing {
     bool unwrap = true;   // lightmap UVs for the meshes that have no usable ones
@@ -42,7 +39,9 @@ struct PrepareDesc {
     std::optional<uint32_t> pages = {}; // of the lightmap; 0: as many as furnishing.density needs; nothing:
                                         // as many as the file has
     double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it,
-                             // as far as kMostFitted goes; 0: the edge is `size`
+                             // as far as `fitting` goes; 0: the edge is `size`
+    // Returns how much of an edge memory allows for a scene of so many pages, `size` at the least.
+    std::function<uint32_t(const Scene&, LightmapPages pages, uint32_t edge)> fitting = {};
     Furnishing furnishing = {};
     UnwrapMemory* memory = nullptr; // of the file's last unwrap, by which charts stay where they are
     bool edited = false;            // edits follow, which may add light: furnishLight() is called after them

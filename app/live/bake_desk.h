@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "app/live/lit_ball.h"
 #include "assets/model/scene_edits.h"
 #include "bake/baker/baker.h"
+#include "bake/baker/fitting_size.h"
 #include "bake/layers/light_groups.h"
 
 namespace relume {
@@ -158,6 +160,8 @@ struct BakeDesk {
     std::function<void()> wake;
     const PreparedScene* held = nullptr; // the bake thread may still read it
     LightmapExchange exchange;
+    // What the device has to give before any bake; nothing where there is no device.
+    std::promise<std::optional<BakeRoom>> room;
 };
 
 } // namespace relume

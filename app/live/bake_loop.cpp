@@ -46,6 +46,7 @@ void BakeLoop::run() {
     try {
         openDevice();
     } catch (const std::exception& error) {
+        desk_.room.set_value(std::nullopt);
         fail(error.what());
         report(true); // there may never be a command
     }
@@ -74,6 +75,7 @@ void BakeLoop::openDevice() {
         .select = desc_.device, .validation = desc_.validation, .chosen = [](const vk::DeviceInfo& info) {
             if (info.software()) yieldToOthers();
         }});
+    const BakeRoom room = roomOn(*device_);
     const vk::DeviceInfo& info = device_->info();
     status_.device = fmt::format("{} ({})", info.name, info.driver);
     spdlog::info("device: {}", status_.device);
@@ -83,6 +85,7 @@ void BakeLoop::openDevice() {
     status_.display = maps_->choice();
     spdlog::info("display: {}", status_.display);
     report(true);
+    desk_.room.set_value(room);
 }
 
 // Waits where there is nothing to do. Returns false when the thread is to quit.

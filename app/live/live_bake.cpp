@@ -7,8 +7,8 @@
 namespace relume {
 
 LiveBake::LiveBake(const Desc& desc)
-    : desk_(std::make_unique<BakeDesk>()), loop_(std::make_unique<BakeLoop>(*desk_, desc)),
-      thread_([this] { loop_->run(); }) {}
+    : desk_(std::make_unique<BakeDesk>()), room_(desk_->room.get_future().share()),
+      loop_(std::make_unique<BakeLoop>(*desk_, desc)), thread_([this] { loop_->run(); }) {}
 
 LiveBake::~LiveBake() {
     stop();

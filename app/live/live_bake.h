@@ -9,9 +9,9 @@ namespace relume {
 
 class BakeLoop;
 
-/// Runs one bake after the other on a thread and a device of its own. All calls but stop() return at once;
-/// one thread (the main one) makes them. The light of a former bake stays published until a new one has a
-/// first solution with all its bounces.
+/// Runs one bake after the other on a thread and a device of its own. All calls but stop() and room() return
+/// at once; one thread (the main one) makes them. The light of a former bake stays published until a new one
+/// has a first solution with all its bounces.
 class LiveBake {
 public:
     using Desc = BakeDeviceDesc;
@@ -25,6 +25,9 @@ public:
     void stop();
 
     using Start = BakeOrders::Start;
+    /// Returns what the device has to give while nothing is baked, and waits until it is there; nothing where
+    /// there is none. For any thread.
+    std::optional<BakeRoom> room() const { return room_.get(); }
     /// Bakes `start` from now on, in place of what was asked for before. Returns the bake's number, which
     /// status and maps bear.
     uint64_t start(Start start);
@@ -73,6 +76,7 @@ private:
 
     uint64_t bakes_ = 0;
     std::unique_ptr<BakeDesk> desk_;
+    std::shared_future<std::optional<BakeRoom>> room_;
     std::unique_ptr<BakeLoop> loop_; // has the device, which outlives the thread
     std::thread thread_;
 };

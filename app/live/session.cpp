@@ -55,6 +55,12 @@ void Session::load(const Next& next) {
     desc.choice = choice;
     desc.size = document_.bake.size;
     if (keep) desc.leastDensity = 0; // its size stays
+    desc.fitting = [&bake = bake_, settings = document_.bake](const Scene& scene, LightmapPages pages,
+                                                              uint32_t edge) {
+        const std::optional<BakeRoom> room = bake.room();
+        return room ? fittingSize(settings, extentOf(scene, pages), *room, settings.size, edge)
+                    : settings.size;
+    };
     spdlog::info("opening {}", path);
     finishSaving(); // so that the load reads what was saved
     loading_ = {.keep = keep, .hasty = hasty, .fits = desc.leastDensity > 0, .choice = choice};

@@ -7,6 +7,8 @@
 namespace relume {
 
 constexpr uint32_t kMostPages = 64;
+/// The largest edge of a page [texels].
+constexpr uint32_t kMaxPageSize = 8192;
 /// A page's edge is a multiple of this where there are several [texels], so that no tile of patches spans
 /// two.
 constexpr uint32_t kPageStep = 8;

@@ -45,10 +45,20 @@ uint64_t probeNeeds(const BakeSettings& settings, const SceneExtent& scene, cons
 } // namespace
 
 SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh) {
-    SceneExtent extent{.triangles = mesh.triangleCount(),
-                       .skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
+    SceneExtent extent = extentOf(scene, mesh.pages);
+    extent.triangles = mesh.triangleCount();
+    return extent;
+}
+
+SceneExtent extentOf(const Scene& scene, const LightmapPages& pages) {
+    SceneExtent extent{.skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
                        .skyRows = scene.sky.height,
-                       .pages = mesh.pages};
+                       .pages = pages};
+    for (const Instance& instance : scene.instances) {
+        if (instance.hidden) continue;
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
+            extent.triangles += primitive.indices.size() / 3;
+    }
     for (const Image& image : scene.images)
         extent.pictureBytes += uint64_t{image.width} * image.height * kPictureTexelBytes;
     return extent;

@@ -15,6 +15,8 @@ struct SceneExtent {
     LightmapPages pages = {}; // for which its lightmap coordinates are
 };
 SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh);
+/// Returns the same of a scene before it is flattened, with all its triangles, for a lightmap of these pages.
+SceneExtent extentOf(const Scene& scene, const LightmapPages& pages);
 
 /// The device bytes of a bake, by what takes them. Caches that grow as long as there is memory are not
 /// counted, but for the links of one sample pass.

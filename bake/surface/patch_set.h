@@ -8,8 +8,6 @@
 namespace relume {
 
 constexpr uint32_t kTileTexels = 8; // along an edge
-/// The largest edge of a lightmap's page [texels].
-constexpr uint32_t kMaxPageSize = 8192;
 /// The largest edge of the sheet of all pages [texels]: texels are numbered by 29 bits in Patch::flags.
 constexpr uint32_t kMaxSheetSize = 23168;
 static_assert(uint64_t{kMaxSheetSize} * kMaxSheetSize <= uint64_t{1} << (32 - shader::kTexelShift));

@@ -55,8 +55,9 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
     addChoiceOptions(command, o.bake.files.choice);
     addSizeOption(command, "--size", o.bake);
     command.get_option("--size")->description(
-        fmt::format("Lightmap edge in texels (default: what gives {} texels per metre, from 512 to {})",
-                    kViewDensity, kMostFitted));
+        fmt::format("Lightmap edge in texels (default: what gives {} texels per metre, from 512 on as far as "
+                    "half of the free memory goes)",
+                    kViewDensity));
     addSolverOptions(command, o.bake);
     command.add_option("--preset", o.bake.solve.preset, "rtrad: the reference implementation to the letter")
         ->check(oneOf({"rtrad"}));

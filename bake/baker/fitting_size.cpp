@@ -1,0 +1,36 @@
+#include "bake/baker/fitting_size.h"
+
+#include <algorithm>
+
+#include "bake/baker/baker.h"
+#include "bake/baker/host_room.h"
+
+namespace relume {
+namespace {
+
+constexpr uint64_t kShare = 2; // one part in so many of the room
+
+bool fits(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room) {
+    if (scene.pages.sheetOf(settings.size) > std::min(kMaxSheetSize, room.imageEdge)) return false;
+    return Baker::deviceBytes(settings, scene, room.software) <= room.device / kShare &&
+           (!room.host || hostNeeds(settings, scene) <= *room.host / kShare);
+}
+
+} // namespace
+
+BakeRoom roomOn(const vk::Device& device) {
+    return {.device = device.freeMemory(),
+            .host = freeHostMemory(),
+            .imageEdge = device.limits().maxImageDimension2D,
+            .software = device.info().software()};
+}
+
+uint32_t fittingSize(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room,
+                     uint32_t least, uint32_t most) {
+    BakeSettings smaller = settings;
+    for (smaller.size = std::min(most, Baker::kMaxSize); smaller.size > least; smaller.size /= 2)
+        if (fits(smaller, scene, room)) return smaller.size;
+    return least;
+}
+
+} // namespace relume
