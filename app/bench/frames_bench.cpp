@@ -179,7 +179,7 @@ FramesReport measureFrames(const FramesBenchDesc& desc) {
     request.bake.solver.passes = pairs ? Solver::kMaxPasses : 0;
     request.bake.solver.links.samples = 0;
     request.bake.solver.layers.on = true; // as in the viewer
-    const PreparedScene scene = prepareScene(request.prepare);
+    const PreparedScene scene = prepareFor(request);
     std::unique_ptr<LiveBake> bake; // its Vulkan outlives OpenGL (picture_studio.h)
     const gl::HeadlessContext context({.debug = desc.bake.machine.validate});
     const gl::GlSharing sharing = gl::querySharing();

@@ -36,7 +36,8 @@ constexpr float kObjectStep = 0.05f;    // of the diagonal, by which an object i
 constexpr float kDimmed = 0.8f;         // a base colour becomes this share of itself
 constexpr uint32_t kProbeStride = 61;   // every so many texels a layer is looked at; a prime, so no column
 constexpr double kFollowPatience = 600; // [s] that a bake may take to follow an edit
-constexpr uint32_t kPlacingSize = 64;   // lightmap edge that places for lamps are sought with [texels]
+// Places for lamps are sought with a lightmap of this edge [texels], which need not be fine ...
+constexpr uint32_t kPlacingSize = 64;
 
 /// An edit of what a file holds; `run` counts from 0, and each run makes another one.
 struct BenchEdit {
@@ -72,10 +73,14 @@ BakeRequest requestOf(const ReloadBenchDesc& desc, const std::string& level) {
     return request;
 }
 
-// Prepares the scene for the search of places for lamps, which need no fine lightmap.
+// Prepares the scene for the search of places for lamps.
 PreparedScene placingOf(const ReloadBenchDesc& desc) {
-    return prepareScene(
-        {.path = desc.scene, .choice = desc.choice, .size = kPlacingSize, .furnishing = {.daylight = false}});
+    // ... but one whose UVs are made has room for all charts where the bake's has.
+    const bool mapped = countUnmapped(loadScene(desc.scene, desc.choice)) == 0;
+    return prepareScene({.path = desc.scene,
+                         .choice = desc.choice,
+                         .size = mapped ? kPlacingSize : desc.size,
+                         .furnishing = {.daylight = false}});
 }
 
 class ReloadBench {
@@ -109,7 +114,7 @@ private:
     // Writes the scene with the lamps, which light it alone.
     void makeLevel(PreparedScene placing) {
         BakeSettings settings = request_.bake;
-        settings.size = kPlacingSize;
+        settings.size = placing.size;
         WorldMesh mesh = placing.mesh;
         const Baker baker(device_, placing.scene, std::move(placing.mesh), settings);
         places_ = placeLamps(baker.patches().scene, desc_.lamps);

@@ -161,7 +161,8 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
 
     std::optional<PhaseProgress> phase(std::in_place, ranks.alone());
     DeviceStart deviceStart(o.machine);
-    PreparedScene prepared = prepareScene(request.prepare);
+    PreparedScene prepared = prepareFor(request);
+    o.patches.size = request.bake.size;
     phases.insert(phases.end(), prepared.phases.begin(), prepared.phases.end());
     if (prepared.atlas.pages.count != asked) checkFiles(o, prepared.atlas.pages.count);
     if (!o.files.sceneOut.empty()) checkGlb(prepared.scene, o.files.sceneOut);

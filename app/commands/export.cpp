@@ -81,11 +81,12 @@ void exportScene(const ExportCommand& o) {
         const LightmapPages pages = lightmapPagesOf(*lightmap);
         request.prepare.size = pages.edgeOf(lightmap->width);
         request.prepare.pages = pages.count;
+        request.prepare.leastDensity = 0;
         desc.pages = pages;
         checkExportFiles(files, desc); // now that the number of pages is known
     }
     std::optional<PhaseProgress> phase(std::in_place, true);
-    const PreparedScene prepared = prepareScene(request.prepare);
+    const PreparedScene prepared = prepareFor(request);
     stopIfInterrupted();
     const vk::Device device({.select = o.bake.machine.device, .validation = o.bake.machine.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);

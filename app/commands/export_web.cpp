@@ -87,6 +87,7 @@ void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::st
     const LightmapPages pages = lightmapPagesOf(image.composite);
     request.prepare.size = pages.edgeOf(image.composite.width);
     request.prepare.pages = pages.count;
+    request.prepare.leastDensity = 0;
     const PreparedScene prepared = [&] {
         const PhaseProgress phase(true);
         return prepareScene(request.prepare);

@@ -118,9 +118,10 @@ void shoot(ShotOptions o) {
         const LightmapPages pages = lightmapPagesOf(*image);
         request.prepare.size = pages.edgeOf(image->width);
         request.prepare.pages = pages.count;
+        request.prepare.leastDensity = 0;
     }
     std::optional<PhaseProgress> phase(std::in_place, true);
-    PreparedScene prepared = prepareScene(request.prepare);
+    PreparedScene prepared = prepareFor(request);
     stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(o.bake);

@@ -24,7 +24,7 @@ void makeTimelapse(const TimelapseOptions& o) {
     const InterruptGuard guard;
     const TimelapseRequest request = resolveTimelapseOptions(o);
     const BakeOptions& options = o.shot.bake;
-    const BakeRequest bakeRequest = resolveBakeOptions(options);
+    BakeRequest bakeRequest = resolveBakeOptions(options);
     CommandFiles files;
     files.readsScene("SCENE", options.files.scene);
     if (isVideo(options.files.output))
@@ -40,7 +40,7 @@ void makeTimelapse(const TimelapseOptions& o) {
                                          .overwrite = o.overwrite});
     if (!options.machine.shaders.empty()) setShaderFolder(options.machine.shaders);
     std::optional<PhaseProgress> phase(std::in_place, false); // there is a video on its way
-    PreparedScene prepared = prepareScene(bakeRequest.prepare);
+    PreparedScene prepared = prepareFor(bakeRequest);
     stopIfInterrupted();
     std::unique_ptr<PictureBake> bake; // outlives the studio (picture_studio.h)
     PictureStudio studio(options);
@@ -56,7 +56,7 @@ void makeTimelapse(const TimelapseOptions& o) {
          .lightmap = bakeRequest.lightmap,
          .title =
              fmt::format("{}, {}, {} x {} texels", std::filesystem::path(options.files.scene).stem().string(),
-                         methodName(solver.method), options.patches.size, options.patches.size),
+                         methodName(solver.method), bakeRequest.bake.size, bakeRequest.bake.size),
          .pairs = isPairMethod(solver.method)});
     phase.reset();
     solve(bake->baker().solver(), solver, timelapse);

@@ -14,8 +14,7 @@ void addViewCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("view", "Open a window that shows a scene while it bakes");
     const auto options = std::make_shared<ViewOptions>();
     addViewOptions(*command, *options);
-    command->callback([options, command] {
-        options->sizeTyped = command->get_option("--size")->count() > 0;
+    command->callback([options] {
         const ViewerDesc desc = resolveViewOptions(*options);
         if (!options->bake.machine.shaders.empty()) setShaderFolder(options->bake.machine.shaders);
         Viewer viewer(desc);

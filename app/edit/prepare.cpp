@@ -23,18 +23,22 @@ void warn(const std::vector<std::string>& warnings, size_t first = 0) {
 // Returns the lightmap's edge, and says so where it was chosen.
 uint32_t sizeOf(const Scene& scene, const PrepareDesc& desc) {
     if (desc.leastDensity <= 0) return desc.size;
-    constexpr double kCovered = 0.85; // share of an atlas that charts cover
+    constexpr double kCovered = 0.85;      // share of an atlas that charts cover
+    constexpr uint32_t kUsualLimit = 4096; // of textures in engines [texels]: beyond it, pages are better
     const double area = surfaceArea(scene);
+    const uint32_t asked = desc.pages.value_or(scene.pages);
+    const LightmapPages pages{std::max(asked, 1u)};
     const uint32_t wanted =
-        std::max(desc.size, sizeForDensity(area, desc.leastDensity, kCovered, kMaxPageSize));
-    const LightmapPages pages{std::max(desc.pages.value_or(scene.pages), 1u)};
+        std::max(desc.size, sizeForDensity(area / pages.count, desc.leastDensity, kCovered,
+                                           asked == 0 ? kUsualLimit : kMaxPageSize));
     const uint32_t size = wanted > desc.size && desc.fitting ? desc.fitting(scene, pages, wanted) : wanted;
-    spdlog::info(
-        "{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: about {:.2g} texels/m{}",
-        desc.path, size, size, area, size * std::sqrt(kCovered / std::max(area, 1e-12)),
-        size < wanted
-            ? fmt::format(", as half of the memory that is free does not do for {} x {}", wanted, wanted)
-            : "");
+    spdlog::info("{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: room for about "
+                 "{:.2g} texels/m{}",
+                 desc.path, size, size, area,
+                 size * std::sqrt(pages.count * kCovered / std::max(area, 1e-12)),
+                 size < wanted ? fmt::format(", as half of the memory that is free does not do for {} x {}",
+                                             wanted, wanted)
+                               : "");
     return size;
 }
 

@@ -38,8 +38,9 @@ struct PrepareDesc {
     uint32_t size = 512;                // edge of a lightmap's page [texels]
     std::optional<uint32_t> pages = {}; // of the lightmap; 0: as many as furnishing.density needs; nothing:
                                         // as many as the file has
-    double leastDensity = 0; // [texels/m]: the edge is the least power of two from `size` on that gives it,
-                             // as far as `fitting` goes; 0: the edge is `size`
+    // [texels/m]: the edge is the least power of two from `size` on that gives it, as far as `fitting` goes,
+    // and up to 4096 where pages are 0; 0: the edge is `size`.
+    double leastDensity = 0;
     // Returns how much of an edge memory allows for a scene of so many pages, `size` at the least.
     std::function<uint32_t(const Scene&, LightmapPages pages, uint32_t edge)> fitting = {};
     Furnishing furnishing = {};

@@ -19,11 +19,10 @@ namespace relume {
 
 void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     const InterruptGuard guard;
-    const BakeRequest request = resolveBakeOptions(options);
+    BakeRequest request = resolveBakeOptions(options);
+    request.prepare.edited = true;
     std::optional<PhaseProgress> phase(std::in_place, true);
-    PrepareDesc desc = request.prepare;
-    desc.edited = true;
-    PreparedScene prepared = prepareScene(desc);
+    PreparedScene prepared = prepareFor(request);
     const bool moved = editsOf(prepared.scene).placements != edits.placements;
     applyEdits(prepared.scene, edits);
     readEditedPicture(prepared.scene.sky);

@@ -216,8 +216,16 @@ void addMachineOptions(CLI::App& command, BakeOptions& o) {
 }
 
 void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
-    command.add_option(name, o.patches.size, "Lightmap edge in texels, that of each page")
-        ->capture_default_str()
+    command
+        .add_option_function<uint32_t>(
+            name,
+            [&o](uint32_t size) {
+                o.patches.size = size;
+                o.patches.sizeTyped = true;
+            },
+            fmt::format(
+                "Lightmap edge in texels, that of each page (default: {}, or more where --density needs it)",
+                o.patches.size))
         ->check(wholeFrom(8, Baker::kMaxSize));
     addPagesOption(command, o.patches.pages);
 }
@@ -318,7 +326,7 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
                        .choice = o.files.choice,
                        .size = o.patches.size,
                        .pages = askedPages(o.patches.pages),
-                       .leastDensity = o.patches.leastDensity,
+                       .leastDensity = o.patches.sizeTyped ? 0.0 : o.patches.furnishing.density,
                        .furnishing = o.patches.furnishing};
     request.bake.size = o.patches.size;
     request.bake.conservative = o.patches.conservative;
@@ -349,6 +357,12 @@ BakeRequest resolveBakeOptions(const BakeOptions& o) {
                         .rtrad = rtrad};
     checkProbeOptions(o.probes, request.bake, o.lightmap.quantity == "radiance");
     return request;
+}
+
+PreparedScene prepareFor(BakeRequest& request) {
+    PreparedScene prepared = prepareScene(request.prepare);
+    request.prepare.size = request.bake.size = prepared.size;
+    return prepared;
 }
 
 } // namespace relume

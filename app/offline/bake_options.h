@@ -28,9 +28,9 @@ struct BakeFiles {
 
 /// The patches that the lightmap has.
 struct PatchOptions {
-    uint32_t size = 512;     // edge of a lightmap's page [texels]
-    std::string pages;       // as askedPages() takes them; "": not given
-    double leastDensity = 0; // as PrepareDesc has it
+    uint32_t size = 512;    // edge of a lightmap's page [texels]
+    bool sizeTyped = false; // else the edge is what furnishing.density needs, where that is given
+    std::string pages;      // as askedPages() takes them; "": not given
     bool conservative = false;
     Furnishing furnishing;
 };
@@ -126,6 +126,9 @@ struct BakeRequest {
     LightmapDesc lightmap;
 };
 BakeRequest resolveBakeOptions(const BakeOptions& options);
+/// Prepares the request's scene, as prepareScene() does. Where its lightmap's size was chosen by a density,
+/// the request bakes that one from then on.
+PreparedScene prepareFor(BakeRequest& request);
 /// Returns the part of it that concerns voxels; with a ratio of 0 they play no part.
 VoxelSettings resolveVoxels(const BakeOptions& options);
 

@@ -89,7 +89,7 @@ ViewerDesc resolveViewOptions(const ViewOptions& o) {
                     .camera = o.camera,
                     .logActions = o.logActions};
     const double density = o.bake.patches.furnishing.density;
-    if (!o.sizeTyped) desc.request.prepare.leastDensity = density > 0 ? density : kViewDensity;
+    if (!o.bake.patches.sizeTyped) desc.request.prepare.leastDensity = density > 0 ? density : kViewDensity;
     desc.request.bake.solver.layers.on = !o.noLayers;
     if (!o.window.empty()) {
         const size_t cross = o.window.find('x');

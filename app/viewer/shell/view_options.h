@@ -11,8 +11,7 @@ namespace relume {
 struct ViewOptions {
     BakeOptions bake; // scene, and how its lightmap is made
     std::string display = "auto", window, camera;
-    double budget = 8;      // [ms]
-    bool sizeTyped = false; // else a size is chosen that fits the level
+    double budget = 8; // [ms]
     bool watch = true, logActions = false, noLayers = false;
 };
 
