@@ -36,8 +36,7 @@ constexpr float kObjectStep = 0.05f;    // of the diagonal, by which an object i
 constexpr float kDimmed = 0.8f;         // a base colour becomes this share of itself
 constexpr uint32_t kProbeStride = 61;   // every so many texels a layer is looked at; a prime, so no column
 constexpr double kFollowPatience = 600; // [s] that a bake may take to follow an edit
-// Places for lamps are sought with a lightmap of this edge [texels], which need not be fine ...
-constexpr uint32_t kPlacingSize = 64;
+constexpr uint32_t kPlacingSize = 64;   // lightmap edge that places for lamps are sought with [texels]
 
 /// An edit of what a file holds; `run` counts from 0, and each run makes another one.
 struct BenchEdit {
@@ -73,9 +72,9 @@ BakeRequest requestOf(const ReloadBenchDesc& desc, const std::string& level) {
     return request;
 }
 
-// Prepares the scene for the search of places for lamps.
+// Prepares the scene for the search of places for lamps, which need no fine lightmap. Where UVs are made it
+// is the bake's, in which all charts have room.
 PreparedScene placingOf(const ReloadBenchDesc& desc) {
-    // ... but one whose UVs are made has room for all charts where the bake's has.
     const bool mapped = countUnmapped(loadScene(desc.scene, desc.choice)) == 0;
     return prepareScene({.path = desc.scene,
                          .choice = desc.choice,

@@ -77,12 +77,9 @@ void exportScene(const ExportCommand& o) {
     if (!o.bake.machine.shaders.empty()) setShaderFolder(o.bake.machine.shaders);
     std::optional<FloatImage> lightmap = givenLight(o, desc);
     if (lightmap) checkLightmap(*lightmap, o.lightmap.empty() ? o.layers : o.lightmap);
-    if (lightmap) { // the gutters of a repacked atlas depend on its size
-        const LightmapPages pages = lightmapPagesOf(*lightmap);
-        request.prepare.size = pages.edgeOf(lightmap->width);
-        request.prepare.pages = pages.count;
-        request.prepare.leastDensity = 0;
-        desc.pages = pages;
+    if (lightmap) {
+        matchLightmap(request.prepare, *lightmap);
+        desc.pages = lightmapPagesOf(*lightmap);
         checkExportFiles(files, desc); // now that the number of pages is known
     }
     std::optional<PhaseProgress> phase(std::in_place, true);

@@ -83,11 +83,7 @@ void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::st
     if (alone) loaded.files.scene = sceneBeside(layers, image);
     warnAbout(image, layers, loaded.files.scene);
     BakeRequest request = resolveBakeOptions(loaded);
-    // The gutters of a repacked atlas depend on the size.
-    const LightmapPages pages = lightmapPagesOf(image.composite);
-    request.prepare.size = pages.edgeOf(image.composite.width);
-    request.prepare.pages = pages.count;
-    request.prepare.leastDensity = 0;
+    matchLightmap(request.prepare, image.composite);
     const PreparedScene prepared = [&] {
         const PhaseProgress phase(true);
         return prepareScene(request.prepare);

@@ -114,11 +114,7 @@ void shoot(ShotOptions o) {
     std::unique_ptr<FloatImage> image;
     if (!o.lightmap.empty()) {
         image = std::make_unique<FloatImage>(readLightmap(o.lightmap, o.bake.files.scene));
-        // The gutters of a repacked atlas depend on the size.
-        const LightmapPages pages = lightmapPagesOf(*image);
-        request.prepare.size = pages.edgeOf(image->width);
-        request.prepare.pages = pages.count;
-        request.prepare.leastDensity = 0;
+        matchLightmap(request.prepare, *image);
     }
     std::optional<PhaseProgress> phase(std::in_place, true);
     PreparedScene prepared = prepareFor(request);

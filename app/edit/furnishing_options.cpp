@@ -14,8 +14,7 @@ void addFurnishingOptions(CLI::App& command, Furnishing& furnishing) {
     command
         .add_option("--density", furnishing.density,
                     "Texels per metre of UVs that are made (default: what fits the lightmap); where no size "
-                    "is given, "
-                    "the lightmap is as large as they need")
+                    "is given, the lightmap is as large as they need")
         ->check(numberAbove(0, 1e6));
     command.add_flag("--daylight,--no-daylight{false}", furnishing.daylight,
                      "Light a level in which nothing shines by a preview sun and sky (default), or by a lamp "

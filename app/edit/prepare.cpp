@@ -5,6 +5,7 @@
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
 #include "assets/foreign/load_scene.h"
+#include "assets/images/paged_image.h"
 #include "assets/survey/preview_light.h"
 
 #include <algorithm>
@@ -83,6 +84,13 @@ void furnishLight(PreparedScene& prepared, const Furnishing& furnishing) {
     prepared.madeLight = addPreviewLight(scene, prepared.mesh);
     spdlog::warn("{}: nothing in it shines: {} lights it, which is not in the file", scene.path,
                  prepared.madeLight);
+}
+
+void matchLightmap(PrepareDesc& desc, const FloatImage& lightmap) {
+    const LightmapPages pages = lightmapPagesOf(lightmap);
+    desc.size = pages.edgeOf(lightmap.width);
+    desc.pages = pages.count;
+    desc.leastDensity = 0;
 }
 
 PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(const Scene&)>& whenRead) {

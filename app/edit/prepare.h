@@ -10,6 +10,7 @@
 #include "assets/atlas/world_mesh.h"
 #include "assets/base/phase_clock.h"
 #include "assets/gltf/gltf.h"
+#include "assets/images/float_image.h"
 
 namespace relume {
 
@@ -47,6 +48,9 @@ struct PrepareDesc {
     UnwrapMemory* memory = nullptr; // of the file's last unwrap, by which charts stay where they are
     bool edited = false;            // edits follow, which may add light: furnishLight() is called after them
 };
+
+/// Takes size and pages from a lightmap that is there: the gutters of a repacked atlas depend on both.
+void matchLightmap(PrepareDesc& desc, const FloatImage& lightmap);
 
 /// Prepares a scene and logs the warnings of each step. Where lightmap UVs are to be made, which takes a
 /// while, `whenRead` is called before with the scene as its file has it. Throws Error.

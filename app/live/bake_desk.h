@@ -160,7 +160,7 @@ struct BakeDesk {
     std::function<void()> wake;
     const PreparedScene* held = nullptr; // the bake thread may still read it
     LightmapExchange exchange;
-    // What the device has to give before any bake; nothing where there is no device.
+    // It tells what the device has to give before any bake; nothing where there is no device.
     std::promise<std::optional<BakeRoom>> room;
 };
 

@@ -8,7 +8,7 @@
 
 namespace relume {
 
-/// What a device and its host have to give to a bake.
+/// Tells what a device and its host have to give to a bake.
 struct BakeRoom {
     uint64_t device = 0;          // free memory of the device [bytes]
     std::optional<uint64_t> host; // and of the host, where it tells

@@ -42,26 +42,30 @@ uint64_t probeNeeds(const BakeSettings& settings, const SceneExtent& scene, cons
            solver.patches() * (sizeof(shader::Patch) + lights * sizeof(glm::vec4));
 }
 
-} // namespace
-
-SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh) {
-    SceneExtent extent = extentOf(scene, mesh.pages);
-    extent.triangles = mesh.triangleCount();
-    return extent;
-}
-
-SceneExtent extentOf(const Scene& scene, const LightmapPages& pages) {
-    SceneExtent extent{.skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
+SceneExtent extentWith(uint64_t triangles, const Scene& scene, const LightmapPages& pages) {
+    SceneExtent extent{.triangles = triangles,
+                       .skyPixels = uint64_t{scene.sky.width} * scene.sky.height,
                        .skyRows = scene.sky.height,
                        .pages = pages};
-    for (const Instance& instance : scene.instances) {
-        if (instance.hidden) continue;
-        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
-            extent.triangles += primitive.indices.size() / 3;
-    }
     for (const Image& image : scene.images)
         extent.pictureBytes += uint64_t{image.width} * image.height * kPictureTexelBytes;
     return extent;
+}
+
+} // namespace
+
+SceneExtent extentOf(const Scene& scene, const WorldMesh& mesh) {
+    return extentWith(mesh.triangleCount(), scene, mesh.pages);
+}
+
+SceneExtent extentOf(const Scene& scene, const LightmapPages& pages) {
+    uint64_t triangles = 0;
+    for (const Instance& instance : scene.instances) {
+        if (instance.hidden) continue;
+        for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
+            triangles += primitive.indices.size() / 3;
+    }
+    return extentWith(triangles, scene, pages);
 }
 
 bool usesVoxels(const BakeSettings& settings) {
