@@ -24,6 +24,9 @@ constexpr uint32_t kBallProgram = 1u << 28, kSkyProgram = 1u << 29, kLineProgram
                    kVoxelProgram = 1u << 31;
 
 constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
+// Where the mean light is so many stops from that of the picture that was measured, as when the first light
+// comes, a picture that is exposed as that one was would be black or white.
+constexpr float kOtherLight = 2.0f;
 
 // Brings the light of any unit near 1, where the meter's scale has its middle.
 float meterScaleOf(const LightmapTexture& lightmap) {
@@ -352,6 +355,9 @@ void SceneRenderer::resolve() {
 float SceneRenderer::exposureFor(const Frame& frame) const {
     if (frame.settings.exposure) return *frame.settings.exposure;
     if (!measured_) return guessExposure(frame.lightmap);
+    const float light = shader::luminance(frame.lightmap.ambient);
+    const float stops = measuredLight_ ? std::log2(light / *measuredLight_) : 0.0f;
+    if (std::isfinite(stops) && std::abs(stops) > kOtherLight) return *measured_ - stops;
     // A difference too small to be seen is no reason to draw again.
     return std::abs(*measured_ - exposure_) < kSameExposure ? exposure_ : *measured_;
 }
@@ -370,7 +376,10 @@ SceneRenderer::Shown SceneRenderer::describe(const Frame& frame, const Target& t
 }
 
 void SceneRenderer::takeMeasurement(bool wait) {
-    if (const std::optional<float> result = meter_.result(wait)) measured_ = result;
+    const std::optional<float> result = meter_.result(wait);
+    if (!result) return;
+    measured_ = result;
+    measuredLight_ = pendingLight_;
 }
 
 void SceneRenderer::measure(const Frame& frame) {
@@ -380,6 +389,7 @@ void SceneRenderer::measure(const Frame& frame) {
     if (unmeasured_) return;
     const gl::Timer::Scope scope(timer_, "meter");
     meter_.measure(surface(), samples_, meterScaleOf(frame.lightmap));
+    pendingLight_ = shader::luminance(frame.lightmap.ambient);
 }
 
 bool SceneRenderer::draw(const Frame& frame, const Target& target) {

@@ -56,7 +56,10 @@ public:
 
     /// Sets the exposure [EV] that automatic exposure takes for the next picture until it is measured, where
     /// Metering is Async. Thus a view that was seen before comes back without a jump.
-    void expectExposure(float exposure) { measured_ = exposure; }
+    void expectExposure(float exposure) {
+        measured_ = exposure;
+        measuredLight_.reset();
+    }
 
     /// Sets the samples of the next pictures, or the driver's largest number where it has fewer.
     void setSamples(uint32_t samples);
@@ -114,6 +117,8 @@ private:
     std::optional<Shown> shown_;    // none: draw in any case
     bool unmeasured_ = false;       // the last picture's light is not what was measured last
     std::optional<float> measured_; // the newest exposure that a picture asked for [EV]
+    // The mean light of the pictures that were measured, and that are, where it is known [cd/m^2].
+    std::optional<float> measuredLight_, pendingLight_;
     Counts counts_;
     float exposure_ = 0;
 };

@@ -3,6 +3,7 @@
 #include "app/live/hearer.h"
 #include "app/live/lightmap_export.h"
 #include "app/live/seen_chunks.h"
+#include "app/live/warm_up.h"
 #include "assets/base/log.h"
 #include "shaders/shader_library.h"
 
@@ -22,6 +23,8 @@ namespace {
 constexpr double kReportSeconds = 0.05;
 // A map waits so long for a slot before the exchange is asked again.
 constexpr auto kSlotWait = std::chrono::milliseconds(5);
+// A first glance at the light may delay the bake by so much.
+constexpr double kGlanceSeconds = 1.0;
 // This exception ends a preparation that nobody waits for any more.
 struct Cancelled {};
 
@@ -86,6 +89,19 @@ void BakeLoop::openDevice() {
     spdlog::info("display: {}", status_.display);
     report(true);
     desk_.room.set_value(room);
+    if (info.software()) compileAhead();
+}
+
+// Compiles what a bake needs while the first level is read. A bake does so where this fails.
+void BakeLoop::compileAhead() {
+    try {
+        warmUp(*device_, [this] {
+            const std::lock_guard lock(desk_.mutex);
+            return desk_.orders.quit || desk_.orders.start;
+        });
+    } catch (const Error& error) {
+        spdlog::debug("nothing was compiled ahead: {}", error.what());
+    }
 }
 
 // Waits where there is nothing to do. Returns false when the thread is to quit.
@@ -149,10 +165,40 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         bake_.makeSolver();
     else
         bake_.make(*device_, start);
-    beginMaps(start.keepLight);
+    const bool glance = bake_.isGlance();
+    if (glance) showGlance(start);
+    beginMaps(start.keepLight || glance);
     bake_.mix(start.mix);
     letGo();
     ready();
+}
+
+// Shows the first light of a bake that is not prepared to its end, and prepares the rest of it. onPhase()
+// shows a map that has to wait for its slot.
+void BakeLoop::showGlance(const BakeOrders::Start& start) {
+    beginMaps(false);
+    bake_.mix(start.mix);
+    try {
+        const Clock::time_point begun = Clock::now();
+        while (!allLit(bake_.layers()->layers()) && secondsSince(begun) < kGlanceSeconds) {
+            onPhase("validity", 0.0);
+            bake_.baker()->solver().step();
+        }
+        publishGlance();
+        bake_.complete();
+        endMaps();
+        onPhase("solver set-up");
+        bake_.makeSolver();
+    } catch (...) {
+        giveUp();
+        throw;
+    }
+}
+
+bool BakeLoop::publishGlance() {
+    const bool published = maps_->publish(inspect_);
+    if (published) wake();
+    return published;
 }
 
 // Goes on with a bake that follows an edit. Maps begin again where texels have other patches now.
@@ -243,6 +289,7 @@ void BakeLoop::onPhase(const char* phase, double done) {
         const std::lock_guard lock(desk_.mutex);
         if (desk_.orders.quit || desk_.orders.start) throw Cancelled();
     }
+    if (bake_.isGlance() && maps_->owes()) publishGlance();
     const auto place = std::find(kPhases.begin(), kPhases.end(), phase);
     if (place == kPhases.end()) return; // a part of one of them
     const bool isNew = status_.doing != phase;

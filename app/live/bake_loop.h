@@ -28,9 +28,12 @@ public:
 private:
     using Phase = BakeStatus::Phase;
     void openDevice();
+    void compileAhead();
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
+    void showGlance(const BakeOrders::Start& start);
+    bool publishGlance();
     void goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore);
     uint64_t texelMoves() const;
     void letGo();

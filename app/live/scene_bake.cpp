@@ -52,7 +52,15 @@ void SceneBake::make(const vk::Device& device, const Start& start) {
     atlas_ = start.scene->atlas;
     recipe_.surfaces = start.surfaces;
     paint_ = start.paint;
-    makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh);
+    // A GPU finds in no time what a glance would do without. Light that is shown is better than a glance.
+    const bool glance = device.info().software() && !start.keepLight;
+    makeBaker(device, moved ? flatten(scene_, start.scene->atlas) : start.scene->mesh,
+              glance ? Preparation::FirstGlance : Preparation::Whole);
+}
+
+void SceneBake::complete() {
+    baker_->complete();
+    tellPatches();
 }
 
 // Keeps what the next bake of the level goes on with, as far as that takes no more than a share of the memory
@@ -72,14 +80,20 @@ void SceneBake::makeAgain(const vk::Device& device) {
     WorldMesh mesh = baker_->patches().scene.mesh;
     baker_.reset();
     former_.reset();
-    makeBaker(device, std::move(mesh));
+    makeBaker(device, std::move(mesh), Preparation::Whole);
 }
 
-void SceneBake::makeBaker(const vk::Device& device, WorldMesh mesh) {
+void SceneBake::makeBaker(const vk::Device& device, WorldMesh mesh, Preparation preparation) {
     FormerBake* const former = former_ ? &*former_ : nullptr;
-    baker_ = std::make_unique<Baker>(device, scene_, BakeSurfaces(std::move(mesh), former), settings());
+    baker_ = std::make_unique<Baker>(device, scene_, BakeSurfaces(std::move(mesh), former), settings(),
+                                     Baker::PhaseHook(), preparation);
     former_.reset();
+    if (isGlance()) return;
     due_ = false;
+    tellPatches();
+}
+
+void SceneBake::tellPatches() const {
     spdlog::info("{} patches", baker_->patches().count);
     warnIfDark(scene_, baker_->patches());
 }

@@ -41,8 +41,13 @@ public:
     /// taken up differs in its surfaces alone.
     bool goesOn() const { return goesOn_; }
     /// Makes the bake. Throws Error, and what ends a preparation: then there is none, and what the one before
-    /// had is kept for the next one.
+    /// had is kept for the next one. Where a first glance at its light is all that there is yet, complete()
+    /// and makeSolver() are to follow.
     void make(const vk::Device& device, const Start& start);
+    /// Tells whether there is a first glance at the light of a bake that is to be completed.
+    bool isGlance() const { return baker_ && !baker_->isWhole(); }
+    /// Finds what such a bake lacks. Throws likewise, and leaves the glance then.
+    void complete();
     /// Makes it anew as it is, with the shaders as they are now. Throws likewise.
     void makeAgain(const vk::Device& device);
     /// Makes another solver, which starts from no light.
@@ -54,7 +59,8 @@ public:
 
 private:
     void keepFormer(const vk::Device& device);
-    void makeBaker(const vk::Device& device, WorldMesh mesh);
+    void makeBaker(const vk::Device& device, WorldMesh mesh, Preparation preparation);
+    void tellPatches() const;
 
     Scene scene_;                      // with the edits; the baker changes it
     LightmapAtlas atlas_;              // of the scene

@@ -25,6 +25,9 @@ namespace {
 // A bake may take this share of the free memory: the driver needs some of its own.
 constexpr double kMemoryShare = 0.9;
 
+// The light of more patches is nothing that one sees at a glance.
+constexpr uint32_t kMostOfGlance = 1u << 21;
+
 // Returns those of these patches (ascending) that are in these chunks.
 std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::vector<uint32_t>& patches) {
     std::vector<uint32_t> in;
@@ -34,6 +37,22 @@ std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::v
         in.insert(in.end(), first, end);
     }
     return in;
+}
+
+// Tells whether the bake can follow edits of objects.
+bool followsObjects(const BakeSettings& settings) {
+    const SolverSettings& solver = settings.solver;
+    return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings);
+}
+
+// Returns which chunks' validity each rank finds.
+ChunkDeal dealOf(const PatchSet& patches, Ranks& ranks, const vk::Device& device) {
+    return {patches.chunkCount(), ranks.count(), ChunkDeal::leastRunOf(device.info().software())};
+}
+
+TracerKind tracerKind(const BakeSettings& settings, const vk::DeviceInfo& device, std::string& why) {
+    const TracerKind kind = settings.voxels.ratio == 1 ? TracerKind::Voxel : settings.tracer;
+    return kind == TracerKind::Auto ? chooseTracer(device, why) : kind;
 }
 
 // The parts of a scene that its materials are painted with.
@@ -86,14 +105,15 @@ uint64_t Baker::deviceBytes(const BakeSettings& settings, const SceneExtent& sce
 
 Baker::Baker(const vk::Device& device, const Scene& scene, BakeSurfaces surfaces,
              const BakeSettings& settings, PhaseHook phaseHook)
-    : Baker(device, scene, nullptr, std::move(surfaces), settings, std::move(phaseHook)) {}
+    : Baker(device, scene, nullptr, std::move(surfaces), settings, std::move(phaseHook), Preparation::Whole) {
+}
 
 Baker::Baker(const vk::Device& device, Scene& scene, BakeSurfaces surfaces, const BakeSettings& settings,
-             PhaseHook phaseHook)
-    : Baker(device, scene, &scene, std::move(surfaces), settings, std::move(phaseHook)) {}
+             PhaseHook phaseHook, Preparation preparation)
+    : Baker(device, scene, &scene, std::move(surfaces), settings, std::move(phaseHook), preparation) {}
 
 Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
-             const BakeSettings& settings, PhaseHook phaseHook)
+             const BakeSettings& settings, PhaseHook phaseHook, Preparation preparation)
     : device_(device), scene_(scene), editable_(editable), settings_(settings),
       phaseHook_(std::move(phaseHook)) {
     requireRoom(surfaces);
@@ -107,16 +127,35 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
     colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
 
-    if (followsObjects())
+    if (followsObjects(settings_))
         mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
                                                settings.conservative);
-    makeTracers(carry ? &*carry : nullptr);
+    makeTracers();
+    whole_ = preparation == Preparation::Whole || !followsObjects(settings_) || carry ||
+             patches_.count > kMostOfGlance || !makeGlance();
+    if (!whole_) return;
+    findValidity(carry ? &*carry : nullptr);
+    if (usesVoxels(settings_)) makeVoxels();
     onPhase("solver set-up");
     PhaseClock setUp(phases_);
     std::optional<LayerCarry> layers;
     if (carry) layers.emplace(layerCarry(*carry));
     solver_ = makeSolver(solverInput(), settings.solver, layers ? &*layers : nullptr);
     setUp.end("solver set-up");
+}
+
+// Makes a solver for a first glance; returns false where there is no memory for its layers.
+bool Baker::makeGlance() {
+    SolverSettings glance = settings_.solver;
+    glance.layers.optional = false;
+    glance.links.allOver = false; // covers are not known yet
+    glance.links.samples = LayerSolver::kPointsOfRound;
+    try {
+        solver_ = makeSolver(solverInput(), glance);
+    } catch (const Error&) {
+        return false;
+    }
+    return true;
 }
 
 // Throws Error where the size does not fit. What a former bake has left is given up before.
@@ -168,15 +207,10 @@ void Baker::makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& cl
                  patches_.clampedAlbedo);
 }
 
-bool Baker::followsObjects() const {
-    const SolverSettings& solver = settings_.solver;
-    return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings_);
-}
-
 // Tells whether there is something to go on with. Directions that a chunk shares would be others where its
 // patches are.
 bool Baker::goesOnWith(const FormerBake* former, const LightmapPages& pages) const {
-    return former != nullptr && followsObjects() && former->patches.scene.mesh.pages == pages &&
+    return former != nullptr && followsObjects(settings_) && former->patches.scene.mesh.pages == pages &&
            former->patches.scene.pageSize() == settings_.size &&
            settings_.solver.links.rotation != Rotation::Tile;
 }
@@ -203,7 +237,7 @@ LayerCarry Baker::layerCarry(const Carry& carry) const {
 Baker::~Baker() = default;
 
 std::optional<FormerBake> Baker::release() {
-    if (!mover_ || !solver_.layers) return std::nullopt;
+    if (!whole_ || !mover_ || !solver_.layers) return std::nullopt;
     FormerBake former;
     former.layers = solver_.layers->release();
     former.inside = mover_->giveInside();
@@ -214,12 +248,18 @@ std::optional<FormerBake> Baker::release() {
     return former;
 }
 
-// Makes the tracers. Triangles tell whether a patch lies inside something: a voxel knows no inside.
-void Baker::makeTracers(Carry* carry) {
+void Baker::complete() {
+    ASSERT(!whole_);
+    findValidity(nullptr);
+    whole_ = true;
+}
+
+// Makes the tracer of triangles, which also tell whether a patch lies inside something: a voxel knows no
+// inside.
+void Baker::makeTracers() {
     const vk::MemoryOwner owner("trace");
     std::string why = "as asked for";
-    TracerKind kind = settings_.voxels.ratio == 1 ? TracerKind::Voxel : settings_.tracer;
-    if (kind == TracerKind::Auto) kind = chooseTracer(device_.info(), why);
+    const TracerKind kind = tracerKind(settings_, device_.info(), why);
     const bool marches = usesVoxels(settings_);
     tracerChoice_ = fmt::format("{} ({})", tracerName(kind), why);
     spdlog::info("tracer: {}", tracerChoice_);
@@ -229,32 +269,37 @@ void Baker::makeTracers(Carry* carry) {
                                                 : "all senders",
                      settings_.voxels.resolution);
     }
+    if (marches && settings_.solver.transport.rtrad) return;
     PhaseClock clock(phases_);
-    if (!marches || !settings_.solver.transport.rtrad) {
-        onPhase("tracer");
-        const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
-        tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
-        clock.end("tracer");
-    }
+    onPhase("tracer");
+    const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
+    tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
+    clock.end("tracer");
+}
+
+void Baker::findValidity(Carry* carry) {
+    const vk::MemoryOwner owner("trace");
+    PhaseClock clock(phases_);
     if (!settings_.solver.transport.rtrad) findInvalid(carry);
     makeCovers();
     clock.end("validity");
-    if (!marches) return;
-    onPhase("voxels");
-    tracer_.reset();
-    tracer_ = makeTracer(kind, device_, patches_.scene, light_->patches, settings_.voxels);
-    clock.end("voxels");
 }
 
-// Returns which chunks' validity each rank finds.
-ChunkDeal Baker::deal() const {
-    return {patches_.chunkCount(), ranks().count(), ChunkDeal::leastRunOf(device_.info().software())};
+void Baker::makeVoxels() {
+    const vk::MemoryOwner owner("trace");
+    PhaseClock clock(phases_);
+    onPhase("voxels");
+    tracer_.reset();
+    std::string why;
+    tracer_ = makeTracer(tracerKind(settings_, device_.info(), why), device_, patches_.scene, light_->patches,
+                         settings_.voxels);
+    clock.end("voxels");
 }
 
 // Finds where samples may start that start all over their texels, once.
 void Baker::makeCovers() {
     if (!startsAllOver(settings_.solver) || patches_.covers.empty() || light_->covers) return;
-    const ChunkDeal dealt = deal();
+    const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
     const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
     searchCovers({.device = device_,
                   .tracer = *tracer_,
@@ -298,7 +343,7 @@ void Baker::searchInside() {
                         .chunks = {},
                         .met = mover_ ? &met : nullptr,
                         .onBatch = [this](double done) { onPhase("validity", done); }};
-    const ChunkDeal dealt = deal();
+    const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
     const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
     search.chunks.assign(own.begin(), own.end());
     std::vector<uint32_t> inside = findInside(search);

@@ -27,6 +27,14 @@ struct MoveCounters {
     double seconds = 0;  // for patches, triangles and tracer
 };
 
+/// How far a constructor prepares a bake.
+enum class Preparation {
+    Whole,
+    // Until there is a solver whose light may be looked at meanwhile: it takes no patch to lie inside
+    // something and starts in the middle of texels. complete() and resetSolver() are to follow.
+    FirstGlance
+};
+
 /// One bake of one scene: CIT, patches, tracer, solver. The constructor prepares everything; then step the
 /// solver.
 class Baker {
@@ -44,9 +52,17 @@ public:
     /// Does likewise for a scene that edits may change: nobody but apply() and restart() may do so from now
     /// on. Where layers are baked it goes on with what a former bake of the level has: what stays as it was
     /// is neither traced nor made again, and what comes of it is a fresh bake.
+    /// A first glance is given only where layers are baked and triangles are traced, of not too many patches
+    /// and to a bake that does not go on with a former one; isWhole() tells.
     Baker(const vk::Device& device, Scene& scene, BakeSurfaces surfaces, const BakeSettings& settings,
-          PhaseHook phaseHook = {});
+          PhaseHook phaseHook = {}, Preparation preparation = Preparation::Whole);
     ~Baker();
+
+    /// Tells whether everything is prepared.
+    bool isWhole() const { return whole_; }
+    /// Prepares what a first glance left. The solver may be looked at from the phase hook and watch until it
+    /// returns. Throws what these throw.
+    void complete();
 
     /// Gives up what a bake of the same settings can go on with; nothing without layers. What is left of this
     /// one is to be destroyed.
@@ -101,12 +117,14 @@ private:
         ObjectMove move = {};
     };
     Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
-          const BakeSettings& settings, PhaseHook phaseHook);
+          const BakeSettings& settings, PhaseHook phaseHook, Preparation preparation);
     void requireRoom(BakeSurfaces& surfaces) const;
     bool goesOnWith(const FormerBake* former, const LightmapPages& pages) const;
     void makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock);
-    void makeTracers(Carry* carry);
-    bool followsObjects() const;
+    void makeTracers();
+    bool makeGlance();
+    void findValidity(Carry* carry);
+    void makeVoxels();
     std::optional<Carry> carryFrom(FormerBake* former);
     LayerCarry layerCarry(const Carry& carry) const;
     void findInvalid(Carry* carry);
@@ -118,7 +136,6 @@ private:
     void updateMaterials();
     void onPhase(const char* phase, double done = -1.0) const;
     Ranks& ranks() const { return settings_.ranks ? *settings_.ranks : oneProcess(); }
-    ChunkDeal deal() const;
     SolverInput solverInput() { return {device_, scene_, patches_, *light_, *tracer_, ranks()}; }
 
     const vk::Device& device_;
@@ -134,6 +151,7 @@ private:
     MadeSolver solver_;
     std::string tracerChoice_;
     std::vector<PhaseTime> phases_;
+    bool whole_ = true;
     uint32_t invalid_ = 0;
     MoveCounters moves_;
 };

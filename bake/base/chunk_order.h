@@ -35,6 +35,7 @@ public:
     void prefer(const std::vector<uint8_t>& seen);
     uint32_t count() const { return count_; } // chunks of the pass
     uint32_t left() const { return left_; }
+    bool prefersSome() const { return preferred_ > 0; } // of those that are left
     bool isLeft(uint32_t chunk) const { return marks_[chunk] != 0; }
     /// Returns what comes next: up to `most` (> 0) consecutive chunks that are left, from the first preferred
     /// one on, or from the first one where none is preferred. A run of preferred ones goes on to the next run

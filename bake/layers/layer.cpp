@@ -94,6 +94,12 @@ uint32_t Layer::rays() const {
     return rays;
 }
 
+bool allLit(const std::vector<std::unique_ptr<Layer>>& layers) {
+    return std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
+        return !layer->shines() || layer->directRounds > 0;
+    });
+}
+
 std::string staleReason(const Layer& layer) {
     if (layer.has() || layer.source.weight == glm::vec3(0.0f)) return "";
     const bool group = layer.source.key.kind == LightKey::Kind::Group;

@@ -111,6 +111,9 @@ struct Layer {
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }
 };
 
+/// Tells whether each of these layers that shines has some direct light.
+bool allLit(const std::vector<std::unique_ptr<Layer>>& layers);
+
 /// Tells what of the scene the layer does not show yet, as "light 'Lamp' moved"; returns "" for nothing.
 std::string staleReason(const Layer& layer);
 

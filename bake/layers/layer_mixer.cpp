@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace relume {
+namespace {
+
+bool addsDirect(const std::unique_ptr<Layer>& layer) {
+    return layer->shines() && layer->direct && layer->directRounds > 0;
+}
+
+} // namespace
 
 LayerMixer::LayerMixer(LinkKit& kit, const LayerPass& pass)
     : kit_(kit), pass_(pass), composite_(kit.input.device, {.size = kit.lightBytes(), .name = "composite"}) {}
@@ -95,7 +102,7 @@ void LayerMixer::run(const Weights& list, const vk::Buffer* base, const vk::Buff
 void LayerMixer::mixDirect(const Layers& layers, const vk::Buffer& direct) {
     Weights list;
     for (const std::unique_ptr<Layer>& layer : layers)
-        if (layer->shines())
+        if (addsDirect(layer))
             list.push_back({.light = layer->direct->address(), .weight = layer->source.weight});
     const uint32_t count = writeWeights(list);
     VkCommandBuffer cmd = kit_.commands.begin();
@@ -129,11 +136,36 @@ bool LayerMixer::isComplete(const Layers& layers) const {
            });
 }
 
+bool LayerMixer::showsAny(const Layers& layers) const {
+    return lit_ > 0 || isComplete(layers) || showsBounces(layers);
+}
+
+bool LayerMixer::showsBounces(const Layers& layers) const {
+    return showsSum() || standIn_ ||
+           std::any_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
+               return layer->shown() != nullptr && !layer->covered && layer->shines();
+           });
+}
+
 bool LayerMixer::mixForViewer(const Layers& layers) {
+    if (!isComplete(layers) && !showsBounces(layers)) return mixFirstLight(layers);
+    lit_ = 0;
     if (!allChanged_ && changed_.empty()) return false;
     const bool all = std::exchange(allChanged_, false) || sum_ || changed_.size() != 1;
     all ? mix(layers) : mixOne(layers, changed_.front());
     changed_.clear();
+    ++version_;
+    return true;
+}
+
+bool LayerMixer::mixFirstLight(const Layers& layers) {
+    const auto lit = static_cast<size_t>(std::count_if(layers.begin(), layers.end(), addsDirect));
+    const bool same = lit == lit_ && changed_.empty() && !allChanged_;
+    if (same || lit == 0) return false;
+    mixDirect(layers, composite_);
+    lit_ = lit;
+    changed_.clear();
+    allChanged_ = false;
     ++version_;
     return true;
 }

@@ -37,12 +37,15 @@ public:
     bool hasStandIn() const { return static_cast<bool>(standIn_); }
     void endStandIn(size_t layers);
 
-    /// Makes `direct` the weighted sum of the direct light of all layers that shine.
+    /// Makes `direct` the weighted sum of the direct light of all layers that shine and have any.
     void mixDirect(const Layers& layers, const vk::Buffer& direct);
-    /// Mixes what a viewer is shown, where it has changed; tells whether it has.
+    /// Mixes what a viewer is shown, where it has changed; tells whether it has. As long as no light has its
+    /// bounces, that is the direct light that there is.
     bool mixForViewer(const Layers& layers);
     /// Tells whether all that shines is shown with its bounces, in some state.
     bool isComplete(const Layers& layers) const;
+    /// Tells whether there is anything to show: without light all would be black.
+    bool showsAny(const Layers& layers) const;
     /// Returns the composite, vec4 per patch: on the device as it was mixed last, and as it is now.
     const vk::Buffer& composite() const { return composite_; }
     const std::vector<glm::vec4>& light(const Layers& layers);
@@ -53,6 +56,8 @@ private:
     Weights shares(const Layers& layers, std::optional<size_t> without, std::optional<size_t> only) const;
     uint32_t writeWeights(const Weights& list);
     void run(const Weights& list, const vk::Buffer* base, const vk::Buffer& to);
+    bool showsBounces(const Layers& layers) const;
+    bool mixFirstLight(const Layers& layers);
     void mix(const Layers& layers);
     void mixOne(const Layers& layers, size_t layer);
 
@@ -66,6 +71,7 @@ private:
     const vk::Buffer* sum_ = nullptr;
     std::vector<size_t> changed_; // layers since the composite was made
     bool allChanged_ = false;     // all of them, and which ones there are
+    size_t lit_ = 0;              // layers with direct light, while that is shown
     bool stale_ = true;           // light_ is behind
     std::vector<glm::vec4> light_;
     uint64_t version_ = 0;

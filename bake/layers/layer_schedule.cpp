@@ -29,6 +29,13 @@ bool isLit(const Layer& layer) {
     return layer.directRounds > 0 && !layer.isOutdated();
 }
 
+// Tells whether the light is a sun or the sky, which light a whole level.
+bool isDaylight(const Layer& layer) {
+    const LightCacheKey& key = layer.cacheKey;
+    return key.kind == LightKey::Kind::Sky ||
+           (key.kind == LightKey::Kind::Lamp && key.light.type == LightType::Directional);
+}
+
 LayerLevel atLeast(LayerLevel a, LayerLevel b) {
     return {std::max(a.directRounds, b.directRounds), std::max(a.linkRounds, b.linkRounds)};
 }
@@ -289,12 +296,16 @@ uint32_t LayerSchedule::sumRounds(const Layers& layers) const {
 }
 
 // Returns a layer whose direct light is to be made before any layer goes on, so that it is seen among all
-// lights.
+// lights; daylight comes first.
 std::optional<size_t> LayerSchedule::unlitLayer(const Layers& layers, const ScheduleState& state) const {
-    const bool summed = state.sum.shown || (state.unseen && wantsSum(layers, state.sum.shown));
-    for (size_t i = 0; summed && i < layers.size(); ++i)
-        if (layers[i]->shines() && layers[i]->directRounds == 0) return i;
-    return std::nullopt;
+    if (!state.sum.shown && !(state.unseen && wantsSum(layers, state.sum.shown))) return std::nullopt;
+    std::optional<size_t> unlit;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        if (!layers[i]->shines() || layers[i]->directRounds > 0) continue;
+        if (isDaylight(*layers[i])) return i;
+        if (!unlit) unlit = i;
+    }
+    return unlit;
 }
 
 std::optional<size_t> LayerSchedule::dirtyLayer(const Layers& layers) const {

@@ -87,6 +87,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
     vkCmdFillBuffer(cmd, mixer_.composite().handle(), 0, VK_WHOLE_SIZE, 0);
     kit_.run(cmd);
     adopt();
+    unseen_ = settings.live; // all lights are seen in one before any by itself
     if (carry) takeOver(*carry);
 }
 
@@ -328,7 +329,8 @@ LiveLight LayerSolver::liveLight() {
     ASSERT(kit_.settings.live);
     std::vector<ChunkRange> ranges;
     if (mixer_.mixForViewer(layers())) ranges = {{0, kit_.chunkCount()}};
-    return {&mixer_.composite(), mixer_.version(), mixer_.isComplete(layers()), std::move(ranges)};
+    const vk::Buffer* light = mixer_.showsAny(layers()) ? &mixer_.composite() : nullptr;
+    return {light, mixer_.version(), mixer_.isComplete(layers()), std::move(ranges)};
 }
 
 std::vector<float> LayerSolver::errors() {

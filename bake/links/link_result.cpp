@@ -231,7 +231,10 @@ LiveLight LinkSolver::liveLight() {
         changed = {{0, kit_.input.patches.chunkCount()}};
     live_.shown = live_.resolves;
     if (!changed.empty()) ++live_.version;
-    return {&kit_.buffers.result, live_.version, live_.complete || done_, std::move(changed)};
+    const bool seenLit = !seenOfStage().empty() && !kit_.order.prefersSome();
+    const vk::Buffer* light =
+        done_ || schedule_.hasFirstLight(state_, seenLit) ? &kit_.buffers.result : nullptr;
+    return {light, live_.version, live_.complete || done_, std::move(changed)};
 }
 
 // Shows the light that bounces on and, where the bounce under way has been, the light of that one. After a

@@ -90,6 +90,11 @@ public:
     bool hasSolution(const LinkState& state) const {
         return state.linkRounds > 0 || (directAlone() && state.directRounds > 0);
     }
+    /// Tells whether there is light to look at: of all patches, or of those that are seen, which come first
+    /// and have theirs (`seenLit`).
+    static bool hasFirstLight(const LinkState& state, bool seenLit) {
+        return state.rounds() > 0 || state.bounce > 0 || (seenLit && state.stage != LinkState::Stage::Plan);
+    }
     /// Tells whether direct light is all that is asked for.
     bool directAlone() const { return rules_.hybrid && rules_.passes == 1; }
     /// Tells whether the bounce that begins is its sample pass's last one.

@@ -151,8 +151,11 @@ struct StatePart {
 
 /// The light that can be shown between two steps.
 struct LiveLight {
-    const vk::Buffer* light = nullptr; // vec4 per patch, on the device: lighting, w means nothing
-    uint64_t version = 0;              // changes when the light does
+    // vec4 per patch, on the device: lighting, w means nothing. Link methods have none until patches that are
+    // seen, or all of them where no priority was set, have their first light: a picture of none would be
+    // black. What is told as changed before counts nevertheless.
+    const vk::Buffer* light = nullptr;
+    uint64_t version = 0; // changes when the light does
     // True once the light has all bounces, so that it is at most some percent dimmer than the result will be;
     // it stays true. Before, the light is what there is: direct light as it arrives, then bounce by bounce.
     bool complete = false;

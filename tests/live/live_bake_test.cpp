@@ -1,16 +1,11 @@
-#include "app/live/live_bake.h"
-
-#include "app/bench/map_sink.h"
-#include "app/live/layer_remark.h"
 #include "app/offline/lightmap_attributes.h"
 #include "assets/generate/generate.h"
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
 #include "assets/images/metrics.h"
-#include "tests/gpu/gpu_environment.h"
 #include "tests/gpu/relume_process.h"
-#include "tests/live/quick_bake.h"
+#include "tests/live/live_bake_fixture.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -18,81 +13,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <thread>
 #include <utility>
 
-#include <glm/gtc/packing.hpp>
-
 namespace relume {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = std::chrono::steady_clock;
-
-/// Stands for the drawing thread without OpenGL: it takes every map into memory.
-class Screen : public MapSink {
-public:
-    using MapSink::MapSink;
-
-    /// Returns the mean of all patches [cd/m^2].
-    double mean() const {
-        const std::span<const std::byte> bytes = texels();
-        double sum = 0, count = 0;
-        for (size_t i = 0; i < bytes.size(); i += sizeof(glm::u16vec4)) {
-            glm::u16vec4 texel;
-            std::memcpy(&texel, &bytes[i], sizeof(texel));
-            const glm::vec4 value = glm::unpackHalf(texel);
-            if (value.a < 0.75f) continue;
-            sum += double{value.r} + value.g + value.b;
-            count += 3;
-        }
-        return map()->unit * sum / count;
-    }
-};
-
-class LiveBakeTest : public testing::Test {
-protected:
-    ~LiveBakeTest() override { bake_.stop(); } // before the screen's memory goes, which it writes
-
-    bool until(const std::function<bool()>& what, double seconds = kPatience) {
-        const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-        while (Clock::now() < end) {
-            if (screen_.update() && onMap_) onMap_();
-            if (what()) return true;
-            if (bake_.status().phase == BakeStatus::Phase::Failed && bake_.status().bake == newest_)
-                return false;
-            std::this_thread::sleep_for(1ms);
-        }
-        return false;
-    }
-    bool untilPhase(BakeStatus::Phase phase) {
-        return until([&] { return bake_.status().phase == phase && bake_.status().bake == newest_; });
-    }
-    /// Waits until the newest bake's end is on screen.
-    bool untilShown() {
-        return untilPhase(BakeStatus::Phase::Done) && until([&] {
-                   return screen_.map() && screen_.map()->bake == newest_ && screen_.map()->complete;
-               }) &&
-               until([&, start = Clock::now()] { return Clock::now() - start > 50ms; });
-    }
-    void start(const BakeSettings& settings, bool keepLight = true) {
-        newest_ =
-            bake_.start({.scene = &scene_, .edits = edits_, .settings = settings, .keepLight = keepLight});
-    }
-
-    PreparedScene scene_ = cornell();
-    SceneEdits edits_ = editsOf(scene_.scene);
-    // This comes before there is a thread that makes a device, too, since Vulkan's function pointers are per
-    // process.
-    const bool software_ = testDevice().info().software();
-    LiveBake bake_{{.validation = true}};
-    Screen screen_{bake_.exchange()};
-    std::function<void()> onMap_;
-    uint64_t newest_ = 0;
-};
 
 TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
     const TemporaryFolder folder;
@@ -344,108 +273,6 @@ TEST_F(LiveBakeTest, APageIsWrittenOfLayersAlone) {
     ASSERT_TRUE(untilShown());
     order("layered", true);
     ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("layered/index.html")); }));
-}
-
-TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
-    BakeSettings settings = quickSettings();
-    settings.solver.layers.on = true;
-    start(settings, false);
-    ASSERT_TRUE(untilShown());
-    EXPECT_TRUE(bake_.status().layered);
-    EXPECT_TRUE(bake_.status().stale.empty());
-    const double whole = screen_.mean(); // of the only light
-    const std::vector<LightSource> sources = lightSources(scene_.scene);
-    ASSERT_EQ(sources.size(), 1u);
-    InspectRequest alone{.content = MapContent::Layer, .light = sources[0].key, .weight = sources[0].weight};
-    bake_.inspect(alone);
-    const auto shows = [&](double factor) {
-        return until([&] {
-            return screen_.map()->content == MapContent::Layer &&
-                   std::abs(screen_.mean() - factor * whole) < 1e-3 * whole;
-        });
-    };
-    EXPECT_TRUE(shows(1)) << screen_.mean() << " for " << whole;
-    alone.weight *= 3.0f;
-    bake_.inspect(alone);
-    EXPECT_TRUE(shows(3)) << "weighed anew, no bake";
-    EXPECT_EQ(bake_.status().phase, BakeStatus::Phase::Done);
-
-    const TemporaryFolder folder;
-    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "saved.glb"});
-    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
-    const FloatImage map = readImage(folder.path("live.exr"));
-    EXPECT_EQ(map.attributes.at("relume:scene"), "saved.glb");
-    std::vector<uint32_t> texels = {shader::kNoPatch};
-    for (uint32_t texel = 0; texel < kQuickSize * kQuickSize; ++texel)
-        if (map.find("coverage")->at(texel) == 1.0f) texels.push_back(texel);
-    bake_.askProbes({.number = 7, .texels = texels});
-    std::optional<LayerProbe> probe;
-    ASSERT_TRUE(until([&] { return (probe = bake_.exchange().takeProbe()).has_value(); }));
-    EXPECT_EQ(probe->request, 7u);
-    EXPECT_EQ(probe->key, sources[0].key);
-    ASSERT_EQ(probe->light.size(), texels.size());
-    EXPECT_EQ(probe->light[0], glm::vec3(0));
-    for (size_t i = 1; i < texels.size(); ++i)
-        EXPECT_NEAR(probe->light[i].g * sources[0].weight.g, map.find("G")->at(texels[i]), 1e-4) << texels[i];
-    EXPECT_FALSE(until([&] { return bake_.exchange().hasProbe(); }, 0.3)) << "told once";
-}
-
-TEST_F(LiveBakeTest, SaysWhyThereAreNoLayers) {
-    BakeSettings settings = quickSettings();
-    settings.solver.layers.on = true;
-    settings.solver.layers.bytes = 1;
-    settings.solver.error = 0.2; // directional light takes long to become clean
-    start(settings, false);
-    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
-    EXPECT_FALSE(bake_.status().layered);
-    EXPECT_NE(bake_.status().remark.find("1 lights are baked as one"), std::string::npos)
-        << bake_.status().remark;
-    settings.solver.layers.bytes = 0;
-    settings.solver.method = Method::Directional;
-    start(settings, false);
-    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
-    EXPECT_NE(bake_.status().remark.find("choose hybrid"), std::string::npos) << bake_.status().remark;
-    settings.solver.layers.on = false;
-    start(settings, false);
-    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
-    EXPECT_EQ(bake_.status().remark, "");
-}
-
-TEST_F(LiveBakeTest, TellsWhichLightsShareALayer) {
-    BakeSettings settings = quickSettings();
-    start(settings, false);
-    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Done));
-    EXPECT_TRUE(bake_.status().groups.empty());
-    EXPECT_EQ(groupRemark({}), "");
-    settings.solver.layers.on = true;
-    // This is the memory of three layers or four: direct light and result, a vec4 per patch, and padding of
-    // up to a quarter.
-    settings.solver.layers.bytes = uint64_t{4} * 2 * sizeof(glm::vec4) * bake_.status().patches;
-    for (int i = 0; i < 7; ++i) {
-        edits_.lights.push_back({.name = "Bulb " + std::to_string(i)});
-        edits_.lights.back().transform[3] = glm::vec4(0.1f * static_cast<float>(i), 1.4f, 0.4f, 1.0f);
-    }
-    start(settings);
-    ASSERT_TRUE(untilShown());
-    EXPECT_TRUE(bake_.status().layered);
-    EXPECT_EQ(bake_.status().remark, "");
-    const std::vector<LightGroup> groups = bake_.status().groups;
-    ASSERT_EQ(groups.size(), 1u);
-    EXPECT_EQ(groups[0].source.name, "rest");
-    const LightKey last{LightKey::Kind::Lamp, 6, 0};
-    EXPECT_EQ(groupWith(groups, last), &groups[0]);
-    EXPECT_EQ(groupWith(groups, lightSources(scene_.scene)[0].key), nullptr) << "the first";
-    EXPECT_NE(groupRemark(groups).find(std::to_string(groups[0].members.size()) + " lights"),
-              std::string::npos)
-        << groupRemark(groups);
-    const double before = screen_.mean();
-    const uint64_t bake = newest_;
-    edits_.lights[6].intensity *= 4.0f;
-    start(settings);
-    ASSERT_GT(newest_, bake);
-    ASSERT_TRUE(untilShown());
-    EXPECT_GT(screen_.mean(), 1.001 * before);
-    EXPECT_TRUE(bake_.status().stale.empty());
 }
 
 TEST_F(LiveBakeTest, AnEditNeverLeavesTheRangeBetweenOldAndNew) {

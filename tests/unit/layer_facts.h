@@ -101,6 +101,11 @@ public:
         layer_->penumbra = std::move(parts);
         return *this;
     }
+    LayerFacts& lamp(LightType type) {
+        layer_->cacheKey.kind = LightKey::Kind::Lamp;
+        layer_->cacheKey.light.type = type;
+        return *this;
+    }
     LayerFacts& group() {
         layer_->source.key.kind = LightKey::Kind::Group;
         return *this;

@@ -57,9 +57,14 @@ public:
     /// Returns whether anything new came, and checks that nothing else has.
     bool look(Solver& solver) {
         const LiveLight live = solver.liveLight();
+        missed_.insert(missed_.end(), live.changed.begin(), live.changed.end());
+        if (live.light == nullptr) {
+            EXPECT_FALSE(looked_) << "there was light before";
+            return !live.changed.empty();
+        }
         const std::vector<glm::vec4> now =
             vk::readBuffer<glm::vec4>(testDevice(), *live.light, light_.size());
-        for (const ChunkRange& range : live.changed) {
+        for (const ChunkRange& range : std::exchange(missed_, {})) {
             const size_t first = size_t{range.first} * shader::kChunk, count = range.count * shader::kChunk;
             std::copy_n(now.begin() + static_cast<ptrdiff_t>(first), count,
                         light_.begin() + static_cast<ptrdiff_t>(first));
@@ -97,6 +102,7 @@ public:
 
 private:
     std::vector<glm::vec4> light_;
+    std::vector<ChunkRange> missed_; // while there was no light to look at
     uint64_t version_ = 0;
     bool complete_ = false, looked_ = false;
 };

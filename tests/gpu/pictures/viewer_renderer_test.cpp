@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <cmath>
 #include <thread>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -145,6 +146,26 @@ TEST(ViewerRenderer, MeasuresExposureWithoutWaiting) {
     async.frame.lightmap.ambient *= 2.0f;
     async.settle();
     EXPECT_NEAR(async.renderer.exposure(), waiting.renderer.exposure() - 1.0f, 0.05f);
+}
+
+TEST(ViewerRenderer, ExposesTheFirstLightByItsMean) {
+    Viewer viewer(Metering::Async, grey(0.2f), lightmapOf(0.3f));
+    viewer.frame.settings.exposure.reset();
+    const LightmapTexture lit = viewer.frame.lightmap;
+    viewer.frame.lightmap = {.version = newVersion()}; // no light yet
+    viewer.settle();
+    const float grey = viewer.renderer.exposure();
+    for (const float unit : {1e5f, 1e-3f, 1e2f}) { // day, night and dusk
+        viewer.frame.lightmap = lit;
+        viewer.frame.lightmap.unit = unit;
+        viewer.frame.lightmap.ambient *= unit;
+        viewer.frame.lightmap.version = newVersion();
+        viewer.draw();
+        const float first = viewer.renderer.exposure();
+        viewer.settle();
+        EXPECT_NEAR(first, viewer.renderer.exposure(), 1.0f) << unit;
+        EXPECT_GT(std::abs(viewer.renderer.exposure() - grey), 2.0f) << unit;
+    }
 }
 
 TEST(ViewerRenderer, MultipliesTheLightmapByItsUnit) {

@@ -107,6 +107,20 @@ TEST(LinkSchedule, OfOnePassHybridHasDirectLightAlone) {
     EXPECT_TRUE(directional.hasSolution(after(1, 1)));
 }
 
+TEST(LinkSchedule, NothingIsShownBeforeWhatIsSeenHasLight) {
+    using Stage = LinkState::Stage;
+    LinkState state = after(0, 0);
+    EXPECT_FALSE(LinkSchedule::hasFirstLight(state, true)) << "nothing has begun";
+    for (const Stage stage : {Stage::Direct, Stage::Links}) {
+        state.stage = stage;
+        EXPECT_FALSE(LinkSchedule::hasFirstLight(state, false));
+        EXPECT_TRUE(LinkSchedule::hasFirstLight(state, true));
+    }
+    state.bounce = 1; // all patches have the first one
+    EXPECT_TRUE(LinkSchedule::hasFirstLight(state, false));
+    EXPECT_TRUE(LinkSchedule::hasFirstLight(after(1, 0), false));
+}
+
 TEST(LinkSchedule, BouncesAreCountedOrFollowedUntilTheyHaveConverged) {
     LinkState state = after(1, 0);
     const LinkSchedule converging(kRules);

@@ -127,6 +127,18 @@ TEST(NewLight, OfSeveralTheFirstInOrder) {
               "direct light of 1 to 2+2");
 }
 
+TEST(NewLight, OfADarkLevelTheSunAndTheSkyFirst) {
+    constexpr auto kBulb = LightType::Point, kSun = LightType::Directional;
+    EXPECT_EQ(
+        stepOf(viewerRules(), layersOf(fresh().lamp(kBulb), fresh().lamp(kSun), fresh()), Now().notSeen()),
+        "direct light of 1 to 2+2");
+    EXPECT_EQ(stepOf(viewerRules(), layersOf(fresh().lamp(kBulb), lit(2), fresh()), Now().notSeen()),
+              "direct light of 2 to 2+2");
+    EXPECT_EQ(
+        stepOf(viewerRules(), layersOf(fresh().lamp(kBulb), fresh().lamp(kBulb), lit(2)), Now().notSeen()),
+        "direct light of 0 to 2+2");
+}
+
 TEST(NewLight, ThatIsOffGetsNone) {
     EXPECT_EQ(stepOf(viewerRules(), layersOf(lit(2), lit(2), fresh().switchedOff()), Now().sumShown()),
               "layer 0 to 2+2");
