@@ -167,7 +167,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
         bake_.make(*device_, start);
     const bool glance = bake_.isGlance();
     if (glance) showGlance(start);
-    beginMaps(start.keepLight || glance);
+    beginMaps(start.keepLight ? KeptLight::Whole : glance ? KeptLight::Glance : KeptLight::None);
     bake_.mix(start.mix);
     letGo();
     ready();
@@ -176,7 +176,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
 // Shows the first light of a bake that is not prepared to its end, and prepares the rest of it. onPhase()
 // shows a map that has to wait for its slot.
 void BakeLoop::showGlance(const BakeOrders::Start& start) {
-    beginMaps(false);
+    beginMaps(KeptLight::None);
     bake_.mix(start.mix);
     try {
         const Clock::time_point begun = Clock::now();
@@ -205,7 +205,7 @@ bool BakeLoop::publishGlance() {
 void BakeLoop::goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore) {
     if (texelMoves() != movesBefore) {
         endMaps();
-        beginMaps(true);
+        beginMaps(KeptLight::Whole);
     }
     status_.bake = start.number;
     maps_->edited(start.number);
@@ -236,7 +236,7 @@ void BakeLoop::reloadShaders() {
     const Hearer hearer([this](const char* phase, double done) { onPhase(phase, done); });
     endMaps();
     bake_.makeAgain(*device_);
-    beginMaps(true);
+    beginMaps(KeptLight::Whole);
     ready();
 }
 
@@ -245,14 +245,14 @@ void BakeLoop::reset() {
     begin();
     endMaps();
     bake_.makeSolver();
-    beginMaps(true);
+    beginMaps(KeptLight::Whole);
     ready();
 }
 
-void BakeLoop::beginMaps(bool keepLight) {
+void BakeLoop::beginMaps(KeptLight kept) {
     maps_->begin({.baker = *bake_.baker(),
                   .number = status_.bake,
-                  .keepLight = keepLight,
+                  .kept = kept,
                   .rings = bake_.rings(),
                   .settings = bake_.settings()});
 }

@@ -39,7 +39,7 @@ private:
     void letGo();
     void reloadShaders();
     void reset();
-    void beginMaps(bool keepLight);
+    void beginMaps(KeptLight kept);
     void begin(bool goesOn = false);
     void ready();
     void onPhase(const char* phase, double done = -1.0);

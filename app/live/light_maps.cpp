@@ -4,9 +4,9 @@
 
 namespace relume {
 
-void LightMaps::begin(MapSource source, bool keepLight) {
+void LightMaps::begin(MapSource source, KeptLight kept) {
     next_ = std::move(source);
-    keepLight_ = keepLight;
+    kept_ = kept;
     changed_.clear();
     drawnVersion_ = 0;
     edited_ = drawnCurrent_ = false;
@@ -38,7 +38,8 @@ LightMapStep LightMaps::decide(const LiveLight& live, bool otherOnScreen) const 
                            .complete = live.complete,
                            .newer = live.version != drawnVersion_ || (current_ && !drawnCurrent_),
                            .edited = edited_,
-                           .keepLight = keepLight_,
+                           .bounced = live.bounced,
+                           .kept = kept_,
                            .drawn = light_.publisher != nullptr,
                            .otherOnScreen = otherOnScreen});
 }

@@ -20,8 +20,8 @@ struct MapSource {
 /// in its place. Only the bake thread uses it.
 class LightMaps {
 public:
-    /// Begins with a bake. With keepLight the light before stays until there is a solution with all bounces.
-    void begin(MapSource source, bool keepLight);
+    /// Begins with a bake.
+    void begin(MapSource source, KeptLight kept);
     /// Says that the same bake goes on with another number, as its lights or surfaces were edited.
     void edited(uint64_t number, const PatchSet& patches);
     /// Ends the bake. Its texels stay if they were drawn.
@@ -41,7 +41,7 @@ public:
 
 private:
     MapSource light_, next_; // next_ takes light_'s place once there is a solution
-    bool keepLight_ = false;
+    KeptLight kept_ = KeptLight::None;
     std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
     uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
     bool current_ = false;            // the solver's light is of the newest edit

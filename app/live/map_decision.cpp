@@ -3,8 +3,11 @@
 namespace relume {
 
 LightMapStep decideLightMap(const LightMapState& state) {
-    const bool due = state.newer || state.edited, mayShow = state.complete || !state.keepLight;
-    if (state.solved && due && mayShow) return LightMapStep::Draw;
+    const bool due = state.newer || state.edited;
+    const bool better = state.kept == KeptLight::Whole    ? state.complete
+                        : state.kept == KeptLight::Glance ? state.bounced
+                                                          : true;
+    if (state.solved && due && better) return LightMapStep::Draw;
     return state.otherOnScreen && state.drawn ? LightMapStep::ShowAgain : LightMapStep::None;
 }
 

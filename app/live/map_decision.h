@@ -4,13 +4,21 @@
 
 namespace relume {
 
+/// What of the light on screen stays when a bake begins.
+enum class KeptLight {
+    None,
+    Glance, // until there is light with bounces
+    Whole   // until there is a solution with all of them
+};
+
 /// The state of a bake's light and of what is on screen.
 struct LightMapState {
-    bool solved = false;        // the solver has light to show
-    bool complete = false;      // ... a solution with all bounces
-    bool newer = false;         // ... that was not drawn yet
-    bool edited = false;        // the bake was edited since the newest map, which owes its number
-    bool keepLight = false;     // the light of the bake before stays until there is a complete solution
+    bool solved = false;   // the solver has light to show
+    bool complete = false; // ... a solution with all bounces
+    bool newer = false;    // ... that was not drawn yet
+    bool edited = false;   // the bake was edited since the newest map, which owes its number
+    bool bounced = true;   // ... light with bounces
+    KeptLight kept = KeptLight::None;
     bool drawn = false;         // some light was drawn, of this bake or of the one before
     bool otherOnScreen = false; // the newest map shows another quantity
 };

@@ -32,7 +32,7 @@ MapSource MapPublisher::makeSource() const {
 
 void MapPublisher::begin(const Bake& bake) {
     running_.emplace(Running{bake, BakeInspection(device_, bake.baker, bake.settings.solver)});
-    light_.begin(makeSource(), bake.keepLight);
+    light_.begin(makeSource(), bake.kept);
     inspected_.version = 0;
     probes_.forget();
 }

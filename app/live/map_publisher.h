@@ -26,8 +26,8 @@ public:
     struct Bake {
         Baker& baker;
         uint64_t number = 0;
-        bool keepLight = false; // what is shown stays until there is a solution with all bounces
-        uint32_t rings = 4;     // of texels filled around charts
+        KeptLight kept = KeptLight::None;
+        uint32_t rings = 4; // of texels filled around charts
         const BakeSettings& settings;
     };
     void begin(const Bake& bake);

@@ -36,10 +36,11 @@ void LayerMixer::replaced() {
     allChanged_ = true;
 }
 
-void LayerMixer::showSum(const vk::Buffer& sum, size_t layers) {
+void LayerMixer::showSum(const vk::Buffer& sum, size_t layers, bool whole) {
     sum_ = nullptr; // what is shown changes
     eachChanged(layers);
     sum_ = &sum;
+    sumWhole_ = whole;
 }
 
 void LayerMixer::hideSum(size_t layers) {
@@ -131,9 +132,10 @@ void LayerMixer::mixOne(const Layers& layers, size_t layer) {
 }
 
 bool LayerMixer::isComplete(const Layers& layers) const {
-    return showsSum() || std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
-               return layer->shown() != nullptr || layer->covered || !layer->shines();
-           });
+    if (showsSum()) return sumWhole_;
+    return std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
+        return layer->shown() != nullptr || layer->covered || !layer->shines();
+    });
 }
 
 bool LayerMixer::showsAny(const Layers& layers) const {

@@ -24,8 +24,8 @@ public:
     void replaced();
 
     /// Shows this light in place of so many layers, a result of them all with a vec4 per patch, until
-    /// hideSum(). A new one is shown by the same call.
-    void showSum(const vk::Buffer& sum, size_t layers);
+    /// hideSum(). A new one is shown by the same call. `whole` says that it has the light of all that shine.
+    void showSum(const vk::Buffer& sum, size_t layers, bool whole);
     void hideSum(size_t layers);
     bool showsSum() const { return sum_ != nullptr; }
 
@@ -46,6 +46,8 @@ public:
     bool isComplete(const Layers& layers) const;
     /// Tells whether there is anything to show: without light all would be black.
     bool showsAny(const Layers& layers) const;
+    /// Tells whether any light is shown with bounces.
+    bool showsBounces(const Layers& layers) const;
     /// Returns the composite, vec4 per patch: on the device as it was mixed last, and as it is now.
     const vk::Buffer& composite() const { return composite_; }
     const std::vector<glm::vec4>& light(const Layers& layers);
@@ -56,7 +58,6 @@ private:
     Weights shares(const Layers& layers, std::optional<size_t> without, std::optional<size_t> only) const;
     uint32_t writeWeights(const Weights& list);
     void run(const Weights& list, const vk::Buffer* base, const vk::Buffer& to);
-    bool showsBounces(const Layers& layers) const;
     bool mixFirstLight(const Layers& layers);
     void mix(const Layers& layers);
     void mixOne(const Layers& layers, size_t layer);
@@ -69,6 +70,7 @@ private:
     std::optional<size_t> restOf_;
     vk::Buffer standIn_; // vec4 per patch: light of those that were grouped otherwise before
     const vk::Buffer* sum_ = nullptr;
+    bool sumWhole_ = false;       // sum_ has the light of all that shine
     std::vector<size_t> changed_; // layers since the composite was made
     bool allChanged_ = false;     // all of them, and which ones there are
     size_t lit_ = 0;              // layers with direct light, while that is shown

@@ -277,8 +277,21 @@ bool LayerSchedule::wantsSum(const Layers& layers, bool shown) const {
 
 bool LayerSchedule::canSum(const Layers& layers, bool shown) const {
     return wantsSum(layers, shown) &&
-           std::all_of(layers.begin(), layers.end(),
-                       [](const std::unique_ptr<Layer>& layer) { return !layer->shines() || isLit(*layer); });
+           ((!shown && canBeginWithDaylight(layers)) ||
+            std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
+                return !layer->shines() || isLit(*layer);
+            }));
+}
+
+bool LayerSchedule::canBeginWithDaylight(const Layers& layers) {
+    bool lit = false;
+    for (const std::unique_ptr<Layer>& layer : layers) {
+        if (layer->shown() != nullptr || layer->covered) return false;
+        if (!layer->shines() || !isDaylight(*layer)) continue;
+        if (!isLit(*layer)) return false;
+        lit = true;
+    }
+    return lit;
 }
 
 uint32_t LayerSchedule::sumRounds() const {

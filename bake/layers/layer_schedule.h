@@ -97,7 +97,8 @@ public:
     /// Tells whether the sum of all lights is wanted: what is shown stays until all layers are there. One
     /// layer alone is seen as soon itself, unless it takes more links.
     bool wantsSum(const Layers& layers, bool shown) const;
-    /// Tells whether it can be made, too: all that shines has direct light, made for where objects are.
+    /// Tells whether it can be made, too: all that shines has direct light, made for where objects are. Where
+    /// nothing is shown yet, that of the sun and the sky will do for a first one.
     bool canSum(const Layers& layers, bool shown) const;
     /// Returns the sample passes of links that the sum takes.
     uint32_t sumRounds() const;
@@ -130,6 +131,7 @@ private:
     std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
     std::optional<size_t> nextLayer(const Layers& layers) const;
     std::optional<size_t> directFirst(const Layers& layers, size_t index) const;
+    static bool canBeginWithDaylight(const Layers& layers);
     bool sumComesFirst(const Layers& layers, const ScheduleState& state) const;
 
     ScheduleRules rules_;

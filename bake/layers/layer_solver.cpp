@@ -256,7 +256,7 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
     progress_.passes += lane.looked + gathers;
     progress_.pairs += lane.gathered;
     progress_.cacheBytes = batches_.cache().bytes();
-    if (&layer == sum_.get()) return mixer_.showSum(layer.result, layers().size());
+    if (&layer == sum_.get()) return mixer_.showSum(layer.result, layers().size(), allLit(layers()));
     showLevel(layer);
 }
 
@@ -330,7 +330,11 @@ LiveLight LayerSolver::liveLight() {
     std::vector<ChunkRange> ranges;
     if (mixer_.mixForViewer(layers())) ranges = {{0, kit_.chunkCount()}};
     const vk::Buffer* light = mixer_.showsAny(layers()) ? &mixer_.composite() : nullptr;
-    return {light, mixer_.version(), mixer_.isComplete(layers()), std::move(ranges)};
+    return {.light = light,
+            .version = mixer_.version(),
+            .complete = mixer_.isComplete(layers()),
+            .bounced = mixer_.showsBounces(layers()),
+            .changed = std::move(ranges)};
 }
 
 std::vector<float> LayerSolver::errors() {

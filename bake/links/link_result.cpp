@@ -234,7 +234,10 @@ LiveLight LinkSolver::liveLight() {
     const bool seenLit = !seenOfStage().empty() && !kit_.order.prefersSome();
     const vk::Buffer* light =
         done_ || schedule_.hasFirstLight(state_, seenLit) ? &kit_.buffers.result : nullptr;
-    return {light, live_.version, live_.complete || done_, std::move(changed)};
+    return {.light = light,
+            .version = live_.version,
+            .complete = live_.complete || done_,
+            .changed = std::move(changed)};
 }
 
 // Shows the light that bounces on and, where the bounce under way has been, the light of that one. After a

@@ -50,7 +50,8 @@ LiveLight PairView::look(vk::Commands& commands, const LightBuffers& light, bool
         commands.run();
     }
     complete_ = complete_ || complete;
-    return {&light_, version_, complete_, merged(std::move(changed))};
+    return {
+        .light = &light_, .version = version_, .complete = complete_, .changed = merged(std::move(changed))};
 }
 
 void PairView::startOver() {

@@ -159,6 +159,7 @@ struct LiveLight {
     // True once the light has all bounces, so that it is at most some percent dimmer than the result will be;
     // it stays true. Before, the light is what there is: direct light as it arrives, then bounce by bounce.
     bool complete = false;
+    bool bounced = true;             // the light has bounces, if not all; only layers tell
     std::vector<ChunkRange> changed; // chunks changed since the call before, merged()
 };
 

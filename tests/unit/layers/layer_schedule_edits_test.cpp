@@ -139,6 +139,21 @@ TEST(NewLight, OfADarkLevelTheSunAndTheSkyFirst) {
         "direct light of 0 to 2+2");
 }
 
+TEST(FirstSum, IsOfDaylightAlone) {
+    constexpr auto kBulb = LightType::Point, kSun = LightType::Directional;
+    const LayerSchedule schedule(viewerRules());
+    EXPECT_TRUE(schedule.canSum(layersOf(fresh().lamp(kBulb), lit(2).lamp(kSun), lit(2)), false));
+    EXPECT_FALSE(schedule.canSum(layersOf(fresh().lamp(kBulb), lit(2).lamp(kSun), lit(2)), true))
+        << "the second one is of all lights";
+    EXPECT_FALSE(schedule.canSum(layersOf(fresh().lamp(kBulb), lit(2).lamp(kSun), fresh()), false))
+        << "the sky lacks";
+    EXPECT_FALSE(schedule.canSum(layersOf(fresh().lamp(kBulb), lit(2).lamp(kBulb)), false)) << "no daylight";
+    EXPECT_FALSE(schedule.canSum(
+        layersOf(fresh().lamp(kBulb), fresh().lamp(kBulb), lit(2).lamp(kSun), at(2, 2)), false))
+        << "one layer is shown already";
+    EXPECT_TRUE(schedule.canSum(layersOf(lit(2).lamp(kBulb), lit(2).lamp(kSun)), true));
+}
+
 TEST(NewLight, ThatIsOffGetsNone) {
     EXPECT_EQ(stepOf(viewerRules(), layersOf(lit(2), lit(2), fresh().switchedOff()), Now().sumShown()),
               "layer 0 to 2+2");

@@ -9,7 +9,7 @@
 namespace relume {
 namespace {
 
-constexpr LightMapState kNewLight{.solved = true, .newer = true, .keepLight = true};
+constexpr LightMapState kNewLight{.solved = true, .newer = true, .kept = KeptLight::Whole};
 
 TEST(LightMapDecision, NothingIsDrawnWithoutLight) {
     EXPECT_EQ(decideLightMap({}), LightMapStep::None);
@@ -22,7 +22,16 @@ TEST(LightMapDecision, LightThatIsKeptStaysUntilThereIsASolution) {
     state.complete = true;
     EXPECT_EQ(decideLightMap(state), LightMapStep::Draw);
     state = kNewLight;
-    state.keepLight = false;
+    state.kept = KeptLight::None;
+    EXPECT_EQ(decideLightMap(state), LightMapStep::Draw);
+}
+
+TEST(LightMapDecision, AFirstGlanceStaysUntilThereAreBounces) {
+    LightMapState state = kNewLight;
+    state.kept = KeptLight::Glance;
+    state.bounced = false; // direct light alone, of some lights
+    EXPECT_EQ(decideLightMap(state), LightMapStep::None);
+    state.bounced = true;
     EXPECT_EQ(decideLightMap(state), LightMapStep::Draw);
 }
 
