@@ -3,11 +3,13 @@
 #include "assets/atlas/mask_atlas.h"
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
+#include "assets/model/lightmap_pages.h"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -274,13 +276,18 @@ class Search {
 public:
     Search(std::span<const LayoutChart> charts, uint32_t size, double most, WorkerPool& pool)
         : charts_(charts), size_(size), most_(most), pool_(pool) {}
-    ChartLayout run();
+    /// Returns nothing where the charts do not even fit with one texel for each.
+    std::optional<ChartLayout> run();
+    /// Tells whether they do.
+    bool fitsAtAll() const {
+        return tryAt(std::ldexp(guess(), -kMostHalvings), 1.0, Order::Perimeter).has_value();
+    }
 
 private:
     double guess() const;
     std::optional<ChartLayout> tryAt(double density, double aspect, Order order) const;
     std::optional<ChartLayout> climb(double start, double aspect, Order order, int trials) const;
-    ChartLayout anyThatFits(double start) const;
+    std::optional<ChartLayout> anyThatFits(double start) const;
 
     std::span<const LayoutChart> charts_;
     uint32_t size_;
@@ -336,16 +343,16 @@ std::optional<ChartLayout> Search::climb(double start, double aspect, Order orde
 }
 
 /// Lowers the density until the charts fit, at the least to one texel for each.
-ChartLayout Search::anyThatFits(double start) const {
+std::optional<ChartLayout> Search::anyThatFits(double start) const {
     for (int i = 0; i < kMostHalvings; ++i, start *= 0.5) {
         tellWatch("packing charts");
         if (!tryAt(start, 1.0, Order::Perimeter)) continue;
-        return std::move(*climb(start, 1.0, Order::Perimeter, kManyTrials));
+        return climb(start, 1.0, Order::Perimeter, kManyTrials);
     }
-    throw Error(fmt::format("{} charts do not fit", charts_.size()));
+    return std::nullopt;
 }
 
-ChartLayout Search::run() {
+std::optional<ChartLayout> Search::run() {
     const double start = guess();
     const size_t each = std::max<size_t>(charts_.size() * std::max(1u, size_ / 1024), 1);
     const auto affordable = static_cast<int>(std::min<size_t>(kSearchWork / each, 1000));
@@ -372,11 +379,25 @@ ChartLayout Search::run() {
         const double worth = best && best->aspect == 1.0 && layout && layout->aspect != 1.0 ? kWorth : 1.0;
         if (layout && (!best || layout->density > worth * best->density)) best = std::move(layout);
     }
-    return best ? std::move(*best) : anyThatFits(start);
+    return best ? std::move(best) : anyThatFits(start);
 }
 
 uint32_t texelsPerCell(uint32_t size) {
     return (size + kMostCells - 1) / kMostCells;
+}
+
+// Throws an Error that names a size which fits.
+[[noreturn]] void throwTooMany(std::span<const LayoutChart> charts, uint32_t size, WorkerPool& pool) {
+    std::string mend = "no size does: merge meshes or leave some out";
+    for (uint32_t larger = std::bit_ceil(size + 1); larger <= kMaxPageSize; larger *= 2) {
+        const uint32_t cells = larger / texelsPerCell(larger);
+        if (charts.size() > size_t{cells} * cells) continue;
+        if (!Search(charts, cells, HUGE_VAL, pool).fitsAtAll()) continue;
+        mend = fmt::format("--size {} fits", larger);
+        break;
+    }
+    throw Error(fmt::format("{} charts do not fit a lightmap of {} x {} texels: {}", charts.size(), size,
+                            size, mend));
 }
 
 } // namespace
@@ -404,11 +425,14 @@ glm::dvec2 ChartPlace::texelOf(glm::dvec2 uv) const {
 ChartLayout layOutCharts(std::span<const LayoutChart> charts, const LayoutDesc& desc, WorkerPool& pool) {
     ASSERT(desc.size > 0);
     const uint32_t texel = texelsPerCell(desc.size), cells = desc.size / texel;
-    if (charts.size() > size_t(cells) * cells)
-        throw Error(fmt::format("{} charts do not fit a lightmap of {} x {} texels: use a larger --size",
-                                charts.size(), desc.size, desc.size));
+    if (charts.size() > size_t(cells) * cells) throwTooMany(charts, desc.size, pool);
+    ChartLayout layout;
     const double most = desc.density > 0.0 ? desc.density / texel : HUGE_VAL;
-    ChartLayout layout = charts.empty() ? ChartLayout() : Search(charts, cells, most, pool).run();
+    if (!charts.empty()) {
+        std::optional<ChartLayout> found = Search(charts, cells, most, pool).run();
+        if (!found) throwTooMany(charts, desc.size, pool);
+        layout = std::move(*found);
+    }
     countShortened(charts, {layout.density, layout.aspect, Order::Perimeter, cells, cells}, layout);
     layout.density *= texel;
     layout.texel = texel;
