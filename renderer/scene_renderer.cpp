@@ -24,8 +24,8 @@ constexpr uint32_t kBallProgram = 1u << 28, kSkyProgram = 1u << 29, kLineProgram
                    kVoxelProgram = 1u << 31;
 
 constexpr float kSameExposure = 0.02f; // [EV], 1.4 %: less than one step of 8 bits
-// Where the mean light is so many stops from that of the picture that was measured, as when the first light
-// comes, a picture that is exposed as that one was would be black or white.
+// A picture is black or white where its mean light is so many stops from that of the picture whose exposure
+// it takes, as when the first light comes.
 constexpr float kOtherLight = 2.0f;
 
 // Brings the light of any unit near 1, where the meter's scale has its middle.

@@ -99,7 +99,7 @@ void BakeLoop::compileAhead() {
             const std::lock_guard lock(desk_.mutex);
             return desk_.orders.quit || desk_.orders.start;
         });
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         spdlog::debug("nothing was compiled ahead: {}", error.what());
     }
 }

@@ -20,7 +20,7 @@ struct MapSource {
 /// in its place. Only the bake thread uses it.
 class LightMaps {
 public:
-    /// Begins with a bake.
+    /// Begins with a bake; `kept` says how long the light before stays.
     void begin(MapSource source, KeptLight kept);
     /// Says that the same bake goes on with another number, as its lights or surfaces were edited.
     void edited(uint64_t number, const PatchSet& patches);

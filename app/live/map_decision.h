@@ -4,7 +4,7 @@
 
 namespace relume {
 
-/// What of the light on screen stays when a bake begins.
+/// Says how long the light on screen stays when a bake begins.
 enum class KeptLight {
     None,
     Glance, // until there is light with bounces
@@ -13,14 +13,14 @@ enum class KeptLight {
 
 /// The state of a bake's light and of what is on screen.
 struct LightMapState {
-    bool solved = false;   // the solver has light to show
-    bool complete = false; // ... a solution with all bounces
-    bool newer = false;    // ... that was not drawn yet
-    bool edited = false;   // the bake was edited since the newest map, which owes its number
-    bool bounced = true;   // ... light with bounces
-    KeptLight kept = KeptLight::None;
-    bool drawn = false;         // some light was drawn, of this bake or of the one before
-    bool otherOnScreen = false; // the newest map shows another quantity
+    bool solved = false;              // the solver has light to show
+    bool complete = false;            // ... a solution with all bounces
+    bool newer = false;               // ... that was not drawn yet
+    bool edited = false;              // the bake was edited since the newest map, which owes its number
+    bool bounced = true;              // ... light with bounces
+    KeptLight kept = KeptLight::None; // of the bake before, or of its first glance
+    bool drawn = false;               // some light was drawn, of this bake or of the one before
+    bool otherOnScreen = false;       // the newest map shows another quantity
 };
 /// The next map of light.
 enum class LightMapStep {
