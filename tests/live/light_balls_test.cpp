@@ -38,7 +38,8 @@ protected:
     }
     bool untilDone() {
         return until([&] {
-            return bake_.status().phase == BakeStatus::Phase::Done && bake_.status().bake == newest_;
+            const BakeStatus status = bake_.status();
+            return status.phase == BakeStatus::Phase::Done && status.bake == newest_;
         });
     }
     void start() {

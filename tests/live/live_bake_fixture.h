@@ -49,14 +49,18 @@ protected:
         while (std::chrono::steady_clock::now() < end) {
             if (screen_.update() && onMap_) onMap_();
             if (what()) return true;
-            if (bake_.status().phase == BakeStatus::Phase::Failed && bake_.status().bake == newest_)
-                return false;
+            if (isIn(BakeStatus::Phase::Failed)) return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         return false;
     }
+    /// Tells by one look whether the newest bake is in the phase. Two looks would mix two bakes' statuses.
+    bool isIn(BakeStatus::Phase phase) const {
+        const BakeStatus status = bake_.status();
+        return status.bake == newest_ && status.phase == phase;
+    }
     bool untilPhase(BakeStatus::Phase phase) {
-        return until([&] { return bake_.status().phase == phase && bake_.status().bake == newest_; });
+        return until([&] { return isIn(phase); });
     }
     /// Waits until the newest bake's end is on screen.
     bool untilShown() {

@@ -45,7 +45,7 @@ TEST_F(LiveBakeTest, EndsWithTheMapOfABakeWithoutAWindow) {
         double ms = 1;
         ASSERT_TRUE(until([&] {
             bake_.setBatchMs(ms = ms > 20 ? 1 : 1.3 * ms);
-            return bake_.status().phase == BakeStatus::Phase::Done && bake_.status().bake == newest_;
+            return isIn(BakeStatus::Phase::Done);
         }));
         bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
         ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
@@ -318,7 +318,7 @@ TEST_F(LiveBakeTest, AnotherMethodAndSizeKeepTheOldLightUntilTheirsIsThere) {
 TEST_F(LiveBakeTest, PausesStepsPassesAbortsAndResets) {
     using Phase = BakeStatus::Phase;
     BakeSettings settings = quickSettings();
-    settings.solver.error = software_ ? 0.002 : 0.0002; // so long that all is seen in time
+    settings.solver.error = software_ ? 0.002 : 0.001; // so long that all is seen in time
     start(settings, false);
     bake_.pause();
     ASSERT_TRUE(untilPhase(Phase::Paused));

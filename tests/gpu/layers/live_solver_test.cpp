@@ -83,6 +83,8 @@ public:
         looked_ = true;
         return !live.changed.empty();
     }
+    /// The first pass was aborted: there may be no light to look at once more.
+    void beginAnew() { looked_ = false; }
     bool complete() const { return complete_; }
     /// Returns the mean over patches that are shown, weighted alike.
     double mean(const PatchSet& patches) const { return meanOf(light_, patches); }
@@ -179,11 +181,14 @@ TEST_P(LiveSolver, AnAbortedPassLeavesNoTrace) {
             solver.step();
             if (live) display.look(solver);
             if (solver.passBoundary()) before = solver.light();
-            if (aborted == 15 || random() % 10 != 0 || solver.passBoundary()) continue;
+            // A GPU makes a pass in few steps.
+            const uint32_t every = testDevice().info().software() ? 10 : 2;
+            if (aborted == 15 || random() % every != 0 || solver.passBoundary()) continue;
             solver.abortPass();
             ++aborted;
             EXPECT_TRUE(solver.passBoundary());
             if (!live) continue;
+            if (solver.progress().passes == 0) display.beginAnew();
             display.look(solver);
             EXPECT_EQ(solver.light(), before);
         }
@@ -344,8 +349,10 @@ TEST(LiveLight, WhatIsSeenComesFirst) {
 
 TEST(LiveLight, TheBudgetHoldsFromTheNextStepOn) {
     const Scene scene = generateScene("cornell_geom");
-    for (const BakeDesc& desc : {BakeDesc{.size = 64, .passes = 3},
-                                 BakeDesc{.size = 64, .method = Method::Directional, .samples = 64}}) {
+    // A GPU would make all passes of a small lightmap in a few steps of any length.
+    const uint32_t size = testDevice().info().software() ? 64 : 512;
+    for (const BakeDesc& desc : {BakeDesc{.size = size, .passes = 3},
+                                 BakeDesc{.size = size, .method = Method::Directional, .samples = 64}}) {
         const auto steps = [&](double ms) {
             const auto baker = makeBaker(scene, desc);
             baker->solver().step();
