@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -31,6 +32,8 @@ protected:
 
     std::unique_ptr<ViewerProcess> open(std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), {"--log-actions", "--validate", "--size", "64"});
+        if (std::find(arguments.begin(), arguments.end(), "--error") == arguments.end())
+            arguments.insert(arguments.end(), {"--error", "0.02"}); // so that edits converge soon
         auto viewer = std::make_unique<ViewerProcess>(
             ViewerProcess::Desc{.display = display_->name(), .home = home_.path(""), .arguments = arguments});
         EXPECT_TRUE(viewer->window()) << viewer->output();
