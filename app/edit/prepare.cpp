@@ -31,7 +31,7 @@ uint32_t sizeOf(const Scene& scene, const PrepareDesc& desc) {
     const LightmapPages pages{std::max(asked, 1u)};
     const uint32_t wanted =
         std::max(desc.size, sizeForDensity(area / pages.count, desc.leastDensity, kCovered,
-                                           asked == 0 ? kUsualLimit : kMaxPageSize));
+                                           asked == 0 ? kUsualLimit : kMaxPageSize, desc.stride));
     const uint32_t size = wanted > desc.size && desc.fitting ? desc.fitting(scene, pages, wanted) : wanted;
     spdlog::info("{}: a lightmap of {} x {} texels was chosen for {:.4g} m^2 of surface: room for about "
                  "{:.2g} texels/m{}",

@@ -42,6 +42,7 @@ struct PrepareDesc {
     // [texels/m]: the edge is the least power of two from `size` on that gives it, as far as `fitting` goes,
     // and up to 4096 where pages are 0; 0: the edge is `size`.
     double leastDensity = 0;
+    uint32_t stride = 0; // of edges that are no powers of two and do as well [texels], 0: none do
     // Returns how much of an edge memory allows for a scene of so many pages, `size` at the least.
     std::function<uint32_t(const Scene&, LightmapPages pages, uint32_t edge)> fitting = {};
     Furnishing furnishing = {};

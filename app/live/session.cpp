@@ -55,6 +55,7 @@ void Session::load(const Next& next) {
     desc.choice = choice;
     desc.size = document_.bake.size;
     if (keep) desc.leastDensity = 0; // its size stays
+    desc.stride = kSizeStride;       // the next power of two may take four times as long
     desc.fitting = [&bake = bake_, settings = document_.bake](const Scene& scene, LightmapPages pages,
                                                               uint32_t edge) {
         const std::optional<BakeRoom> room = bake.room();

@@ -441,7 +441,7 @@ UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory) 
     return Unwrapper(scene, desc, memory).run();
 }
 
-uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum) {
+uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum, uint32_t stride) {
     const double least = std::min(kLeastSize, maximum);
     if (area <= 0.0 || density <= 0.0) return static_cast<uint32_t>(least);
     const double edge = density * std::sqrt(area / coverage);
@@ -449,6 +449,7 @@ uint32_t sizeForDensity(double area, double density, double coverage, uint32_t m
     double size = least;
     while (size < edge && size < maximum)
         size *= 2.0;
+    if (stride > 0) size = std::min(size, std::max(least, std::ceil(edge / stride) * stride));
     return static_cast<uint32_t>(std::min(size, double(maximum)));
 }
 

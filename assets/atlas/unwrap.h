@@ -49,8 +49,9 @@ void requireArea(const Scene& scene);
 double surfaceArea(const Scene& scene);
 
 /// Returns the edge of a lightmap, a power of two from 64 on and at most `maximum`, at which surfaces of
-/// `area` [m^2] get `density` [texels/m] when charts cover the share `coverage` of it. Returns the least
-/// where there is no area or density, and `maximum` where these are not finite or coverage is not above 0.
-uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum);
+/// `area` [m^2] get `density` [texels/m] when charts cover the share `coverage` of it. With a `stride` it may
+/// be a multiple of that instead, where one is smaller. Returns the least where there is no area or density,
+/// and `maximum` where these are not finite or coverage is not above 0.
+uint32_t sizeForDensity(double area, double density, double coverage, uint32_t maximum, uint32_t stride = 0);
 
 } // namespace relume

@@ -27,8 +27,12 @@ BakeRoom roomOn(const vk::Device& device) {
 
 uint32_t fittingSize(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room,
                      uint32_t least, uint32_t most) {
+    const auto below = [](uint32_t size) {
+        return size > kSizeStride ? (size - 1) / kSizeStride * kSizeStride : size / 2;
+    };
     BakeSettings smaller = settings;
-    for (smaller.size = std::min(most, Baker::kMaxSize); smaller.size > least; smaller.size /= 2)
+    for (smaller.size = std::min(most, Baker::kMaxSize); smaller.size > least;
+         smaller.size = below(smaller.size))
         if (fits(smaller, scene, room)) return smaller.size;
     return least;
 }

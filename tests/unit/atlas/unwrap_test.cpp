@@ -450,6 +450,10 @@ TEST(Unwrap, SizeForADensity) {
     EXPECT_EQ(sizeForDensity(std::numeric_limits<double>::infinity(), 4, 0.9, 4096), 4096u);
     EXPECT_EQ(sizeForDensity(std::nan(""), 4, 0.9, 4096), 4096u);
     EXPECT_EQ(sizeForDensity(100, 4, 0.5, 32), 32u);
+    EXPECT_EQ(sizeForDensity(65537, 4, 1.0, 4096, 512), 1536u);
+    EXPECT_EQ(sizeForDensity(65537, 4, 1.0, 1200, 512), 1200u);
+    EXPECT_EQ(sizeForDensity(100, 4, 0.25, 4096, 512), 128u) << "the power of two is smaller";
+    EXPECT_EQ(sizeForDensity(1e9, 4, 0.9, 4096, 512), 4096u);
 }
 
 TEST(Unwrap, AbsurdDensityIsAnError) {
