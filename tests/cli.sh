@@ -112,6 +112,7 @@ expectRefusal "error: --ppd: 'nan' is not allowed: give a number from 1 to 1000"
 expectRefusal "error: --error: 'nan' is not allowed: give a number from 0.0001 to 1" bench edits room.glb --error nan
 expectRefusal "error: --msaa: 'abc' is not allowed: choose 0, 2, 4 or 8" bench frames room.glb --msaa abc
 expectRefusal "error: --display: 'x' is not allowed: choose auto, shared or copied" bench frames room.glb --display x
+expectUsageError view room.glb --device 0 --bake-device second # one device bakes
 expectRefusal "error: 'bakee' is no verb and no scene (.glb, .gltf, .obj, .fbx, ...): did you mean 'bake'?" bakee room.glb
 expectUsageError bake room.glb -o room.exr --picture room.jpg
 expectUsageError bake room.glb -o room.exr --tracer nosuchtracer

@@ -30,9 +30,12 @@ struct DisplayHost {
     std::vector<std::array<uint8_t, 16>> deviceUuids; // GL_DEVICE_UUID_EXT
 };
 
+/// As the name of a device: a GPU that is not the one by which OpenGL draws.
+constexpr const char* kSecondGpu = "second";
+
 /// The device that a live bake runs on, and how its maps reach the display.
 struct BakeDeviceDesc {
-    std::string device = {}; // the same as vk::Device::Desc::select
+    std::string device = {}; // the same as vk::Device::Desc::select, or kSecondGpu
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
     DisplayHost host = {};

@@ -4,6 +4,7 @@
 #include "app/live/lightmap_export.h"
 #include "app/live/seen_chunks.h"
 #include "app/live/warm_up.h"
+#include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "shaders/shader_library.h"
 
@@ -74,10 +75,17 @@ void BakeLoop::run() {
 }
 
 void BakeLoop::openDevice() {
-    device_ = std::make_unique<vk::Device>(vk::Device::Desc{
-        .select = desc_.device, .validation = desc_.validation, .chosen = [](const vk::DeviceInfo& info) {
-            if (info.software()) yieldToOthers();
-        }});
+    const bool second = desc_.device == kSecondGpu;
+    if (second && desc_.host.deviceUuids.empty())
+        throw Error("OpenGL does not say by which GPU it draws: choose the one that bakes by its number, as "
+                    "'relume devices' lists it");
+    device_ = std::make_unique<vk::Device>(
+        vk::Device::Desc{.select = second ? "" : desc_.device,
+                         .beside = second ? desc_.host.deviceUuids : std::vector<vk::DeviceUuid>{},
+                         .validation = desc_.validation,
+                         .chosen = [](const vk::DeviceInfo& info) {
+                             if (info.software()) yieldToOthers();
+                         }});
     const BakeRoom room = roomOn(*device_);
     const vk::DeviceInfo& info = device_->info();
     status_.device = fmt::format("{} ({})", info.name, info.driver);

@@ -74,15 +74,18 @@ int worthOf(const DeviceInfo& info) {
 
 } // namespace
 
-const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select,
-                               uint32_t turn) {
+const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select, uint32_t turn,
+                               std::span<const DeviceUuid> beside) {
     if (infos.empty()) throw Error("no Vulkan device: install mesa-vulkan-drivers or the GPU's driver");
     std::vector<const DeviceInfo*> best;
     for (const DeviceInfo& info : infos) {
-        if (!matches(info, select)) continue;
+        const bool taken = std::find(beside.begin(), beside.end(), info.uuid) != beside.end();
+        if (!matches(info, select) || (!beside.empty() && (taken || info.software()))) continue;
         if (!best.empty() && worthOf(info) > worthOf(*best.front())) best.clear();
         if (best.empty() || worthOf(info) == worthOf(*best.front())) best.push_back(&info);
     }
+    if (best.empty() && !beside.empty())
+        throw Error("there is no second GPU to bake on: 'relume devices' lists what there is");
     if (best.empty()) throw Error("device '" + select + "' not found: 'relume devices' lists them");
     const DeviceInfo& found = *best[turn % best.size()];
     if (!found.missing.empty())
@@ -150,7 +153,7 @@ void Device::choose(const Desc& desc) {
         infos.push_back(readDeviceInfo(physical));
         infos.back().index = static_cast<uint32_t>(infos.size() - 1);
     }
-    info_ = chooseDevice(infos, desc.select, desc.turn);
+    info_ = chooseDevice(infos, desc.select, desc.turn, desc.beside);
     physical_ = physicals[info_.index];
 
     const bool accel = info_.rayTracingPipeline || info_.rayQuery;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ struct DeviceInfo {
     std::string name, driver;
     uint32_t apiVersion = 0, driverVersion = 0;
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
-    std::array<uint8_t, VK_UUID_SIZE> uuid{};
+    std::array<uint8_t, VK_UUID_SIZE> uuid{}; // the same in every interface of a driver
     uint64_t deviceMemory = 0; // [bytes], largest device-local heap
     uint64_t freeMemory = 0;   // [bytes], by VK_EXT_memory_budget, else deviceMemory
     std::vector<QueueFamily> queues;
@@ -51,10 +52,12 @@ struct DeviceInfo {
 /// Returns "discrete", "integrated", "virtual", "software" or "other".
 const char* deviceTypeName(VkPhysicalDeviceType type);
 
-/// Returns the one of these devices that Device takes (Device::Desc::select and turn). Throws Error where
-/// there is none, and where it lacks something.
-const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select,
-                               uint32_t turn);
+using DeviceUuid = std::array<uint8_t, VK_UUID_SIZE>;
+
+/// Returns the one of these devices that Device takes (Device::Desc::select, turn and beside). Throws Error
+/// where there is none, and where it lacks something.
+const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::string& select, uint32_t turn,
+                               std::span<const DeviceUuid> beside = {});
 
 /// Returns all Vulkan devices of this machine; the list is empty without a loader or driver.
 std::vector<DeviceInfo> listDevices();
@@ -72,6 +75,8 @@ public:
         // Of several devices that are as good as the best one, the one that has this number among them,
         // counted round and round: each process of a machine takes another one.
         uint32_t turn = 0;
+        // Where there are some, a GPU is taken that is none of these: they have other work.
+        std::vector<DeviceUuid> beside = {};
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
         // Called before the logical device and its pool of threads are made: these threads, and those of a

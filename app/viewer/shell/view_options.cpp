@@ -64,6 +64,13 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_option("--budget", o.budget, "Aim of one batch in milliseconds while the camera is still")
         ->capture_default_str()
         ->check(numberFrom(1.0, 45.0));
+    command
+        .add_option(
+            "--bake-device", o.bakeDevice,
+            fmt::format("Vulkan device that bakes while another one draws: as --device, or '{}' for a "
+                        "GPU that is not the one that draws",
+                        kSecondGpu))
+        ->excludes(command.get_option("--device"));
     addDisplayOption(command, o.display);
     command.add_flag("--no-layers", o.noLayers,
                      "Bake all lights as one: takes less memory, but each edit of a light bakes all anew");
@@ -81,7 +88,7 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
 ViewerDesc resolveViewOptions(const ViewOptions& o) {
     ViewerDesc desc{.scene = o.bake.files.scene,
                     .request = resolveBakeOptions(o.bake),
-                    .device = o.bake.machine.device,
+                    .device = o.bakeDevice.empty() ? o.bake.machine.device : o.bakeDevice,
                     .validation = o.bake.machine.validate,
                     .display = displayModeOf(o.display),
                     .budgetMs = o.budget,

@@ -10,7 +10,7 @@ namespace relume {
 /// The options that the user typed after `relume view`.
 struct ViewOptions {
     BakeOptions bake; // scene, and how its lightmap is made
-    std::string display = "auto", window, camera;
+    std::string display = "auto", bakeDevice, window, camera;
     double budget = 8; // [ms]
     bool watch = true, logActions = false, noLayers = false;
 };

@@ -30,7 +30,7 @@ namespace relume {
 struct ViewerDesc {
     std::string scene; // "": none yet
     BakeRequest request;
-    std::string device; // the same as vk::Device::Desc::select
+    std::string device; // the same as LiveBake::Desc::device
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
     double budgetMs = 8;            // how long a batch should take while the camera is still

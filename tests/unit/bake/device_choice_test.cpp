@@ -37,6 +37,18 @@ TEST(DeviceChoice, ANamedDeviceIsTakenByAll) {
     EXPECT_EQ(vk::chooseDevice(infos, "card", 1).index, 3u); // two have it in their names
 }
 
+TEST(DeviceChoice, ASecondGpuIsNoneOfThoseThatHaveOtherWork) {
+    std::vector<vk::DeviceInfo> infos = machine();
+    for (vk::DeviceInfo& info : infos)
+        info.uuid[0] = static_cast<uint8_t>(info.index + 1);
+    std::vector<vk::DeviceUuid> drawing = {infos[1].uuid};
+    EXPECT_EQ(vk::chooseDevice(infos, "", 0, drawing).index, 3u);
+    drawing.push_back(infos[3].uuid);
+    EXPECT_EQ(vk::chooseDevice(infos, "", 0, drawing).index, 2u);
+    drawing.push_back(infos[2].uuid);
+    EXPECT_THROW(static_cast<void>(vk::chooseDevice(infos, "", 0, drawing)), Error) << "none but the CPU is left";
+}
+
 TEST(DeviceChoice, OneThatLacksSomethingIsTakenLastAndRefused) {
     std::vector<vk::DeviceInfo> infos = machine();
     infos[1].missing = {"shaderInt64"};
