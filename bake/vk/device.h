@@ -35,8 +35,8 @@ struct DeviceInfo {
     uint32_t apiVersion = 0, driverVersion = 0;
     VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
     std::array<uint8_t, VK_UUID_SIZE> uuid{}; // the same in every interface of a driver
-    uint64_t deviceMemory = 0; // [bytes], largest device-local heap
-    uint64_t freeMemory = 0;   // [bytes], by VK_EXT_memory_budget, else deviceMemory
+    uint64_t deviceMemory = 0;                // [bytes], largest device-local heap
+    uint64_t freeMemory = 0;                  // [bytes], by VK_EXT_memory_budget, else deviceMemory
     std::vector<QueueFamily> queues;
     std::vector<std::string> missing; // what Relume needs and this device lacks; empty: usable
     bool rayTracingPipeline = false;
