@@ -46,7 +46,8 @@ TEST(DeviceChoice, ASecondGpuIsNoneOfThoseThatHaveOtherWork) {
     drawing.push_back(infos[3].uuid);
     EXPECT_EQ(vk::chooseDevice(infos, "", 0, drawing).index, 2u);
     drawing.push_back(infos[2].uuid);
-    EXPECT_THROW(static_cast<void>(vk::chooseDevice(infos, "", 0, drawing)), Error) << "none but the CPU is left";
+    EXPECT_THROW(static_cast<void>(vk::chooseDevice(infos, "", 0, drawing)), Error)
+        << "none but the CPU is left";
 }
 
 TEST(DeviceChoice, OneThatLacksSomethingIsTakenLastAndRefused) {
