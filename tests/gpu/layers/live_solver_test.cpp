@@ -182,8 +182,8 @@ TEST_P(LiveSolver, AnAbortedPassLeavesNoTrace) {
             within += solver.passBoundary() ? 0 : 1;
             if (live) display.look(solver);
             if (solver.passBoundary()) before = solver.light();
-            // A GPU makes a pass in few steps.
-            const uint32_t every = testDevice().info().software() ? 10 : 2;
+            // A GPU makes a pass in few steps: the first ones within a pass are all aborted there.
+            const uint32_t every = testDevice().info().software() ? 10 : 1;
             if (aborted == 15 || random() % every != 0 || solver.passBoundary()) continue;
             solver.abortPass();
             ++aborted;
@@ -193,12 +193,13 @@ TEST_P(LiveSolver, AnAbortedPassLeavesNoTrace) {
             display.look(solver);
             EXPECT_EQ(solver.light(), before);
         }
-        // Else it was no test. A GPU may make each pass of a method in one step.
-        EXPECT_GE(aborted, testDevice().info().software() ? 3u : within >= 8 ? 1u : 0u);
         EXPECT_TRUE(sameBytes(mapOf(*baker), straight.map)) << "live: " << live;
         EXPECT_EQ(solver.progress().passes, straight.progress.passes);
         EXPECT_EQ(solver.progress().samples, straight.progress.samples);
         EXPECT_EQ(solver.progress().error, straight.progress.error);
+        if (within == 0 && !testDevice().info().software())
+            GTEST_SKIP() << "this GPU makes each pass in one step: there is nothing to abort";
+        EXPECT_GE(aborted, testDevice().info().software() ? 3u : 1u); // else it was no test
     }
 }
 
