@@ -75,7 +75,7 @@ public:
         // Of several devices that are as good as the best one, the one that has this number among them,
         // counted round and round: each process of a machine takes another one.
         uint32_t turn = 0;
-        // Where there are some, a GPU is taken that is none of these: they have other work.
+        // These GPUs have other work: where there are some, one that is none of them is taken.
         std::vector<DeviceUuid> beside = {};
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
