@@ -232,9 +232,8 @@ LiveLight LinkSolver::liveLight() {
     live_.shown = live_.resolves;
     if (!changed.empty()) ++live_.version;
     const bool seenLit = !seenOfStage().empty() && !kit_.order.prefersSome();
-    const vk::Buffer* light =
-        done_ || schedule_.hasFirstLight(state_, seenLit) ? &kit_.buffers.result : nullptr;
-    return {.light = light,
+    live_.lit = live_.lit || done_ || schedule_.hasFirstLight(state_, seenLit);
+    return {.light = live_.lit ? &kit_.buffers.result : nullptr,
             .version = live_.version,
             .complete = live_.complete || done_,
             .changed = std::move(changed)};
@@ -311,6 +310,7 @@ void LinkSolver::abortPass() {
     state_.stage = Stage::Plan;
     state_.bounce = 0;
     live_.all = true;
+    live_.lit = live_.lit && schedule_.hasFirstLight(state_, false);
     live_.ranges.clear();
 }
 

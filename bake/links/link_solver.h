@@ -117,6 +117,7 @@ private:
         bool all = true;                  // result is behind the light that bounces
         std::vector<ChunkRange> ranges;   // of the unfinished bounce, not in result yet
         uint32_t resolves = 0, shown = 0; // results with a solution; as of the last call
+        bool lit = false; // there was light to look at, which does not go when the camera turns
         bool complete = false, asked = true;
         Clock::time_point looked;            // when the last look began
         double cost = 0;                     // of that look [s]

@@ -320,7 +320,12 @@ TEST(LiveLight, WhatIsSeenComesFirst) {
         solver.liveLight();
         solver.setPriority(seen);
         solver.step();
-        EXPECT_EQ(solver.liveLight().changed, (std::vector<ChunkRange>{{31, 2}}));
+        const LiveLight lit = solver.liveLight();
+        EXPECT_EQ(lit.changed, (std::vector<ChunkRange>{{31, 2}}));
+        EXPECT_NE(lit.light, nullptr);
+        std::fill(seen.begin(), seen.end(), uint8_t{1});
+        solver.setPriority(seen);
+        EXPECT_NE(solver.liveLight().light, nullptr) << "the camera turns to what is not lit yet";
         solver.step();
         EXPECT_EQ(solver.liveLight().changed.front().first, 0u);
     }
