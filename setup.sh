@@ -2,7 +2,7 @@
 # Installs by apt what Relume needs to be built, run and tested. Changes nothing where everything is there already.
 #
 #   ./setup.sh        what a build and the tests need
-#   ./setup.sh --ci   the format checker and git too, which lists what it checks
+#   ./setup.sh --ci   the format checker, git, which lists what it checks, and clang, which builds sanitized tests sooner
 #   ./setup.sh --web  Chromium, Node.js and the npm packages of tests/web too, which open exported levels
 #
 # Debian 12: Mesa comes from bookworm-backports (the stock Mesa 22.3 has no ray tracing); the suite is added to apt's
@@ -176,7 +176,7 @@ installNpmPackages() {
 setUp() {
     case "${1:-}" in
         "") ;;
-        --ci) packages+=(clang-format git) ;;
+        --ci) packages+=(clang-format git clang libclang-rt-dev) ;;
         --web) addWebPackages ;;
         *) usage; exit 2 ;;
     esac

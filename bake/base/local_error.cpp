@@ -10,8 +10,8 @@ namespace {
 struct Scale {
     float leastOctave, binsPerOctave;
 };
-constexpr Scale kLights{shader::kLeastLightOctave, shader::kLightBinsPerOctave};
-constexpr Scale kErrors{shader::kLeastErrorOctave, shader::kErrorBinsPerOctave};
+const Scale kLights{shader::kLeastLightOctave, shader::kLightBinsPerOctave};
+const Scale kErrors{shader::kLeastErrorOctave, shader::kErrorBinsPerOctave};
 
 // Returns the value below which this share of all lies. What is in the first bin is nothing.
 double percentile(std::span<const uint32_t> bins, double share, const Scale& scale) {

@@ -7,7 +7,7 @@ namespace relume {
 void PairWalk::begin(PairPlan plan) {
     plan_ = std::move(plan);
     rows_.begin(plan_.superRows(), seen_);
-    place_.emplace();
+    place_ = Place{};
     nextRow();
 }
 

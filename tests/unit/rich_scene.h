@@ -6,7 +6,7 @@
 namespace relume::test {
 
 inline void useImage(GlbBuilder& b, const nlohmann::json& image) {
-    b.json["images"] = {image};
+    b.json["images"] = nlohmann::json::array({image});
     b.json["textures"] = {{{"source", 0}}};
     b.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
 }

@@ -176,6 +176,7 @@ TEST(LightTree, NoiseOfOnePickIsModest) {
             if (light > 0) square += light * light / chance[e];
             flat += light * light * double(set.polygons.size());
         }
+        if (exact == 0) continue; // it faces away from all of them
         relative += (square / (exact * exact) - 1) / double(list.size());
         uniform += (flat / (exact * exact) - 1) / double(list.size());
     }

@@ -243,7 +243,7 @@ TEST(GltfBadInput, MissingOrBrokenImages) {
         });
     expectWithoutTexture("no_image", "texture 0: has no PNG, JPEG or WebP image", [](GlbBuilder& b) {
         useImage(b, {{"uri", "nowhere.png"}});
-        b.json["textures"] = {json::object()};
+        b.json["textures"] = json::array({json::object()});
     });
 }
 

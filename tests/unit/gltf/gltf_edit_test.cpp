@@ -394,8 +394,8 @@ TEST_F(GltfEdit, AFailureLeavesTheFileAlone) {
          },
          "has cones of"},
     };
-    for (const auto& [edit, expected] : wrong) {
-        const std::string message = messageOf([&] { save(path, edit); });
+    for (const auto& [wrongEdit, expected] : wrong) {
+        const std::string message = messageOf([&edit = wrongEdit, &path] { save(path, edit); });
         EXPECT_NE(message.find(expected), std::string::npos) << message;
         EXPECT_EQ(message.find(path), 0u) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -29,7 +29,7 @@ bool warnsOf(const Scene& scene, const std::string& part) {
 /// Makes the square's scene with one material.
 GlbBuilder painted(const json& material) {
     GlbBuilder b = squareScene();
-    b.json["materials"] = {material};
+    b.json["materials"] = json::array({material});
     b.json["meshes"][0]["primitives"][0]["material"] = 0;
     return b;
 }
@@ -56,7 +56,7 @@ protected:
 
 TEST_F(GltfMaterial, WebpIsReadByItsExtensionAndPlainly) {
     GlbBuilder b = painted(baseTexture());
-    b.json["images"] = {picture(b, test::kTwoPixelsWebp, "image/webp")};
+    b.json["images"] = json::array({picture(b, test::kTwoPixelsWebp, "image/webp")});
     b.json["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}};
     b.json["extensionsRequired"] = b.json["extensionsUsed"] = {"EXT_texture_webp"};
     const Scene byExtension = load(b);
@@ -100,7 +100,7 @@ TEST_F(GltfMaterial, OfSpecularGlossinessTheDiffuseColourIsTheBase) {
                                      {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}},
                                      {"specularFactor", {1, 1, 1}}},
                                     {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}}));
-    b.json["images"] = {picture(b, test::kTwoPixels, "image/png")};
+    b.json["images"] = json::array({picture(b, test::kTwoPixels, "image/png")});
     b.json["textures"] = {{{"source", 0}}};
     b.json["extensionsRequired"] = b.json["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
     const Material material = load(b).materials.at(0);
@@ -149,7 +149,7 @@ TEST_F(GltfMaterial, TransmissionIsTimesTheMeanOfItsTexture) {
     GlbBuilder b = painted(extended("KHR_materials_transmission",
                                     {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}},
                                     {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}}));
-    b.json["images"] = {picture(b, test::kTwoPixels, "image/png")};
+    b.json["images"] = json::array({picture(b, test::kTwoPixels, "image/png")});
     b.json["textures"] = {{{"source", 0}}};
     const Scene scene = load(b);
     EXPECT_EQ(scene.materials.at(0).transmission, 0.5f); // red is 255 and 0
@@ -236,7 +236,7 @@ TEST_F(GltfMaterial, ImagesThatAreMissingOrDamagedLeaveTheFactor) {
              {{{"uri", "data:image/png;base64,"}}, "image 0 '': is missing or empty"},
              {json::object(), "image 0 '': is missing or empty"}}) {
         GlbBuilder b = painted(baseTexture());
-        b.json["images"] = {image};
+        b.json["images"] = json::array({image});
         b.json["textures"] = {{{"source", 0}}};
         const Scene scene = load(b);
         EXPECT_TRUE(warnsOf(scene, problem + ", materials use their factors alone")) << problem;
@@ -245,10 +245,10 @@ TEST_F(GltfMaterial, ImagesThatAreMissingOrDamagedLeaveTheFactor) {
         EXPECT_TRUE(scene.textures.empty());
     }
     GlbBuilder b = painted(baseTexture());
-    b.json["images"] = {picture(b, broken, "image/png")};
+    b.json["images"] = json::array({picture(b, broken, "image/png")});
     b.json["textures"] = {{{"source", 0}}};
     EXPECT_TRUE(warnsOf(load(b), "image 0 '': cannot be decoded"));
-    b.json["textures"] = {json::object()};
+    b.json["textures"] = json::array({json::object()});
     EXPECT_TRUE(warnsOf(load(b), "texture 0: has no PNG, JPEG or WebP image"));
 }
 
@@ -260,7 +260,7 @@ TEST_F(GltfMaterial, MutatedPicturesNeverRefuseAFile) {
         for (uint32_t changes = 1 + random() % 3; changes > 0; --changes)
             bytes[30 + random() % (bytes.size() - 30)] ^= static_cast<uint8_t>(1 + random() % 255);
         GlbBuilder b = painted(baseTexture());
-        b.json["images"] = {picture(b, bytes, "image/webp")};
+        b.json["images"] = json::array({picture(b, bytes, "image/webp")});
         b.json["textures"] = {{{"source", 0}}};
         const Scene scene = load(b);
         EXPECT_EQ(scene.textures.empty(), warnsOf(scene, "cannot be decoded"));
