@@ -305,7 +305,7 @@ void Baker::makeCovers() {
                   .tracer = *tracer_,
                   .patches = patches_,
                   .onBatch = [this](double) { onPhase("validity", 1.0); }},
-                 patchesIn(own, coveredPatches(patches_)));
+                 patchesIn(own, coveredPatches(patches_, device_.workers())));
     shareChunks(ranks(), dealt, patches_.covers);
     uploadCovers();
 }

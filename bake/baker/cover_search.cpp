@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "assets/base/clock.h"
-#include "assets/base/worker_pool.h"
+#include "assets/base/portions.h"
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
 #include "bake/surface/patch_cover.h"
@@ -25,6 +25,8 @@ constexpr uint32_t kPlaces = shader::kCoverEdge * shader::kCoverEdge;
 static_assert(kRimPlaces <= kPlaces && kPlaces <= kTargetsPerWord);
 // A place nearer to the patch's own point than this share of the texel is seen without asking.
 constexpr float kHere = 1e-3f;
+// A thread takes so many patches at a time where little is done to each.
+constexpr size_t kLongPortion = size_t{1} << 15;
 
 uint32_t mostCoverChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostCoverChunksOfSoftware : kMostCoverChunks);
@@ -50,37 +52,35 @@ public:
     // are.
     std::vector<uint32_t> seen(std::span<const uint32_t> which, uint32_t places,
                                const std::function<glm::vec2(uint32_t)>& placeOf) {
-        std::vector<uint32_t> result;
-        result.reserve(which.size());
+        std::vector<uint32_t> result(which.size(), 0);
         for (size_t begin = 0; begin < which.size();) {
             if (search_.onBatch)
                 search_.onBatch(static_cast<double>(begin) / static_cast<double>(which.size()));
             const auto wanted = static_cast<uint32_t>(
                 std::clamp(rate_.wanted(kCoverBatchMs), 1.0, static_cast<double>(most_)));
             const uint32_t first = which[begin] / kChunk;
-            size_t end = begin;
-            while (end < which.size() && which[end] / kChunk < first + wanted)
-                ++end;
-            const uint32_t count = which[end - 1] / kChunk - first + 1;
+            const auto rest = which.subspan(begin);
+            const auto beyond = std::partition_point(
+                rest.begin(), rest.end(), [&](uint32_t patch) { return patch / kChunk < first + wanted; });
+            const auto batch = rest.first(static_cast<size_t>(beyond - rest.begin()));
+            const uint32_t count = batch.back() / kChunk - first + 1;
             const auto start = Clock::now();
-            ask(which.subspan(begin, end - begin), {first, count}, places, placeOf);
-            for (size_t i = begin; i < end; ++i)
-                result.push_back(bits_.as<uint32_t>()[which[i] - first * kChunk]);
+            ask(batch, {first, count}, places, placeOf, &result[begin]);
             rate_.note(count, kCoverBatchMs, secondsSince(start));
-            begin = end;
+            begin += batch.size();
         }
         return result;
     }
 
 private:
+    // Sets the bits of what each of these patches sees; none is set before.
     void ask(std::span<const uint32_t> which, ChunkRange range, uint32_t places,
-             const std::function<glm::vec2(uint32_t)>& placeOf) {
+             const std::function<glm::vec2(uint32_t)>& placeOf, uint32_t* seen) {
         auto* const targets = targets_.as<glm::vec4>();
         WorkerPool& pool = search_.device.workers();
         const size_t perChunk = size_t{places} * kChunk;
         pool.run(range.count,
                  [&](uint32_t chunk) { std::fill_n(targets + chunk * perChunk, perChunk, glm::vec4(0.0f)); });
-        std::vector<uint32_t> here(which.size(), 0); // bits that need no ray, of each patch
         const auto aim = [&](size_t index) {
             const uint32_t patch = which[index];
             const shader::Patch& p = search_.patches.scene.patches[patch];
@@ -90,15 +90,15 @@ private:
             for (uint32_t k = 0; k < places; ++k) {
                 const glm::vec3 way = shader::coverWay(cover, placeOf(k));
                 if (glm::length(way) <= near)
-                    here[index] |= 1u << k;
+                    seen[index] |= 1u << k; // needs no ray
                 else
                     targets[chunk * perChunk + size_t{k} * kChunk + patch % kChunk] =
                         glm::vec4(p.position + way + p.offset * p.normal, 1.0f);
             }
         };
         constexpr size_t kPortion = 512; // patches that a thread looks at, at a time
-        pool.run(static_cast<uint32_t>((which.size() + kPortion - 1) / kPortion), [&](uint32_t portion) {
-            for (size_t i = portion * kPortion; i < std::min(which.size(), (portion + 1) * kPortion); ++i)
+        runPortions(pool, which.size(), kPortion, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
                 aim(i);
         });
         const bool records = search_.tracer.records();
@@ -113,8 +113,11 @@ private:
             vk::hostBarrier(cmd);
             commands_.run();
         }
-        for (size_t i = 0; i < which.size(); ++i)
-            bits_.as<uint32_t>()[which[i] - range.first * kChunk] |= here[i];
+        const auto* const bits = bits_.as<uint32_t>();
+        runPortions(pool, which.size(), kLongPortion, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                seen[i] |= bits[which[i] - range.first * kChunk];
+        });
     }
 
     const CoverSearch& search_;
@@ -126,38 +129,51 @@ private:
 
 } // namespace
 
-std::vector<uint32_t> coveredPatches(const PatchSet& patches) {
-    std::vector<uint32_t> which;
-    which.reserve(patches.coverCells.size());
-    for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
-        if (patches.coverCells[i] != 0) which.push_back(i);
-    return which;
+std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool) {
+    return numbersWhere(pool, patches.coverCells.size(),
+                        [&](size_t patch) { return patches.coverCells[patch] != 0; });
 }
 
 std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which) {
     if (which.empty()) return {};
+    WorkerPool& pool = search.device.workers();
     std::vector<shader::PatchCover>& covers = search.patches.covers;
-    std::vector<uint32_t> before, whole, parts;
-    before.reserve(which.size());
-    whole.reserve(which.size());
-    for (const uint32_t patch : which) {
-        before.push_back(covers[patch].cells);
-        covers[patch].cells = search.patches.coverCells[patch];
-        ((covers[patch].cells & kCoverWhole) != 0 ? whole : parts).push_back(patch);
-    }
+    // Numbers count in `which` here.
+    const auto patchesAt = [&](const std::vector<uint32_t>& numbers) {
+        std::vector<uint32_t> patches(numbers.size());
+        runPortions(pool, numbers.size(), kLongPortion, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                patches[i] = which[numbers[i]];
+        });
+        return patches;
+    };
+    std::vector<uint32_t> before(which.size());
+    std::vector<uint8_t> asks(which.size()); // for each cell by itself
+    runPortions(pool, which.size(), kLongPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            uint32_t& cells = covers[which[i]].cells;
+            before[i] = cells;
+            cells = search.patches.coverCells[which[i]];
+            asks[i] = (cells & kCoverWhole) == 0;
+        }
+    });
     CoverBatches batches(search);
     // As a rule nothing stands in a texel whose whole rim is seen.
-    const std::vector<uint32_t> rims = batches.seen(whole, kRimPlaces, rimPlace);
-    for (size_t i = 0; i < whole.size(); ++i)
-        if (std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces}) parts.push_back(whole[i]);
-    std::sort(parts.begin(), parts.end());
+    const std::vector<uint32_t> whole = numbersWhere(pool, which.size(), [&](size_t i) { return !asks[i]; });
+    const std::vector<uint32_t> rims = batches.seen(patchesAt(whole), kRimPlaces, rimPlace);
+    runPortions(pool, whole.size(), kLongPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            asks[whole[i]] = std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces};
+    });
+    const std::vector<uint32_t> parts =
+        patchesAt(numbersWhere(pool, which.size(), [&](size_t i) { return asks[i]; }));
     const std::vector<uint32_t> cells = batches.seen(parts, kPlaces, shader::cellPlace);
-    for (size_t i = 0; i < parts.size(); ++i)
-        covers[parts[i]].cells &= cells[i] & kCoverCells;
-    std::vector<uint32_t> others;
-    for (size_t i = 0; i < which.size(); ++i)
-        if (covers[which[i]].cells != before[i]) others.push_back(which[i]);
-    return others;
+    runPortions(pool, parts.size(), kLongPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            covers[parts[i]].cells &= cells[i] & kCoverCells;
+    });
+    return patchesAt(
+        numbersWhere(pool, which.size(), [&](size_t i) { return covers[which[i]].cells != before[i]; }));
 }
 
 uint64_t coverSearchBytes(uint32_t chunks, bool software) {

@@ -18,7 +18,7 @@ struct CoverSearch {
 };
 
 /// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.
-std::vector<uint32_t> coveredPatches(const PatchSet& patches);
+std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool);
 
 /// Takes those cells away from the covers of these patches (ascending) that their own point does not see: a
 /// wall stands in front of them, or they lie inside something. The covers begin with what the surface has.

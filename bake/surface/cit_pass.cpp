@@ -1,10 +1,12 @@
 #include "bake/surface/cit_pass.h"
 
+#include "assets/base/portions.h"
 #include "bake/base/shader_types.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <map>
 #include <utility>
@@ -110,11 +112,12 @@ std::vector<vk::Image2D> makeTargets(const vk::Device& device, const std::vector
     return images;
 }
 
-// Copies an image in TRANSFER_SRC_OPTIMAL to the host and returns one row of values per texel row.
+// Copies an image in TRANSFER_SRC_OPTIMAL to the host: one row of values per texel row, for which there is
+// room. All threads copy: one core alone takes longer than the drawing.
 template<typename T>
-std::vector<T> readImage(const vk::Buffer& staging, vk::Commands& commands, const vk::Image2D& image,
-                         const TexelWindow& window) {
-    ASSERT(window.size() * sizeof(T) <= staging.size());
+void readImage(const vk::Buffer& staging, vk::Commands& commands, const vk::Image2D& image,
+               const TexelWindow& window, WorkerPool& pool, std::vector<T>& values) {
+    ASSERT(window.size() == values.size() && window.size() * sizeof(T) <= staging.size());
     VkCommandBuffer cmd = commands.begin();
     const VkBufferImageCopy region{
         .bufferOffset = 0,
@@ -127,8 +130,10 @@ std::vector<T> readImage(const vk::Buffer& staging, vk::Commands& commands, cons
                            &region);
     vk::hostBarrier(cmd);
     commands.run();
-    const T* values = staging.as<T>();
-    return std::vector<T>(values, values + window.size());
+    const T* from = staging.as<T>();
+    constexpr size_t kPortion = size_t{1} << 17; // values that a thread copies at a time
+    runPortions(pool, values.size(), kPortion,
+                [&](size_t begin, size_t end) { std::copy(from + begin, from + end, &values[begin]); });
 }
 
 } // namespace
@@ -243,11 +248,17 @@ TextureGroup CitPass::draw(const Scene& scene, const WorldMesh& mesh, const CitD
     const vk::Buffer staging(device, {.size = window.size() * sizeof(glm::vec4),
                                       .memory = vk::Memory::Host,
                                       .name = "texture group readback"});
-    group.pos = readImage<glm::vec4>(staging, commands, images[0], window);
-    group.nrm = readImage<glm::vec4>(staging, commands, images[1], window);
-    group.mat = readImage<glm::vec4>(staging, commands, images[2], window);
-    group.emission = readImage<glm::vec4>(staging, commands, images[3], window);
-    group.triangle = readImage<uint32_t>(staging, commands, images[4], window);
+    WorkerPool& pool = device.workers();
+    const std::array<std::vector<glm::vec4>*, 4> planes{&group.pos, &group.nrm, &group.mat, &group.emission};
+    pool.run(static_cast<uint32_t>(planes.size() + 1), [&](uint32_t plane) {
+        if (plane < planes.size())
+            planes[plane]->resize(window.size());
+        else
+            group.triangle.resize(window.size());
+    });
+    for (size_t i = 0; i < planes.size(); ++i)
+        readImage(staging, commands, images[i], window, pool, *planes[i]);
+    readImage(staging, commands, images[planes.size()], window, pool, group.triangle);
     return group;
 }
 

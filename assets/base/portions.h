@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "assets/base/worker_pool.h"
+
+namespace relume {
+
+/// Calls work(begin, end) for 0..count - 1 in portions of `portion` numbers, on all threads of the pool.
+template<typename Work>
+void runPortions(WorkerPool& pool, size_t count, size_t portion, const Work& work) {
+    pool.run(static_cast<uint32_t>((count + portion - 1) / portion), [&](uint32_t number) {
+        const size_t begin = number * portion;
+        work(begin, std::min(count, begin + portion));
+    });
+}
+
+/// Returns those of 0..count - 1 that takes(number) is true of, ascending; all threads of the pool ask.
+template<typename Takes>
+std::vector<uint32_t> numbersWhere(WorkerPool& pool, size_t count, const Takes& takes) {
+    constexpr size_t kPortion = size_t{1} << 16;
+    std::vector<std::vector<uint32_t>> found((count + kPortion - 1) / kPortion);
+    runPortions(pool, count, kPortion, [&](size_t begin, size_t end) {
+        std::vector<uint32_t>& own = found[begin / kPortion];
+        for (size_t i = begin; i < end; ++i)
+            if (takes(i)) own.push_back(static_cast<uint32_t>(i));
+    });
+    std::vector<size_t> place; // of what each portion found
+    size_t total = 0;
+    for (const std::vector<uint32_t>& own : found) {
+        place.push_back(total);
+        total += own.size();
+    }
+    std::vector<uint32_t> all(total);
+    pool.run(static_cast<uint32_t>(found.size()), [&](uint32_t number) {
+        std::copy(found[number].begin(), found[number].end(),
+                  all.begin() + static_cast<ptrdiff_t>(place[number]));
+    });
+    return all;
+}
+
+} // namespace relume
