@@ -40,6 +40,16 @@ struct RetracePush {
     uint silent;   // 1: of patches that send nothing, too
 };
 
+// Makes segments to places in texels, for patches that ask whether their own points see these.
+struct PlacesPush {
+    ADDRESS patches; // Patch[]
+    ADDRESS covers;  // PatchCover[]
+    ADDRESS asks;    // uvec2[chunkCount], a bit for each patch
+    ADDRESS targets; // vec4[chunkCount][places][64], written: as SegmentPush has them
+    ADDRESS here;    // uint[chunkCount][64], written: bits of the places that need no segment
+    uint firstChunk;
+    uint places; // kRimPlaces: the rim's; else the cells' middles
+};
 // Follows base colours of materials that have changed.
 struct RecolourPush {
     ADDRESS materials;  // uint[patchCount]

@@ -21,10 +21,12 @@ void runPortions(WorkerPool& pool, size_t count, size_t portion, const Work& wor
 /// Returns those of 0..count - 1 that takes(number) is true of, ascending; all threads of the pool ask.
 template<typename Takes>
 std::vector<uint32_t> numbersWhere(WorkerPool& pool, size_t count, const Takes& takes) {
-    constexpr size_t kPortion = size_t{1} << 16;
-    std::vector<std::vector<uint32_t>> found((count + kPortion - 1) / kPortion);
-    runPortions(pool, count, kPortion, [&](size_t begin, size_t end) {
-        std::vector<uint32_t>& own = found[begin / kPortion];
+    constexpr size_t kLeast = size_t{1} << 10, kMost = size_t{1} << 16; // of a portion
+    constexpr size_t kOfThread = 4;                                     // portions, for an even end
+    const size_t portion = std::clamp(count / (kOfThread * pool.size()), kLeast, kMost);
+    std::vector<std::vector<uint32_t>> found((count + portion - 1) / portion);
+    runPortions(pool, count, portion, [&](size_t begin, size_t end) {
+        std::vector<uint32_t>& own = found[begin / portion];
         for (size_t i = begin; i < end; ++i)
             if (takes(i)) own.push_back(static_cast<uint32_t>(i));
     });

@@ -301,25 +301,28 @@ void Baker::makeCovers() {
     if (!startsAllOver(settings_.solver) || patches_.covers.empty() || light_->covers) return;
     const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
     const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
+    vk::Buffer covers = makeDeviceCovers();
     searchCovers({.device = device_,
                   .tracer = *tracer_,
                   .patches = patches_,
+                  .devicePatches = &light_->patches,
+                  .deviceCovers = &covers,
                   .onBatch = [this](double) { onPhase("validity", 1.0); }},
                  patchesIn(own, coveredPatches(patches_, device_.workers())));
     shareChunks(ranks(), dealt, patches_.covers);
-    uploadCovers();
+    vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
+    light_->covers = std::move(covers);
 }
 
-void Baker::uploadCovers() {
-    if (!startsAllOver(settings_.solver) || patches_.covers.empty()) return;
+vk::Buffer Baker::makeDeviceCovers() const {
     const vk::MemoryOwner owner("surface");
-    light_->covers = vk::makeBuffer(device_, patches_.covers, "covers");
+    return vk::makeBuffer(device_, patches_.covers, "covers");
 }
 
 // Finds the patches inside something, once, before the first pass.
 void Baker::findInvalid(Carry* carry) {
     if (carry) {
-        uploadCovers();
+        if (startsAllOver(settings_.solver) && !patches_.covers.empty()) light_->covers = makeDeviceCovers();
         onPhase("validity");
         const FormerBake& former = carry->former;
         carry->move = mover_->takeOver(

@@ -130,7 +130,7 @@ private:
     void findInvalid(Carry* carry);
     void searchInside();
     void makeCovers();
-    void uploadCovers();
+    vk::Buffer makeDeviceCovers() const;
     std::optional<ObjectMove> moveObjects(const LightmapAtlas* atlas);
     bool repaint(const BakeEdits& edits, const std::vector<uint8_t>& materials);
     void updateMaterials();

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "assets/base/clock.h"
+#include "assets/base/error.h"
 #include "assets/base/portions.h"
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
-#include "bake/surface/patch_cover.h"
+#include "bake/base/retrace_types.h"
 #include "bake/vk/commands.h"
+#include "bake/vk/program.h"
 
 namespace relume {
 namespace {
@@ -16,15 +19,20 @@ namespace {
 using shader::kChunk;
 using shader::kCoverCells;
 using shader::kCoverWhole;
+using shader::kRimPlaces;
 
 // The aim of one submit [ms]; a wish to stop waits for as long.
 constexpr double kCoverBatchMs = 20.0;
 // A batch has at most so many chunks, whose targets are 4 MiB, on a GPU, which fewer would not fill, 64 MiB.
 constexpr uint32_t kMostCoverChunks = 4096, kMostCoverChunksOfSoftware = 256;
 constexpr uint32_t kPlaces = shader::kCoverEdge * shader::kCoverEdge;
-static_assert(kRimPlaces <= kPlaces && kPlaces <= kTargetsPerWord);
-// A place nearer to the patch's own point than this share of the texel is seen without asking.
-constexpr float kHere = 1e-3f;
+static_assert(kRimPlaces < kPlaces && kPlaces <= kTargetsPerWord);
+
+// What is asked for of a texel: its rim, or the middles of its cells.
+enum class Places { Rim, Cells };
+constexpr uint32_t countOf(Places places) {
+    return places == Places::Rim ? kRimPlaces : kPlaces;
+}
 // A thread takes so many patches at a time where little is done to each.
 constexpr size_t kLongPortion = size_t{1} << 15;
 
@@ -32,26 +40,28 @@ uint32_t mostCoverChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostCoverChunksOfSoftware : kMostCoverChunks);
 }
 
-// Asks which places of texels the patches' own points see.
+// Asks which places of texels the patches' own points see. Segments to them are made where they are traced.
 class CoverBatches {
 public:
     explicit CoverBatches(const CoverSearch& search)
-        : search_(search),
+        : search_(search), records_(search.tracer.records()),
           most_(mostCoverChunks(search.patches.chunkCount(), search.device.info().software())),
           commands_(search.device),
           targets_(search.device, {.size = uint64_t{most_} * kPlaces * kChunk * sizeof(glm::vec4),
-                                   .memory = vk::Memory::Host,
+                                   .memory = records_ ? vk::Memory::Device : vk::Memory::Host,
                                    .name = "places in texels"}),
-          bits_(search.device, {.size = uint64_t{most_} * kChunk * sizeof(uint32_t),
-                                .memory = vk::Memory::Host,
-                                .name = "seen places"}),
+          bits_(hostWords(uint64_t{most_} * kChunk, "seen places")),
           rays_(search.device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}),
-          rate_(!search.device.info().software()) {}
+          rate_(!search.device.info().software()) {
+        if (!records_) return;
+        ASSERT(search.devicePatches && search.deviceCovers);
+        program_.emplace(search.device, "places");
+        asks_ = hostWords(uint64_t{most_} * 2, "patches that ask");
+        here_ = hostWords(uint64_t{most_} * kChunk, "places near by");
+    }
 
-    // Returns a bit for each of the places that these patches (ascending) see; `placeOf` tells where they
-    // are.
-    std::vector<uint32_t> seen(std::span<const uint32_t> which, uint32_t places,
-                               const std::function<glm::vec2(uint32_t)>& placeOf) {
+    // Returns a bit for each of the places that these patches (ascending) see.
+    std::vector<uint32_t> seen(std::span<const uint32_t> which, Places places) {
         std::vector<uint32_t> result(which.size(), 0);
         for (size_t begin = 0; begin < which.size();) {
             if (search_.onBatch)
@@ -65,7 +75,7 @@ public:
             const auto batch = rest.first(static_cast<size_t>(beyond - rest.begin()));
             const uint32_t count = batch.back() / kChunk - first + 1;
             const auto start = Clock::now();
-            ask(batch, {first, count}, places, placeOf, &result[begin]);
+            ask(batch, {first, count}, places, &result[begin]);
             rate_.note(count, kCoverBatchMs, secondsSince(start));
             begin += batch.size();
         }
@@ -73,57 +83,90 @@ public:
     }
 
 private:
-    // Sets the bits of what each of these patches sees; none is set before.
-    void ask(std::span<const uint32_t> which, ChunkRange range, uint32_t places,
-             const std::function<glm::vec2(uint32_t)>& placeOf, uint32_t* seen) {
-        auto* const targets = targets_.as<glm::vec4>();
-        WorkerPool& pool = search_.device.workers();
-        const size_t perChunk = size_t{places} * kChunk;
-        pool.run(range.count,
-                 [&](uint32_t chunk) { std::fill_n(targets + chunk * perChunk, perChunk, glm::vec4(0.0f)); });
-        const auto aim = [&](size_t index) {
-            const uint32_t patch = which[index];
-            const shader::Patch& p = search_.patches.scene.patches[patch];
-            const shader::PatchCover& cover = search_.patches.covers[patch];
-            const float near = kHere * (glm::length(cover.du) + glm::length(cover.dv));
-            const size_t chunk = patch / kChunk - range.first;
-            for (uint32_t k = 0; k < places; ++k) {
-                const glm::vec3 way = shader::coverWay(cover, placeOf(k));
-                if (glm::length(way) <= near)
-                    seen[index] |= 1u << k; // needs no ray
-                else
-                    targets[chunk * perChunk + size_t{k} * kChunk + patch % kChunk] =
-                        glm::vec4(p.position + way + p.offset * p.normal, 1.0f);
-            }
-        };
-        constexpr size_t kPortion = 512; // patches that a thread looks at, at a time
-        runPortions(pool, which.size(), kPortion, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i)
-                aim(i);
-        });
-        const bool records = search_.tracer.records();
-        VkCommandBuffer cmd = records ? commands_.begin() : VK_NULL_HANDLE;
-        search_.tracer.segments(cmd, {.firstChunk = range.first,
-                                      .chunkCount = range.count,
-                                      .targetCount = places,
-                                      .targets = &targets_,
-                                      .bits = &bits_,
-                                      .rays = &rays_});
-        if (records) {
+    vk::Buffer hostWords(uint64_t count, const char* name) const {
+        return {search_.device, {.size = count * sizeof(uint32_t), .memory = vk::Memory::Host, .name = name}};
+    }
+
+    // Writes the bits of what each of these patches sees.
+    void ask(std::span<const uint32_t> which, ChunkRange range, Places places, uint32_t* seen) {
+        const SegmentWork work{.firstChunk = range.first,
+                               .chunkCount = range.count,
+                               .targetCount = countOf(places),
+                               .targets = &targets_,
+                               .bits = &bits_,
+                               .rays = &rays_};
+        if (records_) {
+            VkCommandBuffer cmd = commands_.begin();
+            recordTargets(cmd, which, range, places);
+            vk::barrier(cmd);
+            search_.tracer.segments(cmd, work);
             vk::hostBarrier(cmd);
             commands_.run();
+        } else {
+            makeTargets(which, range, places, seen);
+            search_.tracer.segments(VK_NULL_HANDLE, work);
         }
-        const auto* const bits = bits_.as<uint32_t>();
-        runPortions(pool, which.size(), kLongPortion, [&](size_t begin, size_t end) {
-            for (size_t i = begin; i < end; ++i)
-                seen[i] |= bits[which[i] - range.first * kChunk];
+        const auto *const bits = bits_.as<uint32_t>(), *const here =
+                                                           records_ ? here_.as<uint32_t>() : nullptr;
+        runPortions(workers(), which.size(), kLongPortion, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const size_t at = which[i] - size_t{range.first} * kChunk;
+                seen[i] = bits[at] | (here ? here[at] : seen[i]);
+            }
         });
     }
 
+    void recordTargets(VkCommandBuffer cmd, std::span<const uint32_t> which, ChunkRange range,
+                       Places places) {
+        auto* const asks = asks_.as<uint32_t>();
+        std::fill_n(asks, size_t{range.count} * 2, 0u);
+        for (const uint32_t patch : which) {
+            const uint32_t at = patch - range.first * kChunk;
+            asks[at / 32] |= 1u << at % 32;
+        }
+        const shader::PlacesPush push{.patches = search_.devicePatches->address(),
+                                      .covers = search_.deviceCovers->address(),
+                                      .asks = asks_.address(),
+                                      .targets = targets_.address(),
+                                      .here = here_.address(),
+                                      .firstChunk = range.first,
+                                      .places = countOf(places)};
+        program_->dispatch(cmd, push, range.count);
+    }
+
+    // Does what shaders/surface/places.comp does; the bits of places that need no segment go to `here`.
+    void makeTargets(std::span<const uint32_t> which, ChunkRange range, Places places, uint32_t* here) {
+        auto* const targets = targets_.as<glm::vec4>();
+        const uint32_t count = countOf(places);
+        const size_t perChunk = size_t{count} * kChunk;
+        workers().run(range.count, [&](uint32_t chunk) {
+            std::fill_n(targets + chunk * perChunk, perChunk, glm::vec4(0.0f));
+        });
+        constexpr size_t kPortion = 512; // patches that a thread looks at, at a time
+        runPortions(workers(), which.size(), kPortion, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const uint32_t patch = which[i];
+                const size_t chunk = patch / kChunk - range.first;
+                here[i] = 0;
+                for (uint32_t k = 0; k < count; ++k) {
+                    const glm::vec4 target = shader::placeTarget(
+                        search_.patches.scene.patches[patch], search_.patches.covers[patch],
+                        places == Places::Rim ? shader::rimPlace(k) : shader::cellPlace(k));
+                    targets[chunk * perChunk + size_t{k} * kChunk + patch % kChunk] = target;
+                    if (target.w == 0.0f) here[i] |= 1u << k;
+                }
+            }
+        });
+    }
+
+    WorkerPool& workers() const { return search_.device.workers(); }
+
     const CoverSearch& search_;
+    bool records_; // segments are made and traced on the device
     uint32_t most_;
     vk::Commands commands_;
-    vk::Buffer targets_, bits_, rays_;
+    std::optional<vk::ComputeProgram> program_;
+    vk::Buffer targets_, bits_, rays_, asks_, here_;
     BatchRate rate_;
 };
 
@@ -160,14 +203,14 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
     CoverBatches batches(search);
     // As a rule nothing stands in a texel whose whole rim is seen.
     const std::vector<uint32_t> whole = numbersWhere(pool, which.size(), [&](size_t i) { return !asks[i]; });
-    const std::vector<uint32_t> rims = batches.seen(patchesAt(whole), kRimPlaces, rimPlace);
+    const std::vector<uint32_t> rims = batches.seen(patchesAt(whole), Places::Rim);
     runPortions(pool, whole.size(), kLongPortion, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             asks[whole[i]] = std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces};
     });
     const std::vector<uint32_t> parts =
         patchesAt(numbersWhere(pool, which.size(), [&](size_t i) { return asks[i]; }));
-    const std::vector<uint32_t> cells = batches.seen(parts, kPlaces, shader::cellPlace);
+    const std::vector<uint32_t> cells = batches.seen(parts, Places::Cells);
     runPortions(pool, parts.size(), kLongPortion, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             covers[parts[i]].cells &= cells[i] & kCoverCells;
@@ -178,8 +221,8 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
 
 uint64_t coverSearchBytes(uint32_t chunks, bool software) {
     return uint64_t{mostCoverChunks(chunks, software)} * kChunk *
-               (kPlaces * sizeof(glm::vec4) + sizeof(uint32_t)) +
-           shader::kRayCounters * sizeof(uint32_t);
+               (kPlaces * sizeof(glm::vec4) + 2 * sizeof(uint32_t)) +
+           mostCoverChunks(chunks, software) * sizeof(glm::uvec2) + shader::kRayCounters * sizeof(uint32_t);
 }
 
 } // namespace relume

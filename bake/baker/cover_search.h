@@ -14,7 +14,10 @@ struct CoverSearch {
     const vk::Device& device;
     Tracer& tracer;
     PatchSet& patches;
-    std::function<void(double done)> onBatch; // before each batch; what it throws ends the search
+    // The patches and their covers on the device, whose cells play no part: for tracers that record.
+    const vk::Buffer* devicePatches = nullptr;
+    const vk::Buffer* deviceCovers = nullptr;
+    std::function<void(double done)> onBatch = {}; // before each batch; what it throws ends the search
 };
 
 /// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.

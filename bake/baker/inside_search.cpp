@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "assets/base/clock.h"
-#include "assets/base/worker_pool.h"
+#include "assets/base/portions.h"
 #include "bake/base/batch_rate.h"
 #include "bake/vk/commands.h"
 
@@ -118,7 +118,9 @@ public:
 
     void run(uint32_t first, uint32_t count, std::vector<uint32_t>& inside) {
         first_ = first;
-        met_.assign(size_t{count} * kChunk, MetBits{});
+        met_.resize(size_t{count} * kChunk);
+        runPortions(workers(), met_.size(), kPatchesAtATime,
+                    [&](size_t begin, size_t end) { std::fill_n(&met_[begin], end - begin, MetBits{}); });
         followChunks({{first, count}}, 0);
         if (search_.tracer.records()) {
             std::vector<ChunkRange> left = {{first, count}};
@@ -128,33 +130,50 @@ public:
                 followChunks(left, done);
             }
         } else {
-            std::vector<uint32_t> left;
-            for (uint32_t i = 0; i < met_.size(); ++i)
-                if (isOpen(first * kChunk + i)) left.push_back(first * kChunk + i);
+            std::vector<uint32_t> left = patchesWhere([&](uint32_t patch) { return isOpen(patch); });
             for (uint32_t done = kStep; done < kInsideDirections && !left.empty(); done += kStep) {
                 steps_.followPatches(search_.patches, left, done, met_.data(), first * kChunk);
                 std::erase_if(left, [&](uint32_t patch) { return !isOpen(patch); });
             }
         }
-        for (uint32_t i = 0; i < met_.size(); ++i)
-            if (isPatch(first * kChunk + i) && insideBy(met_[i]) == Inside::Yes)
-                inside.push_back(first * kChunk + i);
+        const std::vector<uint32_t> found = patchesWhere(
+            [&](uint32_t patch) { return isPatch(patch) && insideBy(metBy(patch)) == Inside::Yes; });
+        inside.insert(inside.end(), found.begin(), found.end());
         if (search_.met) std::copy(met_.begin(), met_.end(), search_.met->begin() + first * kChunk);
     }
 
 private:
+    // A thread takes so many at a time.
+    static constexpr size_t kPatchesAtATime = size_t{1} << 16;
+
+    WorkerPool& workers() const { return search_.device.workers(); }
+    const MetBits& metBy(uint32_t patch) const { return met_[patch - first_ * kChunk]; }
+    // Returns the batch's patches that `takes` is true of, ascending.
+    template<typename Takes>
+    std::vector<uint32_t> patchesWhere(const Takes& takes) const {
+        const auto begin = first_ * kChunk;
+        std::vector<uint32_t> found = numbersWhere(
+            workers(), met_.size(), [&](size_t i) { return takes(begin + static_cast<uint32_t>(i)); });
+        for (uint32_t& patch : found)
+            patch += begin;
+        return found;
+    }
+
     bool isPatch(uint32_t patch) const { return patch < search_.patches.count; }
-    bool isOpen(uint32_t patch) const {
-        return isPatch(patch) && insideBy(met_[patch - first_ * kChunk]) == Inside::Unknown;
+    bool isOpen(uint32_t patch) const { return isPatch(patch) && insideBy(metBy(patch)) == Inside::Unknown; }
+
+    static std::vector<uint32_t> chunksOf(const std::vector<ChunkRange>& ranges) {
+        std::vector<uint32_t> chunks;
+        for (const ChunkRange& range : ranges)
+            for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk)
+                chunks.push_back(chunk);
+        return chunks;
     }
 
     void followChunks(const std::vector<ChunkRange>& ranges, uint32_t firstDirection) {
-        std::vector<uint32_t> chunks; // of the batch, in the order of their links
-        for (const ChunkRange& range : ranges)
-            for (uint32_t chunk = 0; chunk < range.count; ++chunk)
-                chunks.push_back(range.first - first_ + chunk);
+        const std::vector<uint32_t> chunks = chunksOf(ranges); // in the order of their links
         steps_.follow(ranges, firstDirection, [&](uint32_t k, const uint32_t* links) {
-            MetBits* met = &met_[size_t{chunks[k]} * kChunk];
+            MetBits* met = &met_[size_t{chunks[k] - first_} * kChunk];
             for (uint32_t step = 0; step < kStep; ++step)
                 for (uint32_t i = 0; i < kChunk; ++i)
                     met[i].note(firstDirection + step, links[step * kChunk + i]);
@@ -164,18 +183,21 @@ private:
     /// Returns those of these chunks that have patches of which it is not known whether they lie inside
     /// something.
     std::vector<ChunkRange> undecided(const std::vector<ChunkRange>& ranges) const {
+        const std::vector<uint32_t> chunks = chunksOf(ranges);
+        const std::vector<uint32_t> open = numbersWhere(workers(), chunks.size(), [&](size_t k) {
+            const uint32_t begin = chunks[k] * kChunk;
+            for (uint32_t patch = begin; patch < begin + kChunk; ++patch)
+                if (isOpen(patch)) return true;
+            return false;
+        });
         std::vector<ChunkRange> left;
-        for (const ChunkRange& range : ranges)
-            for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
-                bool open = false;
-                for (uint32_t i = chunk * kChunk; i < (chunk + 1) * kChunk && !open; ++i)
-                    open = isOpen(i);
-                if (!open) continue;
-                if (!left.empty() && chunk - left.back().first - left.back().count <= kMostGap)
-                    left.back().count = chunk + 1 - left.back().first;
-                else
-                    left.push_back({chunk, 1});
-            }
+        for (const uint32_t k : open) {
+            const uint32_t chunk = chunks[k];
+            if (!left.empty() && chunk - left.back().first - left.back().count <= kMostGap)
+                left.back().count = chunk + 1 - left.back().first;
+            else
+                left.push_back({chunk, 1});
+        }
         return left;
     }
 

@@ -278,6 +278,7 @@ std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move
 void ObjectMover::upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const {
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, slots);
     vk::uploadElements(on_.device, on_.light.edges, on_.patches.edges, slots);
+    if (on_.light.covers) vk::uploadElements(on_.device, on_.light.covers, on_.patches.covers, slots);
     std::vector<uint32_t> chunks;
     for (uint32_t chunk = 0; chunk < on_.patches.chunkCount(); ++chunk)
         if (move.changes(chunk)) chunks.push_back(chunk);
@@ -384,8 +385,12 @@ void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots,
     std::vector<uint32_t> which;
     for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
         if (patches.coverCells[i] != 0 && (move.has(i) || near(i))) which.push_back(i);
-    const std::vector<uint32_t> others =
-        searchCovers({.device = on_.device, .tracer = tracer, .patches = patches, .onBatch = {}}, which);
+    const std::vector<uint32_t> others = searchCovers({.device = on_.device,
+                                                       .tracer = tracer,
+                                                       .patches = patches,
+                                                       .devicePatches = &on_.light.patches,
+                                                       .deviceCovers = &on_.light.covers},
+                                                      which);
     for (const uint32_t i : others)
         move.change(i);
     vk::uploadElements(on_.device, on_.light.covers, patches.covers, merged(slots, others));

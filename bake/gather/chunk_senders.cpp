@@ -1,14 +1,19 @@
 #include "bake/gather/chunk_senders.h"
 
+#include "assets/base/portions.h"
+
 #include <algorithm>
 #include <numeric>
 
 namespace relume {
 
-ChunkSenders::ChunkSenders(std::span<const shader::Patch> patches)
+ChunkSenders::ChunkSenders(WorkerPool& pool, std::span<const shader::Patch> patches)
     : senders_(patches.size() / shader::kChunk, 0), full_(senders_.size(), 0) {
-    for (uint32_t chunk = 0; chunk < senders_.size(); ++chunk)
-        count(patches, chunk);
+    constexpr size_t kPortion = 512; // chunks
+    runPortions(pool, senders_.size(), kPortion, [&](size_t begin, size_t end) {
+        for (size_t chunk = begin; chunk < end; ++chunk)
+            count(patches, static_cast<uint32_t>(chunk));
+    });
 }
 
 void ChunkSenders::update(std::span<const shader::Patch> patches, const std::vector<glm::uvec2>& changed) {

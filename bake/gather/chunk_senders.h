@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "assets/base/worker_pool.h"
 #include "bake/base/chunk_order.h"
 #include "bake/base/shader_types.h"
 
@@ -12,8 +13,8 @@ namespace relume {
 /// Counts the patches of each chunk that send light.
 class ChunkSenders {
 public:
-    /// Takes patches of whole chunks.
-    explicit ChunkSenders(std::span<const shader::Patch> patches);
+    /// Takes patches of whole chunks. All threads count.
+    ChunkSenders(WorkerPool& pool, std::span<const shader::Patch> patches);
     /// Counts anew in chunks of which a patch has changed: one entry per chunk, a bit for each patch.
     void update(std::span<const shader::Patch> patches, const std::vector<glm::uvec2>& changed);
     uint64_t count(ChunkRange range) const;

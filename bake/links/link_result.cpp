@@ -113,10 +113,11 @@ const std::vector<glm::vec4>& LinkSolver::light() {
         resolve();
         state_ = before;
     }
+    const size_t count = kit_.input.patches.scene.patches.size();
+    if (light_.empty() && state_.rounds() == 0) light_.assign(count, glm::vec4(0.0f));
     if (light_.empty()) {
         kit_.rankChunks.share({kit_.buffers.result, kChunk * sizeof(glm::vec4)});
-        light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result,
-                                           kit_.input.patches.scene.patches.size());
+        light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result, count);
     }
     return light_;
 }

@@ -94,9 +94,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
                       .chunks = ownChunks(kit_.rankChunks, coarse_.count > 0),
                       .oneRound = true}),
-      errors_(kit_), senders_(receiversOf(input, coarse_)), schedule_(rules()), disc_(makeDisc()),
-      radiancePass_(input.device), directRounds_(kit_.chunkCount()), linkRounds_(senders_.chunks()),
-      directRate_(kit_.wide()) {
+      errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
+      disc_(makeDisc()), radiancePass_(input.device), directRounds_(kit_.chunkCount()),
+      linkRounds_(senders_.chunks()), directRate_(kit_.wide()) {
     ASSERT(input.ranks.alone() || !settings.live);
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -114,7 +114,6 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
         if (*buffer) vkCmdFillBuffer(cmd, buffer->handle(), 0, VK_WHOLE_SIZE, 0);
     }
     kit_.run(cmd);
-    light_.assign(patches.scene.patches.size(), glm::vec4(0.0f));
     if (settings.live && !buffers.rows)
         undo_ = vk::Buffer(input.device, {.size = buffers.linkSums.size(), .name = "sums before the round"});
     progress_.cacheBytes = batches_.cache().bytes();

@@ -15,6 +15,7 @@ using shader::kCoverCells;
 using shader::kCoverEdge;
 using shader::kCoverWhole;
 using shader::kNoPatch;
+using shader::kRimPlaces;
 
 constexpr uint32_t kCells = kCoverEdge * kCoverEdge;
 constexpr uint32_t kBandRows = 8; // that a thread works on at a time
@@ -237,7 +238,7 @@ private:
         for (uint32_t cell = 0; cell < kCells; ++cell)
             if ((c.cells >> cell & 1u) == 0 && goesOn(shader::cellPlace(cell))) c.cells |= 1u << cell;
         for (uint32_t i = 0; i < kRimPlaces; ++i)
-            if ((rims_[patch] >> i & 1u) == 0 && goesOn(rimPlace(i)))
+            if ((rims_[patch] >> i & 1u) == 0 && goesOn(shader::rimPlace(i)))
                 rims_[patch] |= static_cast<uint16_t>(1u << i);
     }
 
@@ -280,11 +281,6 @@ float chunkReach(const PatchSet& set, uint32_t chunk) {
     for (size_t i = size_t{chunk} * shader::kChunk; i < size_t{chunk + 1} * shader::kChunk; ++i)
         reach = std::max(reach, coverReach(set.covers[i]));
     return reach;
-}
-
-glm::vec2 rimPlace(uint32_t index) {
-    const uint32_t place = index < kRimPlaces / 2 ? index : index + 1; // all of 3 x 3 but the middle
-    return 0.5f * glm::vec2(static_cast<float>(place % 3), static_cast<float>(place / 3));
 }
 
 } // namespace relume

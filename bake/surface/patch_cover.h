@@ -24,8 +24,4 @@ float coverReach(const shader::PatchCover& cover);
 /// Returns PatchSet::reach of a chunk.
 float chunkReach(const PatchSet& set, uint32_t chunk);
 
-/// The places in the texel that tell whether a point may lie anywhere in it: corners and middles of edges.
-constexpr uint32_t kRimPlaces = 8;
-glm::vec2 rimPlace(uint32_t index);
-
 } // namespace relume

@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -123,10 +124,8 @@ private:
             if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
                 largest[chart] = t;
         }
-        for (uint32_t id : group_.triangle) {
-            if (id == 0 || m.chart[id - 1] == kNoChart) continue;
-            texels[m.chart[id - 1]] += texelArea_[id - 1];
-        }
+        for (const std::vector<double>& share : texelAreas())
+            std::transform(share.begin(), share.end(), texels.begin(), texels.begin(), std::plus<>());
         areaScale_.assign(m.chartCount, 1.0f);
         thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
         for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
@@ -140,6 +139,31 @@ private:
                         {largest[chart], static_cast<float>(area[chart])});
             }
         }
+    }
+
+    // Returns the area of each chart's texels, summed up over each portion of the window by itself: portions
+    // follow from its size alone, and so does every rounding.
+    std::vector<std::vector<double>> texelAreas() const {
+        const WorldMesh& m = set_.scene.mesh;
+        const size_t portion = portionOf(group_.triangle.size());
+        std::vector<std::vector<double>> shares((group_.triangle.size() + portion - 1) / portion);
+        runWatched(pool_, kPatchesPhase, static_cast<uint32_t>(shares.size()), [&](uint32_t number) {
+            std::vector<double>& share = shares[number];
+            share.assign(m.chartCount, 0.0);
+            const size_t end = std::min(group_.triangle.size(), (number + 1) * portion);
+            for (size_t texel = number * portion; texel < end; ++texel) {
+                const uint32_t id = group_.triangle[texel];
+                if (id != 0 && m.chart[id - 1] != kNoChart) share[m.chart[id - 1]] += texelArea_[id - 1];
+            }
+        });
+        return shares;
+    }
+
+    // Returns how many texels or patches a thread takes at a time that sums them up by charts: there are few
+    // portions, as each has an array over charts.
+    static size_t portionOf(size_t count) {
+        constexpr size_t kLeast = size_t{1} << 18, kMostPortions = 64;
+        return std::max(kLeast, (count + kMostPortions - 1) / kMostPortions);
     }
 
     // Counts the window's tiles along a row.
@@ -251,14 +275,30 @@ private:
 
     // Finds the patch in the middle of each chart's, which stands for triangles that have none nearby.
     void findMiddles() {
-        std::vector<uint32_t> counts(set_.scene.mesh.chartCount, 0), seen(counts);
-        middles_.assign(counts.size(), kNoPatch);
-        for (const uint32_t chart : set_.scene.patchChart)
-            if (chart != kNoChart) ++counts[chart];
-        for (uint32_t i = 0; i < set_.scene.patchChart.size(); ++i) {
-            const uint32_t chart = set_.scene.patchChart[i];
-            if (chart != kNoChart && seen[chart]++ == counts[chart] / 2) middles_[chart] = i;
-        }
+        const std::vector<uint32_t>& charts = set_.scene.patchChart;
+        const size_t chartCount = set_.scene.mesh.chartCount, portion = portionOf(charts.size());
+        const auto portions = static_cast<uint32_t>((charts.size() + portion - 1) / portion);
+        // Calls work(patch, chart) for the patches of a portion that have a chart.
+        const auto overPortion = [&](uint32_t number, const auto& work) {
+            const size_t end = std::min(charts.size(), (number + 1) * portion);
+            for (size_t i = number * portion; i < end; ++i)
+                if (charts[i] != kNoChart) work(static_cast<uint32_t>(i), charts[i]);
+        };
+        std::vector<std::vector<uint32_t>> seen(portions); // of each chart: in the portion, then before it
+        runWatched(pool_, kPatchesPhase, portions, [&](uint32_t number) {
+            seen[number].assign(chartCount, 0);
+            overPortion(number, [&](uint32_t, uint32_t chart) { ++seen[number][chart]; });
+        });
+        std::vector<uint32_t> counts(chartCount, 0);
+        for (std::vector<uint32_t>& own : seen)
+            for (size_t chart = 0; chart < chartCount; ++chart)
+                counts[chart] += std::exchange(own[chart], counts[chart]);
+        middles_.assign(chartCount, kNoPatch);
+        runWatched(pool_, kPatchesPhase, portions, [&](uint32_t number) {
+            overPortion(number, [&](uint32_t patch, uint32_t chart) {
+                if (seen[number][chart]++ == counts[chart] / 2) middles_[chart] = patch;
+            });
+        });
     }
 
     NewPatch texelPatch(glm::uvec2 texel, uint32_t triangle) const {

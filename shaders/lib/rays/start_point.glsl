@@ -33,6 +33,22 @@ FUNCTION vec3 coverWay(PatchCover c, vec2 place) {
     return (place.x - float(c.place & 0xffffu) * kUnit) * c.du + (place.y - float(c.place >> 16) * kUnit) * c.dv;
 }
 
+// The places that tell whether a point may lie anywhere in a texel: corners and middles of edges.
+CONST uint kRimPlaces = 8u;
+FUNCTION vec2 rimPlace(uint index) {
+    uint place = index < kRimPlaces / 2u ? index : index + 1u; // all of 3 x 3 but the middle
+    return 0.5f * vec2(float(place % 3u), float(place / 3u));
+}
+
+// Returns where a segment ends [m] by which patch p asks whether its own point sees a place in the texel; w = 1, or 0
+// where the place is so near to that point that there is nothing to ask.
+FUNCTION vec4 placeTarget(Patch p, PatchCover c, vec2 place) {
+    const float kHere = 1e-3f; // of the texel
+    vec3 way = coverWay(c, place);
+    if (length(way) <= kHere * (length(c.du) + length(c.dv))) return vec4(0.0f);
+    return vec4(p.position + way + p.offset * p.normal, 1.0f);
+}
+
 // Returns the point that sample `number` of patch p starts from [m], on the patch's plane.
 FUNCTION vec3 startPoint(Patch p, PatchCover c, uint number) {
     if (c.cells == 0u) return p.position;

@@ -82,7 +82,7 @@ Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
     vk::MemoryLedger& ledger = testDevice().ledger();
     const uint64_t before = ledger.bytes();
     Taken taken;
-    uint64_t base = before;
+    uint64_t base = before, surfaceBefore = ledger.bytesOf("surface");
     std::string phase;
     ledger.resetPeak();
     const auto next = [&](const char* name) {
@@ -90,9 +90,15 @@ Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
         taken.all = std::max(taken.all, ledger.peak() - before);
         if (phase == "cit") taken.cit = most;
         const bool searched = phase == "tracer" || phase == "validity";
-        if (searched) taken.inside = std::max(taken.inside, most - ledger.bytesOf("trace"));
+        if (searched) { // covers are made then, too, which are the surface's
+            const uint64_t others = ledger.bytesOf("trace") + ledger.bytesOf("surface") - surfaceBefore;
+            taken.inside = std::max(taken.inside, most - std::min(most, others));
+        }
         if (std::string(name) == "solver set-up") taken.surface = ledger.bytesOf("surface");
-        if (phase != name && std::string(name) != "validity") base = ledger.bytes();
+        if (phase != name && std::string(name) != "validity") {
+            base = ledger.bytes();
+            surfaceBefore = ledger.bytesOf("surface");
+        }
         phase = name;
         ledger.resetPeak();
     };
