@@ -106,8 +106,8 @@ private:
             makeTargets(which, range, places, seen);
             search_.tracer.segments(VK_NULL_HANDLE, work);
         }
-        const auto *const bits = bits_.as<uint32_t>(), *const here =
-                                                           records_ ? here_.as<uint32_t>() : nullptr;
+        const auto* const bits = bits_.as<uint32_t>();
+        const auto* const here = records_ ? here_.as<uint32_t>() : nullptr;
         runPortions(workers(), which.size(), kLongPortion, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 const size_t at = which[i] - size_t{range.first} * kChunk;
