@@ -28,7 +28,7 @@ constexpr uint32_t kMostCoverChunks = 4096, kMostCoverChunksOfSoftware = 256;
 constexpr uint32_t kPlaces = shader::kCoverEdge * shader::kCoverEdge;
 static_assert(kRimPlaces < kPlaces && kPlaces <= kTargetsPerWord);
 
-// What is asked for of a texel: its rim, or the middles of its cells.
+// A texel is asked for places on its rim, or for the middles of its cells.
 enum class Places { Rim, Cells };
 constexpr uint32_t countOf(Places places) {
     return places == Places::Rim ? kRimPlaces : kPlaces;

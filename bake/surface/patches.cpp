@@ -124,8 +124,11 @@ private:
             if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
                 largest[chart] = t;
         }
-        for (const std::vector<double>& share : texelAreas())
-            std::transform(share.begin(), share.end(), texels.begin(), texels.begin(), std::plus<>());
+        // In the texels' order: a window then sums up a chart as the whole lightmap does, to the bit.
+        for (uint32_t id : group_.triangle) {
+            if (id == 0 || m.chart[id - 1] == kNoChart) continue;
+            texels[m.chart[id - 1]] += texelArea_[id - 1];
+        }
         areaScale_.assign(m.chartCount, 1.0f);
         thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
         for (uint32_t chart = 0; chart < m.chartCount; ++chart) {
@@ -139,31 +142,6 @@ private:
                         {largest[chart], static_cast<float>(area[chart])});
             }
         }
-    }
-
-    // Returns the area of each chart's texels, summed up over each portion of the window by itself: portions
-    // follow from its size alone, and so does every rounding.
-    std::vector<std::vector<double>> texelAreas() const {
-        const WorldMesh& m = set_.scene.mesh;
-        const size_t portion = portionOf(group_.triangle.size());
-        std::vector<std::vector<double>> shares((group_.triangle.size() + portion - 1) / portion);
-        runWatched(pool_, kPatchesPhase, static_cast<uint32_t>(shares.size()), [&](uint32_t number) {
-            std::vector<double>& share = shares[number];
-            share.assign(m.chartCount, 0.0);
-            const size_t end = std::min(group_.triangle.size(), (number + 1) * portion);
-            for (size_t texel = number * portion; texel < end; ++texel) {
-                const uint32_t id = group_.triangle[texel];
-                if (id != 0 && m.chart[id - 1] != kNoChart) share[m.chart[id - 1]] += texelArea_[id - 1];
-            }
-        });
-        return shares;
-    }
-
-    // Returns how many texels or patches a thread takes at a time that sums them up by charts: there are few
-    // portions, as each has an array over charts.
-    static size_t portionOf(size_t count) {
-        constexpr size_t kLeast = size_t{1} << 18, kMostPortions = 64;
-        return std::max(kLeast, (count + kMostPortions - 1) / kMostPortions);
     }
 
     // Counts the window's tiles along a row.
@@ -276,7 +254,10 @@ private:
     // Finds the patch in the middle of each chart's, which stands for triangles that have none nearby.
     void findMiddles() {
         const std::vector<uint32_t>& charts = set_.scene.patchChart;
-        const size_t chartCount = set_.scene.mesh.chartCount, portion = portionOf(charts.size());
+        const size_t chartCount = set_.scene.mesh.chartCount;
+        // There are few portions, as each has an array over charts.
+        constexpr size_t kLeast = size_t{1} << 18, kMostPortions = 64;
+        const size_t portion = std::max(kLeast, (charts.size() + kMostPortions - 1) / kMostPortions);
         const auto portions = static_cast<uint32_t>((charts.size() + portion - 1) / portion);
         // Calls work(patch, chart) for the patches of a portion that have a chart.
         const auto overPortion = [&](uint32_t number, const auto& work) {
