@@ -38,6 +38,10 @@ constexpr std::string_view kSettled = "settled: ";
     else
         setenv("DISPLAY", desc.display.c_str(), 1);
     unsetenv("WAYLAND_DISPLAY");
+    // The viewer gets a home of its own, but finds the shaders that Mesa compiled for others: they take it a
+    // second.
+    if (const char* home = std::getenv("HOME"))
+        setenv("MESA_SHADER_CACHE_DIR", (std::string(home) + "/.cache").c_str(), 0);
     setenv("HOME", desc.home.c_str(), 1);
     setenv("XDG_CONFIG_HOME", (desc.home + "/config").c_str(), 1);
     std::vector<char*> argv{const_cast<char*>(RELUME_BINARY)};

@@ -152,7 +152,17 @@ TEST_F(RankBake, OneProcessSpeaksAndWrites) {
     EXPECT_EQ(timesIn(result.err, "tracer: "), 1u) << result.err;
 }
 
-TEST_F(RankBake, AnErrorIsToldOnce) {
+/// Processes that fail: mpirun does not wait for a second before it kills those that have ended anyway.
+class RankError : public RankBake {
+protected:
+    RankError() { setenv(kPatience, "0", 1); }
+    ~RankError() override { unsetenv(kPatience); }
+
+private:
+    static constexpr const char* kPatience = "OMPI_MCA_odls_base_sigkill_timeout";
+};
+
+TEST_F(RankError, IsToldOnce) {
     const ProcessResult missing = mpirun(3, {"bake", "missing.glb", "-o", folder_.path("map.exr")});
     EXPECT_EQ(missing.status, 1) << missing.err;
     EXPECT_EQ(timesIn(missing.err, "error: "), 1u) << missing.err;
@@ -162,7 +172,7 @@ TEST_F(RankBake, AnErrorIsToldOnce) {
 }
 
 // Only the first process writes, so only it finds this out.
-TEST_F(RankBake, AnErrorOfOneProcessEndsAll) {
+TEST_F(RankError, OfOneProcessEndsAll) {
     const std::string file = folder_.path("no folder/map.exr");
     const ProcessResult result = mpirun(3, {"bake", RELUME_SOURCE_DIR "/assets/scenes/" + scene_, "-o", file,
                                             "--size", "32", "--samples", "16"});
@@ -171,7 +181,7 @@ TEST_F(RankBake, AnErrorOfOneProcessEndsAll) {
     EXPECT_TRUE(contains(result.err, "no folder")) << result.err;
 }
 
-TEST_F(RankBake, WhatProcessesCannotShareIsRefusedOnce) {
+TEST_F(RankError, IsToldOnceWhereProcessesCannotShare) {
     for (const RankWords& options :
          {RankWords{"--method", "pure"}, RankWords{"--layers"}, RankWords{"--indirect-scale", "2"}}) {
         const ProcessResult result = mpirun(2, bake("map.exr", options));
