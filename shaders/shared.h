@@ -304,7 +304,7 @@ struct SegmentPush {
     ADDRESS covers;  // as of ClosestPush
     uint firstChunk;
     uint targetCount;
-    uint round, turn, run; // which sample a target is: startNumber (lib/rays/start_point.glsl)
+    uint samplePass, turn, run; // which sample a target is: startNumber (lib/rays/start_point.glsl)
 };
 struct TransposePush {
     ADDRESS supers;

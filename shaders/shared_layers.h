@@ -3,7 +3,7 @@
 
 // Patches in a penumbra take all sample passes of direct light, the others the first one and then one in so
 // many.
-const uint kPenumbraRounds = 8u;
+const uint kPenumbraSamplePasses = 8u;
 
 // Adds some sample passes of direct light to those before.
 struct LayerDirectPush {
@@ -65,8 +65,8 @@ struct BouncePush {
     uint firstChunk;
     uint chunkCount;
     uint allChunks;
-    uint rounds;      // 0: light as it is
-    uint sampleCount; // of a sample pass; a multiple of kReplicates
+    uint samplePasses; // 0: light as it is
+    uint sampleCount;  // of a sample pass; a multiple of kReplicates
     uint patchCount;
     uint live; // a bit per lane: its light and sums are written
     uint from; // a bit per lane: it is its light B that bounces

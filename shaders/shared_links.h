@@ -10,7 +10,7 @@ struct EmitterSamplesPush {
     ADDRESS penumbra; // 0: every patch takes every sample pass
     ADDRESS covers;   // as of ClosestPush
     uint firstChunk;
-    uint round;
+    uint samplePass;
     uint pickCount;
     uint pointCount; // per pick, a multiple of kReplicates
     uint all;        // 1: pick i is mesh light i; 0: picks are drawn
@@ -24,7 +24,7 @@ struct DirectPush {
     ADDRESS parts;
     ADDRESS penumbra; // as of EmitterSamplesPush
     uint firstChunk;
-    uint round;
+    uint samplePass;
     uint pickCount;
     uint pointCount;
     uint all;
@@ -49,7 +49,7 @@ struct LampPush {
     uint firstChunk;
     uint firstLamp;
     uint counts; // of the group: lights | targets per patch << 16
-    uint round;
+    uint samplePass;
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };

@@ -48,7 +48,7 @@ void warmUp(const vk::Device& device, const std::function<bool()>& wanted) {
     SolverSettings settings;
     settings.method = Method::Hybrid;
     settings.layers.on = settings.live = true;
-    settings.links.samples = LayerSolver::kPointsOfRound;
+    settings.links.samples = LayerSolver::kPointsOfSamplePass;
     settings.links.allOver = false;
     const MadeSolver made = makeSolver({device, scene, patches, light, *tracer}, settings);
     Publisher publisher(device, patches, {});

@@ -24,7 +24,7 @@ void addLinkOptions(CLI::App& command, LinkOptions& o) {
     command
         .add_option(
             "--samples", o.samples,
-            "directional, hybrid: directions per patch, in whole rounds (default: what --error needs)")
+            "directional, hybrid: directions per patch, in whole sample passes (default: what --error needs)")
         ->check(wholeFrom(1, LinkSolver::kMaxSamples));
     command
         .add_option("--directions", o.directions,

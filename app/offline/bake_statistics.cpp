@@ -33,8 +33,8 @@ Json layersJson(const LayerSolver& solver) {
         layers.push_back({{"name", layer->source.name},
                           {"weight", {weight.r, weight.g, weight.b}},
                           {"error", layer->error},
-                          {"directRounds", layer->level.directRounds},
-                          {"linkRounds", layer->level.linkRounds},
+                          {"directSamplePasses", layer->level.directSamplePasses},
+                          {"linkSamplePasses", layer->level.linkSamplePasses},
                           {"share", solver.shareOf(*layer)}});
     }
     return layers;

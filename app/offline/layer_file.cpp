@@ -67,8 +67,9 @@ LayeredImage::Layer layerWithoutImage(const Scene& scene, const Layer& layer) {
     if (!stale.empty()) part.attributes[layer_attribute::kStale] = stale;
     const Layer* shown = layer.shown();
     if (shown) {
-        part.attributes["relume:level"] = fmt::format("direct rounds={} link rounds={}",
-                                                      shown->level.directRounds, shown->level.linkRounds);
+        part.attributes["relume:level"] =
+            fmt::format("direct sample passes={} link sample passes={}", shown->level.directSamplePasses,
+                        shown->level.linkSamplePasses);
         part.attributes["relume:error"] = fmt::format("{:.6g}", shown->error);
     }
     return part;

@@ -49,8 +49,9 @@ void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
     command
         .add_option(
             "--at", o.at,
-            "Frames after so many passes; directional, hybrid: after the first round that brings so many "
-            "directions per patch (default: each time there are twice as many). The last frame is always "
+            "Frames after so many passes; directional, hybrid: after the first sample pass that brings so "
+            "many directions per patch (default: each time there are twice as many). The last frame is "
+            "always "
             "the end of the bake")
         ->type_name("N,N,...");
     command

@@ -149,7 +149,7 @@ bool Baker::makeGlance() {
     SolverSettings glance = settings_.solver;
     glance.layers.optional = false;
     glance.links.allOver = false; // covers are not known yet
-    glance.links.samples = LayerSolver::kPointsOfRound;
+    glance.links.samples = LayerSolver::kPointsOfSamplePass;
     try {
         solver_ = makeSolver(solverInput(), glance);
     } catch (const Error&) {

@@ -41,7 +41,7 @@ struct BounceConvergence {
     void bounce() { left *= ratio; }
     /// Counts one more bounce by new samples, from the mean light of so many sample passes; the mean of all
     /// is the light then.
-    void round(double rounds) { left *= (rounds + ratio) / (rounds + 1.0); }
+    void samplePass(double samplePasses) { left *= (samplePasses + ratio) / (samplePasses + 1.0); }
 };
 
 } // namespace relume

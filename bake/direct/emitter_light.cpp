@@ -78,7 +78,7 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
                                           .covers = covers ? covers->address() : 0,
                                           .firstChunk = work.range.first,
-                                          .round = work.round,
+                                          .samplePass = work.samplePass,
                                           .pickCount = group.picks,
                                           .pointCount = group.points,
                                           .all = group.all ? 1u : 0u};
@@ -96,7 +96,7 @@ SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
             .bits = &bits_,
             .rays = &rays,
             .covers = light.coversIf(allOver_),
-            .round = work.round,
+            .samplePass = work.samplePass,
             .turn = group.all ? group.points : group.targets(),
             .run = group.all ? 1 : group.points};
 }
@@ -112,12 +112,12 @@ void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, 
                                   .parts = work.penumbra ? work.penumbra->parts.address() : 0,
                                   .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
                                   .firstChunk = work.range.first,
-                                  .round = work.round,
+                                  .samplePass = work.samplePass,
                                   .pickCount = group.picks,
                                   .pointCount = group.points,
                                   .all = group.all ? 1u : 0u,
                                   .patchCount = light.chunkCount * kChunk,
-                                  .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+                                  .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
     gather_.dispatch(cmd, push, work.range.count);
 }
 

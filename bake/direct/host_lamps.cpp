@@ -18,9 +18,9 @@ using shader::Patch;
 constexpr uint32_t kTargetsPerWord = 32; // lib/rays/segments.glsl
 constexpr uint32_t kLightBits = 32;      // lib/light/penumbra.glsl
 
-// Does what lib/light/penumbra_rounds.glsl does.
+// Does what lib/light/penumbra_sample_passes.glsl does.
 bool leftOut(const HostLamps& work, size_t index) {
-    if (!work.penumbra || work.round % shader::kPenumbraRounds == 0) return false;
+    if (!work.penumbra || work.samplePass % shader::kPenumbraSamplePasses == 0) return false;
     const glm::uvec2& lights = work.penumbra[work.parts[index]];
     return (lights.x & lights.y) == 0;
 }
@@ -140,7 +140,7 @@ void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
     TargetLanes out;
     for (const Lamp& lamp : work.lamps) {
         for (uint32_t s = 0; s < lamp.samples; ++s) {
-            const uint32_t number = work.round * lamp.samples + s;
+            const uint32_t number = work.samplePass * lamp.samples + s;
             starts.make(number, lanes.at);
             sample(lanes, {lamp, number, work.reach}, out);
             glm::vec4* to = targets + size_t{lamp.firstTarget + s} * kChunk;
@@ -215,7 +215,7 @@ void gatherChunk(const HostLamps& work, uint32_t chunk) {
             if (gathered.hidden) hidden |= bit;
             if (gathered.shareless) reached = hidden = ~0u;
         }
-        if (work.penumbra && work.round == 0) {
+        if (work.penumbra && work.samplePass == 0) {
             glm::uvec2& lights = work.penumbra[work.parts[index]];
             addBits(lights.x, reached);
             addBits(lights.y, hidden);

@@ -26,7 +26,7 @@ struct HostLamps {
     glm::vec4* direct = nullptr; // per patch: the mean so far
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t targetCount = 0; // of the group, per patch
-    uint32_t round = 0;
+    uint32_t samplePass = 0;
     uint32_t patchCount = 0;
     float reach = 0; // out of the scene [m]
     float scale = 1; // from the sum of all sums to the mean

@@ -153,9 +153,9 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .firstChunk = work.range.first,
             .firstLamp = group.first,
             .counts = group.count | group.targets << 16,
-            .round = work.round,
+            .samplePass = work.samplePass,
             .patchCount = light.chunkCount * kChunk,
-            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
 }
 
 bool LampLight::onCpu(uint32_t group) const {
@@ -187,10 +187,10 @@ HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
             .firstChunk = work.range.first,
             .chunkCount = work.range.count,
             .targetCount = group.targets,
-            .round = work.round,
+            .samplePass = work.samplePass,
             .patchCount = light.chunkCount * kChunk,
             .reach = set_.reach,
-            .scale = 1.0f / static_cast<float>(kReplicates * (work.round + 1))};
+            .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
 }
 
 void LampLight::sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const {
@@ -221,7 +221,7 @@ SegmentWork LampLight::segments(const LightBuffers& light, const Work& work, con
             .bits = &bits_,
             .rays = &rays,
             .covers = light.coversIf(desc_.allOver),
-            .round = work.round,
+            .samplePass = work.samplePass,
             .turn = set_.lamps[group.first].samples};
 }
 

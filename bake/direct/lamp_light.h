@@ -49,7 +49,7 @@ public:
     uint32_t batchChunks() const { return batchChunks_; } // at most in one batch
     struct Work {
         uint32_t group = 0;
-        uint32_t round = 0;
+        uint32_t samplePass = 0;
         ChunkRange range; // count: at most batchChunks()
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
@@ -69,8 +69,8 @@ public:
                      const vk::Buffer& sums, const vk::Buffer& direct) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
     SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
-    /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after round +
-    /// 1 sample passes.
+    /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after
+    /// samplePass + 1 sample passes.
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 

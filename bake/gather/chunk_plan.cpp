@@ -27,20 +27,20 @@ struct Variances {
 Variances pooled(std::span<const ChunkVariance> chunks, const ChunkPlan& now, double ChunkVariance::*direct,
                  double ChunkVariance::*links) {
     Variances result;
-    const auto of = [&](size_t i, double ChunkVariance::*which, const std::vector<uint32_t>& rounds) {
-        return chunks[i].*which * rounds[i];
+    const auto of = [&](size_t i, double ChunkVariance::*which, const std::vector<uint32_t>& samplePasses) {
+        return chunks[i].*which * samplePasses[i];
     };
-    const auto pool = [&](double ChunkVariance::*which, const std::vector<uint32_t>& rounds) {
+    const auto pool = [&](double ChunkVariance::*which, const std::vector<uint32_t>& samplePasses) {
         std::vector<double> values(chunks.size(), 0.0);
         for (size_t i = 0; i < chunks.size(); ++i) {
             if (!(chunks[i].patches > 0)) continue;
             double sum = 0, patches = 0;
             for (size_t k = i - std::min(i, kNeighbours); k < std::min(chunks.size(), i + kNeighbours + 1);
                  ++k) {
-                sum += of(k, which, rounds);
+                sum += of(k, which, samplePasses);
                 patches += chunks[k].patches;
             }
-            values[i] = std::max(sum / patches, of(i, which, rounds) / chunks[i].patches);
+            values[i] = std::max(sum / patches, of(i, which, samplePasses) / chunks[i].patches);
         }
         return values;
     };
@@ -59,17 +59,18 @@ void planLocally(const ChunkPlanRules& rules, std::span<const ChunkVariance> chu
         const double direct = rules.hasDirect ? each.direct[i] / now.direct[i] : 0.0;
         const double links = each.links[i] / now.links[i];
         if (direct + links <= allowed) continue;
-        const Rounds rounds = roundsFor({.rounds = now.direct[i],
-                                         .most = rules.hasDirect ? rules.mostRounds : now.direct[i],
-                                         .variance = direct,
-                                         .costOfRound = rules.directCost},
-                                        {.rounds = now.links[i],
-                                         .most = rules.mostRounds,
-                                         .variance = links,
-                                         .costOfRound = rules.linkCost},
-                                        allowed);
-        plan.direct[i] = limited(rounds.first, now.direct[i], rules.mostRounds);
-        plan.links[i] = limited(rounds.second, now.links[i], rules.mostRounds);
+        const SamplePasses samplePasses =
+            samplePassesFor({.samplePasses = now.direct[i],
+                             .most = rules.hasDirect ? rules.mostSamplePasses : now.direct[i],
+                             .variance = direct,
+                             .costOfSamplePass = rules.directCost},
+                            {.samplePasses = now.links[i],
+                             .most = rules.mostSamplePasses,
+                             .variance = links,
+                             .costOfSamplePass = rules.linkCost},
+                            allowed);
+        plan.direct[i] = limited(samplePasses.first, now.direct[i], rules.mostSamplePasses);
+        plan.links[i] = limited(samplePasses.second, now.links[i], rules.mostSamplePasses);
     }
 }
 
@@ -89,8 +90,9 @@ void planTogether(const ChunkPlanRules& rules, std::span<const ChunkVariance> ch
             if (!(c.patches > 0)) continue;
             const auto share = [&](double total, double variance, double cost, uint32_t done,
                                    uint32_t planned) {
-                const double rounds = std::max(double(std::max(planned, 1u)), wanted(variance, cost, scale));
-                return total * done / rounds;
+                const double samplePasses =
+                    std::max(double(std::max(planned, 1u)), wanted(variance, cost, scale));
+                return total * done / samplePasses;
             };
             if (rules.hasDirect)
                 sum += share(c.direct, each.direct[i], rules.directCost, now.direct[i], plan.direct[i]);
@@ -110,8 +112,9 @@ void planTogether(const ChunkPlanRules& rules, std::span<const ChunkVariance> ch
     for (size_t i = 0; i < chunks.size(); ++i) {
         if (!(chunks[i].patches > 0)) continue;
         const auto raise = [&](uint32_t& planned, uint32_t done, double variance, double cost) {
-            const double rounds = wanted(variance, cost, high);
-            if (rounds > planned) planned = std::max(planned, limited(rounds, done, rules.mostRounds));
+            const double samplePasses = wanted(variance, cost, high);
+            if (samplePasses > planned)
+                planned = std::max(planned, limited(samplePasses, done, rules.mostSamplePasses));
         };
         if (rules.hasDirect) raise(plan.direct[i], now.direct[i], each.direct[i], rules.directCost);
         raise(plan.links[i], now.links[i], each.links[i], rules.linkCost);

@@ -19,7 +19,7 @@ struct ChunkPlanRules {
     double localError = 0; // standard deviation that a chunk's patches may have in the mean, relative; 0: any
     double variance = 0;   // that may be left over all patches [(cd/m^2)^2]; 0: any
     double directCost = 1, linkCost = 1; // of a sample pass of each kind, in one unit
-    uint32_t mostRounds = 1;             // of each kind, of a chunk
+    uint32_t mostSamplePasses = 1;       // of each kind, of a chunk
     bool hasDirect = false;
 };
 

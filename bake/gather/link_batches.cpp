@@ -13,49 +13,50 @@ void record(const std::function<void(VkCommandBuffer)>& step, VkCommandBuffer cm
 
 } // namespace
 
-LinkBatches::Portion LinkBatches::next(uint32_t round, double spent) {
+LinkBatches::Portion LinkBatches::next(uint32_t samplePass, double spent) {
     const uint32_t first = kit_.order.next(1, 0).first;
-    const LinkCache::Place place = cache_.find(round, first, kit_.order.count() - first);
+    const LinkCache::Place place = cache_.find(samplePass, first, kit_.order.count() - first);
     const bool trace = !place.known;
     const ChunkRange range = trace
                                  ? kit_.nextRange(traceRate_, std::min(place.count, kit_.buffers.batchChunks))
                                  : kit_.nextRange(gatherRate_, place.count, 1, spent);
-    return {
-        .trace = trace,
-        .range = range,
-        .closest = closestWork(round, 1, place, range),
-        .gather = {
-            .links = place.links, .linksOffset = place.offset, .samples = kit_.linksOfRound, .range = range}};
-}
-
-LinkBatches::Portion LinkBatches::nextOnce(uint32_t round, uint32_t rounds) {
-    const LinkCache::Place place = cache_.passing(rounds, kit_.order.count());
-    const ChunkRange range = kit_.nextRange(traceRate_, place.count, rounds);
-    return {.trace = true,
-            .once = true,
-            .rounds = rounds,
+    return {.trace = trace,
             .range = range,
-            .closest = closestWork(round, rounds, place, range),
+            .closest = closestWork(samplePass, 1, place, range),
             .gather = {.links = place.links,
                        .linksOffset = place.offset,
-                       .samples = rounds * kit_.linksOfRound,
+                       .samples = kit_.linksOfSamplePass,
                        .range = range}};
 }
 
-ClosestWork LinkBatches::closestWork(uint32_t round, uint32_t rounds, const LinkCache::Place& place,
-                                     ChunkRange range) const {
+LinkBatches::Portion LinkBatches::nextOnce(uint32_t samplePass, uint32_t samplePasses) {
+    const LinkCache::Place place = cache_.passing(samplePasses, kit_.order.count());
+    const ChunkRange range = kit_.nextRange(traceRate_, place.count, samplePasses);
+    return {.trace = true,
+            .once = true,
+            .samplePasses = samplePasses,
+            .range = range,
+            .closest = closestWork(samplePass, samplePasses, place, range),
+            .gather = {.links = place.links,
+                       .linksOffset = place.offset,
+                       .samples = samplePasses * kit_.linksOfSamplePass,
+                       .range = range}};
+}
+
+ClosestWork LinkBatches::closestWork(uint32_t samplePass, uint32_t samplePasses,
+                                     const LinkCache::Place& place, ChunkRange range) const {
     return {.firstChunk = range.first,
             .chunkCount = range.count,
-            .firstSample = round * kit_.linksOfRound,
-            .sampleCount = rounds * kit_.linksOfRound,
+            .firstSample = samplePass * kit_.linksOfSamplePass,
+            .sampleCount = samplePasses * kit_.linksOfSamplePass,
             .rotation = kit_.settings.links.rotation,
             .links = place.links,
             .linksOffset = place.offset,
             .covers = kit_.covers()};
 }
 
-void LinkBatches::finish(uint32_t round, const Portion& portion) {
-    if (!portion.once) cache_.note(round, portion.range);
+void LinkBatches::finish(uint32_t samplePass, const Portion& portion) {
+    if (!portion.once) cache_.note(samplePass, portion.range);
     kit_.order.finish(portion.range);
 }
 
@@ -63,7 +64,7 @@ void LinkBatches::run(const Portion& portion, const Steps& steps, bool atOnce) {
     const auto start = Clock::now();
     atOnce ? runAtOnce(portion, steps) : runBySubmit(portion, steps);
     (portion.trace ? traceRate_ : gatherRate_)
-        .note(double(portion.range.count) * portion.rounds, kit_.batchMs, secondsSince(start));
+        .note(double(portion.range.count) * portion.samplePasses, kit_.batchMs, secondsSince(start));
 }
 
 void LinkBatches::runAtOnce(const Portion& portion, const Steps& steps) {

@@ -18,21 +18,21 @@ public:
     /// Chunks whose links are in one place, all of them there or all to be traced.
     struct Portion {
         bool trace = false;
-        bool once = false;   // its links are not kept
-        uint32_t rounds = 1; // sample passes
+        bool once = false;         // its links are not kept
+        uint32_t samplePasses = 1; // sample passes
         ChunkRange range;
         ClosestWork closest;         // where they are to be traced
         LinkGatherPass::Work gather; // links, samples and range
     };
     /// Returns the next portion of the pass over the links of this sample pass. `spent` is the number of
     /// chunks in the batch so far.
-    Portion next(uint32_t round, double spent = 0);
+    Portion next(uint32_t samplePass, double spent = 0);
     /// Returns the next portion of a pass over links that are read once, of so many sample passes from
-    /// `round` on; mostRounds() at most.
-    Portion nextOnce(uint32_t round, uint32_t rounds);
-    uint32_t mostRounds() const { return std::min(kMostRoundsAtOnce, kit_.buffers.batchChunks); }
+    /// `samplePass` on; mostSamplePasses() at most.
+    Portion nextOnce(uint32_t samplePass, uint32_t samplePasses);
+    uint32_t mostSamplePasses() const { return std::min(kMostSamplePassesAtOnce, kit_.buffers.batchChunks); }
     /// Notes that these links are there and that their chunks are done.
-    void finish(uint32_t round, const Portion& portion);
+    void finish(uint32_t samplePass, const Portion& portion);
 
     /// The solver's share of a batch. Each is called once, in this order; an empty one records nothing.
     struct Steps {
@@ -59,9 +59,9 @@ public:
 
 private:
     // So many sample passes make a portion of few chunks large enough for a GPU.
-    static constexpr uint32_t kMostRoundsAtOnce = 16;
+    static constexpr uint32_t kMostSamplePassesAtOnce = 16;
 
-    ClosestWork closestWork(uint32_t round, uint32_t rounds, const LinkCache::Place& place,
+    ClosestWork closestWork(uint32_t samplePass, uint32_t samplePasses, const LinkCache::Place& place,
                             ChunkRange range) const;
     void runAtOnce(const Portion& portion, const Steps& steps);
     void runBySubmit(const Portion& portion, const Steps& steps);

@@ -24,7 +24,7 @@ public:
         // Whole sample passes are kept, the first ones, and memory is taken as they come. Or those of one
         // sample pass at a time are kept, of the first chunks where there is no room for all; memory for
         // these is taken at once.
-        bool oneRound = false;
+        bool oneSamplePass = false;
     };
     LinkCache(const vk::Device& device, const Desc& desc);
     /// Returns the most bytes that such a cache takes; where sample passes are kept as they come, without
@@ -40,41 +40,41 @@ public:
         uint32_t count = 0;                // chunks from that one on that are alike
     };
     /// Returns the place of the links of up to `most` chunks from `first` on.
-    Place find(uint32_t round, uint32_t first, uint32_t most);
+    Place find(uint32_t samplePass, uint32_t first, uint32_t most);
     /// Returns a place for links that are read once: those of up to `most` chunks with so many sample passes
     /// each. What is kept of a sample pass is forgotten first.
-    Place passing(uint32_t rounds, uint32_t most);
+    Place passing(uint32_t samplePasses, uint32_t most);
     /// Notes that the links of these chunks were traced to where find() said.
-    void note(uint32_t round, ChunkRange range);
+    void note(uint32_t samplePass, ChunkRange range);
     /// Forgets all links, but keeps the memory.
     void forget();
 
     /// The links of a sample pass.
-    struct Round {
+    struct SamplePass {
         vk::Buffer links;           // uint[chunk][links][64]
         std::vector<uint8_t> known; // per chunk that is kept
     };
     /// Gives away the sample passes that are kept.
-    std::deque<Round> release() { return std::exchange(kept_, {}); }
+    std::deque<SamplePass> release() { return std::exchange(kept_, {}); }
     /// Takes them over as they are, as far as there is room; of as many chunks, with as many links each.
-    void takeOver(std::deque<Round> rounds);
+    void takeOver(std::deque<SamplePass> samplePasses);
 
     uint64_t bytes() const; // in use
-    uint32_t rounds() const { return static_cast<uint32_t>(kept_.size()); }
+    uint32_t samplePasses() const { return static_cast<uint32_t>(kept_.size()); }
     /// Returns how much of a sample pass is kept, where one is kept at a time.
-    double share() const { return static_cast<double>(roundChunks_) / asked_; }
+    double share() const { return static_cast<double>(samplePassChunks_) / asked_; }
 
 private:
-    void keepIfRoom(uint32_t round);
+    void keepIfRoom(uint32_t samplePass);
     uint32_t slotOf(uint32_t chunk) const;
 
     const vk::Device& device_;
     Desc desc_;
     uint64_t chunkBytes_;
-    uint32_t asked_;         // chunks that will be asked for
-    uint32_t roundChunks_;   // kept of a sample pass
-    std::deque<Round> kept_; // a Place points into it while more are added
-    vk::Buffer staging_;     // of a batch beyond the kept ones
+    uint32_t asked_;              // chunks that will be asked for
+    uint32_t samplePassChunks_;   // kept of a sample pass
+    std::deque<SamplePass> kept_; // a Place points into it while more are added
+    vk::Buffer staging_;          // of a batch beyond the kept ones
 };
 
 } // namespace relume

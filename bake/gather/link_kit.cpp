@@ -9,7 +9,7 @@
 namespace relume {
 
 LinkKit::LinkKit(const SolverInput& from, const Desc& desc)
-    : input(from), settings(desc.settings), linksOfRound(desc.linksOfRound),
+    : input(from), settings(desc.settings), linksOfSamplePass(desc.linksOfSamplePass),
       buffers(from.device, from.patches, desc.buffers), rankChunks(from.device, from.ranks, from.patches),
       gatherPass(from.device, settings.transport), commands(from.device),
       timestamps(from.device, 3 * kMostPortions), order(desc.chunks), progress(desc.progress),

@@ -19,7 +19,7 @@ public:
 
     struct Desc {
         SolverSettings settings;
-        uint32_t linksOfRound = 16; // links per patch and sample pass
+        uint32_t linksOfSamplePass = 16; // links per patch and sample pass
         LinkBuffers::Desc buffers;
         uint32_t chunks = 0;      // at most in a pass
         SolverProgress& progress; // the solver's, as the aim is; both must outlive the kit
@@ -29,7 +29,7 @@ public:
 
     const SolverInput input;
     const SolverSettings settings;
-    const uint32_t linksOfRound;
+    const uint32_t linksOfSamplePass;
     LinkBuffers buffers;
     RankChunks rankChunks; // that this process bakes
     LinkGatherPass gatherPass;

@@ -43,7 +43,7 @@ uint32_t linkBatchChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kSoftwareBatch : kGpuBatch);
 }
 
-uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software) {
+uint32_t linksOfSamplePass(uint32_t patches, uint32_t samples, bool software) {
     const uint32_t filling = software ? kLeastSamples : kGpuRays / std::max(patches, 1u);
     const uint32_t wanted = samples > 0 ? std::min(filling, samples) : filling;
     return std::bit_ceil(std::clamp(wanted, kLeastSamples, kMostSamples));
@@ -111,9 +111,9 @@ uint32_t smoothingReach(float sigma) {
     return std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
 }
 
-float carriedShare(uint32_t rounds) {
+float carriedShare(uint32_t samplePasses) {
     constexpr float kFading = 3.0f; // the power becomes 3 (1 - q); carried noise has 1.8 times the variance
-    return std::min(1.0f, kFading / static_cast<float>(rounds));
+    return std::min(1.0f, kFading / static_cast<float>(samplePasses));
 }
 
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks) {
@@ -271,16 +271,16 @@ void LinkGatherPass::recordCarry(VkCommandBuffer cmd, const LightBuffers& light,
 }
 
 void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light,
-                                      const LinkBuffers& buffers, uint32_t rounds,
+                                      const LinkBuffers& buffers, uint32_t samplePasses,
                                       const vk::Buffer* scales) const {
-    const shader::ComposePush push{.sums = buffers.directSums.address(),
-                                   .light = buffers.direct.address(),
-                                   .scales = scales ? scales->address() : 0,
-                                   .sampled = 1,
-                                   .chunkCount = light.chunkCount,
-                                   .patchCount = light.chunkCount * kChunk,
-                                   .scale =
-                                       rounds > 0 ? 1.0f / static_cast<float>(kReplicates * rounds) : 0.0f};
+    const shader::ComposePush push{
+        .sums = buffers.directSums.address(),
+        .light = buffers.direct.address(),
+        .scales = scales ? scales->address() : 0,
+        .sampled = 1,
+        .chunkCount = light.chunkCount,
+        .patchCount = light.chunkCount * kChunk,
+        .scale = samplePasses > 0 ? 1.0f / static_cast<float>(kReplicates * samplePasses) : 0.0f};
     dispatchChunks(compose_, cmd, push, light.chunkCount);
 }
 
@@ -320,7 +320,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .texelToPatch = buffers.texelToPatch.address(),
         .sums = (work.sums ? *work.sums : buffers.linkSums).address(),
         .rows = buffers.rows ? buffers.rows.address() : 0,
-        .directSums = work.directRounds > 0 && buffers.directSums ? buffers.directSums.address() : 0,
+        .directSums = work.directSamplePasses > 0 && buffers.directSums ? buffers.directSums.address() : 0,
         .result = buffers.result.address(),
         .chunkSums = buffers.chunkSums.address(),
         .distances = buffers.distances ? buffers.distances.address() : 0,
@@ -333,7 +333,8 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .reach = reach,
         .sigma = work.sigma,
         .scale = work.samples > 0 ? 1.0f / perReplicate : 0.0f,
-        .directScale = work.directRounds > 0 ? 1.0f / static_cast<float>(work.directRounds) : 0.0f,
+        .directScale =
+            work.directSamplePasses > 0 ? 1.0f / static_cast<float>(work.directSamplePasses) : 0.0f,
         .floor = work.floor};
     if (work.local) {
         vkCmdFillBuffer(cmd, buffers.local.handle(), 0, VK_WHOLE_SIZE, 0);

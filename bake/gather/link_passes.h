@@ -15,7 +15,7 @@ namespace relume {
 
 /// Returns the directions per patch that one sample pass takes: so many that a batch fills the device, but no
 /// more than are asked for. samples is the number of directions per patch in all, 0 for what the error needs.
-uint32_t linksOfRound(uint32_t patches, uint32_t samples, bool software);
+uint32_t linksOfSamplePass(uint32_t patches, uint32_t samples, bool software);
 
 /// Returns how many of so many chunks a batch of links has at most.
 uint32_t linkBatchChunks(uint32_t chunks, bool software);
@@ -58,11 +58,11 @@ struct LinkBuffers {
 
 /// Returns how far smoothing looks [texels], 0 for not at all. sigma is its width [texels].
 uint32_t smoothingReach(float sigma);
-/// Returns the share of a sample pass's light in what later ones read, it being number `rounds` from 1. The
-/// first one goes over its few links again and again, which leaves an error of its own in their light: a
-/// share of 1 / rounds would let it fade with the power 1 - q of the number of passes only, q being how much
-/// of the light bounces on.
-float carriedShare(uint32_t rounds);
+/// Returns the share of a sample pass's light in what later ones read, it being number `samplePasses` from 1.
+/// The first one goes over its few links again and again, which leaves an error of its own in their light: a
+/// share of 1 / samplePasses would let it fade with the power 1 - q of the number of passes only, q being how
+/// much of the light bounces on.
+float carriedShare(uint32_t samplePasses);
 /// Returns the sum over all chunks.
 shader::ResolveSums sumsOf(std::span<const shader::ResolveSums> chunks);
 glm::dvec4 sumsOf(std::span<const glm::vec4> chunks);
@@ -124,7 +124,7 @@ public:
                      const vk::Buffer* direct, float share, const SomeChunks& chunks = {}) const;
     /// Makes direct what it was after so many sample passes, or those that `scales` say.
     void recordDirectMean(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                          uint32_t rounds, const vk::Buffer* scales = nullptr) const;
+                          uint32_t samplePasses, const vk::Buffer* scales = nullptr) const;
 
 private:
     void gatherOnCpu(const LightBuffers& light, const LinkBuffers& buffers, const Work& work) const;
@@ -149,7 +149,7 @@ public:
     struct Work {
         uint32_t size = 0;                // lightmap edge [texels]
         uint32_t samples = 0;             // links per patch in linkSums
-        uint32_t directRounds = 0;        // in directSums; 0: no direct light
+        uint32_t directSamplePasses = 0;  // in directSums; 0: no direct light
         float sigma = 0;                  // of smoothing [texels], 0: none
         const vk::Buffer* sums = nullptr; // in place of linkSums
         bool scaled = false;              // chunks have as many samples as LinkBuffers::scales say

@@ -6,9 +6,9 @@
 
 namespace relume {
 
-uint32_t onLadder(double rounds, bool doubles) {
+uint32_t onLadder(double samplePasses, bool doubles) {
     constexpr double kAlmostWhole = 1e-9;
-    const auto whole = static_cast<uint32_t>(std::ceil(rounds * (1.0 - kAlmostWhole)));
+    const auto whole = static_cast<uint32_t>(std::ceil(samplePasses * (1.0 - kAlmostWhole)));
     const uint32_t above = std::bit_ceil(whole), between = above / 4 * 3;
     return !doubles && whole <= between ? between : above;
 }
@@ -21,37 +21,40 @@ constexpr uint32_t kMostGrowth = 8;
 // stratified, and what one part got too many of nobody takes back.
 constexpr uint32_t kMostGrowthOfMany = 4;
 
-uint32_t limited(const SampledPart& part, double rounds, uint32_t growth = kMostGrowth) {
-    if (part.rounds >= part.most) return part.rounds;
-    const double most = static_cast<double>(growth) * std::max(1u, part.rounds);
-    return std::min(part.most, onLadder(std::clamp(rounds, double(part.rounds), most), part.doubles));
+uint32_t limited(const SampledPart& part, double samplePasses, uint32_t growth = kMostGrowth) {
+    if (part.samplePasses >= part.most) return part.samplePasses;
+    const double most = static_cast<double>(growth) * std::max(1u, part.samplePasses);
+    return std::min(part.most,
+                    onLadder(std::clamp(samplePasses, double(part.samplePasses), most), part.doubles));
 }
 
-double varianceOfRound(const SampledPart& part) {
-    return part.variance * std::max(1u, part.rounds);
+double varianceOfSamplePass(const SampledPart& part) {
+    return part.variance * std::max(1u, part.samplePasses);
 }
 
-double within(const SampledPart& part, double rounds) {
-    return std::clamp(rounds, double(part.rounds), double(std::max(part.rounds, part.most)));
+double within(const SampledPart& part, double samplePasses) {
+    return std::clamp(samplePasses, double(part.samplePasses),
+                      double(std::max(part.samplePasses, part.most)));
 }
 
 // Returns the sample passes by which the part comes to what the other one leaves of `allowed` with so many.
-double roundsBeside(const SampledPart& part, const SampledPart& other, double otherRounds, double allowed) {
-    if (part.variance <= 0.0) return part.rounds;
-    const double left = allowed - varianceOfRound(other) / std::max(1.0, otherRounds);
-    return left > 0.0 ? varianceOfRound(part) / left : double(part.most);
+double samplePassesBeside(const SampledPart& part, const SampledPart& other, double otherSamplePasses,
+                          double allowed) {
+    if (part.variance <= 0.0) return part.samplePasses;
+    const double left = allowed - varianceOfSamplePass(other) / std::max(1.0, otherSamplePasses);
+    return left > 0.0 ? varianceOfSamplePass(part) / left : double(part.most);
 }
 
 // Doubles what takes away more of the variance for its cost.
-Rounds doubled(const SampledPart& first, const SampledPart& second) {
+SamplePasses doubled(const SampledPart& first, const SampledPart& second) {
     const auto worth = [](SampledPart part) {
-        part.rounds = std::max(1u, part.rounds);
-        return gainOfRound(part, part.rounds);
+        part.samplePasses = std::max(1u, part.samplePasses);
+        return gainOfSamplePass(part, part.samplePasses);
     };
-    const bool noSecond = second.rounds >= second.most;
-    if (first.rounds < first.most && (noSecond || worth(first) > worth(second)))
-        return {limited(first, 2.0 * first.rounds), second.rounds};
-    return {first.rounds, limited(second, 2.0 * second.rounds)};
+    const bool noSecond = second.samplePasses >= second.most;
+    if (first.samplePasses < first.most && (noSecond || worth(first) > worth(second)))
+        return {limited(first, 2.0 * first.samplePasses), second.samplePasses};
+    return {first.samplePasses, limited(second, 2.0 * second.samplePasses)};
 }
 
 // Returns the step of the ladder before the one that `above` is on, or what the part has where that is more.
@@ -59,7 +62,7 @@ uint32_t stepBelow(const SampledPart& part, uint32_t above) {
     const uint32_t below = part.doubles                 ? above / 2
                            : std::has_single_bit(above) ? above / 4 * 3
                                                         : above / 3 * 2;
-    return std::max(part.rounds, std::min(below, above));
+    return std::max(part.samplePasses, std::min(below, above));
 }
 
 // Takes each part to a step of the ladder. All begin below what they want; then the step comes next that
@@ -67,61 +70,61 @@ uint32_t stepBelow(const SampledPart& part, uint32_t above) {
 // would be half of that where steps double.
 std::vector<uint32_t> onSteps(std::span<const SampledPart> parts, std::span<const double> wanted,
                               double allowed) {
-    std::vector<uint32_t> rounds;
+    std::vector<uint32_t> samplePasses;
     std::vector<size_t> open; // parts that have a step to go
     double variance = 0;
     const auto varianceAt = [&](size_t i, uint32_t now) {
-        return varianceOfRound(parts[i]) / std::max(1u, now);
+        return varianceOfSamplePass(parts[i]) / std::max(1u, now);
     };
     for (size_t i = 0; i < parts.size(); ++i) {
         const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
-        rounds.push_back(above > wanted[i] ? stepBelow(parts[i], above) : above);
-        variance += varianceAt(i, rounds[i]);
-        if (rounds[i] < above) open.push_back(i);
+        samplePasses.push_back(above > wanted[i] ? stepBelow(parts[i], above) : above);
+        variance += varianceAt(i, samplePasses[i]);
+        if (samplePasses[i] < above) open.push_back(i);
     }
     while (variance > allowed && !open.empty()) {
         const auto worth = [&](size_t i) {
             const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
-            return (varianceAt(i, rounds[i]) - varianceAt(i, above)) /
-                   ((above - rounds[i]) * parts[i].costOfRound);
+            return (varianceAt(i, samplePasses[i]) - varianceAt(i, above)) /
+                   ((above - samplePasses[i]) * parts[i].costOfSamplePass);
         };
         const auto best = std::max_element(open.begin(), open.end(),
                                            [&](size_t a, size_t b) { return worth(a) < worth(b); });
         const size_t i = *best;
         open.erase(best);
-        variance -= varianceAt(i, rounds[i]);
-        rounds[i] = limited(parts[i], wanted[i], kMostGrowthOfMany);
-        variance += varianceAt(i, rounds[i]);
+        variance -= varianceAt(i, samplePasses[i]);
+        samplePasses[i] = limited(parts[i], wanted[i], kMostGrowthOfMany);
+        variance += varianceAt(i, samplePasses[i]);
     }
-    return rounds;
+    return samplePasses;
 }
 
 } // namespace
 
 // Parts that have more than the others would leave them keep what they have, and the others share what is
 // left; so on, until none is added to those.
-std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allowed) {
-    std::vector<uint32_t> rounds;
+std::vector<uint32_t> samplePassesFor(std::span<const SampledPart> parts, double allowed) {
+    std::vector<uint32_t> samplePasses;
     for (const SampledPart& part : parts)
-        rounds.push_back(part.rounds);
-    if (!(allowed > 0.0)) return rounds;
+        samplePasses.push_back(part.samplePasses);
+    if (!(allowed > 0.0)) return samplePasses;
     std::vector<bool> settled(parts.size());
     std::vector<double> wanted(parts.size());
     for (bool more = true; more;) {
         double roots = 0, left = allowed;
         for (size_t i = 0; i < parts.size(); ++i) {
             if (settled[i])
-                left -= varianceOfRound(parts[i]) / std::max(1.0, wanted[i]);
+                left -= varianceOfSamplePass(parts[i]) / std::max(1.0, wanted[i]);
             else
-                roots += std::sqrt(varianceOfRound(parts[i]) * parts[i].costOfRound);
+                roots += std::sqrt(varianceOfSamplePass(parts[i]) * parts[i].costOfSamplePass);
         }
         more = false;
         for (size_t i = 0; i < parts.size(); ++i) {
             if (settled[i]) continue;
             const SampledPart& part = parts[i];
-            const double free = left > 0.0
-                                    ? std::sqrt(varianceOfRound(part) / part.costOfRound) * roots / left
-                                    : double(part.most);
+            const double free =
+                left > 0.0 ? std::sqrt(varianceOfSamplePass(part) / part.costOfSamplePass) * roots / left
+                           : double(part.most);
             wanted[i] = within(part, part.variance > 0.0 ? free : 0.0);
             settled[i] = wanted[i] != free;
             more = more || settled[i];
@@ -130,19 +133,21 @@ std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allow
     return onSteps(parts, wanted, allowed);
 }
 
-double gainOfRound(const SampledPart& part, uint32_t now) {
-    return part.variance * part.rounds / (static_cast<double>(now) * now * part.costOfRound);
+double gainOfSamplePass(const SampledPart& part, uint32_t now) {
+    return part.variance * part.samplePasses / (static_cast<double>(now) * now * part.costOfSamplePass);
 }
 
-Rounds roundsFor(const SampledPart& first, const SampledPart& second, double allowed) {
+SamplePasses samplePassesFor(const SampledPart& first, const SampledPart& second, double allowed) {
     if (!(allowed > 0.0)) return doubled(first, second);
-    const double roots = std::sqrt(varianceOfRound(first) * first.costOfRound) +
-                         std::sqrt(varianceOfRound(second) * second.costOfRound);
-    double a = within(first, std::sqrt(varianceOfRound(first) / first.costOfRound) * roots / allowed);
-    const double wanted = roundsBeside(second, first, a, allowed), b = within(second, wanted);
-    if (b != wanted) a = within(first, roundsBeside(first, second, b, allowed));
-    const Rounds rounds{limited(first, a), limited(second, b)};
-    return rounds == Rounds{first.rounds, second.rounds} ? doubled(first, second) : rounds;
+    const double roots = std::sqrt(varianceOfSamplePass(first) * first.costOfSamplePass) +
+                         std::sqrt(varianceOfSamplePass(second) * second.costOfSamplePass);
+    double a =
+        within(first, std::sqrt(varianceOfSamplePass(first) / first.costOfSamplePass) * roots / allowed);
+    const double wanted = samplePassesBeside(second, first, a, allowed), b = within(second, wanted);
+    if (b != wanted) a = within(first, samplePassesBeside(first, second, b, allowed));
+    const SamplePasses samplePasses{limited(first, a), limited(second, b)};
+    return samplePasses == SamplePasses{first.samplePasses, second.samplePasses} ? doubled(first, second)
+                                                                                 : samplePasses;
 }
 
 } // namespace relume

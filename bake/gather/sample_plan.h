@@ -11,37 +11,37 @@ constexpr uint32_t kMaxSamplesOfPatch = 65536;
 
 /// Part of the error of light: its variance falls as one over the sample passes that it is made of.
 struct SampledPart {
-    uint32_t rounds = 0;    // so far
-    uint32_t most = 0;      // sample passes that there can be
-    double variance = 0;    // of the part, as it is
-    double costOfRound = 1; // in the same unit as the other part's
-    bool doubles = false;   // their number is a power of two, unless it is the most
+    uint32_t samplePasses = 0;   // so far
+    uint32_t most = 0;           // sample passes that there can be
+    double variance = 0;         // of the part, as it is
+    double costOfSamplePass = 1; // in the same unit as the other part's
+    bool doubles = false;        // their number is a power of two, unless it is the most
 };
 
 /// Returns what one more sample pass after `now` of them takes away from the part's variance, for its cost.
-/// The variance is as it was after part.rounds of them; it falls as 1 / rounds at least.
-double gainOfRound(const SampledPart& part, uint32_t now);
+/// The variance is as it was after part.samplePasses of them; it falls as 1 / samplePasses at least.
+double gainOfSamplePass(const SampledPart& part, uint32_t now);
 
 /// Returns the least number on the ladder of sample passes (1, 2, 3, 4, 6, 8, 12, 16, ...) that is so many at
 /// least, so that what is planned on its own meets on few numbers; with `doubles` of the powers of two.
-uint32_t onLadder(double rounds, bool doubles = false);
+uint32_t onLadder(double samplePasses, bool doubles = false);
 
 /// Returns for each part the sample passes that cost least in all of those by which the parts' variances come
 /// to `allowed` together: their number goes as the root of variance over cost, but no part has less than it
 /// has. They are on the ladder and no more than a few times as many as there are. Where `allowed` is not
 /// positive each has as many as it has.
-std::vector<uint32_t> roundsFor(std::span<const SampledPart> parts, double allowed);
+std::vector<uint32_t> samplePassesFor(std::span<const SampledPart> parts, double allowed);
 
-struct Rounds {
+struct SamplePasses {
     uint32_t first = 0, second = 0;
 
-    bool operator==(const Rounds&) const = default;
+    bool operator==(const SamplePasses&) const = default;
 };
 
 /// Returns the sample passes that cost least of those by which both variances come to `allowed` in all (a
 /// Lagrange multiplier: their number goes as the root of variance over cost). They are no more than a few
 /// times as many as there are, for what is known of the variances is not exact. They are steps of a ladder,
 /// so that layers meet on them. Of one part at least there are more than before, while there can be.
-Rounds roundsFor(const SampledPart& first, const SampledPart& second, double allowed);
+SamplePasses samplePassesFor(const SampledPart& first, const SampledPart& second, double allowed);
 
 } // namespace relume

@@ -51,7 +51,7 @@ void BounceJob::beginPass(Stage stage) {
 }
 
 std::vector<uint32_t> BounceJob::batch() {
-    Portion portion = tools_->batches.next(round_);
+    Portion portion = tools_->batches.next(samplePass_);
     const bool alone = portion.trace || tools_->gather.onCpu();
     const bool seen = alone ? onePortion(portion) : knownPortions(std::move(portion));
     return seen ? look() : std::vector<uint32_t>();
@@ -80,7 +80,7 @@ void BounceJob::recordPassBegin(VkCommandBuffer cmd) {
         }
         tools_->gather.recordSend(cmd);
     }
-    if (stage_ == Stage::Gather && round_ == 0) tools_->gather.recordNewSums(cmd);
+    if (stage_ == Stage::Gather && samplePass_ == 0) tools_->gather.recordNewSums(cmd);
     vk::barrier(cmd);
     lit_ = begun_ = true;
 }
@@ -138,7 +138,7 @@ bool BounceJob::knownPortions(Portion portion) {
         ++portions;
         seen = kit.order.left() == 0 && recordPassEnd(cmd);
         if (seen || chunks >= most || portions == LinkKit::kMostPortions) break;
-        portion = batches.next(round_, chunks);
+        portion = batches.next(samplePass_, chunks);
         if (portion.trace) break;
         vk::barrier(cmd); // the next one adds to the same sums
     }
@@ -155,9 +155,11 @@ std::vector<VkDeviceAddress> BounceJob::following(const Portion& portion, double
     std::vector<VkDeviceAddress> links;
     const uint32_t chunks = tools_->kit.chunkCount();
     if (stage_ != Stage::Gather || portion.range.count < chunks) return links;
-    for (uint32_t next = round_ + 1; next < linkRounds(); ++next) {
-        const size_t rounds = 1 + links.size();
-        if (rounds == LayerBounces::kMostRounds || static_cast<double>((rounds + 1) * chunks) > most) break;
+    for (uint32_t next = samplePass_ + 1; next < linkSamplePasses(); ++next) {
+        const size_t samplePasses = 1 + links.size();
+        if (samplePasses == LayerBounces::kMostRounds ||
+            static_cast<double>((samplePasses + 1) * chunks) > most)
+            break;
         const LinkCache::Place place = tools_->batches.cache().find(next, 0, chunks);
         if (!place.known || place.count < chunks) break;
         links.push_back(place.links->address() + place.offset * sizeof(uint32_t));
@@ -168,17 +170,17 @@ std::vector<VkDeviceAddress> BounceJob::following(const Portion& portion, double
 void BounceJob::recordGather(VkCommandBuffer cmd, const Portion& portion,
                              const std::vector<VkDeviceAddress>& following) {
     const bool bounces = stage_ == Stage::Bounces;
-    const uint32_t rounds = bounces ? 1 : linkRounds();
-    const bool lastRound = round_ + 1 + following.size() == rounds;
+    const uint32_t samplePasses = bounces ? 1 : linkSamplePasses();
+    const bool lastSamplePass = samplePass_ + 1 + following.size() == samplePasses;
     LayerGather::Work work{.links = portion.gather,
                            .following = following,
                            .keeps = !bounces || bounce_ + 1 + kToldBounces >= nextLook(),
-                           .ends = bounces || (lastRound && !isLastGather()),
-                           .scale = 1.0f / static_cast<float>(rounds * tools_->kit.linksOfRound),
+                           .ends = bounces || (lastSamplePass && !isLastGather()),
+                           .scale = 1.0f / static_cast<float>(samplePasses * tools_->kit.linksOfSamplePass),
                            .changes = {}};
     work.links.output = bounces;
     work.links.accumulate = !bounces;
-    work.links.newSums = round_ == 0;
+    work.links.newSums = samplePass_ == 0;
     if (tellsChange()) work.changes = (bounces ? bounce_ : gathers_) % 2;
     tools_->gather.recordGather(cmd, work);
 }
@@ -186,7 +188,7 @@ void BounceJob::recordGather(VkCommandBuffer cmd, const Portion& portion,
 // Counts these links for each layer that bounces along, as it has gathered them.
 void BounceJob::noteLinks(const Portion& portion, size_t following) {
     SolverProgress& progress = tools_->kit.progress;
-    const uint64_t samples = uint64_t{tools_->kit.linksOfRound} * (1 + following);
+    const uint64_t samples = uint64_t{tools_->kit.linksOfSamplePass} * (1 + following);
     const uint64_t count = tools_->senders.count(portion.range) * samples;
     uint64_t layers = 0;
     for (Lane& lane : desc_.lanes) {
@@ -197,21 +199,21 @@ void BounceJob::noteLinks(const Portion& portion, size_t following) {
     progress.rays += portion.trace ? count : 0;
     progress.raysSaved += count * (layers - (portion.trace ? 1 : 0));
     progress.linksRead += count;
-    tools_->batches.finish(round_, portion);
-    round_ += static_cast<uint32_t>(following);
+    tools_->batches.finish(samplePass_, portion);
+    samplePass_ += static_cast<uint32_t>(following);
 }
 
 // Tells whether the end of the pass under way records commands. The end of a bounce that the CPU gathered
 // does not, as the CPU sends, too.
 bool BounceJob::recordsPassEnd() const {
-    return stage_ == Stage::Gather && round_ + 1 == linkRounds() && !isLastGather();
+    return stage_ == Stage::Gather && samplePass_ + 1 == linkSamplePasses() && !isLastGather();
 }
 
 // Ends a pass: what was gathered is what the next pass, of whichever stage, begins with. Returns whether the
 // CPU is to look what became of it; else the next pass has begun.
 bool BounceJob::recordPassEnd(VkCommandBuffer cmd) {
     if (stage_ == Stage::Gather) {
-        if (++round_ == linkRounds()) return recordGatherEnd(cmd);
+        if (++samplePass_ == linkSamplePasses()) return recordGatherEnd(cmd);
         tools_->kit.beginPass();
         return false;
     }
@@ -230,7 +232,7 @@ bool BounceJob::recordPassEnd(VkCommandBuffer cmd) {
 bool BounceJob::recordGatherEnd(VkCommandBuffer cmd) {
     const bool last = isLastGather();
     if (!last) recordPassLight(cmd);
-    round_ = 0;
+    samplePass_ = 0;
     ++gathers_;
     if (last) return true;
     lit_ = true;
@@ -245,7 +247,7 @@ bool BounceJob::recordGatherEnd(VkCommandBuffer cmd) {
 // Tells whether this gather is known to be the last one before it is made.
 bool BounceJob::isLastGather() const {
     const uint32_t passes = tools_->kit.settings.passes;
-    return passes > 0 ? gathers_ + 2 >= passes : linkRounds() == 1 || desc_.hasty;
+    return passes > 0 ? gathers_ + 2 >= passes : linkSamplePasses() == 1 || desc_.hasty;
 }
 
 // Tells whether the change of the pass under way is told, while its end is recorded.
@@ -258,7 +260,7 @@ bool BounceJob::tellsChange() const {
 void BounceJob::recordPassLight(VkCommandBuffer cmd) {
     const bool bounces = stage_ == Stage::Bounces;
     LayerGather::PassEnd end{
-        .bounce = bounces, .samples = linkRounds() * tools_->kit.linksOfRound, .changes = {}};
+        .bounce = bounces, .samples = linkSamplePasses() * tools_->kit.linksOfSamplePass, .changes = {}};
     if (tellsChange()) end.changes = (bounces ? bounce_ : gathers_) % 2;
     tools_->gather.recordPassEnd(cmd, end);
 }
@@ -340,7 +342,8 @@ void BounceJob::learnChanges(uint32_t lane, bool both) {
 
 // Tells whether distances are made: those of the first sample pass's links are the same for every layer.
 bool BounceJob::wantsDistances() const {
-    return tools_->kit.buffers.distances && !tools_->distancesKnown && stage_ == Stage::Gather && round_ == 0;
+    return tools_->kit.buffers.distances && !tools_->distancesKnown && stage_ == Stage::Gather &&
+           samplePass_ == 0;
 }
 
 } // namespace relume

@@ -76,16 +76,16 @@ private:
     void learnChanges(uint32_t lane, bool both);
     double iterationAim() const;
     bool wantsDistances() const;
-    uint32_t linkRounds() const { return desc_.lanes.front().target.linkRounds; }
+    uint32_t linkSamplePasses() const { return desc_.lanes.front().target.linkSamplePasses; }
 
     Tools* tools_;
     Desc desc_;
     Stage stage_;
-    uint32_t round_ = 0;   // sample pass of links that are gathered
-    uint32_t bounce_ = 0;  // finished ones, over the links of the first sample pass
-    uint32_t gathers_ = 0; // finished ones, over the links of all sample passes
-    bool begun_ = false;   // a batch of this pass has been made
-    bool lit_ = false;     // what patches send is that of the light so far
+    uint32_t samplePass_ = 0; // sample pass of links that are gathered
+    uint32_t bounce_ = 0;     // finished ones, over the links of the first sample pass
+    uint32_t gathers_ = 0;    // finished ones, over the links of all sample passes
+    bool begun_ = false;      // a batch of this pass has been made
+    bool lit_ = false;        // what patches send is that of the light so far
     bool over_ = false;
 };
 

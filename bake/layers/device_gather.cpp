@@ -74,27 +74,28 @@ void DeviceGather::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDevice
     kit_.recordBack(cmd, kit_.buffers.sums, width * sizeof(float), at);
 }
 
-LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t linkRounds, double sigma) {
+LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t linkSamplePasses, double sigma) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     VkCommandBuffer cmd = kit_.commands.begin();
-    if (linkRounds > 0) {
+    if (linkSamplePasses > 0) {
         const vk::Buffer& own = lane > 0 ? bounces_.sums(lane) : buffers.linkSums;
         layerPass_.recordSketch(cmd, light, own, sketch_);
         resolvePass_.record(cmd, light, buffers,
                             {.size = kit_.input.patches.scene.size,
-                             .samples = linkRounds * kit_.linksOfRound,
+                             .samples = linkSamplePasses * kit_.linksOfSamplePass,
                              .sigma = static_cast<float>(sigma),
                              .sums = lane > 0 ? &bounces_.sums(lane) : nullptr});
         recordChunkSums(cmd, kResolveValues, 0);
         vk::barrier(cmd);
     }
-    layerPass_.recordResult(cmd, light, layer, linkRounds > 0 ? &buffers.result : nullptr, buffers.chunkSums);
+    layerPass_.recordResult(cmd, light, layer, linkSamplePasses > 0 ? &buffers.result : nullptr,
+                            buffers.chunkSums);
     recordChunkSums(cmd, kResultValues, sizeof(shader::ResolveSums));
-    if (linkRounds > 0) kit_.recordBack(cmd, sketch_, sketch_.size(), kSketchAt);
+    if (linkSamplePasses > 0) kit_.recordBack(cmd, sketch_, sketch_.size(), kSketchAt);
     kit_.run(cmd);
     LevelSums sums;
-    if (linkRounds > 0) {
+    if (linkSamplePasses > 0) {
         sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
         const auto* entries = kit_.back<glm::vec3>(kSketchAt, kSketchEntries);
         sums.sketch.entries.assign(entries, entries + kSketchEntries);

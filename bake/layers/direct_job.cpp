@@ -19,16 +19,16 @@ constexpr uint32_t kGap = 256, kPenumbraGap = 2048;
 DirectJob::End DirectJob::begin(bool pauses) {
     tools_->penumbra.drop(); // what was aborted had set
     if (!layer_->dirty.empty()) return beginRepair(pauses);
-    round_ = layer_->directRounds;
-    if (round_ >= target_.directRounds) return End::Made;
+    samplePass_ = layer_->directSamplePasses;
+    if (samplePass_ >= target_.directSamplePasses) return End::Made;
     const bool dark = layer_->rays() == 0;
     if (dark) {
         layer_->penumbra.assign(tools_->penumbra.parts().count, 0);
         layer_->redoSteps.clear();
     }
-    if (round_ > 0 || dark) setPenumbra(); // else the first sample pass finds it
+    if (samplePass_ > 0 || dark) setPenumbra(); // else the first sample pass finds it
     beginPass();
-    return dark || !seekRound() ? endStep(tools_->kit.commands.begin()) : End::NotYet;
+    return dark || !seekSamplePass() ? endStep(tools_->kit.commands.begin()) : End::NotYet;
 }
 
 // Begins to repair direct light of dirty chunks, with the same sample passes in the same steps as that of all
@@ -37,7 +37,7 @@ DirectJob::End DirectJob::beginRepair(bool pauses) {
     if (layer_->rays() == 0) return End::Repaired;
     LinkKit& kit = tools_->kit;
     repairStep_ = layer_->begun ? 1 : 0;
-    round_ = layer_->begun ? layer_->directSteps.front() : 0;
+    samplePass_ = layer_->begun ? layer_->directSteps.front() : 0;
     if (layer_->begun) {
         VkCommandBuffer cmd = kit.commands.begin();
         recordCopy(cmd, *layer_->direct, kit.input.light.ligOut, rangesOf(repairedMarks(), true));
@@ -45,7 +45,7 @@ DirectJob::End DirectJob::beginRepair(bool pauses) {
         setPenumbra(); // else the first sample pass finds it
     }
     beginPass();
-    return seekRound() ? End::NotYet : endRepairStep(pauses);
+    return seekSamplePass() ? End::NotYet : endRepairStep(pauses);
 }
 
 void DirectJob::beginPass() {
@@ -84,8 +84,8 @@ DirectJob::End DirectJob::batch(bool pauses) {
     End end = End::NotYet;
     if (kit.order.left() > 0) {
         if (records) kit.run(cmd);
-    } else if (round_ == 0) {
-        end = endFirstRound(records ? cmd : kit.commands.begin(), pauses);
+    } else if (samplePass_ == 0) {
+        end = endFirstSamplePass(records ? cmd : kit.commands.begin(), pauses);
     } else if (repairStep_) {
         if (records) kit.run(cmd);
         end = endRepairStep(pauses);
@@ -105,24 +105,24 @@ void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
     LinkKit& kit = tools_->kit;
     PenumbraMap& penumbra = tools_->penumbra;
     LayerLights::Portion portion{.part = layer_->parts[part_],
-                                 .round = round_,
+                                 .samplePass = samplePass_,
                                  .range = range,
                                  .penumbra = &penumbra.onDevice(),
                                  .mark = mark};
     if (tools_->lights.onCpu(portion.part)) {
         // The first part of a layer's first sample pass, with all patches, writes all sums; else they are
         // added to.
-        portion.newSums = round_ == 0 && part_ == 0 && !repairStep_;
+        portion.newSums = samplePass_ == 0 && part_ == 0 && !repairStep_;
         const vk::Buffer& sums = kit.buffers.directSums;
         if (!begun_ && !portion.newSums) std::memset(sums.as<uint8_t>(), 0, sums.size());
-        if (!begun_ && round_ == 0) penumbra.clearOnCpu();
+        if (!begun_ && samplePass_ == 0) penumbra.clearOnCpu();
         begun_ = true;
         return tools_->lights.traceOnCpu(portion);
     }
     tools_->lights.trace(cmd, portion, [&](VkCommandBuffer to) {
         penumbra.recordUpload(to);
         if (!begun_) vkCmdFillBuffer(to, kit.buffers.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
-        if (!begun_ && round_ == 0) penumbra.recordClear(to);
+        if (!begun_ && samplePass_ == 0) penumbra.recordClear(to);
         vk::barrier(to);
     });
     begun_ = true;
@@ -131,7 +131,7 @@ void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
 // Returns the sample pass before which this step ends.
 uint32_t DirectJob::endOfStep() const {
     if (repairStep_) return layer_->directSteps[*repairStep_];
-    return std::min(nextDirectStep(layer_->directRounds), target_.directRounds);
+    return std::min(nextDirectStep(layer_->directSamplePasses), target_.directSamplePasses);
 }
 
 std::vector<uint8_t> DirectJob::repairedMarks() const {
@@ -142,12 +142,12 @@ std::vector<uint8_t> DirectJob::repairedMarks() const {
 }
 
 // Finds which chunks take part in the sample pass; tells whether any does.
-bool DirectJob::orderRound() {
+bool DirectJob::orderSamplePass() {
     LinkKit& kit = tools_->kit;
     const TileParts& parts = tools_->penumbra.parts();
     kit.beginPass();
     std::vector<uint8_t> take = repairStep_ ? repairedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
-    const bool penumbraAlone = round_ % shader::kPenumbraRounds != 0;
+    const bool penumbraAlone = samplePass_ % shader::kPenumbraSamplePasses != 0;
     if (penumbraAlone && penumbra_.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
             penumbra_.push_back(static_cast<uint8_t>(parts.any(i, layer_->penumbra)));
@@ -164,9 +164,9 @@ bool DirectJob::orderRound() {
 }
 
 // Goes on to a sample pass in which any chunk takes part; tells whether the step has one.
-bool DirectJob::seekRound() {
-    for (; round_ < endOfStep(); ++round_)
-        if (orderRound()) return true;
+bool DirectJob::seekSamplePass() {
+    for (; samplePass_ < endOfStep(); ++samplePass_)
+        if (orderSamplePass()) return true;
     return false;
 }
 
@@ -174,27 +174,27 @@ bool DirectJob::seekRound() {
 // on what the first sample pass meets.
 bool DirectJob::nextPart() {
     if (++part_ < layer_->parts.size()) {
-        orderRound(); // the same chunks as of the part before
+        orderSamplePass(); // the same chunks as of the part before
         return true;
     }
     part_ = 0;
-    if (round_ == 0 && (repairStep_ || endOfStep() > 1)) return false;
-    ++round_;
-    return seekRound();
+    if (samplePass_ == 0 && (repairStep_ || endOfStep() > 1)) return false;
+    ++samplePass_;
+    return seekSamplePass();
 }
 
-DirectJob::End DirectJob::endFirstRound(VkCommandBuffer cmd, bool pauses) {
+DirectJob::End DirectJob::endFirstSamplePass(VkCommandBuffer cmd, bool pauses) {
     tools_->penumbra.recordBack(cmd);
     tools_->kit.run(cmd);
     learnPenumbra();
-    ++round_;
-    if (seekRound()) return End::NotYet;
+    ++samplePass_;
+    if (seekSamplePass()) return End::NotYet;
     return repairStep_ ? endRepairStep(pauses) : endStep(tools_->kit.commands.begin());
 }
 
 DirectJob::End DirectJob::endStep(VkCommandBuffer cmd) {
     LinkKit& kit = tools_->kit;
-    const uint32_t end = endOfStep(), rounds = end - layer_->directRounds;
+    const uint32_t end = endOfStep(), samplePasses = end - layer_->directSamplePasses;
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd);
     if (!begun_) vkCmdFillBuffer(cmd, kit.buffers.directSums.handle(), 0, VK_WHOLE_SIZE, 0);
     tools_->penumbra.recordUpload(cmd);
@@ -202,19 +202,19 @@ DirectJob::End DirectJob::endStep(VkCommandBuffer cmd) {
     tools_->layerPass.recordDirect(cmd, kit.input.light,
                                    {.direct = *layer_->direct,
                                     .sums = kit.buffers.directSums,
-                                    .before = layer_->directRounds,
-                                    .added = rounds},
+                                    .before = layer_->directSamplePasses,
+                                    .added = samplePasses},
                                    tools_->penumbra.onDevice());
     kit.recordRayCount(cmd);
     tools_->penumbra.recordBack(cmd);
     kit.run(cmd);
     kit.countRays();
     learnPenumbra();
-    layer_->directRounds = end;
+    layer_->directSamplePasses = end;
     layer_->directSteps.push_back(end);
-    if (end == target_.directRounds) return End::Made;
+    if (end == target_.directSamplePasses) return End::Made;
     begun_ = false;
-    return seekRound() ? End::NotYet : endStep(kit.commands.begin());
+    return seekSamplePass() ? End::NotYet : endStep(kit.commands.begin());
 }
 
 DirectJob::End DirectJob::endRepairStep(bool pauses) {
@@ -226,17 +226,19 @@ DirectJob::End DirectJob::endRepairStep(bool pauses) {
     VkCommandBuffer cmd = kit.commands.begin();
     tools_->penumbra.recordUpload(cmd);
     vk::barrier(cmd);
-    tools_->layerPass.recordDirect(
-        cmd, light,
-        {.direct = light.ligOut, .sums = kit.buffers.directSums, .before = before, .added = round_ - before},
-        tools_->penumbra.onDevice());
+    tools_->layerPass.recordDirect(cmd, light,
+                                   {.direct = light.ligOut,
+                                    .sums = kit.buffers.directSums,
+                                    .before = before,
+                                    .added = samplePass_ - before},
+                                   tools_->penumbra.onDevice());
     repairStep_ = step + 1;
     begun_ = false;
     const bool last = step + 1 == layer.directSteps.size();
     const bool some = std::find(layer.dirty.begin(), layer.dirty.end(), Layer::kBegun) != layer.dirty.end();
     if (!last && !(step == 0 && (some || pauses))) {
         kit.run(cmd);
-        return seekRound() ? End::NotYet : endRepairStep(pauses);
+        return seekSamplePass() ? End::NotYet : endRepairStep(pauses);
     }
     vk::barrier(cmd);
     const std::shared_ptr<vk::Buffer> shared = recordOwnDirect(cmd);

@@ -48,10 +48,10 @@ private:
     void trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark);
     bool nextPart();
     uint32_t endOfStep() const;
-    bool orderRound();
-    bool seekRound();
+    bool orderSamplePass();
+    bool seekSamplePass();
     std::vector<uint8_t> repairedMarks() const;
-    End endFirstRound(VkCommandBuffer cmd, bool pauses);
+    End endFirstSamplePass(VkCommandBuffer cmd, bool pauses);
     End endStep(VkCommandBuffer cmd);
     End endRepairStep(bool pauses);
     void learnPenumbra();
@@ -63,7 +63,7 @@ private:
     Layer* layer_;
     LayerLevel target_;
     bool alone_;
-    uint32_t round_ = 0;                 // sample pass
+    uint32_t samplePass_ = 0;            // sample pass
     uint32_t part_ = 0;                  // of Layer::parts, within a sample pass
     std::vector<uint8_t> penumbra_;      // chunks with a part of Layer::penumbra; empty: not known yet
     bool begun_ = false;                 // a batch of this step has been made

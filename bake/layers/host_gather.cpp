@@ -70,11 +70,11 @@ glm::dvec4 HostGather::change(uint32_t slot, uint32_t) const {
         kit_.back<glm::vec4>(uint64_t{slot} * chunks * sizeof(glm::vec4), chunks), chunks));
 }
 
-LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkRounds, double sigma) {
+LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkSamplePasses, double sigma) {
     const LinkBuffers& buffers = kit_.buffers;
-    const uint32_t samples = linkRounds * kit_.linksOfRound;
+    const uint32_t samples = linkSamplePasses * kit_.linksOfSamplePass;
     const auto width = static_cast<float>(sigma);
-    const bool smooths = linkRounds > 0 && buffers.rows;
+    const bool smooths = linkSamplePasses > 0 && buffers.rows;
     const float scale =
         samples > 0 ? static_cast<float>(shader::kReplicates) / static_cast<float>(samples) : 0.0f;
     const HostResolveSums sums =
@@ -94,7 +94,7 @@ LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkRounds,
     LevelSums level{sumsOf(sums.indirect), sumsOf(sums.result), {}};
     const std::span patches(kit_.input.light.patches.as<shader::Patch>(),
                             size_t{kit_.chunkCount()} * shader::kChunk);
-    if (linkRounds > 0)
+    if (linkSamplePasses > 0)
         level.sketch = sketchOf(kit_.gatherPass.pool(), patches, buffers.linkSums.as<glm::vec4>());
     return level;
 }

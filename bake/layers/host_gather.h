@@ -23,7 +23,7 @@ public:
     void recordPassEnd(VkCommandBuffer cmd, const PassEnd& end) override;
     void recordChanges(VkCommandBuffer) override {} // recordPassEnd() has told them
     glm::dvec4 change(uint32_t slot, uint32_t lane) const override;
-    LevelSums resolve(uint32_t lane, const Layer& layer, uint32_t linkRounds, double sigma) override;
+    LevelSums resolve(uint32_t lane, const Layer& layer, uint32_t linkSamplePasses, double sigma) override;
 
 private:
     LinkKit& kit_;

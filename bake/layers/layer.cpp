@@ -75,16 +75,16 @@ LightCacheKey cacheKeyOf(const Scene& scene, const LightGroup& group) {
 }
 
 // The first step is that of the first level, which is in haste.
-uint32_t nextDirectStep(uint32_t rounds) {
+uint32_t nextDirectStep(uint32_t samplePasses) {
     constexpr uint32_t kFirst = 2;
-    return rounds < kFirst ? kFirst : onLadder(rounds + 1.0, true);
+    return samplePasses < kFirst ? kFirst : onLadder(samplePasses + 1.0, true);
 }
 
 double Layer::directShare() const {
     if (penumbra.empty()) return 1.0;
     const auto within = static_cast<double>(std::count(penumbra.begin(), penumbra.end(), 1));
     const double share = within / static_cast<double>(penumbra.size());
-    return share + (1.0 - share) / shader::kPenumbraRounds;
+    return share + (1.0 - share) / shader::kPenumbraSamplePasses;
 }
 
 uint32_t Layer::rays() const {
@@ -96,7 +96,7 @@ uint32_t Layer::rays() const {
 
 bool allLit(const std::vector<std::unique_ptr<Layer>>& layers) {
     return std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
-        return !layer->shines() || layer->directRounds > 0;
+        return !layer->shines() || layer->directSamplePasses > 0;
     });
 }
 

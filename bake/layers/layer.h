@@ -33,7 +33,7 @@ LightCacheKey cacheKeyOf(const Scene& scene, const LightGroup& group);
 /// A level tells how far a layer is. The layer at a level is a pure function of the cache key, the geometry
 /// and the surfaces' colours.
 struct LayerLevel {
-    uint32_t directRounds = 0, linkRounds = 0;
+    uint32_t directSamplePasses = 0, linkSamplePasses = 0;
 
     bool operator==(const LayerLevel&) const = default;
 };
@@ -41,7 +41,7 @@ struct LayerLevel {
 /// Returns the sample pass before which a step of direct light ends that begins with this one, unless its
 /// level ends it: these steps are the same whatever levels a layer goes through, and so are the sums' last
 /// bits.
-uint32_t nextDirectStep(uint32_t rounds);
+uint32_t nextDirectStep(uint32_t samplePasses);
 
 /// Part of a layer's direct light: a group of EmitterLight or of LampLight.
 struct DirectPart {
@@ -68,12 +68,13 @@ struct Layer {
     // a layer of the same light under other surfaces.
     std::shared_ptr<vk::Buffer> direct; // nullptr: no sample passes yet
     vk::Buffer result;                  // vec4 per patch: lighting, standard error; where there is a level
-    uint32_t directRounds = 0;          // sample passes in direct
-    // These are directRounds after each level that took more, and of the next level once its direct light is
-    // there. What is summed together decides the last bits.
+    uint32_t directSamplePasses = 0;    // sample passes in direct
+    // These are directSamplePasses after each level that took more, and of the next level once its direct
+    // light is there. What is summed together decides the last bits.
     std::vector<uint32_t> directSteps;
     // There is a 1 for each part of a tile (TileParts) in which rays of the first sample pass met the light's
-    // penumbra or the edge of its shadow. Patches elsewhere take only every kPenumbraRounds-th sample pass.
+    // penumbra or the edge of its shadow. Patches elsewhere take only every kPenumbraSamplePasses-th sample
+    // pass.
     std::vector<uint8_t> penumbra;
     // A chunk is kDirty where direct is of objects that have moved since, and kBeside where its neighbours
     // are: it is made anew only where these now are in a penumbra or are no longer. In kBegun chunks the
@@ -106,7 +107,7 @@ struct Layer {
     bool isOutdated() const { return !dirty.empty() && !begun; }
     /// Tells whether the next step of repairing direct light takes the chunk, too.
     bool repairs(size_t chunk) const { return dirty[chunk] != 0 && (begun || dirty[chunk] != kBegun); }
-    bool has() const { return level.linkRounds > 0 || level.directRounds > 0; }
+    bool has() const { return level.linkSamplePasses > 0 || level.directSamplePasses > 0; }
     /// Returns what is to be seen of it: the layer itself or the one before; nullptr for nothing.
     const Layer* shown() const { return has() ? this : before ? before->shown() : nullptr; }
 };

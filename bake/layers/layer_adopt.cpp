@@ -128,9 +128,9 @@ void LayerSolver::inherit(const Layer& from, Layer& to) const {
     alike.surfaces = to.cacheKey.surfaces;
     alike.objects = to.cacheKey.objects;
     const bool followed = from.cacheKey.objects == states_.before().objects;
-    if (!(alike == to.cacheKey) || !followed || from.directRounds == 0) return;
+    if (!(alike == to.cacheKey) || !followed || from.directSamplePasses == 0) return;
     to.direct = from.direct;
-    to.directRounds = from.directRounds;
+    to.directSamplePasses = from.directSamplePasses;
     to.directSteps = from.directSteps;
     to.penumbra = from.penumbra;
     to.dirty = from.dirty;
@@ -144,7 +144,7 @@ void LayerSolver::inherit(const Layer& from, Layer& to) const {
                    .farther = reachMoved_},
                   to);
     to.redo = from.redo;
-    if (!from.redo && from.has()) to.redo = LayerLevel{from.directRounds, from.level.linkRounds};
+    if (!from.redo && from.has()) to.redo = LayerLevel{from.directSamplePasses, from.level.linkSamplePasses};
     to.redoSteps = from.redoSteps;
 }
 
@@ -156,7 +156,7 @@ FormerLayers LayerSolver::release() {
     former.state = states_.now();
     former.pending = relinker_.pending();
     former.links = batches_.cache().release();
-    former.linksOfRound = kit_.linksOfRound;
+    former.linksOfSamplePass = kit_.linksOfSamplePass;
     former.partOfPatch = penumbra_.parts().ofPatch;
     former.reach = lights_.reach();
     former.progress = progress_;

@@ -114,7 +114,7 @@ void LayerBounces::recordSend(VkCommandBuffer cmd, float reflectivity) const {
 void LayerBounces::record(VkCommandBuffer cmd, const Work& work) const {
     shader::BouncePush p = push(work.reflectivity);
     std::copy(work.links.begin(), work.links.end(), p.links);
-    p.rounds = static_cast<uint32_t>(work.links.size());
+    p.samplePasses = static_cast<uint32_t>(work.links.size());
     p.firstChunk = work.range.first;
     p.chunkCount = work.range.count;
     p.sampleCount = work.samples;

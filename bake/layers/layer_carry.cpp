@@ -53,7 +53,7 @@ public:
     bool layer(Layer& to, bool& whole) {
         const std::unique_ptr<Layer> from = take(to.cacheKey);
         whole = false;
-        if (!from || from->directRounds == 0) return false;
+        if (!from || from->directSamplePasses == 0) return false;
         direct(*from, to);
         whole = carry_.patches.same && isEmpty(carry_.move) && carry_.sameColours && from->has() &&
                 from->cacheKey.surfaces == carry_.former.state.surfaces;
@@ -63,15 +63,15 @@ public:
 
     // Fills the cache; tells whether there are any links.
     bool links(LinkCache& cache) {
-        std::deque<LinkCache::Round> rounds = std::exchange(carry_.former.links, {});
-        if (carry_.former.linksOfRound != kit_.linksOfRound) return false;
+        std::deque<LinkCache::SamplePass> samplePasses = std::exchange(carry_.former.links, {});
+        if (carry_.former.linksOfSamplePass != kit_.linksOfSamplePass) return false;
         if (inPlace_) { // a link to what is no more is traced again wherever it leads to
-            cache.takeOver(std::move(rounds));
-            return cache.rounds() > 0;
+            cache.takeOver(std::move(samplePasses));
+            return cache.samplePasses() > 0;
         }
-        for (uint32_t round = 0; !rounds.empty(); ++round, rounds.pop_front())
-            if (!linksOf(round, rounds.front(), cache)) break;
-        return cache.rounds() > 0;
+        for (uint32_t samplePass = 0; !samplePasses.empty(); ++samplePass, samplePasses.pop_front())
+            if (!linksOf(samplePass, samplePasses.front(), cache)) break;
+        return cache.samplePasses() > 0;
     }
 
 private:
@@ -92,7 +92,7 @@ private:
 
     void direct(const Layer& from, Layer& to) {
         const PatchCarry& patches = carry_.patches;
-        to.directRounds = from.directRounds;
+        to.directSamplePasses = from.directSamplePasses;
         to.directSteps = from.directSteps;
         if (inPlace_) to.direct = from.direct; // what is other there is made anew
         if (patches.same) {
@@ -144,7 +144,8 @@ private:
 
     static void redo(const Layer& from, Layer& to) {
         to.redo = from.redo;
-        if (!from.redo && from.has()) to.redo = LayerLevel{from.directRounds, from.level.linkRounds};
+        if (!from.redo && from.has())
+            to.redo = LayerLevel{from.directSamplePasses, from.level.linkSamplePasses};
         to.redoSteps = from.redoSteps;
     }
     static void result(Layer& from, Layer& to) {
@@ -163,10 +164,10 @@ private:
         to.plan = from.plan;
     }
 
-    bool linksOf(uint32_t round, const LinkCache::Round& from, LinkCache& cache) {
-        const uint32_t chunks = kit_.chunkCount(), samples = kit_.linksOfRound;
-        const LinkCache::Place place = cache.find(round, 0, chunks);
-        if (place.count < chunks || cache.rounds() <= round) return false; // there is no room
+    bool linksOf(uint32_t samplePass, const LinkCache::SamplePass& from, LinkCache& cache) {
+        const uint32_t chunks = kit_.chunkCount(), samples = kit_.linksOfSamplePass;
+        const LinkCache::Place place = cache.find(samplePass, 0, chunks);
+        if (place.count < chunks || cache.samplePasses() <= samplePass) return false; // there is no room
         const std::vector<uint8_t> known = carryKnown(carry_.patches, from.known);
         std::vector<uint32_t> read, write;
         const auto* then = static_cast<const uint32_t*>(from.links.mapped());
@@ -190,7 +191,7 @@ private:
         if (!write.empty())
             vk::upload(kit_.input.device, *place.links, write.data(), write.size() * sizeof(uint32_t));
         for (const ChunkRange& range : rangesOf(known, true))
-            cache.note(round, range);
+            cache.note(samplePass, range);
         return true;
     }
 
@@ -205,8 +206,8 @@ private:
 
 uint64_t FormerLayers::bytes() const {
     uint64_t bytes = 0;
-    for (const LinkCache::Round& round : links)
-        bytes += round.links.size();
+    for (const LinkCache::SamplePass& samplePass : links)
+        bytes += samplePass.links.size();
     for (const std::unique_ptr<Layer>& layer : layers)
         bytes += (layer->direct ? layer->direct->size() : 0) + layer->result.size();
     return bytes;

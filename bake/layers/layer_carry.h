@@ -17,13 +17,13 @@ namespace relume {
 /// were edited.
 struct FormerLayers {
     std::vector<std::unique_ptr<Layer>> layers;
-    SceneState state;                   // of the layers that have followed all edits
-    std::deque<LinkCache::Round> links; // by sample pass
-    uint32_t linksOfRound = 0;          // links per patch and sample pass
-    std::optional<ObjectMove> pending;  // a move that some links have not followed yet
-    std::vector<uint32_t> partOfPatch;  // TileParts::ofPatch
-    float reach = 0;                    // how far away rays to suns and the sky end [m]
-    std::vector<glm::vec4> shown;       // the light that a viewer was shown, per patch; empty: not all of it
+    SceneState state;                        // of the layers that have followed all edits
+    std::deque<LinkCache::SamplePass> links; // by sample pass
+    uint32_t linksOfSamplePass = 0;          // links per patch and sample pass
+    std::optional<ObjectMove> pending;       // a move that some links have not followed yet
+    std::vector<uint32_t> partOfPatch;       // TileParts::ofPatch
+    float reach = 0;                         // how far away rays to suns and the sky end [m]
+    std::vector<glm::vec4> shown; // the light that a viewer was shown, per patch; empty: not all of it
     SolverProgress progress;
 
     uint64_t bytes() const; // on the device

@@ -66,7 +66,7 @@ public:
 
     /// Makes the layer's result of the lane's sums over so many sample passes of links, smoothed by sigma
     /// [texels]; with none, of direct light alone. Waits for it.
-    virtual LevelSums resolve(uint32_t lane, const Layer& layer, uint32_t linkRounds, double sigma) = 0;
+    virtual LevelSums resolve(uint32_t lane, const Layer& layer, uint32_t linkSamplePasses, double sigma) = 0;
 };
 
 } // namespace relume

@@ -93,7 +93,7 @@ bool LayerLights::onCpu(const DirectPart& part) const {
 
 void LayerLights::traceOnCpu(const Portion& portion) {
     const LampLight::Work work{.group = portion.part.group,
-                               .round = portion.round,
+                               .samplePass = portion.samplePass,
                                .range = portion.range,
                                .penumbra = portion.penumbra};
     WorkerPool& pool = kit_.gatherPass.pool();
@@ -117,7 +117,7 @@ template<typename Lights>
 void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
                             const std::function<void(VkCommandBuffer)>& before) {
     const typename Lights::Work work{.group = portion.part.group,
-                                     .round = portion.round,
+                                     .samplePass = portion.samplePass,
                                      .range = portion.range,
                                      .penumbra = portion.penumbra};
     const LightBuffers& light = kit_.input.light;

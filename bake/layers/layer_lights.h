@@ -39,7 +39,7 @@ public:
     /// One portion of a sample pass of a part.
     struct Portion {
         DirectPart part;
-        uint32_t round = 0;
+        uint32_t samplePass = 0;
         ChunkRange range;
         const Penumbra* penumbra = nullptr;
         bool newSums = false; // nothing is in the sums yet: the CPU writes all of them

@@ -33,7 +33,7 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
         LampLight::bytes(extent.chunkCount, extent.software, rays) +
         LampLight::tableBytes({lights.extended, lights.points}, extent.skyPixels, extent.skyRows);
     const uint32_t links =
-        linksOfRound(static_cast<uint32_t>(count), settings.links.samples, extent.software);
+        linksOfSamplePass(static_cast<uint32_t>(count), settings.links.samples, extent.software);
     // One batch of links that are not kept is there, nothing else for links.
     const LinkBuffers::Desc desc{.direct = true, .smooth = settings.links.smooth};
     const uint64_t staging =

@@ -8,7 +8,7 @@ namespace relume {
 namespace {
 
 bool addsDirect(const std::unique_ptr<Layer>& layer) {
-    return layer->shines() && layer->direct && layer->directRounds > 0;
+    return layer->shines() && layer->direct && layer->directSamplePasses > 0;
 }
 
 } // namespace

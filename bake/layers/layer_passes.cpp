@@ -18,7 +18,7 @@ void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, con
                                  .patchCount = light.chunkCount * kChunk,
                                  .scale = glm::vec2(0.0f),
                                  .share = glm::vec2(0.0f)};
-    const uint32_t every[] = {shader::kPenumbraRounds, 1};
+    const uint32_t every[] = {shader::kPenumbraSamplePasses, 1};
     for (int i = 0; i < 2; ++i) {
         const auto taken = [&](uint32_t of) { return (of + every[i] - 1) / every[i]; };
         const uint32_t all = taken(work.before + work.added), added = all - taken(work.before);

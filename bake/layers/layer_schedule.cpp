@@ -26,7 +26,7 @@ double strength(const glm::vec3& weight) {
 
 // Tells whether the layer has direct light, made for where objects are.
 bool isLit(const Layer& layer) {
-    return layer.directRounds > 0 && !layer.isOutdated();
+    return layer.directSamplePasses > 0 && !layer.isOutdated();
 }
 
 // Tells whether the light is a sun or the sky, which light a whole level.
@@ -37,7 +37,8 @@ bool isDaylight(const Layer& layer) {
 }
 
 LayerLevel atLeast(LayerLevel a, LayerLevel b) {
-    return {std::max(a.directRounds, b.directRounds), std::max(a.linkRounds, b.linkRounds)};
+    return {std::max(a.directSamplePasses, b.directSamplePasses),
+            std::max(a.linkSamplePasses, b.linkSamplePasses)};
 }
 
 bool isBusy(const ScheduleState& state) {
@@ -48,13 +49,14 @@ bool isBusy(const ScheduleState& state) {
 
 LayerLevel LayerSchedule::lastLevel() const {
     const uint32_t samples = rules_.samples > 0 ? rules_.samples : kMaxSamplesOfPatch;
-    const auto rounds = [&](uint32_t each) { return (samples + each - 1) / each; };
-    return {rounds(rules_.pointsOfRound), rules_.passes == 1 ? 0 : rounds(rules_.linksOfRound)};
+    const auto samplePasses = [&](uint32_t each) { return (samples + each - 1) / each; };
+    return {samplePasses(rules_.pointsOfSamplePass),
+            rules_.passes == 1 ? 0 : samplePasses(rules_.linksOfSamplePass)};
 }
 
 LayerLevel LayerSchedule::firstLevel() const {
     const LayerLevel last = lastLevel();
-    return {std::min(2u, last.directRounds), std::min(2u, last.linkRounds)};
+    return {std::min(2u, last.directSamplePasses), std::min(2u, last.linkSamplePasses)};
 }
 
 bool LayerSchedule::isHasty(LayerLevel target) const {
@@ -62,20 +64,20 @@ bool LayerSchedule::isHasty(LayerLevel target) const {
 }
 
 SampledPart LayerSchedule::directPart(const Layer& layer, double variance) const {
-    return {.rounds = layer.level.directRounds,
-            .most = lastLevel().directRounds,
+    return {.samplePasses = layer.level.directSamplePasses,
+            .most = lastLevel().directSamplePasses,
             .variance = variance,
-            .costOfRound = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare(),
+            .costOfSamplePass = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare(),
             .doubles = true};
 }
 
 // So many layers share what it costs to trace links.
 SampledPart LayerSchedule::linkPart(const Layer& layer, double variance, size_t sharers) const {
     const double cost = kGatherShare + (1.0 - kGatherShare) / static_cast<double>(sharers);
-    return {.rounds = layer.level.linkRounds,
-            .most = lastLevel().linkRounds,
+    return {.samplePasses = layer.level.linkSamplePasses,
+            .most = lastLevel().linkSamplePasses,
             .variance = variance,
-            .costOfRound = cost * rules_.linksOfRound};
+            .costOfSamplePass = cost * rules_.linksOfSamplePass};
 }
 
 bool LayerSchedule::isGoodEnough(const Layer& layer) const {
@@ -89,10 +91,10 @@ LayerLevel LayerSchedule::levelByItself(const Layer& layer) const {
     const double iteration = std::min(layer.iterationError, kIterationShare * error); // of the next
     const double wanted = error * error - iteration * iteration;
     const double variance = layer.directVariance + layer.indirectVariance;
-    const Rounds rounds =
-        roundsFor(directPart(layer, layer.directVariance), linkPart(layer, layer.indirectVariance, 1),
-                  sampled > 0.0 ? kAimed * variance * wanted / sampled : 0.0);
-    return {rounds.first, rounds.second};
+    const SamplePasses samplePasses =
+        samplePassesFor(directPart(layer, layer.directVariance), linkPart(layer, layer.indirectVariance, 1),
+                        sampled > 0.0 ? kAimed * variance * wanted / sampled : 0.0);
+    return {samplePasses.first, samplePasses.second};
 }
 
 // Returns the relRMSE that the composite is to have; 0: any. All local errors fall with it.
@@ -119,10 +121,10 @@ std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>&
     }
     const double iteration = std::min(composite.iteration, kIterationShare * aim);
     const double allowed = kAimed * (aim * aim - iteration * iteration);
-    const std::vector<uint32_t> rounds = roundsFor(parts, allowed);
+    const std::vector<uint32_t> samplePasses = samplePassesFor(parts, allowed);
     bool more = false;
     for (size_t i = 0; i < layers.size(); ++i) {
-        const LayerLevel level{rounds[2 * i], rounds[2 * i + 1]};
+        const LayerLevel level{samplePasses[2 * i], samplePasses[2 * i + 1]};
         more = more || level != levels[i];
         levels[i] = level;
     }
@@ -131,8 +133,8 @@ std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>&
     for (size_t i = 1; i < layers.size(); ++i)
         if (composite.shares[i].error > composite.shares[worst].error) worst = i;
     const Layer& layer = *layers[worst];
-    const Rounds doubled = roundsFor(directPart(layer, layer.directVariance),
-                                     linkPart(layer, layer.indirectVariance, layers.size()), 0.0);
+    const SamplePasses doubled = samplePassesFor(directPart(layer, layer.directVariance),
+                                                 linkPart(layer, layer.indirectVariance, layers.size()), 0.0);
     levels[worst] = {doubled.first, doubled.second};
     return levels;
 }
@@ -165,7 +167,8 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew,
         layer->plan.converged = layer->plan.wanted == layer->level;
         // Direct light that was made ahead is part of whichever level comes next.
         if (!layer->plan.converged)
-            layer->plan.wanted.directRounds = std::max(layer->plan.wanted.directRounds, layer->directRounds);
+            layer->plan.wanted.directSamplePasses =
+                std::max(layer->plan.wanted.directSamplePasses, layer->directSamplePasses);
     }
 }
 
@@ -180,14 +183,14 @@ bool LayerSchedule::areTogether(const Layers& layers) const {
 // Where the steps of a level that was there before begin with the first level, that is seen at once.
 LayerLevel LayerSchedule::targetOf(const Layer& layer) const {
     if (!layer.redo) return layer.has() ? layer.plan.wanted : firstLevel();
-    const uint32_t rounds = firstLevel().directRounds;
-    const bool first = !layer.has() && layer.directRounds <= rounds && !layer.redoSteps.empty() &&
-                       layer.redoSteps.front() == rounds;
+    const uint32_t samplePasses = firstLevel().directSamplePasses;
+    const bool first = !layer.has() && layer.directSamplePasses <= samplePasses && !layer.redoSteps.empty() &&
+                       layer.redoSteps.front() == samplePasses;
     return first ? firstLevel() : *layer.redo;
 }
 
 LayerSchedule::Step LayerSchedule::next(const Layers& layers, const ScheduleState& state) const {
-    if (state.relinkRound && !sumComesFirst(layers, state)) return Relink{};
+    if (state.relinkSamplePass && !sumComesFirst(layers, state)) return Relink{};
     if (isBusy(state)) return Continue{};
     if (state.sum.due) return BeginSum{};
     return nextLevelStep(layers, state);
@@ -244,7 +247,8 @@ std::vector<size_t> LayerSchedule::companions(const Layers& layers, size_t index
         const bool waits = !layer.plan.converged && layer.dirty.empty() && layer.shines();
         if (i == index || !waits) continue;
         const LayerLevel own = targetOf(layer);
-        if (own.linkRounds == target.linkRounds && isHasty(own) == isHasty(target)) others.push_back(i);
+        if (own.linkSamplePasses == target.linkSamplePasses && isHasty(own) == isHasty(target))
+            others.push_back(i);
     }
     return others;
 }
@@ -253,13 +257,13 @@ std::vector<size_t> LayerSchedule::companions(const Layers& layers, size_t index
 // viewer is in haste for the first level of each.
 std::optional<size_t> LayerSchedule::directFirst(const Layers& layers, size_t index) const {
     const LayerLevel target = targetOf(*layers[index]);
-    if (target.linkRounds == 0 || (rules_.live && !layers[index]->has())) return std::nullopt;
+    if (target.linkSamplePasses == 0 || (rules_.live && !layers[index]->has())) return std::nullopt;
     std::vector<size_t> together = companions(layers, index, target);
     if (together.empty()) return std::nullopt;
     together.insert(together.begin(), index);
     together.resize(std::min<size_t>(together.size(), LayerBounces::kMostLanes));
     for (const size_t i : together)
-        if (layers[i]->directRounds < targetOf(*layers[i]).directRounds) return i;
+        if (layers[i]->directSamplePasses < targetOf(*layers[i]).directSamplePasses) return i;
     return std::nullopt;
 }
 
@@ -270,7 +274,7 @@ bool LayerSchedule::wantsSum(const Layers& layers, bool shown) const {
     for (const std::unique_ptr<Layer>& layer : layers) {
         if (!layer->shines() || layer->has()) continue;
         ++waiting;
-        deep = deep || (layer->redo && layer->redo->linkRounds > sumRounds());
+        deep = deep || (layer->redo && layer->redo->linkSamplePasses > sumSamplePasses());
     }
     return waiting > 1 || (waiting == 1 && (deep || shown));
 }
@@ -294,18 +298,18 @@ bool LayerSchedule::canBeginWithDaylight(const Layers& layers) {
     return lit;
 }
 
-uint32_t LayerSchedule::sumRounds() const {
-    return std::max(1u, kSumLinks / rules_.linksOfRound);
+uint32_t LayerSchedule::sumSamplePasses() const {
+    return std::max(1u, kSumLinks / rules_.linksOfSamplePass);
 }
 
-uint32_t LayerSchedule::sumRounds(const Layers& layers) const {
-    uint32_t rounds = 1;
+uint32_t LayerSchedule::sumSamplePasses(const Layers& layers) const {
+    uint32_t samplePasses = 1;
     for (const std::unique_ptr<Layer>& layer : layers) {
         if (!layer->shines()) continue;
         const LayerLevel level = layer->has() ? layer->level : layer->redo.value_or(LayerLevel());
-        rounds = std::max(rounds, level.linkRounds);
+        samplePasses = std::max(samplePasses, level.linkSamplePasses);
     }
-    return std::min(rounds, sumRounds());
+    return std::min(samplePasses, sumSamplePasses());
 }
 
 // Returns a layer whose direct light is to be made before any layer goes on, so that it is seen among all
@@ -314,7 +318,7 @@ std::optional<size_t> LayerSchedule::unlitLayer(const Layers& layers, const Sche
     if (!state.sum.shown && !(state.unseen && wantsSum(layers, state.sum.shown))) return std::nullopt;
     std::optional<size_t> unlit;
     for (size_t i = 0; i < layers.size(); ++i) {
-        if (!layers[i]->shines() || layers[i]->directRounds > 0) continue;
+        if (!layers[i]->shines() || layers[i]->directSamplePasses > 0) continue;
         if (isDaylight(*layers[i])) return i;
         if (!unlit) unlit = i;
     }
@@ -335,7 +339,7 @@ std::optional<size_t> LayerSchedule::dirtyLayer(const Layers& layers) const {
 // Tells whether the links of later sample passes wait before they follow objects that moved: direct light
 // comes first, and all is seen in one.
 bool LayerSchedule::sumComesFirst(const Layers& layers, const ScheduleState& state) const {
-    return rules_.live && *state.relinkRound >= sumRounds() &&
+    return rules_.live && *state.relinkSamplePass >= sumSamplePasses() &&
            (isBusy(state) || state.sum.due || dirtyLayer(layers) || unlitLayer(layers, state));
 }
 

@@ -12,12 +12,12 @@ namespace relume {
 
 /// Holds what a schedule goes by for a whole bake.
 struct ScheduleRules {
-    uint32_t pointsOfRound = 4; // points per patch and sample pass of direct light
-    uint32_t linksOfRound = 16; // links per patch and sample pass
-    uint32_t samples = 0;       // per patch, at most; 0: as many as the error needs
-    uint32_t passes = 0;        // bounces, the direct light included; 0: until they have converged
-    double error = 0.01;        // relRMSE that the composite is to have; 0: it may have any
-    double localError = 0;      // that the composite is to have (its 95th percentile); 0: any
+    uint32_t pointsOfSamplePass = 4; // points per patch and sample pass of direct light
+    uint32_t linksOfSamplePass = 16; // links per patch and sample pass
+    uint32_t samples = 0;            // per patch, at most; 0: as many as the error needs
+    uint32_t passes = 0;             // bounces, the direct light included; 0: until they have converged
+    double error = 0.01;             // relRMSE that the composite is to have; 0: it may have any
+    double localError = 0;           // that the composite is to have (its 95th percentile); 0: any
     double layerError = 0; // relRMSE that each layer is to have by itself; 0: any. Without all three, all
                            // samples are taken
     bool live = false;     // a viewer looks
@@ -33,7 +33,7 @@ struct ScheduleState {
     };
     Sum sum;
     bool unseen = false; // colours or objects have changed, and there is no whole picture of it yet
-    std::optional<uint32_t> relinkRound; // sample pass whose links follow objects that moved now
+    std::optional<uint32_t> relinkSamplePass; // sample pass whose links follow objects that moved now
     struct Nothing {};
     struct SumJob {};
     struct LayerJob {
@@ -101,9 +101,9 @@ public:
     /// nothing is shown yet, that of the sun and the sky will do for a first one.
     bool canSum(const Layers& layers, bool shown) const;
     /// Returns the sample passes of links that the sum takes.
-    uint32_t sumRounds() const;
+    uint32_t sumSamplePasses() const;
     /// Returns those that the sum of these layers takes: no more than the deepest of them has.
-    uint32_t sumRounds(const Layers& layers) const;
+    uint32_t sumSamplePasses(const Layers& layers) const;
     /// Tells whether what is shown is of the last edit that was adopted.
     bool isWhole(const Layers& layers, const ScheduleState& state) const;
     /// Returns a layer whose direct light is to be repaired before any layer goes on, those whose repair has

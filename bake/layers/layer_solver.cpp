@@ -42,9 +42,9 @@ LinkKit::Desc kitOf(const SolverInput& input, SolverSettings settings, SolverPro
     requireLayers(settings);
     settings.transport.reflectedOnly = true;
     const uint32_t links =
-        linksOfRound(input.patches.count, settings.links.samples, input.device.info().software());
+        linksOfSamplePass(input.patches.count, settings.links.samples, input.device.info().software());
     return {.settings = settings,
-            .linksOfRound = links,
+            .linksOfSamplePass = links,
             .buffers = {.direct = true, .smooth = settings.links.smooth},
             .chunks = input.patches.chunkCount(),
             .progress = progress,
@@ -61,8 +61,8 @@ std::unique_ptr<LayerGather> makeGather(LinkKit& kit, const LayerPass& pass, con
 LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry)
     : kit_(input, kitOf(input, settings, progress_, batchMs_)), layerPass_(input.device),
       senders_(input.device.workers(), input.patches.scene.patches),
-      schedule_({.pointsOfRound = kPointsOfRound,
-                 .linksOfRound = kit_.linksOfRound,
+      schedule_({.pointsOfSamplePass = kPointsOfSamplePass,
+                 .linksOfSamplePass = kit_.linksOfSamplePass,
                  .samples = settings.links.samples,
                  .passes = settings.passes,
                  .error = settings.error,
@@ -73,7 +73,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
       store_(input.device, kit_.lightBytes(), settings.layers.bytes), lights_(kit_), penumbra_(kit_),
       gather_(makeGather(kit_, layerPass_, senders_)),
       batches_(kit_, {.chunkCount = kit_.chunkCount(),
-                      .links = kit_.linksOfRound,
+                      .links = kit_.linksOfSamplePass,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0}),
       directTools_{kit_, layerPass_, lights_, penumbra_, store_, BatchRate(kit_.wide())},
@@ -103,7 +103,7 @@ bool LayerSolver::holds(size_t lamps) const {
 ScheduleState LayerSolver::now() const {
     ScheduleState now{.sum = {.due = sumDue_, .shown = mixer_.showsSum()},
                       .unseen = unseen_,
-                      .relinkRound = relinker_.round(),
+                      .relinkSamplePass = relinker_.samplePass(),
                       .job = {}};
     if (const auto* direct = std::get_if<DirectJob>(&job_))
         now.job = ScheduleState::LayerJob{direct->layer().has()};
@@ -178,7 +178,7 @@ void LayerSolver::endRepair() {
     const bool more = schedule_.dirtyLayer(layers()).has_value();
     sumDue_ = canSum() && (outdated || !more);
     job_ = std::monostate();
-    if (more || sumDue_ || mixer_.showsSum() || relinker_.round()) return;
+    if (more || sumDue_ || mixer_.showsSum() || relinker_.samplePass()) return;
     job_.emplace<DirectJob>(directTools_, layer, job.target(), job.alone());
     endDirectBatch(std::get<DirectJob>(job_).begin(wantsSum()));
 }
@@ -186,7 +186,7 @@ void LayerSolver::endRepair() {
 // Begins with the layer itself and others that have all their direct light.
 void LayerSolver::beginBounces(Layer& leader, LayerLevel target) {
     std::vector<BounceJob::Lane> lanes = {{.layer = &leader, .target = target}};
-    if (target.linkRounds == 0) {
+    if (target.linkSamplePasses == 0) {
         job_ = std::monostate();
         return finishLevel(lanes.front(), 0, 0);
     }
@@ -196,7 +196,8 @@ void LayerSolver::beginBounces(Layer& leader, LayerLevel target) {
     const auto index = static_cast<size_t>(own - layers().begin());
     for (const size_t i : schedule_.companions(layers(), index, target)) {
         const LayerLevel level = schedule_.targetOf(*layers()[i]);
-        if (layers()[i]->directRounds >= level.directRounds && lanes.size() < LayerBounces::kMostLanes)
+        if (layers()[i]->directSamplePasses >= level.directSamplePasses &&
+            lanes.size() < LayerBounces::kMostLanes)
             lanes.push_back({.layer = layers()[i].get(), .target = level});
     }
     if (lanes.size() > 1) lanes.resize(gather_->room(static_cast<uint32_t>(lanes.size())));
@@ -214,9 +215,9 @@ void LayerSolver::bounceBatch() {
 // Makes the result of a lane's sums, smoothed by the width that suits it. Returns its sums.
 LevelSums LayerSolver::resolveLevel(const BounceJob::Lane& lane, uint32_t index) {
     Layer& layer = *lane.layer;
-    const uint32_t links = lane.target.linkRounds;
+    const uint32_t links = lane.target.linkSamplePasses;
     if (!layer.result) layer.result = store_.takeBuffer("layer");
-    layer.width = {.sigma = likelyWidth(links * kit_.linksOfRound)};
+    layer.width = {.sigma = likelyWidth(links * kit_.linksOfSamplePass)};
     LevelSums sums;
     const auto at = [&](double sigma) {
         sums = gather_->resolve(index, layer, links, sigma);
@@ -263,7 +264,7 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
 
 void LayerSolver::showLevel(Layer& layer) {
     if (layer.before) store_.archive(std::move(layer.before));
-    progress_.samples = std::max(progress_.samples, layer.level.linkRounds * kit_.linksOfRound);
+    progress_.samples = std::max(progress_.samples, layer.level.linkSamplePasses * kit_.linksOfSamplePass);
     for (size_t i = 0; i < layers().size(); ++i)
         if (layers()[i].get() == &layer) mixer_.changed(i);
     endStandIn();
@@ -290,7 +291,7 @@ void LayerSolver::beginSum() {
         sum_->direct = std::make_shared<vk::Buffer>(store_.takeBuffer("direct light of all layers"));
     }
     mixer_.mixDirect(layers(), *sum_->direct);
-    const LayerLevel target{0, schedule_.sumRounds(layers())};
+    const LayerLevel target{0, schedule_.sumSamplePasses(layers())};
     // Its first bounce begins with what is shown, as an edit changes part of it.
     job_.emplace<BounceJob>(
         bounceTools_, BounceJob::Desc{.lanes = {{.layer = sum_.get(), .target = target}},

@@ -70,7 +70,7 @@ public:
     bool atRest() const { return schedule_.atRest(layers(), now()); }
 
     /// Each light gets few points per patch and sample pass, so that a light that moves is seen soon.
-    static constexpr uint32_t kPointsOfRound = LayerLights::kPoints;
+    static constexpr uint32_t kPointsOfSamplePass = LayerLights::kPoints;
 
 private:
     bool isBusy() const { return !std::holds_alternative<std::monostate>(job_); }

@@ -7,7 +7,7 @@ namespace relume {
 namespace {
 
 struct LayerState {
-    uint32_t directRounds = 0;
+    uint32_t directSamplePasses = 0;
     LayerLevel level;
     SmoothingWidth width;
     double light = 0, count = 0, directVariance = 0, indirectVariance = 0, iterationError = 1, error = 1;
@@ -25,7 +25,7 @@ size_t layerStateBytes(uint32_t parts) {
 void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes) {
     LayerState own;
     std::memset(static_cast<void*>(&own), 0, sizeof own); // padding, too
-    own.directRounds = layer.directRounds;
+    own.directSamplePasses = layer.directSamplePasses;
     own.level = layer.level;
     own.width = layer.width;
     own.light = layer.light;
@@ -54,10 +54,10 @@ void takeLayerState(Layer& layer, std::span<const uint8_t> bytes) {
     layer.sketch.entries.resize(kSketchEntries);
     std::memcpy(layer.sketch.entries.data(), sketch.data(), kSketchBytes);
     layer.penumbra.assign(penumbra.begin(), penumbra.end());
-    layer.directRounds = from.directRounds;
+    layer.directSamplePasses = from.directSamplePasses;
     layer.directSteps.clear();
-    for (uint32_t made = 0; made < from.directRounds; layer.directSteps.push_back(made))
-        made = std::min(nextDirectStep(made), from.directRounds);
+    for (uint32_t made = 0; made < from.directSamplePasses; layer.directSteps.push_back(made))
+        made = std::min(nextDirectStep(made), from.directSamplePasses);
     layer.level = from.level;
     layer.width = from.width;
     layer.light = from.light;

@@ -122,7 +122,7 @@ void LayerStore::remember(const Layer& layer) {
     if (layer.redo) return;
     std::erase_if(records_, [&](const Record& record) { return record.cacheKey == layer.cacheKey; });
     const std::vector<uint32_t>& steps = layer.directSteps; // those made ahead are of no level yet
-    const auto end = std::upper_bound(steps.begin(), steps.end(), layer.level.directRounds);
+    const auto end = std::upper_bound(steps.begin(), steps.end(), layer.level.directSamplePasses);
     records_.push_back({layer.cacheKey, layer.level, {steps.begin(), end}});
     const auto count = [](size_t sum, const Record& record) {
         return sum + 1 + record.cacheKey.members.size();
@@ -143,7 +143,7 @@ void LayerStore::recall(Layer& layer) const {
         std::mismatch(layer.directSteps.begin(), layer.directSteps.end(), steps.begin(), steps.end());
     if (differs.first != layer.directSteps.end()) {
         layer.direct.reset();
-        layer.directRounds = 0;
+        layer.directSamplePasses = 0;
         layer.directSteps.clear();
         layer.dirty.clear();
         layer.begun = false;

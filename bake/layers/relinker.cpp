@@ -12,8 +12,8 @@ void Relinker::follow(const ObjectMove& move) {
     // Where an object moved on, links of early sample passes have followed the moves before, or some of them.
     ObjectMove early = move, late = move;
     if (relink_) {
-        relink.earlyRounds = std::max(relink_->round, relink_->earlyRounds);
-        if (relink_->round < relink_->earlyRounds) early.add(relink_->early.move);
+        relink.earlySamplePasses = std::max(relink_->samplePass, relink_->earlySamplePasses);
+        if (relink_->samplePass < relink_->earlySamplePasses) early.add(relink_->early.move);
         late.add(relink_->late.move);
     }
     const vk::Device& device = kit_.input.device;
@@ -21,9 +21,9 @@ void Relinker::follow(const ObjectMove& move) {
         return Path{way, vk::makeBuffer(device, way.boxes, "boxes"),
                     vk::makeBuffer(device, way.changed, "changed patches")};
     };
-    if (relink.earlyRounds > 0) relink.early = path(early);
+    if (relink.earlySamplePasses > 0) relink.early = path(early);
     relink.late = path(late);
-    const uint64_t most = uint64_t{kit_.buffers.batchChunks} * kit_.linksOfRound * shader::kChunk;
+    const uint64_t most = uint64_t{kit_.buffers.batchChunks} * kit_.linksOfSamplePass * shader::kChunk;
     if (!kit_.input.tracer.onCpu())
         relink.list = vk::Buffer(device, {.size = (most + 1) * sizeof(uint32_t), .name = "links to trace"});
     relink_ = std::move(relink);
@@ -32,11 +32,11 @@ void Relinker::follow(const ObjectMove& move) {
 void Relinker::batch() {
     Relink& relink = *relink_;
     const uint32_t chunks = kit_.chunkCount();
-    if (relink.round < links_.rounds()) {
+    if (relink.samplePass < links_.samplePasses()) {
         relink.chunk += retrace(relink, chunks - relink.chunk);
         if (relink.chunk < chunks) return;
         relink.chunk = 0;
-        if (++relink.round < links_.rounds()) return;
+        if (++relink.samplePass < links_.samplePasses()) return;
     }
     VkCommandBuffer cmd = kit_.commands.begin();
     kit_.recordRayCount(cmd);
@@ -47,17 +47,17 @@ void Relinker::batch() {
 
 // Traces the links of the next chunks that are there. Returns how many chunks that settles.
 uint32_t Relinker::retrace(Relink& relink, uint32_t most) {
-    const LinkCache::Place place = links_.find(relink.round, relink.chunk, most);
+    const LinkCache::Place place = links_.find(relink.samplePass, relink.chunk, most);
     if (!place.known) return place.count;
     const double wanted = std::max(1.0, relink.rate.wanted(kit_.batchMs));
     const auto count = static_cast<uint32_t>(
         std::min<double>({wanted, double(place.count), double(kit_.buffers.batchChunks)}));
     const auto start = Clock::now();
-    const Path& path = relink.round < relink.earlyRounds ? relink.early : relink.late;
+    const Path& path = relink.samplePass < relink.earlySamplePasses ? relink.early : relink.late;
     const RetraceWork work{.closest = {.firstChunk = relink.chunk,
                                        .chunkCount = count,
-                                       .firstSample = relink.round * kit_.linksOfRound,
-                                       .sampleCount = kit_.linksOfRound,
+                                       .firstSample = relink.samplePass * kit_.linksOfSamplePass,
+                                       .sampleCount = kit_.linksOfSamplePass,
                                        .rotation = kit_.settings.links.rotation,
                                        .links = place.links,
                                        .linksOffset = place.offset,

@@ -16,12 +16,14 @@ public:
     /// Takes up a move. Where an object moves on while links still follow it, all ways count.
     void follow(const ObjectMove& move);
     /// Returns the sample pass whose links come next; nothing where all have followed.
-    std::optional<uint32_t> round() const { return relink_ ? std::optional(relink_->round) : std::nullopt; }
+    std::optional<uint32_t> samplePass() const {
+        return relink_ ? std::optional(relink_->samplePass) : std::nullopt;
+    }
     /// Returns the move that some links have not followed yet; nothing where all have.
     std::optional<ObjectMove> pending() const {
         return relink_ ? std::optional(relink_->late.move) : std::nullopt;
     }
-    /// Traces a batch. Needs round().
+    /// Traces a batch. Needs samplePass().
     void batch();
 
 private:
@@ -32,11 +34,11 @@ private:
     };
     /// Kept links on their way to where objects are now.
     struct Relink {
-        Path early, late; // for the first earlyRounds sample passes, for the others
-        uint32_t earlyRounds = 0;
+        Path early, late; // for the first earlySamplePasses sample passes, for the others
+        uint32_t earlySamplePasses = 0;
         vk::Buffer list;
         BatchRate rate;
-        uint32_t round = 0, chunk = 0; // next
+        uint32_t samplePass = 0, chunk = 0; // next
     };
     uint32_t retrace(Relink& relink, uint32_t most);
 

@@ -24,8 +24,8 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
     VkCommandBuffer cmd = kit_.commands.begin();
     pass_.record(cmd, kit_.input.light, kit_.buffers,
                  {.size = kit_.input.patches.scene.size,
-                  .samples = state.linkRounds * kit_.linksOfRound,
-                  .directRounds = state.directRounds,
+                  .samples = state.linkSamplePasses * kit_.linksOfSamplePass,
+                  .directSamplePasses = state.directSamplePasses,
                   .sigma = static_cast<float>(sigma),
                   .scaled = state.scaled,
                   .local = bool(kit_.buffers.local),
@@ -75,9 +75,9 @@ std::vector<ChunkVariance> LinkErrors::chunks() const {
 }
 
 double LinkErrors::coarseVariance(const LinkState& state, double patches) const {
-    if (kit_.buffers.receiverCount == 0 || state.linkRounds == 0) return 0.0;
+    if (kit_.buffers.receiverCount == 0 || state.linkSamplePasses == 0) return 0.0;
     VkCommandBuffer cmd = kit_.commands.begin();
-    pass_.recordCoarse(cmd, kit_.input.light, kit_.buffers, state.linkRounds * kit_.linksOfRound);
+    pass_.recordCoarse(cmd, kit_.input.light, kit_.buffers, state.linkSamplePasses * kit_.linksOfSamplePass);
     kit_.run(cmd);
     const glm::dvec4 total = sumsOf(vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.chunkSums,
                                                               kit_.buffers.receiverCount / shader::kChunk));

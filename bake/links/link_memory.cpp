@@ -51,7 +51,7 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const bool hybrid = settings.method == Method::Hybrid;
     // The last chunk may be padding but for one patch.
     const auto least = static_cast<uint32_t>(count - std::min<uint64_t>(count, shader::kChunk - 1));
-    const uint32_t links = linksOfRound(least, settings.links.samples, extent.software);
+    const uint32_t links = linksOfSamplePass(least, settings.links.samples, extent.software);
     const DirectNeeds direct = directNeeds(extent, hybrid, links, settings.links.allOver);
     const LinkBuffers::Desc desc{.direct = direct.any,
                                  .smooth = hybrid && settings.links.smooth,
@@ -65,7 +65,7 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
                                                       : extent.chunkCount,
                           .links = links,
                           .batch = linkBatchChunks(extent.chunkCount, extent.software),
-                          .oneRound = true};
+                          .oneSamplePass = true};
     if (settings.cache.keepsLinks())
         cache.bytes = settings.cache.bytes > 0 ? settings.cache.bytes : UINT64_MAX;
     // Every node has two children or more, so there are fewer of them than patches; in compact charts a third

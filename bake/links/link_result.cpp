@@ -42,7 +42,7 @@ std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
 
 // Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
 void LinkSolver::check() {
-    state_.nextCheck = state_.rounds() + 1;
+    state_.nextCheck = state_.samplePasses() + 1;
     if (!schedule_.hasSolution(state_)) return; // no bounces yet
     resolve();
     const double aim = kit_.settings.error;
@@ -84,8 +84,8 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
     const LinkErrors::Local local = errors_.local();
     progress_.localError95 = local.error.p95;
     progress_.localError99 = local.error.p99;
-    state_.directAtCheck = state_.directRounds;
-    state_.linksAtCheck = state_.linkRounds;
+    state_.directAtCheck = state_.directSamplePasses;
+    state_.linksAtCheck = state_.linkSamplePasses;
     progress_.error = 0;
     if (sums.light > 0) {
         state_.coarseVariance = errors_.coarseVariance(state_, sums.count);
@@ -108,13 +108,13 @@ void LinkSolver::learn(const shader::ResolveSums& sums) {
 // Returns the light so far; within a sample pass only some patches have its samples. What a look teaches
 // about widths and variances must not decide what comes next: looking changes no byte.
 const std::vector<glm::vec4>& LinkSolver::light() {
-    if (stale_ && state_.stage == Stage::Plan && state_.rounds() > 0) {
+    if (stale_ && state_.stage == Stage::Plan && state_.samplePasses() > 0) {
         const LinkState before = state_;
         resolve();
         state_ = before;
     }
     const size_t count = kit_.input.patches.scene.patches.size();
-    if (light_.empty() && state_.rounds() == 0) light_.assign(count, glm::vec4(0.0f));
+    if (light_.empty() && state_.samplePasses() == 0) light_.assign(count, glm::vec4(0.0f));
     if (light_.empty()) {
         kit_.rankChunks.share({kit_.buffers.result, kChunk * sizeof(glm::vec4)});
         light_ = vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.result, count);
@@ -152,16 +152,16 @@ std::vector<StatePart> LinkSolver::stateParts() {
     add(buffers.coarseSums);
     add(buffers.rays);
     parts.push_back(part(kit_.order));
-    for (ChunkRounds* rounds : {&directRounds_, &linkRounds_}) {
-        parts.push_back(part(rounds->doneArray()));
-        parts.push_back(part(rounds->wantedArray()));
+    for (ChunkSamplePasses* samplePasses : {&directSamplePasses_, &linkSamplePasses_}) {
+        parts.push_back(part(samplePasses->doneArray()));
+        parts.push_back(part(samplePasses->wantedArray()));
     }
     return parts;
 }
 
 void LinkSolver::restore(const SolverState& state) {
     state_ = takeState<LinkState>(state);
-    if (state_.stage != Stage::Plan) pass_ = roundsOf(state_.stage).next(state_.passRounds);
+    if (state_.stage != Stage::Plan) pass_ = samplePassesOf(state_.stage).next(state_.passSamplePasses);
     if (state_.scaled) uploadScales();
     if (!kit_.rankChunks.alone()) { // what is left of the pass under way, and what it has counted, is shared
         kit_.order.marks() = kit_.rankChunks.ownOf(kit_.order.marks());
@@ -203,8 +203,9 @@ void LinkSolver::setPriority(std::vector<uint8_t> chunkSeen) {
 // Makes a sample pass's result at its end, where a viewer waits for one and there is time. It does so once:
 // the width of smoothing is what the look before said. light() and the end make theirs anew.
 void LinkSolver::look() {
-    const uint32_t rounds = state_.rounds();
-    if (!stale_ || !schedule_.hasSolution(state_) || !live_.asked || rounds == live_.rounds) return;
+    const uint32_t samplePasses = state_.samplePasses();
+    if (!stale_ || !schedule_.hasSolution(state_) || !live_.asked || samplePasses == live_.samplePasses)
+        return;
     const double pause = std::max(kLookSeconds, live_.cost / kLookShare);
     if (live_.resolves > 0 && secondsSince(live_.looked) < pause) return;
     live_.looked = Clock::now();
@@ -216,7 +217,7 @@ void LinkSolver::look() {
     live_.width = width;
     state_ = before;
     live_.cost = secondsSince(live_.looked);
-    live_.rounds = rounds;
+    live_.samplePasses = samplePasses;
     live_.asked = false;
     light_.clear(); // within the next sample pass this is the latest there is
 }
@@ -281,7 +282,8 @@ void LinkSolver::undo() {
     vkCmdCopyBuffer(cmd, (undo_ ? undo_ : kit_.buffers.rows).handle(), sums.handle(), 1, &all);
     vk::barrier(cmd);
     if (state_.stage == Stage::Direct) {
-        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directRounds, scales());
+        kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directSamplePasses,
+                                         scales());
         vk::barrier(cmd);
     }
     vk::hostBarrier(cmd);
@@ -302,7 +304,7 @@ void LinkSolver::abortPass() {
         const auto counters =
             vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
         progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
-    } else if (state_.linkRounds == 0) { // convergence begins anew
+    } else if (state_.linkSamplePasses == 0) { // convergence begins anew
         state_.series = {};
         state_.convergence = {};
     }

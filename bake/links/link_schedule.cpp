@@ -9,7 +9,7 @@ namespace relume {
 namespace {
 
 // The error is looked at again when so much of the sample passes that it seems to need are done (variance
-// falls as 1 / rounds or faster), and when their number has doubled.
+// falls as 1 / samplePasses or faster), and when their number has doubled.
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 // 95 % of normally distributed errors are within so many standard deviations.
 constexpr double kDeviationsOf95 = 1.96;
@@ -21,16 +21,17 @@ constexpr double kLeastOfVariance = 0.25;
 
 } // namespace
 
-uint32_t LinkSchedule::roundsWanted() const {
+uint32_t LinkSchedule::samplePassesWanted() const {
     const uint32_t limit = rules_.samples > 0 ? rules_.samples : kMaxSamplesOfPatch;
-    return (limit + rules_.linksOfRound - 1) / rules_.linksOfRound;
+    return (limit + rules_.linksOfSamplePass - 1) / rules_.linksOfSamplePass;
 }
 
 // Each direction stands for its share of the whole result. Where the error decides how many there will be, it
-// is that of what is there so far: the mean over sample passes of something that falls as 1 / rounds falls to
-// nothing, too.
+// is that of what is there so far: the mean over sample passes of something that falls as 1 / samplePasses
+// falls to nothing, too.
 uint32_t LinkSchedule::footprintSamples(const LinkState& state) const {
-    return rules_.linksOfRound * (rules_.samples > 0 ? roundsWanted() : state.linkRounds + 1);
+    return rules_.linksOfSamplePass *
+           (rules_.samples > 0 ? samplePassesWanted() : state.linkSamplePasses + 1);
 }
 
 double LinkSchedule::excess(double error, double localError) const {
@@ -41,8 +42,8 @@ double LinkSchedule::excess(double error, double localError) const {
 ChunkPlanRules LinkSchedule::planRules(const LinkState& state) const {
     ChunkPlanRules plan{.directCost = std::max(1.0, kSegmentCost * state.raysToLights),
                         .linkCost = rules_.linkCost,
-                        .mostRounds = roundsWanted(),
-                        .hasDirect = rules_.hasDirect && state.directRounds > 0};
+                        .mostSamplePasses = samplePassesWanted(),
+                        .hasDirect = rules_.hasDirect && state.directSamplePasses > 0};
     plan.localError = rules_.localError * state.strictness / kDeviationsOf95;
     if (rules_.error > 0 && state.patches > 0) {
         const double mean = state.light / (3.0 * state.patches), iteration = state.series.error;
@@ -57,29 +58,30 @@ ChunkPlanRules LinkSchedule::planRules(const LinkState& state) const {
 
 uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
     const double growth = std::min(kCheckGrowth, kCheckShare * excess * excess);
-    return std::max(state.rounds() + 1, static_cast<uint32_t>(growth * state.rounds()));
+    return std::max(state.samplePasses() + 1, static_cast<uint32_t>(growth * state.samplePasses()));
 }
 
 bool LinkSchedule::wantsDirect(const LinkState& state) const {
     if (directDone(state)) return false;
-    if (state.directRounds == 0 || linksDone(state)) return true;
-    if (state.linkRounds == 0) return false;
-    if (rules_.samples > 0) return state.directRounds <= state.linkRounds;
-    if (state.directRounds < state.linkRounds / kMostLinksOfDirect) return true;
-    return gainOfRound({.rounds = state.directAtCheck,
-                        .variance = state.directChoice,
-                        .costOfRound = rules_.directCost},
-                       state.directRounds) >
-           gainOfRound(
-               {.rounds = state.linksAtCheck, .variance = state.linkChoice, .costOfRound = rules_.linkCost},
-               state.linkRounds);
+    if (state.directSamplePasses == 0 || linksDone(state)) return true;
+    if (state.linkSamplePasses == 0) return false;
+    if (rules_.samples > 0) return state.directSamplePasses <= state.linkSamplePasses;
+    if (state.directSamplePasses < state.linkSamplePasses / kMostLinksOfDirect) return true;
+    return gainOfSamplePass({.samplePasses = state.directAtCheck,
+                             .variance = state.directChoice,
+                             .costOfSamplePass = rules_.directCost},
+                            state.directSamplePasses) >
+           gainOfSamplePass({.samplePasses = state.linksAtCheck,
+                             .variance = state.linkChoice,
+                             .costOfSamplePass = rules_.linkCost},
+                            state.linkSamplePasses);
 }
 
 bool LinkSchedule::isLastBounce(const LinkState& state) const {
     // Hybrid's first pass is its direct light.
     const uint32_t bounces = rules_.hybrid ? rules_.passes - 1 : rules_.passes;
     if (rules_.passes > 0) return state.bounce + 1 >= bounces;
-    return state.linkRounds > 0 || (state.bounce > 0 && state.last);
+    return state.linkSamplePasses > 0 || (state.bounce > 0 && state.last);
 }
 
 bool LinkSchedule::hasConverged(const LinkState& state) const {

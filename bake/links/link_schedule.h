@@ -12,12 +12,12 @@ namespace relume {
 struct LinkState {
     enum class Stage : uint32_t { Plan, Direct, Links };
     Stage stage = Stage::Plan;
-    uint32_t directRounds = 0, linkRounds = 0; // finished, of the chunks that have most
-    uint32_t passRounds = 1;                   // that the pass under way takes
-    uint32_t bounce = 0;                       // of the current sample pass
-    uint32_t nextCheck = 0;                    // sample passes of both kinds before the next check
-    bool last = false;                         // this bounce is the sample pass's last one: it counts
-    BounceSeries series;                       // of the first sample pass, then its last bounce's own share
+    uint32_t directSamplePasses = 0, linkSamplePasses = 0; // finished, of the chunks that have most
+    uint32_t passSamplePasses = 1;                         // that the pass under way takes
+    uint32_t bounce = 0;                                   // of the current sample pass
+    uint32_t nextCheck = 0; // sample passes of both kinds before the next check
+    bool last = false;      // this bounce is the sample pass's last one: it counts
+    BounceSeries series;    // of the first sample pass, then its last bounce's own share
     // These are of the light, R, G and B of all patches together.
     double directVariance = 0, indirectVariance = 0, coarseVariance = 0;
     double light = 0, patches = 0; // likewise, of those that are shown
@@ -31,7 +31,7 @@ struct LinkState {
     double median = 0;                            // light of all texels [cd/m^2]
     double strictness = 1; // what is asked for is planned with so many times less error
 
-    uint32_t rounds() const { return directRounds + linkRounds; }
+    uint32_t samplePasses() const { return directSamplePasses + linkSamplePasses; }
 };
 
 /// No sample pass has more bounces.
@@ -41,7 +41,7 @@ constexpr uint32_t kMostBounces = 256;
 struct LinkRules {
     bool hybrid = false;
     bool hasDirect = false; // rays go to lights
-    uint32_t linksOfRound = 16;
+    uint32_t linksOfSamplePass = 16;
     uint32_t samples = 0;  // per patch, at most; 0: as many as the error needs
     uint32_t passes = 0;   // bounces of each sample pass; 0: until they have converged
     double error = 0.01;   // relRMSE to be reached; 0: any will do
@@ -56,12 +56,12 @@ public:
     explicit LinkSchedule(const LinkRules& rules) : rules_(rules) {}
 
     /// Returns the sample passes of each kind at most.
-    uint32_t roundsWanted() const;
+    uint32_t samplePassesWanted() const;
     /// Returns how many directions share the result.
     uint32_t footprintSamples(const LinkState& state) const;
     /// Tells whether the error is to be found before the next sample pass.
     bool wantsCheck(const LinkState& state) const {
-        return wantsError() && state.rounds() > 0 && state.rounds() >= state.nextCheck;
+        return wantsError() && state.samplePasses() > 0 && state.samplePasses() >= state.nextCheck;
     }
     /// Tells whether an error decides when sampling ends.
     bool wantsError() const { return rules_.error > 0 || rules_.localError > 0; }
@@ -80,7 +80,7 @@ public:
     ChunkPlanRules planRules(const LinkState& state) const;
     /// Returns how many sample passes of links follow so many at once, from the same light. Each next one
     /// would start from better light, which matters less the more there are.
-    static uint32_t roundsAtOnce(uint32_t rounds) { return rounds / 16 + 1; }
+    static uint32_t samplePassesAtOnce(uint32_t samplePasses) { return samplePasses / 16 + 1; }
     /// Tells whether all sample passes are made.
     bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
     /// Tells whether direct light comes next: at first, then where it takes more away, for its cost, of the
@@ -88,12 +88,13 @@ public:
     bool wantsDirect(const LinkState& state) const;
     /// Tells whether there are sums of a sample pass in which every patch has its bounces.
     bool hasSolution(const LinkState& state) const {
-        return state.linkRounds > 0 || (directAlone() && state.directRounds > 0);
+        return state.linkSamplePasses > 0 || (directAlone() && state.directSamplePasses > 0);
     }
     /// Tells whether there is light to look at: of all patches, or of those that are seen, which come first
     /// and have theirs (`seenLit`).
     static bool hasFirstLight(const LinkState& state, bool seenLit) {
-        return state.rounds() > 0 || state.bounce > 0 || (seenLit && state.stage != LinkState::Stage::Plan);
+        return state.samplePasses() > 0 || state.bounce > 0 ||
+               (seenLit && state.stage != LinkState::Stage::Plan);
     }
     /// Tells whether direct light is all that is asked for.
     bool directAlone() const { return rules_.hybrid && rules_.passes == 1; }
@@ -101,17 +102,17 @@ public:
     bool isLastBounce(const LinkState& state) const;
     /// Tells whether bounces of the first sample pass are followed until they have converged.
     bool converges(const LinkState& state) const {
-        return rules_.passes == 0 && state.linkRounds == 0 && !state.last;
+        return rules_.passes == 0 && state.linkSamplePasses == 0 && !state.last;
     }
     /// Tells whether these bounces have converged, so that the next one is the last.
     bool hasConverged(const LinkState& state) const;
 
 private:
     bool linksDone(const LinkState& state) const {
-        return state.linkRounds >= roundsWanted() || directAlone();
+        return state.linkSamplePasses >= samplePassesWanted() || directAlone();
     }
     bool directDone(const LinkState& state) const {
-        return !rules_.hasDirect || state.directRounds >= roundsWanted();
+        return !rules_.hasDirect || state.directSamplePasses >= samplePassesWanted();
     }
 
     LinkRules rules_;

@@ -24,7 +24,7 @@ static_assert(std::is_trivially_copyable_v<LinkState>);
 static_assert(kMostBounces == Solver::kMaxPasses);
 
 uint32_t linksOf(const SolverInput& input, const SolverSettings& settings) {
-    return linksOfRound(input.patches.count, settings.links.samples, input.device.info().software());
+    return linksOfSamplePass(input.patches.count, settings.links.samples, input.device.info().software());
 }
 
 EmitterLight makeEmitters(const SolverInput& input, const SolverSettings& settings) {
@@ -78,7 +78,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                   : CoarsePatches{}),
       kit_(input,
            {.settings = withTransport(settings),
-            .linksOfRound = linksOf(input, settings),
+            .linksOfSamplePass = linksOf(input, settings),
             .buffers = {.direct = hasDirect(),
                         .smooth = settings.method == Method::Hybrid && settings.links.smooth,
                         .local = true,
@@ -89,14 +89,14 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
             .progress = progress_,
             .batchMs = batchMs_}),
       batches_(kit_, {.chunkCount = static_cast<uint32_t>(receiversOf(input, coarse_).size() / kChunk),
-                      .links = kit_.linksOfRound,
+                      .links = kit_.linksOfSamplePass,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
                       .chunks = ownChunks(kit_.rankChunks, coarse_.count > 0),
-                      .oneRound = true}),
+                      .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
-      disc_(makeDisc()), radiancePass_(input.device), directRounds_(kit_.chunkCount()),
-      linkRounds_(senders_.chunks()), directRate_(kit_.wide()) {
+      disc_(makeDisc()), radiancePass_(input.device), directSamplePasses_(kit_.chunkCount()),
+      linkSamplePasses_(senders_.chunks()), directRate_(kit_.wide()) {
     ASSERT(input.ranks.alone() || !settings.live);
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -115,7 +115,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     }
     kit_.run(cmd);
     if (settings.live && !buffers.rows)
-        undo_ = vk::Buffer(input.device, {.size = buffers.linkSums.size(), .name = "sums before the round"});
+        undo_ = vk::Buffer(input.device,
+                           {.size = buffers.linkSums.size(), .name = "sums before the sample pass"});
     progress_.cacheBytes = batches_.cache().bytes();
     progress_.cachedShare = batches_.cache().share();
 }
@@ -125,22 +126,22 @@ LinkRules LinkSolver::rules() const {
     const double linkShare = static_cast<double>(senders_.chunks()) / kit_.chunkCount();
     return {.hybrid = settings.method == Method::Hybrid,
             .hasDirect = hasDirect(),
-            .linksOfRound = kit_.linksOfRound,
+            .linksOfSamplePass = kit_.linksOfSamplePass,
             .samples = settings.links.samples,
             .passes = settings.passes,
             .error = settings.error,
             .localError = settings.localError,
             .perChunk = samplesPerChunk(settings, kit_.input.device.info().software()),
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
-            .linkCost = kit_.linksOfRound * linkShare};
+            .linkCost = kit_.linksOfSamplePass * linkShare};
 }
 
 // Makes the directions' set. Each replicate goes through it once; where the error decides how many sample
 // passes there will be, once per sample pass: a set that is broken off is less even.
 LinkSolver::Disc LinkSolver::makeDisc() const {
     if (kit_.settings.links.directions != DirectionSet::Lec) return {};
-    const uint32_t rounds = kit_.settings.links.samples > 0 ? schedule_.roundsWanted() : 1;
-    const uint32_t count = rounds * kit_.linksOfRound / shader::kReplicates;
+    const uint32_t samplePasses = kit_.settings.links.samples > 0 ? schedule_.samplePassesWanted() : 1;
+    const uint32_t count = samplePasses * kit_.linksOfSamplePass / shader::kReplicates;
     std::vector<glm::vec2> points;
     points.reserve(count);
     for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
@@ -164,7 +165,7 @@ void LinkSolver::step() {
 // Plans direct light first, then links; then whichever takes more of the error away for its rays, or chunk by
 // chunk.
 void LinkSolver::plan() {
-    const bool pending = directRounds_.pending() || linkRounds_.pending();
+    const bool pending = directSamplePasses_.pending() || linkSamplePasses_.pending();
     if (!pending) {
         // With a number of samples alone, errors decide nothing.
         if (schedule_.wantsCheck(state_)) check();
@@ -177,35 +178,36 @@ void LinkSolver::plan() {
         }
     }
     if (kit_.settings.live) look();
-    begin(directRounds_.pending() ? Stage::Direct : Stage::Links);
+    begin(directSamplePasses_.pending() ? Stage::Direct : Stage::Links);
 }
 
 // Makes chunks want more sample passes, and tells whether any does.
 bool LinkSolver::planChunks() {
     if (!state_.scaled) {
-        roundsOf(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links).wantOneMore();
+        samplePassesOf(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links).wantOneMore();
         return true;
     }
     const std::vector<ChunkVariance> chunks = errors_.chunks();
-    const std::span<const uint32_t> direct = directRounds_.done(), links = linkRounds_.done();
+    const std::span<const uint32_t> direct = directSamplePasses_.done(), links = linkSamplePasses_.done();
     const ChunkPlan now{{direct.begin(), direct.end()}, {links.begin(), links.end()}};
     ChunkPlan plan = now;
     for (uint32_t tries = 0; tries < kMostStricter && plan == now; ++tries) {
         if (tries > 0) state_.strictness *= kStricter;
         plan = relume::planChunks(schedule_.planRules(state_), chunks, now);
     }
-    directRounds_.want(plan.direct);
-    linkRounds_.want(plan.links);
+    directSamplePasses_.want(plan.direct);
+    linkSamplePasses_.want(plan.links);
     return plan != now;
 }
 
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
     state_.bounce = 0;
-    pass_ = roundsOf(stage).next(1);
+    pass_ = samplePassesOf(stage).next(1);
     if (stage == Stage::Links && state_.scaled)
-        pass_ = linkRounds_.next(std::min(batches_.mostRounds(), schedule_.roundsAtOnce(pass_.first)));
-    state_.passRounds = pass_.count;
+        pass_ = linkSamplePasses_.next(
+            std::min(batches_.mostSamplePasses(), schedule_.samplePassesAtOnce(pass_.first)));
+    state_.passSamplePasses = pass_.count;
     if (stage == Stage::Links) {
         batches_.cache().forget();
         return beginBounce();
@@ -232,9 +234,10 @@ void LinkSolver::beginOrder() {
 
 // Takes note of the pass that has ended.
 void LinkSolver::endPass() {
-    ChunkRounds& rounds = roundsOf(state_.stage);
-    rounds.finish(pass_);
-    (state_.stage == Stage::Direct ? state_.directRounds : state_.linkRounds) = rounds.deepest();
+    ChunkSamplePasses& samplePasses = samplePassesOf(state_.stage);
+    samplePasses.finish(pass_);
+    (state_.stage == Stage::Direct ? state_.directSamplePasses : state_.linkSamplePasses) =
+        samplePasses.deepest();
     if (state_.scaled) uploadScales();
     stale_ = true;
     state_.stage = Stage::Plan;
@@ -242,10 +245,11 @@ void LinkSolver::endPass() {
 
 void LinkSolver::uploadScales() {
     const auto scale = [](double samples) { return static_cast<float>(samples > 0 ? 1.0 / samples : 0.0); };
-    const double perReplicate = static_cast<double>(kit_.linksOfRound) / shader::kReplicates;
+    const double perReplicate = static_cast<double>(kit_.linksOfSamplePass) / shader::kReplicates;
     std::vector<glm::vec2> scales;
-    for (size_t i = 0; i < linkRounds_.done().size(); ++i)
-        scales.emplace_back(scale(perReplicate * linkRounds_.done()[i]), scale(directRounds_.done()[i]));
+    for (size_t i = 0; i < linkSamplePasses_.done().size(); ++i)
+        scales.emplace_back(scale(perReplicate * linkSamplePasses_.done()[i]),
+                            scale(directSamplePasses_.done()[i]));
     vk::upload(kit_.input.device, kit_.buffers.scales, scales.data(), scales.size() * sizeof(glm::vec2));
 }
 
@@ -262,7 +266,7 @@ template<typename Lights>
 void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
-    typename Lights::Work work{.group = group, .round = pass_.first, .range = range};
+    typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};
     if constexpr (requires { work.notes; }) {
         work.notes = buffers.notes ? &buffers.notes : nullptr;
         work.soFar = &buffers.direct;
@@ -330,7 +334,8 @@ void LinkSolver::beginBounce() {
     if (state_.last) recordUndo(cmd);
     if (state_.bounce == 0) {
         const std::span<const ChunkRange> own = kit_.rankChunks.own();
-        const uint32_t samples = kit_.settings.passes > 0 ? 0 : state_.linkRounds * kit_.linksOfRound;
+        const uint32_t samples =
+            kit_.settings.passes > 0 ? 0 : state_.linkSamplePasses * kit_.linksOfSamplePass;
         if (buffers.carried && samples > 0 && !state_.scaled)
             kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f, own);
         else
@@ -385,7 +390,7 @@ void LinkSolver::linkBatch() {
                           if (atOnce) recordDistances(cmd);
                       }},
                  atOnce);
-    const uint64_t count = senders_.count(portion.range) * kit_.linksOfRound * portion.rounds;
+    const uint64_t count = senders_.count(portion.range) * kit_.linksOfSamplePass * portion.samplePasses;
     (portion.trace ? progress_.rays : progress_.raysSaved) += count;
     progress_.pairs += count;
     batches_.finish(pass_.first, portion);
@@ -402,7 +407,7 @@ void LinkSolver::recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portio
                               .links = portion.gather.address(),
                               .firstChunk = portion.range.first,
                               .chunkCount = portion.range.count,
-                              .sampleCount = kit_.linksOfRound,
+                              .sampleCount = kit_.linksOfSamplePass,
                               .samples = schedule_.footprintSamples(state_)});
     vk::barrier(cmd);
 }
@@ -413,7 +418,7 @@ void LinkSolver::interpolate() {
     for (uint32_t first = 0; first < chunks; first += kInterpolatedChunks) {
         VkCommandBuffer cmd = kit_.commands.begin();
         kit_.gatherPass.recordInterpolate(cmd, kit_.input.light, kit_.buffers,
-                                          {.samples = kit_.linksOfRound,
+                                          {.samples = kit_.linksOfSamplePass,
                                            .direct = direct(),
                                            .accumulate = state_.last,
                                            .distances = wantsDistances(),
@@ -429,7 +434,7 @@ void LinkSolver::carry() {
     if (!kit_.buffers.carried || state_.scaled) return;
     VkCommandBuffer cmd = kit_.commands.begin();
     kit_.gatherPass.recordCarry(cmd, kit_.input.light, kit_.buffers, direct(),
-                                carriedShare(state_.linkRounds + 1), kit_.rankChunks.own());
+                                carriedShare(state_.linkSamplePasses + 1), kit_.rankChunks.own());
     kit_.run(cmd);
 }
 
@@ -453,15 +458,15 @@ void LinkSolver::endBounce() {
     }
     if (kit_.settings.passes == 0) {
         state_.series.error *= state_.series.ratio; // this bounce's own share
-        if (state_.linkRounds == 0)
+        if (state_.linkSamplePasses == 0)
             state_.convergence.bounce();
         else
-            state_.convergence.round(state_.linkRounds);
+            state_.convergence.samplePass(state_.linkSamplePasses);
     } else
         state_.series.error = 0; // what more bounces would add is not asked for
     endPass();
-    const double links = static_cast<double>(linkRounds_.total()) * kit_.linksOfRound;
-    progress_.samples = static_cast<uint32_t>(std::lround(links / linkRounds_.done().size()));
+    const double links = static_cast<double>(linkSamplePasses_.total()) * kit_.linksOfSamplePass;
+    progress_.samples = static_cast<uint32_t>(std::lround(links / linkSamplePasses_.done().size()));
 }
 
 } // namespace relume

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "assets/base/clock.h"
-#include "bake/base/chunk_rounds.h"
+#include "bake/base/chunk_sample_passes.h"
 #include "bake/direct/emitter_light.h"
 #include "bake/direct/lamp_light.h"
 #include "bake/direct/point_trace.h"
@@ -61,7 +61,9 @@ private:
     /// Returns the scales of chunks, where these have sample passes of their own.
     const vk::Buffer* scales() const { return state_.scaled ? &kit_.buffers.scales : nullptr; }
     void uploadScales();
-    ChunkRounds& roundsOf(Stage stage) { return stage == Stage::Direct ? directRounds_ : linkRounds_; }
+    ChunkSamplePasses& samplePassesOf(Stage stage) {
+        return stage == Stage::Direct ? directSamplePasses_ : linkSamplePasses_;
+    }
     /// Tells whether there is direct light: of mesh lights, which hybrid samples, or of analytic lights.
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
@@ -70,7 +72,9 @@ private:
     void traceDirect(const Lights& lights, uint32_t group, ChunkRange range);
     void linkBatch();
     void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
-    bool wantsDistances() const { return kit_.buffers.distances && state_.linkRounds == 0 && state_.last; }
+    bool wantsDistances() const {
+        return kit_.buffers.distances && state_.linkSamplePasses == 0 && state_.last;
+    }
     void recordRadiance(VkCommandBuffer cmd);
     void shareRadiance();
     void beginBounce();
@@ -103,8 +107,8 @@ private:
     Disc disc_;
     RadiancePass radiancePass_;
     LinkState state_;
-    ChunkRounds directRounds_, linkRounds_;
-    ChunkRounds::Pass pass_;             // under way
+    ChunkSamplePasses directSamplePasses_, linkSamplePasses_;
+    ChunkSamplePasses::Pass pass_;       // under way
     std::vector<uint8_t> seenReceivers_; // chunks of the coarser grid that come first
     BatchRate directRate_;
     bool gridLimits_ = false;      // more samples are of no use
@@ -121,7 +125,7 @@ private:
         bool complete = false, asked = true;
         Clock::time_point looked;            // when the last look began
         double cost = 0;                     // of that look [s]
-        uint32_t rounds = 0;                 // sample passes at that look
+        uint32_t samplePasses = 0;           // sample passes at that look
         std::optional<SmoothingWidth> width; // for the next one; else the solver's
         bool undoable = false;               // what `undo` goes back to is there
     };

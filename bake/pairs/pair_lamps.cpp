@@ -10,7 +10,7 @@ namespace {
 
 // So many sample passes find the light of each analytic light that has an extent: beside what pairs of
 // patches cost, they cost next to nothing.
-constexpr uint32_t kRounds = 16;
+constexpr uint32_t kSamplePasses = 16;
 // The first batch has so many chunks, before anything is measured.
 constexpr double kFirstChunks = 4;
 
@@ -25,11 +25,11 @@ PairLamps::PairLamps(const vk::Device& device, const Scene& scene, const PatchSe
 }
 
 bool PairLamps::done() const {
-    return empty() || place_.rounds == kRounds;
+    return empty() || place_.samplePasses == kSamplePasses;
 }
 
 double PairLamps::fraction() const {
-    return (place_.rounds + static_cast<double>(place_.chunk) / chunks_) / kRounds;
+    return (place_.samplePasses + static_cast<double>(place_.chunk) / chunks_) / kSamplePasses;
 }
 
 void PairLamps::clear(vk::Commands& commands) {
@@ -49,7 +49,8 @@ PointTimes PairLamps::batch(const Batch& batch) {
         std::clamp(wanted, 1.0, static_cast<double>(std::min(left, lamps_.batchChunks()))));
     PointTimes all;
     for (uint32_t group = 0; group < lamps_.groups(); ++group) {
-        const LampLight::Work work{.group = group, .round = place_.rounds, .range = {place_.chunk, count}};
+        const LampLight::Work work{
+            .group = group, .samplePass = place_.samplePasses, .range = {place_.chunk, count}};
         const PointTimes times = tracePoints(
             batch.on, lamps_.segments(batch.light, work, batch.rays),
             [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, batch.light, work); },
@@ -59,7 +60,7 @@ PointTimes PairLamps::batch(const Batch& batch) {
     }
     rate_ = count / std::max(1e-3, 1e3 * secondsSince(start));
     place_.chunk += count;
-    if (place_.chunk == chunks_) place_ = {.rounds = place_.rounds + 1, .chunk = 0};
+    if (place_.chunk == chunks_) place_ = {.samplePasses = place_.samplePasses + 1, .chunk = 0};
     return all;
 }
 

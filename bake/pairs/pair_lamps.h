@@ -12,15 +12,15 @@ class PairLamps {
 public:
     /// Tells where it stands.
     struct Place {
-        uint32_t rounds = 0; // finished sample passes
-        uint32_t chunk = 0;  // of the next one, the first chunk that is left
+        uint32_t samplePasses = 0; // finished sample passes
+        uint32_t chunk = 0;        // of the next one, the first chunk that is left
     };
     PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches);
 
     bool empty() const { return lamps_.empty(); }
     bool done() const;
     /// Tells whether some of it is there.
-    bool begun() const { return place_.rounds > 0 || place_.chunk > 0; }
+    bool begun() const { return place_.samplePasses > 0 || place_.chunk > 0; }
     double fraction() const; // done
     /// Starts over, from no light.
     void clear(vk::Commands& commands);

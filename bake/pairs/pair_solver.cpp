@@ -241,7 +241,7 @@ void PairSolver::countRays() {
 
 SolverState PairSolver::state() {
     ASSERT(!done_);
-    PairState state{.lampRounds = lamps_.place().rounds,
+    PairState state{.lampSamplePasses = lamps_.place().samplePasses,
                     .lampChunk = lamps_.place().chunk,
                     .passes = progress_.passes,
                     .inPass = walk_.inPass(),
@@ -269,7 +269,7 @@ std::vector<StatePart> PairSolver::stateParts() {
 void PairSolver::restore(const SolverState& from) {
     const auto state = takeState<PairState>(from);
     done_ = false;
-    lamps_.resume({.rounds = state.lampRounds, .chunk = state.lampChunk});
+    lamps_.resume({.samplePasses = state.lampSamplePasses, .chunk = state.lampChunk});
     bits_.resume(state.ringTurn);
     threshold_ = state.threshold;
     solved_.restore({.lastChange = state.lastChange, .convergence = state.convergence},

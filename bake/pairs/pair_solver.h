@@ -14,15 +14,15 @@ namespace relume {
 /// Tells where a pair method stands; with ligOut and the rows that are left it is all that a bake needs to go
 /// on at a super-block's border. Checkpoints hold it as it is.
 struct PairState {
-    uint32_t lampRounds = 0;      // finished sample passes of analytic lights, before the first pass
-    uint32_t lampChunk = 0;       // of the next one, the first chunk that is left
-    uint32_t passes = 0;          // finished
-    bool inPass = false;          // then:
-    uint32_t row = 0, column = 0; // the next super-block; symmetric: in either order
-    uint32_t unit = 0;            // 0: it is at a border
-    uint64_t ringTurn = 0;        // super-blocks of the pass that were not kept
-    double lastChange = 0;        // RMS [cd/m^2] of the last pass
-    double threshold = 0;         // of the quad-tree in this pass
+    uint32_t lampSamplePasses = 0; // finished sample passes of analytic lights, before the first pass
+    uint32_t lampChunk = 0;        // of the next one, the first chunk that is left
+    uint32_t passes = 0;           // finished
+    bool inPass = false;           // then:
+    uint32_t row = 0, column = 0;  // the next super-block; symmetric: in either order
+    uint32_t unit = 0;             // 0: it is at a border
+    uint64_t ringTurn = 0;         // super-blocks of the pass that were not kept
+    double lastChange = 0;         // RMS [cd/m^2] of the last pass
+    double threshold = 0;          // of the quad-tree in this pass
     BounceConvergence convergence;
 };
 

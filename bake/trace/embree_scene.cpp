@@ -423,7 +423,7 @@ uint32_t EmbreeScene::Impl::targets(const SegmentArrays& work, uint32_t chunk, u
         const glm::vec4* to = ends + size_t{s} * kChunk;
         if (std::none_of(to, to + kChunk, [](const glm::vec4& end) { return end.w > 0.0f; })) continue;
         if (starts.move())
-            starts.make(shader::startNumber(first + s, work.round, work.turn, work.run), points);
+            starts.make(shader::startNumber(first + s, work.samplePass, work.turn, work.run), points);
         for (uint32_t i = 0; i < kChunk; ++i) {
             if (!(to[i].w > 0.0f)) continue;
             const glm::vec3 origin =

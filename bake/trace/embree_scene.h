@@ -40,7 +40,7 @@ struct SegmentArrays {
     uint32_t* bits = nullptr;
     uint32_t* rays = nullptr; // may be left out
     const shader::PatchCover* covers = nullptr;
-    uint32_t round = 0, turn = 1, run = 1;
+    uint32_t samplePass = 0, turn = 1, run = 1;
 };
 
 /// RetraceWork (tracer.h) on plain memory.

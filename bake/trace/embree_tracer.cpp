@@ -58,7 +58,7 @@ public:
                          .bits = mappedAs<uint32_t>(work.bits, work.chunkCount * words * shader::kChunk),
                          .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr,
                          .covers = coversOf(work.covers),
-                         .round = work.round,
+                         .samplePass = work.samplePass,
                          .turn = work.turn,
                          .run = work.run});
     }

@@ -96,7 +96,7 @@ public:
                 .covers = addressOf(work.covers),
                 .firstChunk = work.firstChunk,
                 .targetCount = work.targetCount,
-                .round = work.round,
+                .samplePass = work.samplePass,
                 .turn = work.turn,
                 .run = work.run};
     }

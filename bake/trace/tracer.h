@@ -83,9 +83,10 @@ struct SegmentWork {
     const vk::Buffer* bits = nullptr; // uint32_t[chunkCount * words * 64], too
     const vk::Buffer* rays =
         nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
-    // As in ClosestWork: target s starts at shader::startPoint of shader::startNumber(s, round, turn, run).
+    // As in ClosestWork: target s starts at shader::startPoint of shader::startNumber(s, samplePass, turn,
+    // run).
     const vk::Buffer* covers = nullptr;
-    uint32_t round = 0, turn = 1, run = 1;
+    uint32_t samplePass = 0, turn = 1, run = 1;
 };
 
 constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/rays/segments.glsl

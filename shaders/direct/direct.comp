@@ -6,7 +6,7 @@
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 layout(push_constant, scalar) uniform Push { DirectPush push; };
-#include "lib/light/penumbra_rounds.glsl"
+#include "lib/light/penumbra_sample_passes.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -24,7 +24,7 @@ void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
-    if (roundLeftOut(index)) return;
+    if (samplePassLeftOut(index)) return;
     bool all = push.all != 0u;
     uint reachedEmitters = 0u, hiddenEmitters = 0u;
     vec3 value[kReplicates];

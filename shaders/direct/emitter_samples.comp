@@ -10,7 +10,7 @@
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
 #include "lib/light/pick_emitter.glsl"
-#include "lib/light/penumbra_rounds.glsl"
+#include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/rays/starts.glsl"
 
 layout(local_size_x = 64) in;
@@ -37,14 +37,14 @@ void main() {
     uint emitter = pick, sequence = 0u; // of the pick's points, where it has one of its own
     float probability = 1.0;
     if (!all) {
-        uint number = push.round * push.pickCount + pick;
+        uint number = push.samplePass * push.pickCount + pick;
         uint seed = hash32(replicateSeed(key, number) ^ kPickSalt);
         emitter = pickEmitter(p.position, p.shading, sobolPoint(replicateIndex(number), seed).x, probability);
         sequence = replicateIndex(number) * push.pointCount;
     }
     vec3 light = vec3(0.0);
     EmitterPolygon e;
-    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !roundLeftOut(index)) {
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !samplePassLeftOut(index)) {
         e = loadEmitterPolygon(push.polygons, emitter);
         light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
     }
@@ -59,11 +59,11 @@ void main() {
         if (shines) {
             // If all polygons are sampled, a patch's points take turns among the replicates; if they are
             // picked, a pick's points belong to one.
-            uint number = all ? push.round * push.pointCount + s : pick;
+            uint number = all ? push.samplePass * push.pointCount + s : pick;
             uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
             uint target = pick * push.pointCount + s;
-            uint start = startNumber(target, push.round, all ? push.pointCount : push.pickCount * push.pointCount,
+            uint start = startNumber(target, push.samplePass, all ? push.pointCount : push.pickCount * push.pointCount,
                                      all ? 1u : push.pointCount);
             Patch from = startingPatch(p, cover, start);
             if (near) factors += emitterFormFactor(from.position, from.shading, e);

@@ -28,7 +28,7 @@ void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
-    if (roundLeftOut(index)) return;
+    if (samplePassLeftOut(index)) return;
     Patch p = loadPatch(push.patches, index);
     PatchCover cover = coverOf(index); // the sky's samples are made again
     vec3 value[kReplicates];
@@ -73,7 +73,7 @@ void main() {
             }
             if (note.known) {
                 vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);
-                unit = noted + float(kNoteRounds) * (unit - noted);
+                unit = noted + float(kNoteSamplePasses) * (unit - noted);
             }
             value[q] += l.color * unit;
         }

@@ -11,7 +11,7 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
-    bool leftOut = roundLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
+    bool leftOut = samplePassLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
     PatchCover cover = coverOf(index);
     for (uint s = 0u; s < l.samples; ++s) {
         vec4 target = vec4(0.0);

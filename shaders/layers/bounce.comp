@@ -29,7 +29,7 @@ void gather(uint chunk, out vec3 sums[kReplicates]) {
         sums[q] = vec3(0.0);
         if (push.sums == kMoreSums) sums[q] = kPackScale * VEC4_AT(lane.sums, q * push.patchCount + index).rgb;
     }
-    for (uint r = 0u; r < push.rounds; ++r) {
+    for (uint r = 0u; r < push.samplePasses; ++r) {
         Words links = Words(push.links[r]);
         for (uint k = 0u; k < push.sampleCount; k += kReplicates) {
             uint row = (chunk * push.sampleCount + k) * kChunk + i;
@@ -52,7 +52,7 @@ void send(vec3 light) {
         float weight = patchIsShown(flags) ? 1.0 : 0.0;
         terms[l][i] = weight * vec4(dot(change, change), light.r + light.g + light.b, 1.0, before.r + before.g + before.b);
     }
-    if (push.rounds > 0u && has(push.live)) VEC4_AT(lightNext(), index) = vec4(light, 1.0);
+    if (push.samplePasses > 0u && has(push.live)) VEC4_AT(lightNext(), index) = vec4(light, 1.0);
     UVEC2_AT(push.sent, index * LANES + l) = packLight(sends ? push.reflectivity * albedo * light : vec3(0.0));
 }
 
@@ -71,7 +71,7 @@ void main() {
     }
     if (push.sent != 0ul) {
         vec3 total = sums[0] + sums[1] + sums[2] + sums[3];
-        send(push.rounds > 0u ? VEC4_AT(lane.direct, index).rgb + total * push.scale : VEC4_AT(lightNow(), index).rgb);
+        send(push.samplePasses > 0u ? VEC4_AT(lane.direct, index).rgb + total * push.scale : VEC4_AT(lightNow(), index).rgb);
     }
     if (push.changes == 0ul) return;
     barrier();

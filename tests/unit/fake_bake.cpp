@@ -38,7 +38,7 @@ ScheduleState FakeBake::now() const {
     ScheduleState state;
     state.sum = {.due = sumDue_, .shown = sumShown_};
     state.unseen = unseen_;
-    state.relinkRound = relink_;
+    state.relinkSamplePass = relink_;
     if (const auto* direct = std::get_if<Direct>(&job_))
         state.job = ScheduleState::LayerJob{direct->layer->has()};
     else if (const auto* bounce = std::get_if<Bounce>(&job_); bounce && bounce->sum)
@@ -113,13 +113,15 @@ void FakeBake::checkStep(const LayerSchedule::Step& step, bool dropped) {
     const Layer& layer = *layers()[next->layer];
     const LayerLevel last = schedule_.lastLevel();
     require(layer.shines(), "a level is made of what is dark");
-    require(next->target.directRounds <= last.directRounds && next->target.linkRounds <= last.linkRounds,
+    require(next->target.directSamplePasses <= last.directSamplePasses &&
+                next->target.linkSamplePasses <= last.linkSamplePasses,
             "a level is beyond the last one");
-    require(next->target.directRounds >= layer.level.directRounds &&
-                next->target.linkRounds >= layer.level.linkRounds,
+    require(next->target.directSamplePasses >= layer.level.directSamplePasses &&
+                next->target.linkSamplePasses >= layer.level.linkSamplePasses,
             "a level is below the one before");
     require(next->target != layer.level || !layer.dirty.empty(), "a level is made that is there");
-    require(!next->directAlone || layer.directRounds < next->target.directRounds || !layer.dirty.empty(),
+    require(!next->directAlone || layer.directSamplePasses < next->target.directSamplePasses ||
+                !layer.dirty.empty(),
             "direct light is made that is there");
     const bool later = layer.has() && !next->directAlone && layer.dirty.empty();
     require(!later || std::all_of(layers().begin(), layers().end(),
@@ -137,16 +139,17 @@ void FakeBake::checkLanes(const Bounce& job) {
             "too many layers bounce together");
     require(job.lanes.size() == 1 || desc_.rules.together, "layers bounce together on the CPU");
     for (const Lane& lane : job.lanes) {
-        require(lane.target.linkRounds == leader.target.linkRounds, "lanes want other links");
+        require(lane.target.linkSamplePasses == leader.target.linkSamplePasses, "lanes want other links");
         require(schedule_.isHasty(lane.target) == schedule_.isHasty(leader.target), "not all are hasty");
-        require(lane.layer->directRounds >= lane.target.directRounds, "a lane lacks direct light");
+        require(lane.layer->directSamplePasses >= lane.target.directSamplePasses,
+                "a lane lacks direct light");
         require(lane.layer->dirty.empty(), "dirty direct light bounces");
         require(lane.layer->shines() || &lane == &leader, "what is dark bounces along");
     }
 }
 
 void FakeBake::relink() {
-    if (*relink_ < keptRounds_ && ++*relink_ < keptRounds_) return;
+    if (*relink_ < keptSamplePasses_ && ++*relink_ < keptSamplePasses_) return;
     relink_.reset();
 }
 
@@ -165,7 +168,7 @@ void FakeBake::begin(const LayerSchedule::BeginLayer& next) {
 FakeBake::End FakeBake::beginDirect() {
     auto& job = std::get<Direct>(job_);
     if (job.layer->dirty.empty())
-        return job.layer->directRounds >= job.target.directRounds ? End::Made : End::NotYet;
+        return job.layer->directSamplePasses >= job.target.directSamplePasses ? End::Made : End::NotYet;
     if (job.layer->rays() == 0) return End::Repaired;
     job.repaired = job.layer->begun ? 1 : 0;
     return End::NotYet;
@@ -176,9 +179,10 @@ FakeBake::End FakeBake::directBatch() {
     auto& job = std::get<Direct>(job_);
     if (job.repaired) return repairBatch(job);
     Layer& layer = *job.layer;
-    layer.directRounds = std::min(nextDirectStep(layer.directRounds), job.target.directRounds);
-    layer.directSteps.push_back(layer.directRounds);
-    return layer.directRounds == job.target.directRounds ? End::Made : End::NotYet;
+    layer.directSamplePasses =
+        std::min(nextDirectStep(layer.directSamplePasses), job.target.directSamplePasses);
+    layer.directSteps.push_back(layer.directSamplePasses);
+    return layer.directSamplePasses == job.target.directSamplePasses ? End::Made : End::NotYet;
 }
 
 FakeBake::End FakeBake::repairBatch(Direct& job) {
@@ -217,7 +221,7 @@ void FakeBake::endRepair() {
 
 void FakeBake::beginBounces(Layer& leader, LayerLevel target) {
     job_ = std::monostate();
-    if (target.linkRounds == 0) return finishLevel(leader, target);
+    if (target.linkSamplePasses == 0) return finishLevel(leader, target);
     const auto own = std::find_if(layers().begin(), layers().end(),
                                   [&](const auto& layer) { return layer.get() == &leader; });
     Bounce job{.lanes = {{&leader, target}}};
@@ -225,15 +229,17 @@ void FakeBake::beginBounces(Layer& leader, LayerLevel target) {
          schedule_.companions(layers(), static_cast<size_t>(own - layers().begin()), target)) {
         Layer& layer = *layers()[i];
         const LayerLevel level = schedule_.targetOf(layer);
-        if (layer.directRounds >= level.directRounds && job.lanes.size() < LayerBounces::kMostLanes)
+        if (layer.directSamplePasses >= level.directSamplePasses &&
+            job.lanes.size() < LayerBounces::kMostLanes)
             job.lanes.push_back({&layer, level});
     }
     job.lanes.resize(std::min(job.lanes.size(), desc_.lanes));
     constexpr uint32_t kMostBatches = 4;
     for (Lane& lane : job.lanes)
-        lane.left = 1 + randomOf(*lane.layer, lane.target.linkRounds) % kMostBatches;
+        lane.left = 1 + randomOf(*lane.layer, lane.target.linkSamplePasses) % kMostBatches;
     checkLanes(job);
-    keptRounds_ = std::max(keptRounds_, std::min(target.linkRounds, 8u)); // those beyond are not kept
+    keptSamplePasses_ =
+        std::max(keptSamplePasses_, std::min(target.linkSamplePasses, 8u)); // those beyond are not kept
     job_ = std::move(job);
 }
 
@@ -241,10 +247,10 @@ void FakeBake::beginSum() {
     sumDue_ = false;
     if (!canSum()) return;
     for (const std::unique_ptr<Layer>& layer : layers())
-        require(!layer->shines() || (layer->directRounds > 0 && !layer->isOutdated()),
+        require(!layer->shines() || (layer->directSamplePasses > 0 && !layer->isOutdated()),
                 "the sum lacks direct light");
     require(desc_.rules.live, "nobody sees the sum");
-    job_ = Bounce{.lanes = {{&sum_, {0, schedule_.sumRounds(layers())}, 2}}, .sum = true};
+    job_ = Bounce{.lanes = {{&sum_, {0, schedule_.sumSamplePasses(layers())}, 2}}, .sum = true};
 }
 
 void FakeBake::bounceBatch() {
@@ -267,12 +273,13 @@ void FakeBake::finishLevel(Layer& layer, LayerLevel target) {
     };
     constexpr uint32_t kDirect = 1001, kIndirect = 1002, kLight = 1003;
     const LayerLevel last = schedule_.lastLevel();
-    require(target.directRounds <= last.directRounds && target.linkRounds <= last.linkRounds,
+    require(target.directSamplePasses <= last.directSamplePasses &&
+                target.linkSamplePasses <= last.linkSamplePasses,
             "a level is beyond the last one");
     layer.level = target;
     layer.light = randomOf(layer, kLight) % 10; // every tenth lights nothing
-    layer.directVariance = noise(kDirect) / target.directRounds;
-    layer.indirectVariance = target.linkRounds > 0 ? noise(kIndirect) / target.linkRounds : 0.0;
+    layer.directVariance = noise(kDirect) / target.directSamplePasses;
+    layer.indirectVariance = target.linkSamplePasses > 0 ? noise(kIndirect) / target.linkSamplePasses : 0.0;
     layer.iterationError = 0.1 * std::max(desc_.rules.error, desc_.rules.layerError);
     layer.error = std::sqrt(layer.directVariance + layer.indirectVariance +
                             layer.iterationError * layer.iterationError);
@@ -370,14 +377,14 @@ void FakeBake::inherit(const Layer& from, Layer& to) const {
     alike.surfaces = to.cacheKey.surfaces;
     alike.objects = to.cacheKey.objects;
     const bool followed = from.cacheKey.objects == states_.before().objects;
-    if (!(alike == to.cacheKey) || !followed || from.directRounds == 0) return;
-    to.directRounds = from.directRounds;
+    if (!(alike == to.cacheKey) || !followed || from.directSamplePasses == 0) return;
+    to.directSamplePasses = from.directSamplePasses;
     to.directSteps = from.directSteps;
     to.dirty = from.dirty;
     to.begun = from.begun;
     if (moved_) markMoved(to);
     to.redo = from.redo;
-    if (!from.redo && from.has()) to.redo = LayerLevel{from.directRounds, from.level.linkRounds};
+    if (!from.redo && from.has()) to.redo = LayerLevel{from.directSamplePasses, from.level.linkSamplePasses};
     to.redoSteps = from.redoSteps;
 }
 

@@ -108,7 +108,7 @@ private:
     bool moved_ = false, edited_ = false, unseen_ = false, done_ = false;
     bool sumDue_ = false, sumShown_ = false, droppedForSum_ = false;
     std::optional<uint32_t> relink_;
-    uint32_t keptRounds_ = 0; // sample passes of links that are kept
+    uint32_t keptSamplePasses_ = 0; // sample passes of links that are kept
     std::vector<std::string> steps_;
     std::map<std::string, std::vector<std::string>> levels_;
     std::string wrong_;

@@ -37,16 +37,16 @@ public:
         layer_->source.weight = weight;
         return *this;
     }
-    LayerFacts& lit(uint32_t rounds) {
-        layer_->directRounds = rounds;
-        layer_->directSteps = {rounds};
+    LayerFacts& lit(uint32_t samplePasses) {
+        layer_->directSamplePasses = samplePasses;
+        layer_->directSteps = {samplePasses};
         return *this;
     }
     LayerFacts& at(LayerLevel level) {
         layer_->level = level;
         layer_->directVariance = layer_->indirectVariance = 1;
         layer_->iterationError = 0;
-        return lit(level.directRounds).off(0.02);
+        return lit(level.directSamplePasses).off(0.02);
     }
     /// Takes how far the level is off, and which share of that later bounces would still bring.
     LayerFacts& off(double error, double iteration = 0) {
@@ -121,11 +121,11 @@ private:
 inline LayerFacts fresh() {
     return {};
 }
-inline LayerFacts lit(uint32_t rounds) {
-    return std::move(LayerFacts().lit(rounds));
+inline LayerFacts lit(uint32_t samplePasses) {
+    return std::move(LayerFacts().lit(samplePasses));
 }
-inline LayerFacts at(uint32_t directRounds, uint32_t linkRounds) {
-    return std::move(LayerFacts().at({directRounds, linkRounds}));
+inline LayerFacts at(uint32_t directSamplePasses, uint32_t linkSamplePasses) {
+    return std::move(LayerFacts().at({directSamplePasses, linkSamplePasses}));
 }
 
 template<typename... Facts>
@@ -149,8 +149,8 @@ struct Now : ScheduleState {
         unseen = true;
         return *this;
     }
-    Now& relinking(uint32_t round) {
-        relinkRound = round;
+    Now& relinking(uint32_t samplePass) {
+        relinkSamplePass = samplePass;
         return *this;
     }
     Now& makingSum() {
@@ -169,7 +169,7 @@ struct Now : ScheduleState {
 
 /// Tells a level as "8+4": sample passes of direct light and of links.
 inline std::string textOf(LayerLevel level) {
-    return std::to_string(level.directRounds) + "+" + std::to_string(level.linkRounds);
+    return std::to_string(level.directSamplePasses) + "+" + std::to_string(level.linkSamplePasses);
 }
 
 /// Tells a step as "layer 1 to 8+4" or "direct light of 1 to 8+4".

@@ -12,7 +12,7 @@ namespace relume::test {
 class ParkedSolver final : public Solver {
 public:
     struct Own {
-        uint32_t round = 0, chunk = 0;
+        uint32_t samplePass = 0, chunk = 0;
     };
     Own own;
     std::vector<std::vector<uint8_t>> parts;

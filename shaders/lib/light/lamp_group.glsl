@@ -7,7 +7,7 @@ layout(constant_id = 0) const uint kLampTypes = 0x3fu;
 #define LAMP_TYPES kLampTypes
 #include "lib/light/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
-#include "lib/light/penumbra_rounds.glsl"
+#include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/rays/starts.glsl"
 vec4 skyPixel(uint index) { return VEC4_AT(push.skyPixels, index); }
 float skyRow(uint index) { return uintBitsToFloat(WORD_AT(push.skyRows, index)); }
@@ -28,7 +28,7 @@ struct LampRay {
 // Makes sample s of patch p, which starts at another point of its texel. skySize is that of the sky's picture, 0:
 // none.
 LampRay lampRayUnder(uvec2 skySize, Lamp l, Patch p, PatchCover cover, uint s) {
-    uint number = push.round * l.samples + s, index = replicateIndex(number);
+    uint number = push.samplePass * l.samples + s, index = replicateIndex(number);
     vec3 own = p.position;
     p = startingPatch(p, cover, number);
     uint seed = lampSeed(l, seedKey(p), number);
@@ -65,13 +65,13 @@ vec3 wholeLight(Lamp l, Patch p) {
 }
 
 // A light that brings a patch no more than this share of its direct light is asked in one sample pass of
-// kNoteRounds, too: its noise is small whatever is in its way.
+// kNoteSamplePasses, too: its noise is small whatever is in its way.
 const float kMinorShare = 0.01;
 
 LightNote lampNote(Lamp l, Patch p, uint patchIndex, uint indexInGroup) {
     uint light = push.firstLamp + indexInGroup;
     LightNote note = lightNote(patchIndex, lampBit(indexInGroup), light);
-    if (!takesNotes() || push.round == 0u || note.known || l.samples == 1u) return note;
+    if (!takesNotes() || push.samplePass == 0u || note.known || l.samples == 1u) return note;
     vec3 whole = wholeLight(l, p) * l.color, soFar = VEC4_AT(push.direct, patchIndex).rgb;
     bool minor = whole.r >= 0.0 && whole.r + whole.g + whole.b <= kMinorShare * (soFar.r + soFar.g + soFar.b);
     return minor ? LightNote(true, isAsked(patchIndex, light), 0.0) : note;

@@ -20,7 +20,7 @@ void traceTargets(uint chunk, uint word, uint lane) {
 #endif
         if (target.w <= 0.0) continue;
         ++rays;
-        Patch start = startingPatch(p, cover, startNumber(first + s, push.round, push.turn, push.run));
+        Patch start = startingPatch(p, cover, startNumber(first + s, push.samplePass, push.turn, push.run));
         if (pointSeen(start, target.xyz)) seen |= 1u << s;
     }
     if (rays != 0u) atomicAdd(WORD_AT(push.rays, (push.firstChunk + chunk) % kRayCounters), rays);

@@ -4,11 +4,11 @@
 // The salt keeps the numbers of points apart from those of directions, which start from the same seeds.
 CONST uint kStartSalt = 0x3c6ef372u;
 
-// Returns the number of a sample: of target `target` of sample pass `round`. Targets come in turns of `turn`,
+// Returns the number of a sample: of target `target` of sample pass `samplePass`. Targets come in turns of `turn`,
 // one for each light; in a turn, runs of `run` targets belong to the replicates one after the other.
-FUNCTION uint startNumber(uint target, uint round, uint turn, uint run) {
+FUNCTION uint startNumber(uint target, uint samplePass, uint turn, uint run) {
     uint t = target % turn, which = t / run;
-    return round * turn + (which / kReplicates * run + t % run) * kReplicates + which % kReplicates;
+    return samplePass * turn + (which / kReplicates * run + t % run) * kReplicates + which % kReplicates;
 }
 
 FUNCTION uint startSeed(uint replicate) { return hash32(replicate ^ kStartSalt); }

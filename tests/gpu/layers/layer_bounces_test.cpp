@@ -83,7 +83,7 @@ TEST(LayerBounces, OfACountOfPassesAreAsAlone) {
     }
 }
 
-TEST(LayerBounces, OfOneRoundOfLinksAreAsAlone) {
+TEST(LayerBounces, OfOneSamplePassOfLinksAreAsAlone) {
     BakeDesc desc = onDevice();
     desc.samples = 16;
     expectAsAlone(desc);

@@ -161,7 +161,7 @@ TEST(FootprintError, FallsWithTheDirections) {
 }
 
 // Where the error decides how many directions there are, sample passes begin with wide footprints.
-TEST(FootprintError, FallsFromRoundToRound) {
+TEST(FootprintError, FallsFromSamplePassToSamplePass) {
     const Scene scene = generateScene("cornell_small");
     double before = 1.0;
     for (const double error : {0.1, 0.02, 0.005}) {

@@ -59,14 +59,14 @@ TEST(Penumbra, IsEverywhereWhereTheWholeLightIsUnknown) {
 }
 
 // Going step by step leads as far as going at once, but for rounding.
-TEST(Penumbra, IsThatOfTheFirstRound) {
+TEST(Penumbra, IsThatOfTheFirstSamplePass) {
     const Scene scene = shaded();
     Layered few(scene, {.passes = 1, .method = Method::Hybrid, .samples = 8, .layers = true}),
         many(scene, kDirect);
     few.finish();
     many.finish();
     EXPECT_EQ(few.solver().layers()[0]->penumbra, many.solver().layers()[0]->penumbra);
-    EXPECT_EQ(few.solver().layers()[0]->directRounds, 2u);
+    EXPECT_EQ(few.solver().layers()[0]->directSamplePasses, 2u);
 }
 
 TEST(Penumbra, PartsAreThoseOfOneTileAndObject) {

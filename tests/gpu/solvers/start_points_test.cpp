@@ -255,12 +255,12 @@ TEST(PatchCover, TargetsAreNumberedThroughSamplePasses) {
     for (const uint32_t run : {1u, 4u}) {
         const uint32_t turn = 16;
         std::array<uint32_t, 32> found{};
-        for (uint32_t round = 0; round < 2; ++round)
+        for (uint32_t samplePass = 0; samplePass < 2; ++samplePass)
             for (uint32_t t = 0; t < turn; ++t) {
-                EXPECT_EQ(shader::startNumber(t, round, turn, run),
-                          shader::startNumber(t + turn, round, turn, run));
-                ++found[shader::startNumber(t, round, turn, run)];
-                EXPECT_EQ(shader::startNumber(t, round, turn, run) % shader::kReplicates,
+                EXPECT_EQ(shader::startNumber(t, samplePass, turn, run),
+                          shader::startNumber(t + turn, samplePass, turn, run));
+                ++found[shader::startNumber(t, samplePass, turn, run)];
+                EXPECT_EQ(shader::startNumber(t, samplePass, turn, run) % shader::kReplicates,
                           t / run % shader::kReplicates);
             }
         for (const uint32_t count : found)

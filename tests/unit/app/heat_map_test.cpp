@@ -27,7 +27,7 @@ TEST(HeatMap, IsTheShadersScale) {
     }
 }
 
-TEST(HeatMap, EndsItsScaleAtARoundNumber) {
+TEST(HeatMap, EndsItsScaleAtASamplePassNumber) {
     const std::vector<bool> all(4, true);
     EXPECT_DOUBLE_EQ(heatScale({0.0f, 0.013f, 0.0f, 0.0f}, all), 0.02); // alone, but all there is
     EXPECT_DOUBLE_EQ(heatScale({0.2f, 0.3f, 0.4f, 0.31f}, all), 0.5);

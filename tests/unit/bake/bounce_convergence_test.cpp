@@ -20,7 +20,7 @@ TEST(BounceConvergence, AGeometricSeriesIsTold) {
     EXPECT_NEAR(convergence.left, 0.4 * left, 1e-9);
     // This is the mean of a sample pass that lacks 10 % and one that goes on from it and lacks 4 %.
     convergence.left = 0.1;
-    convergence.round(1);
+    convergence.samplePass(1);
     EXPECT_NEAR(convergence.left, 0.07, 1e-9);
 }
 

@@ -62,7 +62,7 @@ TEST_F(CheckpointFile, HoldsWhatWasSaved) {
     EXPECT_EQ(bytes, std::filesystem::file_size(path_));
     EXPECT_EQ(problem(key_, after), "");
     EXPECT_EQ(after.restores, 1u);
-    EXPECT_EQ(after.own.round, 7u);
+    EXPECT_EQ(after.own.samplePass, 7u);
     EXPECT_EQ(after.own.chunk, 42u);
     EXPECT_TRUE(after.parts == before.parts);
     EXPECT_EQ(after.progress().passes, 3u);
@@ -79,7 +79,7 @@ TEST_F(CheckpointFile, IsReadAsItWasWhenOpened) {
     Checkpoint opened(path_, key_.version);
     saveCheckpoint(path_, key_, second);
     opened.restore(key_, after);
-    EXPECT_EQ(after.own.round, 7u);
+    EXPECT_EQ(after.own.samplePass, 7u);
     EXPECT_TRUE(after.parts == first.parts);
 }
 

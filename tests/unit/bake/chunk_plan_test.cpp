@@ -24,7 +24,8 @@ ChunkVariance off(double direct, double links) {
 }
 
 ChunkPlanRules local(double error) {
-    return {.localError = error, .directCost = 4, .linkCost = 16, .mostRounds = 4096, .hasDirect = true};
+    return {
+        .localError = error, .directCost = 4, .linkCost = 16, .mostSamplePasses = 4096, .hasDirect = true};
 }
 
 // Sets chunks of one kind far enough from each other that none is another's neighbour.
@@ -96,8 +97,9 @@ TEST(ChunkPlan, EmptyChunksGetNothing) {
         EXPECT_EQ(plan.links[i], 1u) << i;
 }
 
-// The least sum of variance / rounds for a cost has rounds in proportion to the root of variance over cost:
-// no plan of one more here and one less there may be better than the one that is made, but for the ladder.
+// The least sum of variance / sample passes for a cost has sample passes in proportion to the root of
+// variance over cost: no plan of one more here and one less there may be better than the one that is made,
+// but for the ladder.
 TEST(ChunkPlan, TheWholeIsReachedForTheLeastCost) {
     std::vector<ChunkVariance> chunks = apart(off(0.0, 0.1), off(0.0, 0.4));
     const ChunkPlan now = after(chunks.size(), 1, 16);
@@ -105,7 +107,7 @@ TEST(ChunkPlan, TheWholeIsReachedForTheLeastCost) {
         std::accumulate(chunks.begin(), chunks.end(), 0.0,
                         [](double sum, const ChunkVariance& c) { return sum + c.indirect; });
     const ChunkPlanRules rules{
-        .variance = before / 3, .directCost = 1, .linkCost = 16, .mostRounds = 4096, .hasDirect = true};
+        .variance = before / 3, .directCost = 1, .linkCost = 16, .mostSamplePasses = 4096, .hasDirect = true};
     const ChunkPlan plan = planChunks(rules, chunks, now);
     double left = 0;
     for (size_t i = 0; i < chunks.size(); ++i)
@@ -115,13 +117,13 @@ TEST(ChunkPlan, TheWholeIsReachedForTheLeastCost) {
     EXPECT_GT(plan.links.back(), 2 * plan.links.front());
 }
 
-TEST(ChunkPlan, MostRoundsAreKept) {
+TEST(ChunkPlan, MostSamplePassesAreKept) {
     const std::vector<ChunkVariance> chunks(3, off(1.0, 1.0));
     ChunkPlanRules rules = local(0.001);
-    rules.mostRounds = 5;
+    rules.mostSamplePasses = 5;
     const ChunkPlan plan = planChunks(rules, chunks, after(3, 4, 5));
-    for (const uint32_t rounds : plan.direct)
-        EXPECT_LE(rounds, 5u);
+    for (const uint32_t samplePasses : plan.direct)
+        EXPECT_LE(samplePasses, 5u);
     EXPECT_EQ(plan.links, std::vector<uint32_t>(3, 5));
 }
 

@@ -195,17 +195,17 @@ TEST(Emitters, SharesOfNearEmittersConvergeWhateverTheSeed) {
             shader::polygonFormFactor(p, n, {edge, 0, 0}, {2, 0, 0}, {2, 2, 0}, {edge, 2, 0}) /
             shader::emitterFormFactor(p, n, e);
         for (uint32_t seed : {1u, 77u, 4242u, 987'654u}) {
-            constexpr uint32_t rounds = 8192, points = 4;
+            constexpr uint32_t samplePasses = 8192, points = 4;
             double mean = 0;
-            for (uint32_t round = 0; round < rounds; ++round) {
+            for (uint32_t samplePass = 0; samplePass < samplePasses; ++samplePass) {
                 double visible = 0, all = 0;
                 for (uint32_t s = 0; s < points; ++s) {
                     const shader::EmitterSample y =
-                        shader::emitterSample(p, n, e, shader::sobolPoint(round * points + s, seed));
+                        shader::emitterSample(p, n, e, shader::sobolPoint(samplePass * points + s, seed));
                     all += y.factor;
                     if (y.point.x > edge) visible += y.factor;
                 }
-                if (all > 0) mean += visible / all / rounds;
+                if (all > 0) mean += visible / all / samplePasses;
             }
             EXPECT_NEAR(mean, exact, 0.006) << p.z << " seed " << seed;
         }

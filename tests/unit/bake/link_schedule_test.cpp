@@ -6,8 +6,12 @@
 namespace relume {
 namespace {
 
-constexpr LinkRules kRules{
-    .hybrid = true, .hasDirect = true, .linksOfRound = 16, .error = 0.01, .directCost = 4, .linkCost = 16};
+constexpr LinkRules kRules{.hybrid = true,
+                           .hasDirect = true,
+                           .linksOfSamplePass = 16,
+                           .error = 0.01,
+                           .directCost = 4,
+                           .linkCost = 16};
 
 LinkRules with(void (*change)(LinkRules&)) {
     LinkRules rules = kRules;
@@ -17,8 +21,8 @@ LinkRules with(void (*change)(LinkRules&)) {
 
 LinkState after(uint32_t direct, uint32_t links) {
     LinkState state;
-    state.directRounds = state.directAtCheck = direct;
-    state.linkRounds = state.linksAtCheck = links;
+    state.directSamplePasses = state.directAtCheck = direct;
+    state.linkSamplePasses = state.linksAtCheck = links;
     return state;
 }
 
@@ -37,7 +41,8 @@ TEST(LinkSchedule, WhereNothingShinesDirectlyThereAreLinksAlone) {
 }
 
 // One more sample pass takes v n / m^2 of a variance v that n of them left, m being those by now: 4 of 16 for
-// a quarter of the cost outweighs 8 of 32 at equal rounds, and no longer once direct light has had more.
+// a quarter of the cost outweighs 8 of 32 at equal sample passes, and no longer once direct light has had
+// more.
 TEST(LinkSchedule, ThenComesWhatLowersTheVarianceMoreForItsCost) {
     const LinkSchedule schedule(kRules);
     LinkState state = after(4, 4);
@@ -47,9 +52,9 @@ TEST(LinkSchedule, ThenComesWhatLowersTheVarianceMoreForItsCost) {
     state.directChoice = 1.9;
     EXPECT_FALSE(schedule.wantsDirect(state)); // 1.9 / 16 < 8 / 64
     state.directChoice = 4;
-    state.directRounds = 6;
+    state.directSamplePasses = 6;
     EXPECT_FALSE(schedule.wantsDirect(state)); // 4 * 4 / (36 * 4) < 8 / 64
-    state.linkRounds = 8;
+    state.linkSamplePasses = 8;
     EXPECT_TRUE(schedule.wantsDirect(state)); // 8 * 4 / (64 * 16)
 }
 
@@ -73,15 +78,15 @@ TEST(LinkSchedule, LinksNeverReadTheDirectLightOfFewSamplesForLong) {
     LinkState state = after(1, 63);
     state.linkChoice = 8;
     EXPECT_FALSE(schedule.wantsDirect(state));
-    state.linkRounds = 64;
+    state.linkSamplePasses = 64;
     EXPECT_TRUE(schedule.wantsDirect(state));
-    state.directRounds = 2;
+    state.directSamplePasses = 2;
     EXPECT_FALSE(schedule.wantsDirect(state));
 }
 
 TEST(LinkSchedule, WithANumberOfSamplesBothTakeTurns) {
     const LinkSchedule schedule(with([](LinkRules& r) { r.samples = 64; }));
-    EXPECT_EQ(schedule.roundsWanted(), 4u);
+    EXPECT_EQ(schedule.samplePassesWanted(), 4u);
     EXPECT_FALSE(schedule.wantsDirect(after(1, 0)));
     EXPECT_TRUE(schedule.wantsDirect(after(1, 1)));
     EXPECT_FALSE(schedule.wantsDirect(after(2, 1)));
@@ -91,8 +96,8 @@ TEST(LinkSchedule, WithANumberOfSamplesBothTakeTurns) {
 }
 
 TEST(LinkSchedule, SamplePassesHoldWholeNumbersOfDirections) {
-    EXPECT_EQ(LinkSchedule(with([](LinkRules& r) { r.samples = 33; })).roundsWanted(), 3u);
-    EXPECT_EQ(LinkSchedule(kRules).roundsWanted(), 4096u) << "65536 in all";
+    EXPECT_EQ(LinkSchedule(with([](LinkRules& r) { r.samples = 33; })).samplePassesWanted(), 3u);
+    EXPECT_EQ(LinkSchedule(kRules).samplePassesWanted(), 4096u) << "65536 in all";
 }
 
 TEST(LinkSchedule, OfOnePassHybridHasDirectLightAlone) {
@@ -168,7 +173,7 @@ TEST(LinkSchedule, TheErrorIsFoundAgainWhenItMayHaveFallenEnough) {
     EXPECT_EQ(schedule.nextCheck(state, 1.01), 101u);
     state.nextCheck = 101;
     EXPECT_FALSE(schedule.wantsCheck(state));
-    state.linkRounds = 51;
+    state.linkSamplePasses = 51;
     EXPECT_TRUE(schedule.wantsCheck(state));
     EXPECT_FALSE(LinkSchedule(with([](LinkRules& r) { r.error = 0; })).wantsCheck(state));
 }

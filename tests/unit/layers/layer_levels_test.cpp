@@ -41,8 +41,8 @@ constexpr RangeOfLevels kRanges[] = {
     {"DirectLightAlone", {.samples = 64, .passes = 1}, "2+0", "16+0"},
     {"DirectLightAloneWithoutLimit", {.passes = 1}, "2+0", "16384+0"},
     {"ABounce", {.samples = 64, .passes = 2}, "2+2", "16+4"},
-    {"ManyLinksOfAPass", {.linksOfRound = 128, .samples = 64}, "2+1", "16+1"},
-    {"OneOfEach", {.pointsOfRound = 1, .linksOfRound = 1, .samples = 64}, "2+2", "64+64"},
+    {"ManyLinksOfAPass", {.linksOfSamplePass = 128, .samples = 64}, "2+1", "16+1"},
+    {"OneOfEach", {.pointsOfSamplePass = 1, .linksOfSamplePass = 1, .samples = 64}, "2+2", "64+64"},
 };
 
 class LayerRange : public testing::TestWithParam<RangeOfLevels> {};
@@ -160,8 +160,8 @@ TEST(LayerLevels, EachHasMoreThanTheOneBeforeUntilTheLast) {
     for (; layer->level != schedule.lastLevel() && levels < kMany; ++levels) {
         schedule.apportion(layers);
         const LayerLevel before = layer->level, next = schedule.targetOf(*layer);
-        EXPECT_GE(next.directRounds, before.directRounds);
-        EXPECT_GE(next.linkRounds, before.linkRounds);
+        EXPECT_GE(next.directSamplePasses, before.directSamplePasses);
+        EXPECT_GE(next.linkSamplePasses, before.linkSamplePasses);
         ASSERT_NE(next, before);
         layer->level = next;
     }

@@ -39,8 +39,8 @@ int dirtyOf(const LayerSchedule::Layers& layers, const ScheduleRules& rules = vi
     return dirty ? static_cast<int>(*dirty) : -1;
 }
 
-uint32_t sumRoundsOf(const LayerSchedule::Layers& layers, uint32_t links = 16) {
-    return LayerSchedule({.linksOfRound = links, .live = true}).sumRounds(layers);
+uint32_t sumSamplePassesOf(const LayerSchedule::Layers& layers, uint32_t links = 16) {
+    return LayerSchedule({.linksOfSamplePass = links, .live = true}).sumSamplePasses(layers);
 }
 
 struct Moment {
@@ -298,30 +298,30 @@ TEST(SumCanBeMade, OnlyWhereItIsWanted) {
 }
 
 TEST(SumTakes, SixtyFourLinks) {
-    for (const auto& [links, rounds] : {std::pair(1u, 64u), {4u, 16u}, {16u, 4u}, {32u, 2u}, {64u, 1u}})
-        EXPECT_EQ(LayerSchedule({.linksOfRound = links}).sumRounds(), rounds) << links;
+    for (const auto& [links, samplePasses] : {std::pair(1u, 64u), {4u, 16u}, {16u, 4u}, {32u, 2u}, {64u, 1u}})
+        EXPECT_EQ(LayerSchedule({.linksOfSamplePass = links}).sumSamplePasses(), samplePasses) << links;
 }
 
 TEST(SumTakes, OneSamplePassAtLeast) {
-    EXPECT_EQ(LayerSchedule({.linksOfRound = 128}).sumRounds(), 1u);
-    EXPECT_EQ(sumRoundsOf(layersOf(fresh(), fresh())), 1u);
-    EXPECT_EQ(sumRoundsOf({}), 1u);
+    EXPECT_EQ(LayerSchedule({.linksOfSamplePass = 128}).sumSamplePasses(), 1u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(fresh(), fresh())), 1u);
+    EXPECT_EQ(sumSamplePassesOf({}), 1u);
 }
 
 TEST(SumTakes, NoMoreThanTheDeepestLayer) {
-    EXPECT_EQ(sumRoundsOf(layersOf(at(2, 2), at(8, 3))), 3u);
-    EXPECT_EQ(sumRoundsOf(layersOf(at(8, 3), at(2, 2))), 3u);
-    EXPECT_EQ(sumRoundsOf(layersOf(at(2, 2), at(8, 8))), 4u);
-    EXPECT_EQ(sumRoundsOf(layersOf(at(2, 2), at(8, 8)), 128), 1u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(2, 2), at(8, 3))), 3u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(8, 3), at(2, 2))), 3u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(2, 2), at(8, 8))), 4u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(2, 2), at(8, 8)), 128), 1u);
 }
 
 TEST(SumTakes, WhatALayerHadWhereItHasNothingYet) {
-    EXPECT_EQ(sumRoundsOf(layersOf(lit(8).redo({8, 3}), fresh())), 3u);
-    EXPECT_EQ(sumRoundsOf(layersOf(at(2, 2).redo({8, 3}))), 2u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(lit(8).redo({8, 3}), fresh())), 3u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(2, 2).redo({8, 3}))), 2u);
 }
 
 TEST(SumTakes, NothingFromWhatIsOff) {
-    EXPECT_EQ(sumRoundsOf(layersOf(at(2, 2), at(8, 3).switchedOff())), 2u);
+    EXPECT_EQ(sumSamplePassesOf(layersOf(at(2, 2), at(8, 3).switchedOff())), 2u);
 }
 
 TEST(IsWhole, WhereEachThatShinesHasALevel) {

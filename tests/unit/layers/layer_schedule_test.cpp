@@ -29,7 +29,7 @@ struct Turn {
 };
 
 ScheduleRules linksOfPass(ScheduleRules rules, uint32_t links) {
-    rules.linksOfRound = links;
+    rules.linksOfSamplePass = links;
     return rules;
 }
 

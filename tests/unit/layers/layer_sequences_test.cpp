@@ -230,7 +230,7 @@ TEST(Recoloured, LayersComeBackToTheirLevels) {
             std::vector<LayerLevel> levels;
             std::vector<std::vector<uint32_t>> steps;
             for (const std::unique_ptr<Layer>& layer : bake.layers()) {
-                levels.push_back({layer->directRounds, layer->level.linkRounds});
+                levels.push_back({layer->directSamplePasses, layer->level.linkSamplePasses});
                 steps.push_back(layer->directSteps);
             }
             const auto before = bake.levels();

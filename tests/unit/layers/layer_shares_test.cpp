@@ -142,12 +142,12 @@ TEST(LayerShares, SomeLayerGoesOnUntilTheErrorIsReached) {
         for (const std::unique_ptr<Layer>& layer : layers) {
             const LayerLevel now = layer->level, next = layer->plan.wanted;
             EXPECT_EQ(layer->plan.converged, next == now);
-            EXPECT_GE(next.directRounds, now.directRounds);
-            EXPECT_GE(next.linkRounds, now.linkRounds);
+            EXPECT_GE(next.directSamplePasses, now.directSamplePasses);
+            EXPECT_GE(next.linkSamplePasses, now.linkSamplePasses);
             more = more || next != now;
             const double before = layer->directVariance + layer->indirectVariance;
-            layer->directVariance *= double(now.directRounds) / next.directRounds;
-            layer->indirectVariance *= double(now.linkRounds) / next.linkRounds;
+            layer->directVariance *= double(now.directSamplePasses) / next.directSamplePasses;
+            layer->indirectVariance *= double(now.linkSamplePasses) / next.linkSamplePasses;
             layer->error *= std::sqrt((layer->directVariance + layer->indirectVariance) / before);
             layer->level = next;
         }

@@ -44,7 +44,7 @@ Layer& layerIn(const StoreWithoutDevice& store, size_t index = 0) {
 
 void bakeTo(Layer& layer, LayerLevel level, std::vector<uint32_t> steps) {
     layer.level = level;
-    layer.directRounds = steps.back();
+    layer.directSamplePasses = steps.back();
     layer.directSteps = std::move(steps);
 }
 
@@ -169,10 +169,10 @@ TEST(LayerStore, ADeletedLightsFormerLayerIsKeptWhereNothingElseIsSeen) {
 TEST(LayerStore, WhatShowsNothingIsNotKept) {
     StoreWithoutDevice store(9);
     replaceBy(store, {lampAt(1)});
-    layerIn(store).directRounds = 2;
+    layerIn(store).directSamplePasses = 2;
     replaceBy(store, {});
     replaceBy(store, {lampAt(1)});
-    EXPECT_EQ(layerIn(store).directRounds, 0u);
+    EXPECT_EQ(layerIn(store).directSamplePasses, 0u);
     EXPECT_FALSE(layerIn(store).redo) << "it had no level to come back to";
 }
 
@@ -236,10 +236,10 @@ TEST(LayerStore, ALayerInheritsFromTheFormerOneOfItsLight) {
     std::vector<std::pair<float, float>> heard;
     replaceBy(store, {lampAt(1, 0), lampAt(5, 1), lampAt(6, 2)}, [&](const Layer& from, Layer& to) {
         heard.emplace_back(from.cacheKey.light.transform[3].x, to.cacheKey.light.transform[3].x);
-        to.directRounds = 3;
+        to.directSamplePasses = 3;
     });
     EXPECT_EQ(heard, (std::vector<std::pair<float, float>>{{2.0f, 5.0f}}));
-    EXPECT_EQ(layerIn(store, 1).directRounds, 3u);
+    EXPECT_EQ(layerIn(store, 1).directSamplePasses, 3u);
 }
 
 TEST(LayerStore, DirectLightThatWasInheritedInOtherStepsIsNotTaken) {
@@ -250,15 +250,15 @@ TEST(LayerStore, DirectLightThatWasInheritedInOtherStepsIsNotTaken) {
         visit(store, {2, 3, 4});
         replaceBy(store, {lampAt(1)}, [&](const Layer&, Layer& to) {
             to.directSteps = steps;
-            to.directRounds = steps.back();
+            to.directSamplePasses = steps.back();
             to.dirty = {Layer::kDirty};
             to.begun = true;
             to.penumbra = {1};
         });
         const Layer& layer = layerIn(store);
-        EXPECT_EQ(layer.dirty.empty(), layer.directRounds == 0);
-        EXPECT_EQ(layer.begun, layer.directRounds > 0);
-        EXPECT_EQ(layer.penumbra.empty(), layer.directRounds == 0);
+        EXPECT_EQ(layer.dirty.empty(), layer.directSamplePasses == 0);
+        EXPECT_EQ(layer.begun, layer.directSamplePasses > 0);
+        EXPECT_EQ(layer.penumbra.empty(), layer.directSamplePasses == 0);
         EXPECT_EQ(layer.redo, (LayerLevel{16, 8}));
         return layer.directSteps;
     };

@@ -8,12 +8,12 @@ namespace relume {
 
 /// Tells how many sample passes of one kind each chunk has and is to have. A chunk takes its sample passes in
 /// their order without a gap, so its samples depend on their number alone.
-class ChunkRounds {
+class ChunkSamplePasses {
 public:
-    explicit ChunkRounds(uint32_t chunkCount) : done_(chunkCount, 0), wanted_(chunkCount, 0) {}
+    explicit ChunkSamplePasses(uint32_t chunkCount) : done_(chunkCount, 0), wanted_(chunkCount, 0) {}
 
     /// Sets what each chunk is to have; less than it has means no more.
-    void want(std::span<const uint32_t> rounds);
+    void want(std::span<const uint32_t> samplePasses);
     /// Lets every chunk have one more than it has.
     void wantOneMore();
     /// Tells whether a chunk is to have more than it has.

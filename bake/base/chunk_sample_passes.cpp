@@ -1,4 +1,4 @@
-#include "bake/base/chunk_rounds.h"
+#include "bake/base/chunk_sample_passes.h"
 
 #include "assets/base/error.h"
 
@@ -7,23 +7,23 @@
 
 namespace relume {
 
-void ChunkRounds::want(std::span<const uint32_t> rounds) {
-    ASSERT(rounds.size() == wanted_.size());
-    std::copy(rounds.begin(), rounds.end(), wanted_.begin());
+void ChunkSamplePasses::want(std::span<const uint32_t> samplePasses) {
+    ASSERT(samplePasses.size() == wanted_.size());
+    std::copy(samplePasses.begin(), samplePasses.end(), wanted_.begin());
 }
 
-void ChunkRounds::wantOneMore() {
+void ChunkSamplePasses::wantOneMore() {
     for (size_t i = 0; i < done_.size(); ++i)
         wanted_[i] = done_[i] + 1;
 }
 
-bool ChunkRounds::pending() const {
+bool ChunkSamplePasses::pending() const {
     for (size_t i = 0; i < done_.size(); ++i)
         if (wanted_[i] > done_[i]) return true;
     return false;
 }
 
-ChunkRounds::Pass ChunkRounds::next(uint32_t most) const {
+ChunkSamplePasses::Pass ChunkSamplePasses::next(uint32_t most) const {
     Pass pass{
         .first = UINT32_MAX, .count = most, .chunks = std::vector<uint8_t>(done_.size(), 0), .all = true};
     for (size_t i = 0; i < done_.size(); ++i)
@@ -37,16 +37,16 @@ ChunkRounds::Pass ChunkRounds::next(uint32_t most) const {
     return pass;
 }
 
-void ChunkRounds::finish(const Pass& pass) {
+void ChunkSamplePasses::finish(const Pass& pass) {
     for (size_t i = 0; i < done_.size(); ++i)
         if (pass.chunks[i] != 0) done_[i] = pass.first + pass.count;
 }
 
-uint32_t ChunkRounds::deepest() const {
+uint32_t ChunkSamplePasses::deepest() const {
     return done_.empty() ? 0 : *std::max_element(done_.begin(), done_.end());
 }
 
-uint64_t ChunkRounds::total() const {
+uint64_t ChunkSamplePasses::total() const {
     return std::accumulate(done_.begin(), done_.end(), uint64_t{0});
 }
 

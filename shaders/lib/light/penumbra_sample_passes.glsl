@@ -1,15 +1,15 @@
-// Tells which patches take part in push.round of direct light; with push.penumbra 0, or notes of each patch
+// Tells which patches take part in push.samplePass of direct light; with push.penumbra 0, or notes of each patch
 // (lib/light/light_notes.glsl), all do.
 #include "lib/light/penumbra.glsl"
 #include "lib/light/light_notes.glsl"
 
-bool roundLeftOut(uint patchIndex) {
-    return push.penumbra != 0ul && push.parts != 0ul && push.round % kPenumbraRounds != 0u && !inPenumbra(patchIndex);
+bool samplePassLeftOut(uint patchIndex) {
+    return push.penumbra != 0ul && push.parts != 0ul && push.samplePass % kPenumbraSamplePasses != 0u && !inPenumbra(patchIndex);
 }
 
 // Notes in the first sample pass what the others are to do; bit i is for the lights i % 32.
 void noteLights(uint patchIndex, uint reached, uint hidden) {
-    if (push.penumbra == 0ul || push.round != 0u) return;
+    if (push.penumbra == 0ul || push.samplePass != 0u) return;
     if (push.parts == 0ul) {
         takeNote(patchIndex, reached, hidden);
         return;
