@@ -1,11 +1,19 @@
 #include "bake/gather/rank_chunks.h"
 
 #include "assets/base/error.h"
+#include "assets/base/portions.h"
 
 #include <algorithm>
+#include <cstring>
+#include <numeric>
 
 namespace relume {
 namespace {
+
+// What ranks share goes in portions of so many bytes: little against what /dev/shm has in a container (64
+// MiB), and much against what a submit takes.
+constexpr VkDeviceSize kPortionBytes = VkDeviceSize{16} << 20;
+constexpr size_t kChunksAtATime = 1024; // of a thread that looks through all
 
 std::vector<ChunkRange> rangesOfChunks(std::span<const uint32_t> chunks) {
     std::vector<ChunkRange> ranges;
@@ -18,67 +26,92 @@ std::vector<ChunkRange> rangesOfChunks(std::span<const uint32_t> chunks) {
     return ranges;
 }
 
+using Regions = std::vector<VkBufferCopy>;
+
+void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to, const Regions& regions) {
+    if (!regions.empty())
+        vkCmdCopyBuffer(cmd, from.handle(), to.handle(), static_cast<uint32_t>(regions.size()),
+                        regions.data());
+}
+
+// Returns regions that go the other way.
+Regions reversed(Regions regions) {
+    for (VkBufferCopy& region : regions)
+        std::swap(region.srcOffset, region.dstOffset);
+    return regions;
+}
+
 // The tiles of a lightmap, and which ranks have chunks in each.
 class TileOwners {
 public:
-    TileOwners(const TraceScene& scene, const std::vector<uint32_t>& owners)
-        : scene_(scene), edge_((scene.size + kTileTexels - 1) / kTileTexels), owners_(size_t{edge_} * edge_) {
+    TileOwners(WorkerPool& pool, const TraceScene& scene, const std::vector<uint32_t>& owners)
+        : edge_((scene.size + kTileTexels - 1) / kTileTexels), tiles_(owners.size()),
+          owners_(size_t{edge_} * edge_) {
+        runPortions(pool, owners.size(), kChunksAtATime, [&](size_t begin, size_t end) {
+            for (size_t chunk = begin; chunk < end; ++chunk)
+                tiles_[chunk] = tilesOf(scene, static_cast<uint32_t>(chunk));
+        });
         for (uint32_t chunk = 0; chunk < owners.size(); ++chunk)
-            for (const uint32_t tile : tilesOf(chunk)) {
-                std::vector<uint32_t>& list = owners_[tile];
-                if (std::find(list.begin(), list.end(), owners[chunk]) == list.end())
-                    list.push_back(owners[chunk]);
-            }
+            for (const uint32_t tile : tiles_[chunk])
+                addOnce(owners_[tile], owners[chunk]);
     }
 
-    /// Returns the tiles in which a chunk has patches; padding lies in none of its own, which harms nobody.
-    std::vector<uint32_t> tilesOf(uint32_t chunk) const {
-        std::vector<uint32_t> tiles;
-        for (uint32_t lane = 0; lane < shader::kChunk; ++lane) {
-            const uint32_t texel =
-                shader::patchTexel(scene_.patches[size_t{chunk} * shader::kChunk + lane].flags);
-            const uint32_t x = texel % scene_.size / kTileTexels, y = texel / scene_.size / kTileTexels;
-            const uint32_t tile = y * edge_ + x;
-            if (y < edge_ && (tiles.empty() || std::find(tiles.begin(), tiles.end(), tile) == tiles.end()))
-                tiles.push_back(tile);
-        }
-        return tiles;
-    }
-
-    /// Returns the ranks that have a chunk in one of the tiles around those of this chunk.
-    std::vector<uint32_t> ranksAround(uint32_t chunk) const {
+    /// Returns the ranks but its own that have a chunk in one of the tiles around those of this chunk.
+    std::vector<uint32_t> ranksAround(uint32_t chunk, uint32_t own) const {
         std::vector<uint32_t> ranks;
         const auto edge = static_cast<int32_t>(edge_);
-        for (const uint32_t tile : tilesOf(chunk)) {
+        for (const uint32_t tile : tiles_[chunk]) {
             const auto x = static_cast<int32_t>(tile % edge_), y = static_cast<int32_t>(tile / edge_);
             for (int32_t j = std::max(y - 1, 0); j <= std::min(y + 1, edge - 1); ++j)
                 for (int32_t i = std::max(x - 1, 0); i <= std::min(x + 1, edge - 1); ++i)
                     for (const uint32_t rank :
                          owners_[static_cast<size_t>(j) * edge_ + static_cast<size_t>(i)])
-                        if (std::find(ranks.begin(), ranks.end(), rank) == ranks.end()) ranks.push_back(rank);
+                        if (rank != own) addOnce(ranks, rank);
         }
         return ranks;
     }
 
 private:
-    const TraceScene& scene_;
-    uint32_t edge_; // tiles along one
-    std::vector<std::vector<uint32_t>> owners_;
+    static void addOnce(std::vector<uint32_t>& list, uint32_t number) {
+        if (std::find(list.begin(), list.end(), number) == list.end()) list.push_back(number);
+    }
+
+    // Padding lies in none of its chunk's own tiles, which harms nobody.
+    std::vector<uint32_t> tilesOf(const TraceScene& scene, uint32_t chunk) const {
+        std::vector<uint32_t> tiles;
+        for (uint32_t lane = 0; lane < shader::kChunk; ++lane) {
+            const uint32_t texel =
+                shader::patchTexel(scene.patches[size_t{chunk} * shader::kChunk + lane].flags);
+            const uint32_t x = texel % scene.size / kTileTexels, y = texel / scene.size / kTileTexels;
+            if (y < edge_) addOnce(tiles, y * edge_ + x);
+        }
+        return tiles;
+    }
+
+    uint32_t edge_;                             // tiles along one
+    std::vector<std::vector<uint32_t>> tiles_;  // in which a chunk has patches
+    std::vector<std::vector<uint32_t>> owners_; // the ranks that have chunks in a tile
 };
 
 } // namespace
 
-NearChunks nearChunks(const TraceScene& scene, const ChunkDeal& deal, uint32_t rank) {
+NearChunks nearChunks(WorkerPool& pool, const TraceScene& scene, const ChunkDeal& deal, uint32_t rank) {
     NearChunks near{.rows = std::vector<uint8_t>(deal.chunks(), 0),
                     .to = std::vector<std::vector<uint32_t>>(deal.ranks()),
-                    .from = std::vector<std::vector<uint32_t>>(deal.ranks())};
+                    .from = std::vector<std::vector<uint32_t>>(deal.ranks()),
+                    .counts = std::vector<uint32_t>(size_t{deal.ranks()} * deal.ranks(), 0)};
     const std::vector<uint32_t> owners = deal.owners();
-    const TileOwners tiles(scene, owners);
+    const TileOwners tiles(pool, scene, owners);
+    std::vector<std::vector<uint32_t>> around(deal.chunks()); // the other ranks around each chunk
+    runPortions(pool, deal.chunks(), kChunksAtATime, [&](size_t begin, size_t end) {
+        for (size_t chunk = begin; chunk < end; ++chunk)
+            around[chunk] = tiles.ranksAround(static_cast<uint32_t>(chunk), owners[chunk]);
+    });
     for (uint32_t chunk = 0; chunk < deal.chunks(); ++chunk) {
         const uint32_t owner = owners[chunk];
         if (owner == rank) near.rows[chunk] = 1;
-        for (const uint32_t other : tiles.ranksAround(chunk)) {
-            if (other == owner) continue;
+        for (const uint32_t other : around[chunk]) {
+            ++near.counts[size_t{owner} * deal.ranks() + other];
             if (owner == rank) near.to[other].push_back(chunk);
             if (other != rank) continue;
             near.from[owner].push_back(chunk);
@@ -91,12 +124,12 @@ NearChunks nearChunks(const TraceScene& scene, const ChunkDeal& deal, uint32_t r
 RankChunks::RankChunks(const vk::Device& device, Ranks& ranks, const PatchSet& patches)
     : device_(device), ranks_(ranks),
       deal_(patches.chunkCount(), ranks.count(), ChunkDeal::leastRunOf(device.info().software())),
-      commands_(device) {
+      commands_(device), stage_(device, ranks) {
     if (alone()) {
         rows_ = {{0, patches.chunkCount()}};
         return;
     }
-    near_ = nearChunks(patches.scene, deal_, ranks.rank());
+    near_ = nearChunks(device.workers(), patches.scene, deal_, ranks.rank());
     rows_ = rangesOf(near_.rows, true);
 }
 
@@ -116,14 +149,17 @@ void RankChunks::reserve(vk::Buffer& staging, VkDeviceSize bytes) const {
     staging = vk::Buffer(device_, {.size = bytes, .memory = vk::Memory::Host, .name = "chunks of ranks"});
 }
 
-void RankChunks::copy(const vk::Buffer& from, const vk::Buffer& to, const Regions& regions) {
-    if (regions.empty()) return;
+void RankChunks::run(const std::function<void(VkCommandBuffer)>& record) {
     VkCommandBuffer cmd = commands_.begin();
     vk::barrier(cmd);
-    vkCmdCopyBuffer(cmd, from.handle(), to.handle(), static_cast<uint32_t>(regions.size()), regions.data());
+    record(cmd);
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     commands_.run();
+}
+
+void RankChunks::copy(const vk::Buffer& from, const vk::Buffer& to, const Regions& regions) {
+    if (!regions.empty()) run([&](VkCommandBuffer cmd) { recordCopy(cmd, from, to, regions); });
 }
 
 // Appends regions that pack these chunks of one array at a place of the host's memory, from the buffer.
@@ -139,35 +175,119 @@ VkDeviceSize RankChunks::appendRanges(Regions& regions, std::span<const ChunkRan
 
 void RankChunks::share(const Shared& shared) {
     if (alone()) return;
-    const VkDeviceSize all = deal_.chunks() * shared.chunkBytes;
-    std::vector<uint64_t> sizes;
-    for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
-        sizes.push_back(deal_.chunksOf(rank) * shared.chunkBytes);
-    const uint64_t ownBytes = sizes[ranks_.rank()];
-    reserve(sent_, ownBytes);
-    reserve(received_, all);
     const VkDeviceSize arrayBytes = shared.buffer.size() / shared.arrays;
-    for (uint32_t array = 0; array < shared.arrays; ++array) {
-        Regions out, in;
-        appendRanges(out, own(), shared.chunkBytes, array * arrayBytes, 0);
-        copy(shared.buffer, sent_, out);
-        ranks_.gather({ownBytes > 0 ? sent_.as<std::byte>() : nullptr, ownBytes},
-                      {received_.as<std::byte>(), all}, sizes);
-        VkDeviceSize at = 0;
+    for (uint32_t array = 0; array < shared.arrays; ++array)
+        if (!shareByStage(shared, array * arrayBytes)) shareByMessages(shared, array * arrayBytes);
+}
+
+// An array goes in portions, each of which stands in the stage as it stands in the array. While what others
+// have of one is taken in, what this rank has of the next one goes out.
+bool RankChunks::shareByStage(const Shared& shared, VkDeviceSize arrayStart) {
+    const auto most = static_cast<uint32_t>(std::max<VkDeviceSize>(kPortionBytes / shared.chunkBytes, 1));
+    const uint32_t portion = std::min(most, deal_.chunks());
+    const auto turn = [&] { return stage_.turn(portion * shared.chunkBytes); };
+    // Returns where chunks of this rank, or those of others, that are in a portion stand, as they go out.
+    const auto regionsOf = [&](uint32_t first, bool own, VkDeviceSize half) {
+        Regions regions;
         for (uint32_t rank = 0; rank < ranks_.count(); ++rank) {
-            if (rank == ranks_.rank())
-                at += ownBytes;
-            else
-                at = appendRanges(in, deal_.runsOf(rank), shared.chunkBytes, array * arrayBytes, at);
+            if ((rank == ranks_.rank()) != own) continue;
+            for (const ChunkRange& run : deal_.runsOf(rank)) {
+                const uint32_t from = std::max(run.first, first);
+                const uint32_t end = std::min(run.first + run.count, first + portion);
+                if (from < end)
+                    regions.push_back({arrayStart + from * shared.chunkBytes,
+                                       half + (from - first) * shared.chunkBytes,
+                                       (end - from) * shared.chunkBytes});
+            }
         }
-        for (VkBufferCopy& region : in)
-            std::swap(region.srcOffset, region.dstOffset);
-        copy(received_, shared.buffer, in);
+        return regions;
+    };
+    std::optional<VkDeviceSize> half = turn();
+    if (!half) return false;
+    copy(shared.buffer, stage_.buffer(), regionsOf(0, true, *half));
+    for (uint32_t first = 0; first < deal_.chunks(); first += portion) {
+        ranks_.meet();
+        const Regions in = reversed(regionsOf(first, false, *half));
+        Regions out;
+        if (first + portion < deal_.chunks()) {
+            half = turn();
+            out = regionsOf(first + portion, true, *half);
+        }
+        run([&](VkCommandBuffer cmd) {
+            recordCopy(cmd, stage_.buffer(), shared.buffer, in);
+            recordCopy(cmd, shared.buffer, stage_.buffer(), out);
+        });
     }
+    return true;
+}
+
+// Gathers an array in host memory, in the ranks' order.
+void RankChunks::shareByMessages(const Shared& shared, VkDeviceSize arrayStart) {
+    Regions out, in;
+    std::vector<uint64_t> sizes;
+    VkDeviceSize at = 0;
+    for (uint32_t rank = 0; rank < ranks_.count(); ++rank) {
+        const bool own = rank == ranks_.rank();
+        const VkDeviceSize end =
+            appendRanges(own ? out : in, deal_.runsOf(rank), shared.chunkBytes, arrayStart, own ? 0 : at);
+        sizes.push_back(deal_.chunksOf(rank) * shared.chunkBytes);
+        at = own ? at + end : end;
+    }
+    const VkDeviceSize ownBytes = sizes[ranks_.rank()];
+    reserve(sent_, ownBytes);
+    reserve(received_, at);
+    copy(shared.buffer, sent_, out);
+    ranks_.gather({ownBytes > 0 ? sent_.as<std::byte>() : nullptr, ownBytes}, {received_.as<std::byte>(), at},
+                  sizes);
+    copy(received_, shared.buffer, reversed(in));
+}
+
+// Brings an array in host memory, whose parts stand in the stage where they stand in the array.
+void RankChunks::shareHost(std::span<std::byte> array, uint64_t chunkBytes) {
+    const std::optional<VkDeviceSize> half = stage_.turn(array.size());
+    if (!half) return shareChunks(ranks_, deal_, array, chunkBytes);
+    std::byte* stage = stage_.buffer().as<std::byte>() + *half;
+    const auto copyRuns = [&](uint32_t rank, std::byte* to, const std::byte* from) {
+        for (const ChunkRange& run : deal_.runsOf(rank))
+            std::memcpy(to + run.first * chunkBytes, from + run.first * chunkBytes, run.count * chunkBytes);
+    };
+    copyRuns(ranks_.rank(), stage, array.data());
+    ranks_.meet();
+    for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
+        if (rank != ranks_.rank()) copyRuns(rank, array.data(), stage);
+}
+
+// Messages stand in the stage by sender, and of each by receiver: every rank knows where.
+bool RankChunks::shareNearByStage(const Shared& shared) {
+    const VkDeviceSize bytes = shared.chunkBytes * shared.arrays;
+    const VkDeviceSize all = std::accumulate(near_.counts.begin(), near_.counts.end(), VkDeviceSize{0});
+    if (all == 0) return true;
+    const std::optional<VkDeviceSize> half = stage_.turn(all * bytes);
+    if (!half) return false;
+    const VkDeviceSize arrayBytes = shared.buffer.size() / shared.arrays;
+    Regions out, in;
+    VkDeviceSize at = *half;
+    for (uint32_t from = 0; from < ranks_.count(); ++from)
+        for (uint32_t to = 0; to < ranks_.count(); ++to) {
+            VkDeviceSize place = at;
+            for (uint32_t array = 0; array < shared.arrays; ++array) {
+                if (from == ranks_.rank())
+                    place = appendRanges(out, rangesOfChunks(near_.to[to]), shared.chunkBytes,
+                                         array * arrayBytes, place);
+                else if (to == ranks_.rank())
+                    place = appendRanges(in, rangesOfChunks(near_.from[from]), shared.chunkBytes,
+                                         array * arrayBytes, place);
+            }
+            at += near_.counts[size_t{from} * ranks_.count() + to] * bytes;
+        }
+    copy(shared.buffer, stage_.buffer(), out);
+    ranks_.meet();
+    copy(stage_.buffer(), shared.buffer, reversed(in));
+    return true;
 }
 
 void RankChunks::shareNear(const Shared& shared) {
-    if (alone()) return;
+    if (alone() || shareNearByStage(shared)) return;
     const VkDeviceSize arrayBytes = shared.buffer.size() / shared.arrays;
     // Lays out the chunks of all messages, rank by rank and array by array.
     const auto layOut = [&](const std::vector<std::vector<uint32_t>>& lists, Regions& regions) {
@@ -199,9 +319,7 @@ void RankChunks::shareNear(const Shared& shared) {
         receivedAt = receivedEnds[rank];
     }
     ranks_.exchange(sent, received);
-    for (VkBufferCopy& region : in)
-        std::swap(region.srcOffset, region.dstOffset);
-    copy(received_, shared.buffer, in);
+    copy(received_, shared.buffer, reversed(in));
 }
 
 } // namespace relume

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "assets/base/worker_pool.h"
+#include "bake/gather/shared_stage.h"
 #include "bake/ranks/chunk_deal.h"
 #include "bake/surface/patch_set.h"
 #include "bake/vk/buffer.h"
@@ -16,13 +19,15 @@ struct NearChunks {
     std::vector<uint8_t> rows;               // 1: its rows are read by what this rank smooths
     std::vector<std::vector<uint32_t>> to;   // those that this rank sends to each other one
     std::vector<std::vector<uint32_t>> from; // those that it receives from each other one
+    std::vector<uint32_t> counts;            // [from * ranks + to]: how many go from any rank to any other
 };
 /// Finds them for a rank: the chunks that have a patch in the tiles around those of a chunk of its own, on
 /// all eight sides. Smoothing looks no further than a tile (smoothingReach()).
-NearChunks nearChunks(const TraceScene& scene, const ChunkDeal& deal, uint32_t rank);
+NearChunks nearChunks(WorkerPool& pool, const TraceScene& scene, const ChunkDeal& deal, uint32_t rank);
 
 /// The chunks that this process bakes, all of them where it works alone, and what it and other ranks bring
-/// each other of buffers on their devices: through memory of the host. All ranks make the same calls.
+/// each other of buffers on their devices: through memory of the host, which those of one machine
+/// share. All ranks make the same calls.
 class RankChunks {
 public:
     RankChunks(const vk::Device& device, Ranks& ranks, const PatchSet& patches);
@@ -49,15 +54,21 @@ public:
     void shareNear(const Shared& shared);
     /// Brings to all ranks what each has in its own chunks of an array in host memory.
     template<typename T>
-    void share(std::vector<T>& array) const {
-        shareChunks(ranks_, deal_, array);
+    void share(std::vector<T>& array) {
+        if (!alone() && !array.empty())
+            shareHost(std::as_writable_bytes(std::span(array)), array.size() / deal_.chunks() * sizeof(T));
     }
 
 private:
     /// Something that is copied between a buffer and the host.
     using Regions = std::vector<VkBufferCopy>;
     void reserve(vk::Buffer& staging, VkDeviceSize bytes) const;
+    void shareHost(std::span<std::byte> array, uint64_t chunkBytes);
     void copy(const vk::Buffer& from, const vk::Buffer& to, const Regions& regions);
+    bool shareByStage(const Shared& shared, VkDeviceSize arrayStart);
+    void shareByMessages(const Shared& shared, VkDeviceSize arrayStart);
+    void run(const std::function<void(VkCommandBuffer)>& record);
+    bool shareNearByStage(const Shared& shared);
     static VkDeviceSize appendRanges(Regions& regions, std::span<const ChunkRange> ranges,
                                      VkDeviceSize chunkBytes, VkDeviceSize arrayStart, VkDeviceSize at);
 
@@ -67,7 +78,8 @@ private:
     NearChunks near_;
     std::vector<ChunkRange> rows_;
     vk::Commands commands_;
-    vk::Buffer sent_, received_; // host memory, as large as they were needed so far
+    SharedStage stage_;
+    vk::Buffer sent_, received_; // host memory where there is no stage, as large as they were needed so far
 };
 
 } // namespace relume

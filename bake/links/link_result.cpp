@@ -65,23 +65,26 @@ void LinkSolver::resolve() {
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
     const bool isNew = state_.median == 0;
     shader::ResolveSums sums = kit_.buffers.rows ? state_.width.converge(at) : at(0.0);
-    state_.median = errors_.local().median;
+    LinkErrors::Local local = errors_.local();
+    state_.median = local.median;
     // What local error is relative to hangs on the median, which hardly changes once it is known.
-    if (isNew && state_.median > 0) sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
-    learn(sums);
+    if (isNew && state_.median > 0) {
+        sums = at(kit_.buffers.rows ? state_.width.sigma : 0.0);
+        local = errors_.local();
+    }
+    learn(sums, local);
     stale_ = false;
     light_.clear();
 }
 
 // Learns what sums over all patches say, and that there is a new result.
-void LinkSolver::learn(const shader::ResolveSums& sums) {
+void LinkSolver::learn(const shader::ResolveSums& sums, const LinkErrors::Local& local) {
     requireFiniteLight(sums.light, double(sums.direct) + sums.raw + sums.indirect);
     state_.directVariance = sums.direct;
     state_.indirectVariance = smoothedVariance(sums);
     state_.light = sums.light;
     state_.patches = sums.count;
     state_.bias = std::max(0.0f, sums.bias);
-    const LinkErrors::Local local = errors_.local();
     progress_.localError95 = local.error.p95;
     progress_.localError99 = local.error.p99;
     state_.directAtCheck = state_.directSamplePasses;
@@ -212,7 +215,7 @@ void LinkSolver::look() {
     const LinkState before = state_;
     SmoothingWidth width = live_.width.value_or(state_.width);
     const shader::ResolveSums sums = errors_.resolve(state_, kit_.buffers.rows ? width.sigma : 0.0);
-    learn(sums);
+    learn(sums, errors_.local());
     if (kit_.buffers.rows) width.adapt(sums);
     live_.width = width;
     state_ = before;

@@ -85,7 +85,7 @@ private:
     const std::vector<uint8_t>& seenOfStage() const;
     void check();
     void resolve();
-    void learn(const shader::ResolveSums& sums);
+    void learn(const shader::ResolveSums& sums, const LinkErrors::Local& local);
 
     // These serve a viewer and are in link_result.cpp, with all that tells of the result.
     void look();

@@ -2,6 +2,8 @@
 
 #include "assets/base/error.h"
 
+#include <unistd.h>
+
 #include <limits>
 #include <numeric>
 #include <string>
@@ -94,6 +96,38 @@ private:
         MPI_Allreduce(MPI_IN_PLACE, values.data(), countOf(values.size(), 1), MPI_UINT64_T, MPI_SUM,
                       MPI_COMM_WORLD);
     }
+
+    // The first rank names the block after itself, and the others open it under that name.
+    SharedBlock shareAll(uint64_t bytes) override {
+        if (!onOneMachine()) return {};
+        uint64_t maker[2] = {static_cast<uint64_t>(getpid()), blocks_++};
+        MPI_Bcast(maker, 2, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+        const std::string name = "/relume-" + std::to_string(maker[0]) + "-" + std::to_string(maker[1]);
+        SharedBlock block;
+        if (speaks()) block = createSharedBlock(name, bytes);
+        const bool made = fromSpeaker(bool(block));
+        if (made && !speaks()) block = openSharedBlock(name, bytes);
+        const bool opened = least(block ? 1 : 0) == 1;
+        if (made && speaks()) forgetSharedBlock(name);
+        return opened ? block : SharedBlock{};
+    }
+
+    static bool fromSpeaker(bool value) {
+        int word = value ? 1 : 0;
+        MPI_Bcast(&word, 1, MPI_INT, 0, MPI_COMM_WORLD);
+        return word == 1;
+    }
+
+    bool onOneMachine() const {
+        MPI_Comm machine = MPI_COMM_NULL;
+        MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+        int here = 0;
+        MPI_Comm_size(machine, &here);
+        MPI_Comm_free(&machine);
+        return static_cast<uint32_t>(here) == count();
+    }
+
+    uint64_t blocks_ = 0; // that this rank has named
 };
 
 } // namespace

@@ -23,6 +23,7 @@ private:
     }
     void exchangeSome(std::span<const Sent>, std::span<const Received>) override {}
     void sumAll(std::span<uint64_t>) override {}
+    SharedBlock shareAll(uint64_t) override { return {}; }
 };
 
 } // namespace
@@ -53,6 +54,16 @@ void Ranks::sum(std::span<uint64_t> values) {
 uint64_t Ranks::sum(uint64_t value) {
     sum(std::span(&value, 1));
     return value;
+}
+
+SharedBlock Ranks::share(uint64_t bytes) {
+    ASSERT(bytes > 0);
+    agree();
+    return shareAll(bytes);
+}
+
+void Ranks::meet() {
+    agree();
 }
 
 void Ranks::finish() {

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/ranks/shared_block.h"
+
 namespace relume {
 
 /// Tells that another process has failed, or was asked to end, and tells the user about it. It is no Error:
@@ -16,8 +18,8 @@ public:
 };
 
 /// Processes that bake one scene together, each of them with a number, its rank. All of them call gather(),
-/// exchange(), sum() and finish() in the same order: each waits for the others. Where one has failed, the
-/// others learn it in their next call, which throws OtherRankFailed. Only one thread calls.
+/// exchange(), sum(), share(), meet() and finish() in the same order: each waits for the others. Where one
+/// has failed, the others learn it in their next call, which throws OtherRankFailed. Only one thread calls.
 class Ranks {
 public:
     virtual ~Ranks() = default;
@@ -50,6 +52,12 @@ public:
     void sum(std::span<uint64_t> values);
     uint64_t sum(uint64_t value);
 
+    /// Returns memory that all ranks see, of as many bytes as all of them say; none where they run on several
+    /// machines or one cannot have it.
+    SharedBlock share(uint64_t bytes);
+    /// Waits until all ranks are here: each sees then what the others had written to shared memory.
+    void meet();
+
     /// Ends the work: waits until all have done theirs.
     void finish();
     /// Says, instead of whatever call comes next, that this rank has failed. Returns whether it is the one
@@ -66,6 +74,7 @@ private:
                            std::span<const uint64_t> sizes) = 0;
     virtual void exchangeSome(std::span<const Sent> sent, std::span<const Received> received) = 0;
     virtual void sumAll(std::span<uint64_t> values) = 0;
+    virtual SharedBlock shareAll(uint64_t bytes) = 0;
     void agree();
 
     uint32_t rank_, count_;

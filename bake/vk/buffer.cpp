@@ -3,6 +3,7 @@
 #include "bake/vk/memory.h"
 #include "bake/vk/staging.h"
 
+#include <bit>
 #include <utility>
 
 namespace relume::vk {
@@ -17,7 +18,24 @@ uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
     return cached != ~0u ? cached : device.memoryType(typeBits, coherent);
 }
 
+constexpr VkExternalMemoryHandleTypeFlagBits kImported =
+    VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+
+// Returns the types of memory that this memory of the host can be.
+uint32_t importedTypes(const Device& device, const std::byte* bytes) {
+    VkMemoryHostPointerPropertiesEXT properties{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT};
+    check(vkGetMemoryHostPointerPropertiesEXT(device.handle(), kImported, bytes, &properties),
+          "vkGetMemoryHostPointerPropertiesEXT");
+    return properties.memoryTypeBits;
+}
+
 } // namespace
+
+bool Buffer::importable(const Device& device, std::span<const std::byte> bytes) {
+    const VkDeviceSize alignment = device.info().importAlignment;
+    return alignment > 0 && !bytes.empty() && bytes.size() % alignment == 0 &&
+           std::bit_cast<uintptr_t>(bytes.data()) % alignment == 0;
+}
 
 Buffer::Buffer(const Device& device, const Desc& desc) : device_(&device) {
     ASSERT(desc.size > 0);
@@ -30,7 +48,10 @@ Buffer::Buffer(const Device& device, const Desc& desc) : device_(&device) {
 }
 
 void Buffer::create(const Desc& desc) {
-    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+    ASSERT(!desc.imported || desc.memory == Memory::Host);
+    VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO};
+    external.handleTypes = kImported;
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, desc.imported ? &external : nullptr};
     info.size = desc.size;
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
@@ -41,11 +62,19 @@ void Buffer::create(const Desc& desc) {
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device_->handle(), buffer_, &needs);
 
+    if (desc.imported) needs.memoryTypeBits &= importedTypes(*device_, desc.imported);
     const uint32_t type = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
+    VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT};
+    import.handleType = kImported;
+    import.pHostPointer = desc.imported;
     VkMemoryAllocateFlagsInfo byAddress{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     byAddress.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    memory_ = allocateMemory(
-        *device_, {.size = needs.size, .type = type, .chain = &byAddress, .name = desc.name, .what = what});
+    if (desc.imported) byAddress.pNext = &import;
+    memory_ = allocateMemory(*device_, {.size = desc.imported ? desc.size : needs.size,
+                                        .type = type,
+                                        .chain = &byAddress,
+                                        .name = desc.name,
+                                        .what = what});
     VK_CHECK(vkBindBufferMemory(device_->handle(), buffer_, memory_.handle(), 0));
 
     const VkMemoryPropertyFlags properties = device_->memoryProperties(type);

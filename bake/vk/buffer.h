@@ -21,7 +21,11 @@ public:
         Memory memory = Memory::Device;
         VkBufferUsageFlags extraUsage = 0; // acceleration structure input, storage, shader binding table
         const char* name = "";             // for validation messages and captures
+        std::byte* imported =
+            nullptr; // `size` bytes of the caller's, with Memory::Host alone: see importable()
     };
+    /// Tells whether a buffer can be made of this memory of the caller's, as far as place and size go.
+    static bool importable(const Device& device, std::span<const std::byte> bytes);
     Buffer() = default;
     Buffer(const Device& device,
            const Desc& desc); // throws Error (out of memory: names the buffer and its size)

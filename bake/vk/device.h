@@ -41,8 +41,9 @@ struct DeviceInfo {
     std::vector<std::string> missing; // what Relume needs and this device lacks; empty: usable
     bool rayTracingPipeline = false;
     bool rayQuery = false;
-    bool fragmentStores = false; // fragmentStoresAndAtomics
-    bool externalMemory = false; // VK_KHR_external_memory_fd
+    bool fragmentStores = false;      // fragmentStoresAndAtomics
+    bool externalMemory = false;      // VK_KHR_external_memory_fd
+    VkDeviceSize importAlignment = 0; // of memory of the host that becomes the device's [bytes]; 0: cannot
     bool software() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
     /// Drivers emulate the pipeline on GPUs without RT cores but offer ray queries only where there are some.
     bool rayTracingCores() const { return !software() && rayTracingPipeline && rayQuery; }

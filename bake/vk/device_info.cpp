@@ -132,6 +132,7 @@ std::vector<const char*> deviceExtensions(VkPhysicalDevice physical, const Devic
     if (info.rayTracingPipeline) names.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
     if (info.rayQuery) names.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
     if (info.externalMemory) names.push_back(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    if (info.importAlignment > 0) names.push_back(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
     if (hasDeviceExtension(physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME))
         names.push_back(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
     return names;
@@ -146,6 +147,16 @@ uint64_t freeDeviceMemory(VkPhysicalDevice physical, bool memoryBudget) {
     const uint32_t heap = largestDeviceHeap(memory.memoryProperties);
     if (!memoryBudget) return memory.memoryProperties.memoryHeaps[heap].size;
     return budget.heapBudget[heap] - std::min(budget.heapBudget[heap], budget.heapUsage[heap]);
+}
+
+VkDeviceSize readImportAlignment(VkPhysicalDevice physical,
+                                 const std::vector<VkExtensionProperties>& extensions) {
+    if (!contains(extensions, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME)) return 0;
+    VkPhysicalDeviceExternalMemoryHostPropertiesEXT host{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_MEMORY_HOST_PROPERTIES_EXT};
+    VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &host};
+    vkGetPhysicalDeviceProperties2(physical, &properties);
+    return host.minImportedHostPointerAlignment;
 }
 
 DeviceInfo readDeviceInfo(VkPhysicalDevice physical) {
@@ -173,6 +184,7 @@ DeviceInfo readDeviceInfo(VkPhysicalDevice physical) {
 
     const std::vector<VkExtensionProperties> extensions = extensionsOf(physical);
     info.externalMemory = contains(extensions, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    info.importAlignment = readImportAlignment(physical, extensions);
     info.deviceMemory = freeDeviceMemory(physical, false);
     info.freeMemory = freeDeviceMemory(physical, contains(extensions, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME));
     readFeatures(physical, extensions, info);

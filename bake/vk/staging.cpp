@@ -8,10 +8,10 @@
 namespace relume::vk {
 namespace {
 
-// The window that stays [bytes] holds the sums over chunks of the largest lightmap.
-constexpr VkDeviceSize kKeptBytes = VkDeviceSize{4} << 20;
-// Large copies go through a window of this size [bytes]: big enough for PCIe's full speed, small enough to be
-// always available.
+// Small copies go through a window of this size [bytes].
+constexpr VkDeviceSize kSmallBytes = VkDeviceSize{4} << 20;
+// Large ones go through one of this size [bytes]: big enough for PCIe's full speed, small enough to be always
+// available.
 constexpr VkDeviceSize kLargeBytes = VkDeviceSize{32} << 20;
 
 // A thread copies so much at a time [bytes]; one core alone does not fill PCIe.
@@ -33,17 +33,15 @@ void copy(VkCommandBuffer cmd, const Buffer& from, VkDeviceSize fromOffset, cons
 
 } // namespace
 
-// Returns the window that stays, or makes `large` for a copy for which that one is too small.
-const Buffer& Staging::windowFor(VkDeviceSize size, Buffer& large) {
+// Sums over the chunks of a large lightmap are read many times in a bake, so the large window stays as well.
+const Buffer& Staging::windowFor(VkDeviceSize size) {
     const MemoryOwner owner("staging");
-    if (size <= kKeptBytes) {
-        if (!window_)
-            window_ = Buffer(device_, {.size = kKeptBytes, .memory = Memory::Host, .name = "staging"});
-        return window_;
-    }
-    large = Buffer(device_,
-                   {.size = std::min(size, kLargeBytes), .memory = Memory::Host, .name = "large staging"});
-    return large;
+    Buffer& window = size <= kSmallBytes ? small_ : large_;
+    if (!window)
+        window = Buffer(device_, {.size = size <= kSmallBytes ? kSmallBytes : kLargeBytes,
+                                  .memory = Memory::Host,
+                                  .name = size <= kSmallBytes ? "staging" : "large staging"});
+    return window;
 }
 
 void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, VkDeviceSize offset) {
@@ -54,8 +52,7 @@ void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, 
         copyByAll(device_, static_cast<char*>(buffer.mapped()) + offset, data, size);
         return;
     }
-    Buffer large;
-    const Buffer& window = windowFor(size, large);
+    const Buffer& window = windowFor(size);
     for (VkDeviceSize done = 0; done < size; done += window.size()) {
         const VkDeviceSize piece = std::min(window.size(), size - done);
         copyByAll(device_, window.mapped(), static_cast<const char*>(data) + done, piece);
@@ -67,7 +64,7 @@ void Staging::upload(const Buffer& buffer, const void* data, VkDeviceSize size, 
     }
 }
 
-// Copies through the window that stays, however much it is: few parts fill it.
+// Copies through the small window, however much it is: few parts fill it.
 void Staging::uploadParts(const Buffer& buffer, const void* data, std::span<const BufferPart> parts) {
     if (parts.empty()) return;
     const std::lock_guard lock(mutex_);
@@ -79,8 +76,7 @@ void Staging::uploadParts(const Buffer& buffer, const void* data, std::span<cons
             std::memcpy(static_cast<char*>(buffer.mapped()) + part.offset, from + part.offset, part.size);
         return;
     }
-    Buffer none;
-    const Buffer& window = windowFor(kKeptBytes, none);
+    const Buffer& window = windowFor(kSmallBytes);
     std::vector<VkBufferCopy> regions;
     VkDeviceSize used = 0;
     const auto flush = [&] {
@@ -114,8 +110,7 @@ void Staging::download(const Buffer& buffer, void* data, VkDeviceSize size, VkDe
         std::memcpy(data, static_cast<const char*>(buffer.mapped()) + offset, size);
         return;
     }
-    Buffer large;
-    const Buffer& window = windowFor(size, large);
+    const Buffer& window = windowFor(size);
     for (VkDeviceSize done = 0; done < size; done += window.size()) {
         const VkDeviceSize piece = std::min(window.size(), size - done);
         VkCommandBuffer cmd = commands_.begin();
@@ -123,7 +118,7 @@ void Staging::download(const Buffer& buffer, void* data, VkDeviceSize size, VkDe
         copy(cmd, buffer, offset + done, window, 0, piece);
         hostBarrier(cmd);
         commands_.run();
-        std::memcpy(static_cast<char*>(data) + done, window.mapped(), piece);
+        copyByAll(device_, static_cast<char*>(data) + done, window.mapped(), piece);
     }
 }
 

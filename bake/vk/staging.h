@@ -7,7 +7,7 @@
 
 namespace relume::vk {
 
-/// Copies between host memory and a device's buffers. Where the CPU cannot see a buffer, small copies go
+/// Copies between host memory and a device's buffers. Where the CPU cannot see a buffer, copies go
 /// through a window that stays: a driver takes longer to make one than to copy. Any thread may use it.
 class Staging {
 public:
@@ -18,11 +18,11 @@ public:
     void download(const Buffer& buffer, void* data, VkDeviceSize size, VkDeviceSize offset);
 
 private:
-    const Buffer& windowFor(VkDeviceSize size, Buffer& large);
+    const Buffer& windowFor(VkDeviceSize size);
 
     const Device& device_;
     std::mutex mutex_;
-    Buffer window_;
+    Buffer small_, large_; // windows, made when they are first needed
     Commands commands_;
 };
 

@@ -24,10 +24,11 @@ TraceScene tiledScene(uint32_t tiles) {
 
 TEST(NearChunks, areThoseOfTheTilesAround) {
     constexpr uint32_t kTiles = 8;
+    WorkerPool pool(2);
     const TraceScene scene = tiledScene(kTiles);
     const ChunkDeal deal(kTiles * kTiles, 2, 32); // the upper half, the lower half
     ASSERT_EQ(deal.runsOf(0).size(), 1u);
-    const NearChunks first = nearChunks(scene, deal, 0), second = nearChunks(scene, deal, 1);
+    const NearChunks first = nearChunks(pool, scene, deal, 0), second = nearChunks(pool, scene, deal, 1);
     std::vector<uint32_t> lastRow(kTiles), nextRow(kTiles);
     std::iota(lastRow.begin(), lastRow.end(), 3 * kTiles);
     std::iota(nextRow.begin(), nextRow.end(), 4 * kTiles);
@@ -41,15 +42,19 @@ TEST(NearChunks, areThoseOfTheTilesAround) {
 }
 
 TEST(NearChunks, areSentAsTheyAreExpected) {
+    WorkerPool pool(2);
     const TraceScene scene = tiledScene(12);
     for (const uint32_t ranks : {2u, 3u, 5u}) {
         const ChunkDeal deal(144, ranks, 7);
         std::vector<NearChunks> near;
         for (uint32_t rank = 0; rank < ranks; ++rank)
-            near.push_back(nearChunks(scene, deal, rank));
+            near.push_back(nearChunks(pool, scene, deal, rank));
         for (uint32_t a = 0; a < ranks; ++a)
-            for (uint32_t b = 0; b < ranks; ++b)
+            for (uint32_t b = 0; b < ranks; ++b) {
                 EXPECT_EQ(near[a].to[b], near[b].from[a]);
+                for (const NearChunks& one : near)
+                    EXPECT_EQ(one.counts[a * ranks + b], near[a].to[b].size());
+            }
     }
 }
 

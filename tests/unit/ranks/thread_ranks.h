@@ -4,22 +4,27 @@
 
 #include <algorithm>
 #include <barrier>
+#include <cstdlib>
 #include <functional>
 #include <thread>
 
 namespace relume {
 namespace thread_ranks {
 
+constexpr size_t kPage = 4096; // [bytes]
+
 /// What threads show each other between two waits.
 struct RankTable {
-    explicit RankTable(uint32_t count)
-        : together(static_cast<std::ptrdiff_t>(count)), words(count), bytes(count), sent(count),
-          values(count) {}
+    RankTable(uint32_t count, bool memory)
+        : sharesMemory(memory), together(static_cast<std::ptrdiff_t>(count)), words(count), bytes(count),
+          sent(count), values(count) {}
+    bool sharesMemory;
     std::barrier<> together;
     std::vector<uint32_t> words;
     std::vector<std::span<const std::byte>> bytes;
     std::vector<std::span<const Ranks::Sent>> sent;
     std::vector<std::span<uint64_t>> values;
+    SharedBlock block;
 };
 
 class ThreadRanks final : public Ranks {
@@ -63,15 +68,28 @@ private:
         std::copy(sums.begin(), sums.end(), values.begin());
     }
 
+    SharedBlock shareAll(uint64_t bytes) override {
+        if (!table_.sharesMemory) return {};
+        if (speaks()) {
+            table_.block = {std::shared_ptr<void>(std::aligned_alloc(kPage, bytes), &std::free), {}};
+            table_.block.bytes = {static_cast<std::byte*>(table_.block.owner.get()), bytes};
+        }
+        table_.together.arrive_and_wait();
+        const SharedBlock block = table_.block;
+        table_.together.arrive_and_wait();
+        return block;
+    }
+
     RankTable& table_;
 };
 
 } // namespace thread_ranks
 
 /// Runs `work` as so many ranks that are threads of this process, and waits for all of them. What one throws
-/// ends the program.
-inline void runThreadRanks(uint32_t count, const std::function<void(Ranks&)>& work) {
-    thread_ranks::RankTable table(count);
+/// ends the program. Without memory that they share they send each other all things.
+inline void runThreadRanks(uint32_t count, const std::function<void(Ranks&)>& work,
+                           bool sharesMemory = true) {
+    thread_ranks::RankTable table(count, sharesMemory);
     std::vector<std::thread> threads;
     for (uint32_t rank = 0; rank < count; ++rank)
         threads.emplace_back([&, rank] {
