@@ -36,6 +36,15 @@ double medianLight(std::span<const uint32_t> lightBins) {
     return percentile(lightBins, 0.5, kLights);
 }
 
+LocalError withBias(const LocalError& error, double noise, double bias) {
+    if (!(noise > 0) || !(bias > 0)) return error;
+    const double growth = std::sqrt(1.0 + bias / noise);
+    return {.p50 = growth * error.p50,
+            .p90 = growth * error.p90,
+            .p95 = growth * error.p95,
+            .p99 = growth * error.p99};
+}
+
 LocalError localErrorOf(std::span<const uint32_t> errorBins) {
     const auto at = [&](double share) { return percentile(errorBins, share, kErrors); };
     return {.p50 = at(0.5), .p90 = at(0.9), .p95 = at(0.95), .p99 = at(0.99)};

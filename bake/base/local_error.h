@@ -21,4 +21,9 @@ struct LocalError {
 double medianLight(std::span<const uint32_t> lightBins);
 LocalError localErrorOf(std::span<const uint32_t> errorBins);
 
+/// Returns what noise and the bias of smoothing make together, from the error of the noise alone and both
+/// sums of squares over all texels. Which texels the bias is in is too uncertain to be told: it is taken to
+/// be where the noise is. What is left of it below nothing, by chance, is none.
+LocalError withBias(const LocalError& error, double noise, double bias);
+
 } // namespace relume

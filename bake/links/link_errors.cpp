@@ -45,10 +45,14 @@ LinkErrors::Local LinkErrors::local() const {
     const std::span<const uint32_t> all = bins;
     Local local{.median = medianLight(all.first(shader::kLightBins)),
                 .error = localErrorOf(all.subspan(shader::kLightBins))};
+    double noise = 0, bias = 0;
     for (const shader::LocalSums& sums : localSums()) {
         local.direct += sums.direct;
         local.links += double(sums.indirect) + std::max(0.0f, sums.bias);
+        noise += double(sums.direct) + sums.indirect;
+        bias += sums.bias;
     }
+    local.error = withBias(local.error, noise, bias);
     return local;
 }
 

@@ -92,17 +92,18 @@ TEST_F(ChunkSampling, EndsWhereTheLocalErrorIsReached) {
     }
 }
 
-// What is told is what is left, where it is not smoothed. Here light comes into the dark room by two bounces,
+// What is told is what is left, smoothed or not. Here light comes into the dark room by two bounces,
 // so that noise of what links read, which replicates share, is a part of it.
 TEST_F(ChunkSampling, TellsTheLocalErrorThatIsThere) {
-    for (const bool perChunk : {false, true}) {
-        BakeDesc desc = localOnly(0.1, perChunk);
-        desc.smooth = false;
-        const Baked baked = bakeScene(*scene_, desc);
-        const LocalPercentiles truly = localOf(baked.lighting, truth_->lighting);
-        EXPECT_NEAR(baked.progress.localError95 / truly.p95, 1.0, 0.3) << perChunk;
-        EXPECT_NEAR(baked.progress.localError99 / truly.p99, 1.0, 0.4) << perChunk;
-    }
+    for (const bool perChunk : {false, true})
+        for (const bool smooth : {false, true}) {
+            BakeDesc desc = localOnly(0.1, perChunk);
+            desc.smooth = smooth;
+            const Baked baked = bakeScene(*scene_, desc);
+            const LocalPercentiles truly = localOf(baked.lighting, truth_->lighting);
+            EXPECT_NEAR(baked.progress.localError95 / truly.p95, 1.0, 0.3) << perChunk << smooth;
+            EXPECT_NEAR(baked.progress.localError99 / truly.p99, 1.0, 0.4) << perChunk << smooth;
+        }
 }
 
 // To stop by an estimate must not choose what is dark by chance. The mean over the darkest quarter is of

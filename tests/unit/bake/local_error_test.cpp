@@ -35,6 +35,31 @@ TEST(LocalErrorBins, PercentilesAreThoseOfTheSortedValues) {
     EXPECT_NEAR(told.p99, at(0.99), 0.02 * at(0.99));
 }
 
+// Noise and a bias of either sign in proportion to it, as they are taken to be.
+TEST(LocalErrorBins, BiasAddsToNoiseAsSquaresDo) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal;
+    std::bernoulli_distribution sign;
+    std::vector<float> noise, both;
+    double noiseSquares = 0, biasSquares = 0;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        const double own = std::exp2(4.0 * i / 20000.0) * 0.01; // a texel's standard error
+        const double error = own * normal(random), bias = (sign(random) ? 0.7 : -0.7) * own;
+        noise.push_back(static_cast<float>(std::abs(error)));
+        both.push_back(static_cast<float>(std::abs(error + bias)));
+        noiseSquares += error * error;
+        biasSquares += bias * bias;
+    }
+    const LocalError alone = localErrorOf(errorBins(noise)), truly = localErrorOf(errorBins(both));
+    const LocalError told = withBias(alone, noiseSquares, biasSquares);
+    EXPECT_LT(alone.p95, 0.87 * truly.p95);
+    EXPECT_NEAR(told.p50, truly.p50, 0.1 * truly.p50);
+    EXPECT_NEAR(told.p95, truly.p95, 0.06 * truly.p95);
+    EXPECT_NEAR(told.p99, truly.p99, 0.1 * truly.p99);
+    EXPECT_EQ(withBias(alone, noiseSquares, -1.0).p95, alone.p95);
+    EXPECT_EQ(withBias({0, 0, 0, 0}, 0.0, 1.0).p95, 0.0);
+}
+
 TEST(LocalErrorBins, WhatIsExactIsOffByNothing) {
     std::vector<float> errors(1000, 0.0f);
     std::fill_n(errors.begin(), 60, 0.25f);
