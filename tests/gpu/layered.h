@@ -19,6 +19,22 @@ namespace relume {
 
 using Light4 = std::vector<glm::vec4>;
 
+inline Light bulbInRoom() {
+    Light bulb = lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb");
+    bulb.radius = 0.1f;
+    return bulb;
+}
+
+inline Light spotInRoom() {
+    return lightAt(LightType::Spot, {0.4f, 1.2f, 1.8f}, 9.0f, "Spot");
+}
+
+inline Light panelInRoom() {
+    Light panel = lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel");
+    panel.size = {0.3f, 0.2f};
+    return panel;
+}
+
 /// Makes a closed room of 2 m with a plate that shines, a block on the floor, a bulb, a spot and a panel.
 inline Scene room(float albedo = 0.6f) {
     SceneMaker maker(64);
@@ -26,12 +42,8 @@ inline Scene room(float albedo = 0.6f) {
     maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, 8.0f), glm::uvec2(4));
     maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
     Scene scene = maker.scene();
-    scene.lights.push_back(lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
-    scene.lights.back().radius = 0.1f;
-    scene.lights.push_back(lightAt(LightType::Spot, {0.4f, 1.2f, 1.8f}, 9.0f, "Spot"));
-    scene.lights.back().color = {0.2f, 0.5f, 1.0f};
-    scene.lights.push_back(lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel"));
-    scene.lights.back().size = {0.3f, 0.2f};
+    scene.lights = {bulbInRoom(), spotInRoom(), panelInRoom()};
+    scene.lights[1].color = {0.2f, 0.5f, 1.0f};
     return scene;
 }
 

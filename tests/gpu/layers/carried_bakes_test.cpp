@@ -3,8 +3,8 @@
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/layers/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/gpu/edited_bake.h"
 #include "tests/gpu/gpu_environment.h"
-#include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
 
@@ -16,16 +16,8 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kCarriedSize = 64;
-// These are instances of the room below: walls, plate, shelf, block, picture.
-constexpr size_t kCarriedPlate = 6, kCarriedShelf = 7, kCarriedBlock = 8, kCarriedPicture = 14;
-
-constexpr BakeDesc kCarriedDesc{.size = kCarriedSize,
-                                .passes = 0,
-                                .method = Method::Hybrid,
-                                .samples = 32,
-                                .smooth = true,
-                                .layers = true};
+// This is an instance of the room below, behind its furniture.
+constexpr size_t kCarriedPicture = kBlockEnd;
 
 int pictureIn(Scene& scene, uint8_t red) {
     scene.images.push_back(
@@ -34,40 +26,26 @@ int pictureIn(Scene& scene, uint8_t red) {
     return static_cast<int>(scene.textures.size()) - 1;
 }
 
-/// Makes a closed room of 2 m with a plate that shines, a shelf, a block of six sides and a picture on the
-/// wall, each in a place of its own in the lightmap, and two lamps.
+/// Makes the furnished room with a picture on the wall and two lamps.
 Scene carriedRoom() {
-    SceneMaker maker(kCarriedSize);
-    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
-    maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, 8.0f), glm::uvec2(4));
-    maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
-    maker.box({0.2f, 1.2f, 0.05f}, {0.3f * kY, 0.3f * kX, 0.3f * kZ}, maker.material(0.5f), 4);
+    SceneMaker maker = furnishedRoom();
     Material painted;
     painted.metallic = 0.0f;
     maker.quad({0.5f, 0.01f, 0.5f}, 0.6f * kZ, 0.6f * kX, maker.material(painted), glm::uvec2(6));
     Scene scene = maker.scene();
     scene.materials.back().baseColorTexture.texture = pictureIn(scene, 90);
-    scene.lights.push_back(lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
-    scene.lights.back().radius = 0.1f;
-    scene.lights.push_back(lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel"));
-    scene.lights.back().size = {0.3f, 0.2f};
+    scene.lights = {bulbInRoom(), panelInRoom()};
     return scene;
 }
 
-/// Holds a bake of layers. Any edit of `scene` is followed by a bake that goes on with the one before.
-class CarriedBake {
+/// Follows any edit of `scene` by a bake that goes on with the one before.
+class CarriedBake : public EditedBake {
 public:
-    explicit CarriedBake(Scene start, const BakeDesc& desc = kCarriedDesc)
-        : scene(std::move(start)), desc_(desc), baked_(std::make_unique<Scene>(scene)) {
-        baker_ = makeEditableBaker(*baked_, desc);
-    }
+    explicit CarriedBake(Scene start, const BakeDesc& desc = kEditedDesc)
+        : EditedBake(std::move(start), desc) {}
 
-    LayerSolver& solver() { return *baker_->layers(); }
-    Baker& baker() { return *baker_; }
-    uint64_t rays() { return solver().raysSoFar(); }
     CarriedBake& finish() {
-        while (!solver().done())
-            solver().step();
+        EditedBake::finish();
         return *this;
     }
     void steps(int count) {
@@ -76,15 +54,13 @@ public:
     }
     /// Edits the bake that there is; needs no other patches.
     void edit() {
-        while (!solver().atRest())
-            solver().step();
+        rest();
         const LightmapAtlas atlas = buildAtlas(scene, desc_.size);
         ASSERT_EQ(baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas}), Applied::Now);
     }
     /// Edits the bake that there is, whose materials are painted otherwise now.
     Applied repaint() {
-        while (!solver().atRest())
-            solver().step();
+        rest();
         const LightmapAtlas atlas = buildAtlas(scene, desc_.size);
         return baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas, .repainted = &scene});
     }
@@ -99,32 +75,10 @@ public:
         baker_ = std::make_unique<Baker>(testDevice(), *baked_, BakeSurfaces(meshOfScene(), &*former),
                                          settingsOf(desc_));
     }
-    std::vector<FloatImage> images() {
-        std::vector<FloatImage> all = {baker_->lightmap({.sew = false})};
-        for (const auto& layer : solver().layers())
-            all.push_back(makeLightmap(baker_->patches(), solver().layerLight(*layer), {.sew = false}));
-        return all;
-    }
-    const BakeDesc& desc() const { return desc_; }
-
-    Scene scene;
 
 private:
     WorldMesh meshOfScene() const { return flatten(scene, buildAtlas(scene, desc_.size)); }
-
-    BakeDesc desc_;
-    std::unique_ptr<Scene> baked_;
-    std::unique_ptr<Baker> baker_;
 };
-
-void expectFresh(CarriedBake& bake, CarriedBake& fresh) {
-    const std::vector<FloatImage> edited = bake.images(), wanted = fresh.images();
-    ASSERT_EQ(edited.size(), wanted.size());
-    for (size_t i = 0; i < wanted.size(); ++i)
-        EXPECT_EQ(edited[i].planes, wanted[i].planes)
-            << "of image " << i << ", which are off by " << relativeError(edited[i], wanted[i]);
-    EXPECT_EQ(bake.baker().invalidPatches(), fresh.baker().invalidPatches());
-}
 
 /// Follows the scene to its end and compares every texel of every layer with a fresh bake of it. Returns the
 /// share of a fresh bake's rays that it took.
@@ -162,7 +116,7 @@ void cut(Scene& scene, size_t object) {
 class CarriedBakes : public testing::TestWithParam<int> {
 protected:
     static BakeDesc desc() {
-        BakeDesc desc = kCarriedDesc;
+        BakeDesc desc = kEditedDesc;
         const std::vector<TracerKind> tracers = tracersOfTestDevice();
         if (GetParam() == 0) return desc;
         desc.tracer = tracers[static_cast<size_t>(GetParam() - 1) % tracers.size()];
@@ -214,11 +168,11 @@ TEST_P(CarriedBakes, WhatIsPaintedOtherwiseIsAnEdit) {
     expectFresh(bake, metal.finish());
 
     bake.scene.images.back().rgba[0] = 255;
-    bake.scene.instances[kCarriedShelf].hidden = true;
+    bake.scene.instances[kShelf].hidden = true;
     ASSERT_EQ(bake.repaint(), Applied::Now);
     bake.scene.materials[2].metallic = 0.5f; // of the shelf, which nobody sees
     ASSERT_EQ(bake.repaint(), Applied::Now);
-    bake.scene.instances[kCarriedShelf].hidden = false;
+    bake.scene.instances[kShelf].hidden = false;
     bake.edit();
     bake.finish();
     CarriedBake fresh(bake.scene, bake.desc());
@@ -229,10 +183,10 @@ TEST_P(CarriedBakes, WhatIsPaintedOtherwiseIsAnEdit) {
 TEST_P(CarriedBakes, AChangedMeshCostsItsOwn) {
     CarriedBake bake(carriedRoom(), desc());
     bake.finish();
-    for (glm::vec3& position : shapeOf(bake.scene, kCarriedShelf).positions)
+    for (glm::vec3& position : shapeOf(bake.scene, kShelf).positions)
         position.z += 0.1f * position.x;
     EXPECT_LT(carried(bake), few(0.7));
-    cut(bake.scene, kCarriedBlock);
+    cut(bake.scene, kBlock);
     EXPECT_LT(carried(bake), few(0.4)) << "it has fewer triangles";
 }
 
@@ -240,23 +194,23 @@ TEST_P(CarriedBakes, ObjectsComeAndGo) {
     CarriedBake bake(carriedRoom(), desc());
     bake.finish();
     const Scene all = bake.scene;
-    removeObjects(bake.scene, kCarriedBlock, kCarriedPicture);
+    removeObjects(bake.scene, kBlock, kCarriedPicture);
     EXPECT_LT(carried(bake), few(0.5));
     bake.scene = all;
     EXPECT_LT(carried(bake), few(0.6));
-    bake.scene.instances[kCarriedShelf].hidden = true;
+    bake.scene.instances[kShelf].hidden = true;
     EXPECT_LT(carried(bake), few(0.7));
 }
 
 TEST_P(CarriedBakes, ALightOfAnotherFormIsMadeAnew) {
     CarriedBake bake(carriedRoom(), desc());
     bake.finish();
-    for (glm::vec3& position : shapeOf(bake.scene, kCarriedPlate).positions)
+    for (glm::vec3& position : shapeOf(bake.scene, kPlate).positions)
         position.x *= 1.2f;
     carried(bake);
     bake.scene.materials[1].emissionTexture.texture = pictureIn(bake.scene, 255);
     carried(bake);
-    removeObjects(bake.scene, kCarriedPlate, kCarriedPlate + 1);
+    removeObjects(bake.scene, kPlate, kPlate + 1);
     carried(bake);
 }
 
@@ -264,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(Tracers, CarriedBakes, testing::Range(0, 4));
 
 // A viewer sees what it saw, in its new places, until there is better.
 TEST(CarriedBakes, WhatWasShownIsShownOn) {
-    BakeDesc desc = kCarriedDesc;
+    BakeDesc desc = kEditedDesc;
     desc.live = true;
     CarriedBake bake(carriedRoom(), desc);
     bake.finish();
@@ -281,7 +235,7 @@ TEST(CarriedBakes, WhatWasShownIsShownOn) {
         ++covered;
         EXPECT_FLOAT_EQ(after.planes[0][texel], before.planes[0][texel]) << texel;
     }
-    EXPECT_GT(covered, kCarriedSize * kCarriedSize / 5);
+    EXPECT_GT(covered, kRoomSize * kRoomSize / 5);
     bake.finish();
     EXPECT_TRUE(bake.solver().current());
     CarriedBake fresh(bake.scene, desc);
@@ -290,18 +244,18 @@ TEST(CarriedBakes, WhatWasShownIsShownOn) {
 
 // Edits of all kinds come before the ones before were followed to their end.
 TEST(CarriedBakes, EditsUnderWayComeAlong) {
-    BakeDesc desc = kCarriedDesc;
+    BakeDesc desc = kEditedDesc;
     desc.live = true;
     desc.batchMs = 1.0;
     CarriedBake bake(carriedRoom(), desc);
     bake.finish();
     for (int i = 0; i < 4; ++i) {
-        for (size_t k = kCarriedBlock; k < kCarriedPicture; ++k)
+        for (size_t k = kBlock; k < kCarriedPicture; ++k)
             bake.scene.instances[k].transform =
                 glm::translate(bake.scene.instances[k].transform, {0.1f, -0.05f, 0.02f});
         bake.edit();
         bake.steps(2 * i);
-        shapeOf(bake.scene, kCarriedShelf).positions.front().z += 0.05f;
+        shapeOf(bake.scene, kShelf).positions.front().z += 0.05f;
         bake.goOn();
         bake.steps(3 * i);
         bake.scene.lights[0].transform = at({0.6f + 0.1f * static_cast<float>(i), 0.5f, 1.2f});
@@ -314,13 +268,13 @@ TEST(CarriedBakes, EditsUnderWayComeAlong) {
 TEST(CarriedBakes, HiddenAndMovedObjectsAreWhereTheyAre) {
     CarriedBake bake(carriedRoom());
     bake.finish();
-    bake.scene.instances[kCarriedShelf].hidden = true;
+    bake.scene.instances[kShelf].hidden = true;
     bake.scene.instances[kCarriedPicture].transform = at({0.2f, 0.0f, 0.1f});
     bake.edit();
     bake.finish();
-    cut(bake.scene, kCarriedBlock);
+    cut(bake.scene, kBlock);
     EXPECT_LT(carried(bake), 0.5);
-    bake.scene.instances[kCarriedShelf].hidden = false;
+    bake.scene.instances[kShelf].hidden = false;
     EXPECT_LT(carried(bake), 0.7);
 }
 
@@ -336,7 +290,7 @@ TEST(CarriedBakes, UnderSkyAndSun) {
     sun.transform = glm::rotate(glm::mat4(1.0f), 0.4f, kY);
     sun.angle = 0.02f;
     scene.lights.push_back(sun);
-    BakeDesc desc = kCarriedDesc;
+    BakeDesc desc = kEditedDesc;
     desc.size = 32;
     CarriedBake bake(scene, desc);
     bake.finish();
@@ -349,7 +303,7 @@ TEST(CarriedBakes, UnderSkyAndSun) {
 }
 
 TEST(CarriedBakes, HolesAreComparedAsRaysMeetThem) {
-    SceneMaker maker(kCarriedSize);
+    SceneMaker maker(kRoomSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     Material leaf;
     leaf.metallic = 0.0f;
@@ -374,12 +328,12 @@ TEST(CarriedBakes, TexelsInsideSomethingAreFoundAnew) {
     CarriedBake bake(carriedRoom());
     bake.finish();
     const uint32_t before = bake.baker().invalidPatches();
-    for (size_t k = kCarriedBlock; k < kCarriedPicture; ++k)
+    for (size_t k = kBlock; k < kCarriedPicture; ++k)
         for (glm::vec3& position : shapeOf(bake.scene, k).positions)
             position.z -= 0.2f;
     carried(bake);
     EXPECT_GT(bake.baker().invalidPatches(), before + 5);
-    removeObjects(bake.scene, kCarriedBlock, kCarriedPicture);
+    removeObjects(bake.scene, kBlock, kCarriedPicture);
     carried(bake);
     EXPECT_LE(bake.baker().invalidPatches(), before);
 }
@@ -388,7 +342,7 @@ TEST(CarriedBakes, WhatMemoryIsShortForIsMadeAgain) {
     CarriedBake bake(carriedRoom());
     for (const uint64_t bytes : {uint64_t{0}, uint64_t{600'000}}) {
         bake.finish();
-        shapeOf(bake.scene, kCarriedShelf).positions.front().z += 0.05f;
+        shapeOf(bake.scene, kShelf).positions.front().z += 0.05f;
         bake.goOn(bytes);
         bake.finish();
         CarriedBake fresh(bake.scene);
@@ -398,11 +352,11 @@ TEST(CarriedBakes, WhatMemoryIsShortForIsMadeAgain) {
 
 // A viewer goes on showing what it showed until there is a whole picture.
 TEST(CarriedBakes, TheFirstNewPictureIsOfAllLightsAtOnce) {
-    BakeDesc desc = kCarriedDesc;
+    BakeDesc desc = kEditedDesc;
     desc.live = true;
     CarriedBake bake(carriedRoom(), desc);
     bake.finish();
-    cut(bake.scene, kCarriedBlock);
+    cut(bake.scene, kBlock);
     bake.goOn();
     while (!bake.solver().current()) {
         EXPECT_TRUE(bake.solver().liveLight().complete) << "as it was before";
@@ -420,7 +374,7 @@ TEST(CarriedBakes, TheFirstNewPictureIsOfAllLightsAtOnce) {
 // Two hundred changes of all kinds, drawn by chance, come one after the other and under way. The light that
 // they lead to is a fresh bake's.
 TEST(CarriedBakes, TwoHundredChangesAreAFreshBake) {
-    BakeDesc desc = kCarriedDesc;
+    BakeDesc desc = kEditedDesc;
     desc.live = true;
     CarriedBake bake(carriedRoom(), desc);
     const Scene home = bake.scene;
@@ -430,7 +384,7 @@ TEST(CarriedBakes, TwoHundredChangesAreAFreshBake) {
     for (int change = 0; change < 200; ++change) {
         Scene& scene = bake.scene;
         const glm::vec3 way = 0.3f * (glm::vec3(share(), share(), share()) - 0.5f);
-        const size_t kind = random() % 8, object = kCarriedPlate + random() % 3;
+        const size_t kind = random() % 8, object = kPlate + random() % 3;
         const auto found = [&](const std::string& name) {
             return std::find_if(scene.instances.begin(), scene.instances.end(),
                                 [&](const Instance& instance) { return instance.name == name; });

@@ -4,8 +4,8 @@
 #include "bake/layers/layer_solver.h"
 #include "bake/trace/make_tracer.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/gpu/edited_bake.h"
 #include "tests/gpu/gpu_environment.h"
-#include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
 
@@ -17,55 +17,24 @@
 namespace relume {
 namespace {
 
-constexpr uint32_t kMovingSize = 64;
-// These are instances of the room below: walls, plate, shelf, block, wall light.
-constexpr size_t kPlate = 6, kShelf = 7, kBlock = 8, kBlockEnd = 14;
-
-/// Makes a closed room of 2 m with a plate that shines, a shelf, a block of six sides, a bulb, a spot and a
-/// panel.
+/// Makes the furnished room with a bulb, a spot and a panel.
 Scene movingRoom(float plate = 8.0f) {
-    SceneMaker maker(kMovingSize);
-    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
-    maker.quad({0.6f, 0.6f, 1.9f}, 0.4f * kY, 0.4f * kX, maker.material(0.0f, plate), glm::uvec2(4));
-    maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
-    // Left-handed edges turn fronts outwards.
-    maker.box({0.2f, 1.2f, 0.05f}, {0.3f * kY, 0.3f * kX, 0.3f * kZ}, maker.material(0.5f), 4);
-    Scene scene = maker.scene();
-    scene.lights.push_back(lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
-    scene.lights.back().radius = 0.1f;
-    scene.lights.push_back(lightAt(LightType::Spot, {0.4f, 1.2f, 1.8f}, 9.0f, "Spot"));
-    scene.lights.push_back(lightAt(LightType::Rectangle, {1.3f, 1.0f, 1.7f}, 20.0f, "Panel"));
-    scene.lights.back().size = {0.3f, 0.2f};
+    Scene scene = furnishedRoom(plate).scene();
+    scene.lights = {bulbInRoom(), spotInRoom(), panelInRoom()};
     return scene;
 }
 
-constexpr BakeDesc kQuickMoving{.size = kMovingSize,
-                                .passes = 0,
-                                .method = Method::Hybrid,
-                                .samples = 32,
-                                .smooth = true,
-                                .layers = true};
-
-/// Holds a bake of layers whose scene is edited: the bake follows `scene` when it is told.
-class Moving {
+/// Follows objects that move, are hidden and shown: the bake follows `scene` when it is told.
+class Moving : public EditedBake {
 public:
-    explicit Moving(Scene start, const BakeDesc& desc = kQuickMoving)
-        : scene(std::move(start)), baked_(scene), atlas_(buildAtlas(scene, desc.size)),
-          baker_(makeEditableBaker(baked_, desc)) {
+    explicit Moving(Scene start, const BakeDesc& desc = kEditedDesc)
+        : EditedBake(std::move(start), desc), atlas_(buildAtlas(scene, desc.size)) {
         finish();
     }
 
-    LayerSolver& solver() { return *baker_->layers(); }
-    Baker& baker() { return *baker_; }
-    uint64_t rays() { return solver().progress().rays; }
-    void finish() {
-        while (!solver().done())
-            solver().step();
-    }
     /// Tells whether the solver could follow the scene as it is now.
     bool follow() {
-        while (!solver().atRest())
-            solver().step();
+        rest();
         return apply() == Applied::Now;
     }
     Applied apply() { return baker_->apply({.scene = editsOf(scene), .mix = {}, .atlas = &atlas_}); }
@@ -78,43 +47,20 @@ public:
             scene.instances[i].hidden = hidden;
     }
     Light4 light() { return solver().light(); }
-    /// Returns the image of the composite, then those of the layers.
-    std::vector<FloatImage> images() {
-        std::vector<FloatImage> all = {baker_->lightmap({.sew = false})};
-        for (const auto& layer : solver().layers())
-            all.push_back(makeLightmap(baker_->patches(), solver().layerLight(*layer), {.sew = false}));
-        return all;
-    }
-
-    Scene scene;
 
 private:
-    Scene baked_;
     LightmapAtlas atlas_;
-    std::unique_ptr<Baker> baker_;
 };
 
-/// Follows the scene to its end and compares every texel of every layer with a fresh bake of it. Returns the
-/// share of a fresh bake's rays that it took.
-double followed(Moving& bake, const BakeDesc& desc = kQuickMoving) {
+/// Follows the scene to its end and compares it with a fresh bake. Returns the share of a fresh bake's rays
+/// that it took.
+double followed(Moving& bake, const BakeDesc& desc = kEditedDesc) {
     const uint64_t before = bake.rays();
     EXPECT_TRUE(bake.follow());
     bake.finish();
     const uint64_t rays = bake.rays() - before;
     Moving fresh(bake.scene, desc);
-    const std::vector<FloatImage> edited = bake.images(), wanted = fresh.images();
-    EXPECT_EQ(edited.size(), wanted.size());
-    for (size_t i = 0; i < std::min(edited.size(), wanted.size()); ++i) {
-        size_t others = 0;
-        for (size_t channel = 0; channel < wanted[i].planes.size(); ++channel) {
-            const std::vector<float>&a = edited[i].planes[channel], &b = wanted[i].planes[channel];
-            for (size_t k = 0; k < b.size(); ++k)
-                others += a[k] != b[k];
-        }
-        EXPECT_EQ(others, 0u) << "of image " << i << ", which are off by "
-                              << relativeError(edited[i], wanted[i]);
-    }
-    EXPECT_EQ(bake.baker().invalidPatches(), fresh.baker().invalidPatches());
+    expectFresh(bake, fresh);
     return static_cast<double>(rays) / static_cast<double>(fresh.rays());
 }
 
@@ -130,7 +76,7 @@ glm::mat4 turned(float angle, glm::vec3 about, glm::vec3 axis) {
 class ObjectEdits : public testing::TestWithParam<int> {
 protected:
     static BakeDesc desc() {
-        BakeDesc desc = kQuickMoving;
+        BakeDesc desc = kEditedDesc;
         const std::vector<TracerKind> tracers = tracersOfTestDevice();
         if (GetParam() == 0) return desc;
         desc.tracer = tracers[static_cast<size_t>(GetParam() - 1) % tracers.size()];
@@ -187,7 +133,7 @@ TEST_P(ObjectEdits, AMovedObjectIsSeenInAllLightsAtOnce) {
 
 // The light, too, is seen in its new place, before any layer is there.
 TEST(ObjectEdits, ALampThatIsMovedAtOnceWithAnObjectIsSeenInAllLights) {
-    BakeDesc live = kQuickMoving;
+    BakeDesc live = kEditedDesc;
     live.live = true;
     Moving bake(movingRoom(), live);
     bake.put(kBlock, kBlockEnd, by({0.4f, -0.3f, 0.2f}));
@@ -328,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
 // The object is half in the floor and half out of it, and texels of both change whether they lie inside
 // something.
 TEST(ObjectEdits, TexelsInsideSomethingAreFoundAnew) {
-    SceneMaker maker(kMovingSize);
+    SceneMaker maker(kRoomSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     maker.box({0.5f, 0.5f, 0.3f}, {0.8f * kY, 0.8f * kX, 0.6f * kZ}, maker.material(0.5f), 8);
     Scene scene = maker.scene();
@@ -355,7 +301,7 @@ TEST(ObjectEdits, UnderSkyAndSunAreAFreshBake) {
     sun.transform = glm::rotate(glm::mat4(1.0f), 0.4f, kY);
     sun.angle = 0.02f;
     scene.lights.push_back(sun);
-    BakeDesc desc = kQuickMoving;
+    BakeDesc desc = kEditedDesc;
     desc.size = 32;
     Moving bake(scene, desc);
     bake.put(2, 3, by({-0.1f, 0.3f, 0.1f}));
@@ -365,7 +311,7 @@ TEST(ObjectEdits, UnderSkyAndSunAreAFreshBake) {
 }
 
 TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
-    SceneMaker maker(kMovingSize);
+    SceneMaker maker(kRoomSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     Material leaf;
     leaf.metallic = 0.0f;
@@ -386,7 +332,7 @@ TEST(ObjectEdits, MasksAndBlockersMoveAsWell) {
 
 // Each edit comes before the one before was followed to its end, and analytic lights move as well.
 TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
-    BakeDesc desc = kQuickMoving;
+    BakeDesc desc = kEditedDesc;
     desc.batchMs = 1.0;
     desc.live = true;
     Moving bake(movingRoom(), desc);
@@ -403,7 +349,7 @@ TEST(ObjectEdits, DraggingEndsAsAFreshBake) {
 
 // Where links of later sample passes are not kept, they are traced again as ever.
 TEST(ObjectEdits, LinksBeyondTheMemoryAreTracedWhereObjectsAre) {
-    BakeDesc desc = kQuickMoving;
+    BakeDesc desc = kEditedDesc;
     desc.samples = 64;
     desc.cache.bytes = 2 * 16 * sizeof(uint32_t) * 4000;
     Moving bake(movingRoom(), desc);
