@@ -3,6 +3,7 @@
 #include "bake/surface/repaint.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <utility>
@@ -49,16 +50,43 @@ std::vector<std::optional<size_t>> counterparts(const std::vector<Named>& all,
     return out;
 }
 
-// Counts what differs, and what only one of both has.
+// Returns how many of two lists of things of one name are alike, each counted once. What follows the last
+// find is looked at first: mostly the order is the same.
+template<typename Named, typename Same>
+size_t countAlike(const std::vector<const Named*>& before, const std::vector<const Named*>& after,
+                  const Same& same) {
+    std::vector<bool> used(before.size(), false);
+    size_t alike = 0, next = 0;
+    for (const Named* thing : after)
+        for (size_t k = 0; k < before.size(); ++k) {
+            const size_t i = (next + k) % before.size();
+            if (used[i] || !same(*before[i], *thing)) continue;
+            used[i] = true;
+            next = i + 1;
+            ++alike;
+            break;
+        }
+    return alike;
+}
+
+// Counts what differs, and what only one of both has. In lists of other names than before, things that share
+// a name are told apart by what they are.
 template<typename Named, typename Same>
 size_t countDifferent(const std::vector<Named>& before, const std::vector<Named>& after, const Same& same) {
-    size_t different = 0, matched = 0;
-    const auto former = counterparts(after, before);
-    for (size_t i = 0; i < after.size(); ++i) {
-        if (former[i]) ++matched;
-        different += !former[i] || !same(before[*former[i]], after[i]);
+    size_t different = 0;
+    if (haveSameNames(before, after)) {
+        for (size_t i = 0; i < after.size(); ++i)
+            different += !same(before[i], after[i]);
+        return different;
     }
-    return different + before.size() - matched;
+    std::map<std::string, std::array<std::vector<const Named*>, 2>> byName;
+    for (const Named& thing : before)
+        byName[thing.name][0].push_back(&thing);
+    for (const Named& thing : after)
+        byName[thing.name][1].push_back(&thing);
+    for (const auto& [name, things] : byName)
+        different += std::max(things[0].size(), things[1].size()) - countAlike(things[0], things[1], same);
+    return different;
 }
 
 // The node is a number in the file, which says nothing of the light.
@@ -83,14 +111,27 @@ bool sameSurface(const Material& a, const Material& b) {
            a.doubleSided == b.doubleSided && a.transmission == b.transmission && a.pane == b.pane;
 }
 
+bool sameCorners(const Primitive& a, const Primitive& b) {
+    return a.movedUvs == b.movedUvs && a.indices == b.indices && a.positions == b.positions &&
+           a.normals == b.normals && a.texCoord0 == b.texCoord0 && a.texCoord1 == b.texCoord1 &&
+           a.texCoord2 == b.texCoord2 && a.colors == b.colors;
+}
+
 bool sameTriangles(const Mesh& a, const Mesh& b) {
+    return std::equal(
+        a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(),
+        [](const Primitive& x, const Primitive& y) { return x.material == y.material && sameCorners(x, y); });
+}
+
+// Tells whether a person would call two meshes the same: their materials may have other numbers, as where
+// another object came before them in the file.
+bool sameMesh(const Scene& before, const Mesh& a, const Scene& after, const Mesh& b) {
+    const auto name = [](const Scene& scene, int material) {
+        return material < 0 ? "" : scene.materials[static_cast<size_t>(material)].name;
+    };
     return std::equal(a.primitives.begin(), a.primitives.end(), b.primitives.begin(), b.primitives.end(),
-                      [](const Primitive& x, const Primitive& y) {
-                          return x.material == y.material && x.movedUvs == y.movedUvs &&
-                                 x.indices == y.indices && x.positions == y.positions &&
-                                 x.normals == y.normals && x.texCoord0 == y.texCoord0 &&
-                                 x.texCoord1 == y.texCoord1 && x.texCoord2 == y.texCoord2 &&
-                                 x.colors == y.colors;
+                      [&](const Primitive& x, const Primitive& y) {
+                          return name(before, x.material) == name(after, y.material) && sameCorners(x, y);
                       });
 }
 
@@ -287,7 +328,10 @@ SceneChanges changesBetween(const Scene& held, const PreparedScene& before, cons
     out.materials = countDifferent(a.materials, b.materials, [](const Material& x, const Material& y) {
         return sameColours(x, y) && sameSurface(x, y);
     });
-    out.meshes = countDifferent(before.scene.meshes, b.meshes, sameTriangles);
+    const bool sameNumbers = haveSameNames(before.scene.materials, b.materials);
+    out.meshes = countDifferent(before.scene.meshes, b.meshes, [&](const Mesh& x, const Mesh& y) {
+        return sameNumbers ? sameTriangles(x, y) : sameMesh(before.scene, x, b, y);
+    });
     out.pictures = countDifferent(before.scene.images, b.images, samePixels);
     out.sky = !a.sky.preview && !b.sky.preview && static_cast<const SkySettings&>(a.sky) != b.sky;
     out.surfaces = !sameSurfaces(before, after);

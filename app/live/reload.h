@@ -25,8 +25,9 @@ struct SceneChanges {
 };
 
 /// Compares a scene with the same file's former one. `held` has the materials, objects, lights and sky that
-/// the file held last, which a save may have changed since `before` was read. Objects, lights and materials
-/// are told apart by name, or by number where names are missing or stand twice.
+/// the file held last, which a save may have changed since `before` was read. Objects, lights, materials and
+/// meshes are told apart by name. Where names are missing or stand twice they go by number as long as all
+/// names are the same, else by what they are.
 SceneChanges changesBetween(const Scene& held, const PreparedScene& before, const PreparedScene& after);
 
 /// Returns the changes in words: "1 light, 2 objects", "nothing".

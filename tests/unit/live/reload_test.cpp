@@ -67,6 +67,36 @@ TEST(SceneChanges, WhatABakeFollowsIsCounted) {
     EXPECT_EQ(describe(changes), "2 lights, the sky, 2 objects, 1 material");
 }
 
+TEST(SceneChanges, WhatSharesANameIsCountedByWhatItIs) {
+    PreparedScene before = twoOfEach();
+    Scene& scene = before.scene;
+    for (int i = 0; i < 5; ++i) {
+        scene.instances.push_back({.name = "Chair", .mesh = 0});
+        scene.instances.back().transform[3].x = static_cast<float>(i);
+        scene.meshes.push_back({.name = "", .primitives = scene.meshes[0].primitives});
+        scene.meshes.back().primitives[0].positions[1].x = 2.0f + static_cast<float>(i);
+    }
+    PreparedScene after = before;
+    after.scene.instances.erase(after.scene.instances.begin() + 3); // a chair
+    after.scene.meshes.erase(after.scene.meshes.begin() + 2);
+    EXPECT_EQ(describe(changesBetween(scene, before, after)), "1 object, 1 mesh");
+    after.scene.instances[4].transform[3].y = 1.0f; // another chair
+    after.scene.meshes.back().primitives[0].positions[1].y = 1.0f;
+    EXPECT_EQ(describe(changesBetween(scene, before, after)), "2 objects, 2 meshes");
+    EXPECT_EQ(describe(changesBetween(after.scene, after, before)), "2 objects, 2 meshes");
+}
+
+TEST(SceneChanges, AMaterialThatComesFirstChangesNoMesh) {
+    PreparedScene before = twoOfEach();
+    before.scene.meshes[0].primitives[0].material = 1;
+    PreparedScene after = before;
+    after.scene.materials.insert(after.scene.materials.begin(), Material{})->name = "New";
+    after.scene.meshes[0].primitives[0].material = 2;
+    EXPECT_EQ(describe(changesBetween(before.scene, before, after)), "1 material");
+    after.scene.meshes[0].primitives[0].material = 0;
+    EXPECT_EQ(describe(changesBetween(before.scene, before, after)), "1 material, 1 mesh");
+}
+
 TEST(SceneChanges, WhatPatchesAreMadeWithIsMore) {
     using Change = void (*)(PreparedScene&);
     for (const Change change : {+[](PreparedScene& p) { p.scene.meshes[0].primitives[0].positions[1].x = 2; },
