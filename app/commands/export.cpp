@@ -88,6 +88,7 @@ void exportScene(const ExportCommand& o) {
     const vk::Device device({.select = o.bake.machine.device, .validation = o.bake.machine.validate});
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     phase.reset();
+    if (!lightmap) desc.onFailure = OnFailure::Keep;
     if (!lightmap) lightmap = bakedLightmap(device, prepared, request, o.bake);
     stopIfInterrupted();
     const ExportResult result =

@@ -233,10 +233,11 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     }
 
     const fs::path folder = desc.folder;
-    makeFolder(desc.folder);
+    FolderForFiles place(desc.folder);
+    AtomicFiles files(desc.onFailure);
     const auto write = [&](const std::string& name, std::string_view bytes) {
         const std::string path = (folder / name).string();
-        writeFileAtomically(path, bytes);
+        files.add(path, bytes);
         result.files.push_back(path);
     };
     const std::vector<uint8_t> glb = glbBytes(level.scene, {}, look);
@@ -249,11 +250,8 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
         write(textures[page],
               encodeKtx2(pages[page], {.format = plain ? Ktx2Format::Half : desc.format, .zstd = !plain},
                          (folder / textures[page]).string()));
-    for (size_t page = 0; page < pages.size(); ++page) {
-        const std::string path = (folder / images[page]).string();
-        writeImage(path, colorsOf(pages[page]));
-        result.files.push_back(path);
-    }
+    for (size_t page = 0; page < pages.size(); ++page)
+        write(images[page], encodeImage((folder / images[page]).string(), colorsOf(pages[page])));
     const std::string name = fs::path(scene.path).stem().string();
     for (EngineFile& file : engineFiles(desc.engine, {.name = name,
                                                      .exposure = result.exposure,
@@ -264,6 +262,8 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     }
     for (const ExportExtra& extra : desc.extras)
         write(extra.name, extra.bytes);
+    files.commit();
+    place.keep();
     return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/export/engine_files.h"
 #include "app/export/surface_light.h"
+#include "assets/base/file_write.h"
 #include "assets/images/float_image.h"
 #include "assets/images/ktx2.h"
 #include "assets/model/lightmap_pages.h"
@@ -23,14 +24,15 @@ struct ExportExtra {
 /// Says what is exported, for whom and where.
 struct ExportDesc {
     Engine engine = Engine::Three;
-    std::string folder;                   // is made where it is missing
-    std::optional<float> exposure = {};   // [EV]; none: what the surfaces ask for
-    Ktx2Format format = Ktx2Format::Half; // of lightmap.ktx2
-    bool gloss = false;                   // highlights stay, which take from the diffuse light
-    uint32_t textureSize = 0;             // Engine::Any: edge of the light's texture [texels]; 0: it follows
-                                          // from the lightmap's
-    std::vector<ExportExtra> extras = {}; // what else is written, such as light probes
-    LightmapPages pages = {};             // of the lightmap, as far as they are known
+    std::string folder;                    // is made where it is missing
+    std::optional<float> exposure = {};    // [EV]; none: what the surfaces ask for
+    Ktx2Format format = Ktx2Format::Half;  // of lightmap.ktx2
+    bool gloss = false;                    // highlights stay, which take from the diffuse light
+    uint32_t textureSize = 0;              // Engine::Any: edge of the light's texture [texels]; 0: it follows
+                                           // from the lightmap's
+    std::vector<ExportExtra> extras = {};  // what else is written, such as light probes
+    LightmapPages pages = {};              // of the lightmap, as far as they are known
+    OnFailure onFailure = OnFailure::Drop; // of files that cannot be written: Keep where they took a bake
 };
 
 /// Tells what was written.
@@ -49,11 +51,11 @@ void checkExport(const ExportDesc& desc);
 void checkLightmap(const FloatImage& lightmap, const std::string& name);
 
 /// Writes a level with its lightmap (lighting, R, G and B) as an engine reads it: scene.glb, lightmap.ktx2,
-/// lightmap.exr, README.txt and what else the engine needs. Files of the same names are replaced, each whole
-/// or not at all; others in the folder stay. The scene's first camera comes first; one without a camera gets
-/// the view that the viewer begins with. A lightmap of several pages becomes lightmap.0.ktx2 and so on where
-/// the engine's files load them (knowsPages), whose materials say which page they take; for others all pages
-/// are side by side in one texture. Throws Error where that would be too large.
+/// lightmap.exr, README.txt and what else the engine needs. Files of the same names are replaced, all of them
+/// or none; others in the folder stay. The scene's first camera comes first; one without a camera gets the
+/// view that the viewer begins with. A lightmap of several pages becomes lightmap.0.ktx2 and so on where the
+/// engine's files load them (knowsPages), whose materials say which page they take; for others all pages are
+/// side by side in one texture. Throws Error where that would be too large.
 ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const AtlasLevel& level,
                          const FloatImage& lightmap);
 

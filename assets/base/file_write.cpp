@@ -234,7 +234,7 @@ void writeFileAtomically(const std::string& path, std::string_view bytes, OnFail
 
 void AtomicFiles::add(const std::string& path, std::string_view bytes) {
     try {
-        files_.push_back({path, std::make_unique<AtomicFile>(path)});
+        files_.push_back({path, std::make_unique<AtomicFile>(path, onFailure_)});
         files_.back().content->write(bytes);
     } catch (...) {
         files_.clear(); // some of them without the others are of no use
@@ -247,6 +247,7 @@ void AtomicFiles::commit() {
     for (const File& file : files) {
         const int error = file.content->flush();
         if (error == 0) continue;
+        if (onFailure_ == OnFailure::Drop) throw Error(file.path + ": " + problemOf(error));
         std::string saved;
         for (const File& other : files) {
             const std::string name = other.content->saveElsewhere();
@@ -293,10 +294,18 @@ bool checkFolderWritable(const std::string& folder) {
     return false;
 }
 
-void makeFolder(const std::string& folder) {
+bool makeFolder(const std::string& folder) {
     std::error_code code;
-    fs::create_directory(folder, code);
+    const bool wasMissing = fs::create_directory(folder, code);
     if (code) throw Error(folder + ": cannot be made: " + code.message() + ": name another folder");
+    return wasMissing;
+}
+
+FolderForFiles::FolderForFiles(std::string folder)
+    : folder_(std::move(folder)), isNew_(makeFolder(folder_)) {}
+
+FolderForFiles::~FolderForFiles() {
+    if (isNew_) rmdir(folder_.c_str());
 }
 
 std::string savedName(const std::string& folder, const std::string& path, uint32_t number) {

@@ -67,10 +67,12 @@ void writeFileAtomically(const std::string& path, std::string_view bytes,
                          OnFailure onFailure = OnFailure::Keep);
 
 /// Writes files that belong together, each as AtomicFile does: none takes its name before all are whole and
-/// on the disk. Where one does not fit, all keep what they held, and the new content of all is kept beside
-/// them, as of one file.
+/// on the disk. Where one does not fit, all keep what they held, and the new content of all is dropped or
+/// kept beside them, as of one file.
 class AtomicFiles {
 public:
+    explicit AtomicFiles(OnFailure onFailure = OnFailure::Keep) : onFailure_(onFailure) {}
+
     /// Takes the content of one more file. Throws Error, after which there is nothing to commit.
     void add(const std::string& path, std::string_view bytes);
     /// Gives all files their names. Throws Error.
@@ -81,6 +83,7 @@ private:
         std::string path;
         std::unique_ptr<AtomicFile> content;
     };
+    OnFailure onFailure_;
     std::vector<File> files_;
 };
 
@@ -92,8 +95,23 @@ void checkFileWritable(const std::string& path, uint64_t bytes);
 /// being there. Returns whether it is there. Changes nothing.
 bool checkFolderWritable(const std::string& folder);
 
-/// Makes a folder where it is missing; its parent is there. Throws Error.
-void makeFolder(const std::string& folder);
+/// Makes a folder where it is missing; its parent is there. Throws Error. Returns whether it was missing.
+bool makeFolder(const std::string& folder);
+
+/// Makes a folder for files that are written whole or not at all: unless keep() is called, one that was
+/// missing goes again with this, if it is empty.
+class FolderForFiles {
+public:
+    explicit FolderForFiles(std::string folder); // throws Error
+    ~FolderForFiles();
+    FolderForFiles(const FolderForFiles&) = delete;
+    FolderForFiles& operator=(const FolderForFiles&) = delete;
+    void keep() { isNew_ = false; }
+
+private:
+    std::string folder_;
+    bool isNew_;
+};
 
 /// Returns the name under which a result that cannot be written to `path` is kept in `folder`: "o.saved.exr",
 /// from number 2 on "o.saved-2.exr".

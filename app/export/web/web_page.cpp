@@ -122,17 +122,20 @@ void writeWebPage(const WebDesc& desc, const Scene& scene, const WorldMesh& mesh
     addScene(data, scene, mesh, image);
     addFrames(data, desc.frames);
     const std::string script = fmt::format("relume.start(\"{}\");\n", base64Of(data.packed()));
-    if (desc.single) return writeFileAtomically(desc.path, wholePage(title, script));
-    makeFolder(desc.path);
+    if (desc.single) return writeFileAtomically(desc.path, wholePage(title, script), OnFailure::Drop);
+    FolderForFiles place(desc.path);
+    AtomicFiles files(OnFailure::Drop);
     const fs::path folder = desc.path;
     const auto write = [&](const char* file, const std::string& text) {
-        writeFileAtomically((folder / file).string(), text);
+        files.add((folder / file).string(), text);
     };
     write(kData, script);
     for (const char* file : kScripts)
         write(file, scriptOf(file));
     write(kStyle, textOf("page/page.css"));
     write(kPage, filesPage(title));
+    files.commit();
+    place.keep();
 }
 
 } // namespace relume

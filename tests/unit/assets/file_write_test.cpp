@@ -352,6 +352,46 @@ TEST_F(FileWrite, AFullDiskKeepsAllFilesThatBelongTogether) {
     fs::remove(saved);
 }
 
+TEST_F(FileWrite, AFullDiskLeavesNothingOfFilesThatCanBeMadeAgain) {
+    fs::create_directory(path("small"));
+    if (mount("none", path("small").c_str(), "tmpfs", 0, "size=64k") != 0)
+        GTEST_SKIP() << "no file system can be mounted here";
+    make("small/0.exr", "before");
+    std::string error;
+    {
+        const FolderForFiles place(path("small/new")), old(path("small"));
+        AtomicFiles files(OnFailure::Drop);
+        files.add(path("small/0.exr"), "after");
+        error = errorOf([&] {
+            files.add(path("small/new/1.exr"), std::string(1u << 20, 'b'));
+            files.commit();
+        });
+    }
+    EXPECT_EQ(contentOf(path("small/0.exr")), "before");
+    EXPECT_FALSE(fs::exists(path("small/new")));
+    EXPECT_TRUE(fs::exists(path("small")));
+    umount(path("small").c_str());
+    EXPECT_TRUE(contains(error, "small/new/1.exr: cannot write: No space left on device")) << error;
+    EXPECT_FALSE(contains(error, "saved")) << error;
+}
+
+TEST_F(FileWrite, AFolderStaysThatIsKeptOrHoldsSomething) {
+    for (const bool kept : {false, true}) {
+        const std::string folder = path(kept ? "kept" : "full");
+        {
+            FolderForFiles place(folder);
+            if (kept)
+                place.keep();
+            else
+                make("full/file", "content");
+        }
+        EXPECT_TRUE(fs::exists(folder)) << folder;
+    }
+    fs::create_directory(path("old"));
+    { const FolderForFiles place(path("old")); }
+    EXPECT_TRUE(fs::exists(path("old"))) << "it was there before";
+}
+
 TEST(SavedName, IsShortEnough) {
     EXPECT_EQ(savedName("f", "a/o.exr", 1), "f/o.saved.exr");
     EXPECT_EQ(savedName("f", "o.exr", 2), "f/o.saved-2.exr");
