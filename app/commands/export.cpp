@@ -48,6 +48,7 @@ FloatImage bakedLightmap(const vk::Device& device, const PreparedScene& prepared
 std::optional<FloatImage> givenLight(const ExportCommand& o, ExportDesc& desc) {
     std::optional<LayeredImage> layers;
     if (!o.layers.empty()) layers = readLayeredLightmap(o.layers);
+    if (layers) warnAboutLayers(*layers, o.layers, o.bake.files.scene);
     desc.extras = readProbeExtras(desc.engine, o.probes, layers ? &*layers : nullptr);
     if (layers) return std::move(layers->composite);
     if (!o.lightmap.empty()) return readLightmap(o.lightmap, o.bake.files.scene);

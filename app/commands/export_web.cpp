@@ -2,6 +2,7 @@
 
 #include "app/export/web/web_page.h"
 #include "app/offline/command_files.h"
+#include "app/offline/lightmap_attributes.h"
 #include "app/offline/progress.h"
 #include "app/text/interrupt.h"
 #include "app/text/typed_numbers.h"
@@ -45,16 +46,6 @@ std::string sceneBeside(const std::string& layers, const LayeredImage& image) {
     return path;
 }
 
-void warnAbout(const LayeredImage& image, const std::string& layers, const std::string& scene) {
-    const std::string from = sceneNamedIn(image);
-    if (!from.empty() && from != fs::path(scene).filename().string())
-        spdlog::warn("{}: holds the light of {}, not of {}", layers, from, scene);
-    for (const LayeredImage::Layer& layer : image.layers)
-        if (const auto stale = layer.attributes.find(layer_attribute::kStale);
-            stale != layer.attributes.end())
-            spdlog::warn("{}: stale: {}: bake it again", layers, stale->second);
-}
-
 } // namespace
 
 void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::string& givenLayers,
@@ -81,7 +72,7 @@ void exportWeb(const WebOptions& options, const BakeOptions& bake, const std::st
     checkWebPage(desc);
     const LayeredImage image = readLayeredLightmap(layers);
     if (alone) loaded.files.scene = sceneBeside(layers, image);
-    warnAbout(image, layers, loaded.files.scene);
+    warnAboutLayers(image, layers, loaded.files.scene);
     BakeRequest request = resolveBakeOptions(loaded);
     matchLightmap(request.prepare, image.composite);
     const PreparedScene prepared = [&] {

@@ -15,6 +15,12 @@ std::string attribute(const FloatImage& image, const std::string& name) {
     return found != image.attributes.end() ? found->second : "";
 }
 
+void warnAboutScene(const FloatImage& image, const std::string& path, const std::string& scene) {
+    const std::string from = attribute(image, "relume:scene");
+    if (!from.empty() && from != scene.substr(scene.find_last_of('/') + 1))
+        spdlog::warn("{}: is a lightmap of {}, not of {}", path, from, scene);
+}
+
 } // namespace
 
 void addLightmapAttributes(FloatImage& image, const std::string& scene, const BakeSettings& bake,
@@ -37,10 +43,16 @@ FloatImage readLightmap(const std::string& path, const std::string& scene) {
                     ": holds radiance, which has the albedo in it: bake it with --quantity lighting and "
                     "without --preset");
     }
-    const std::string from = attribute(image, "relume:scene");
-    if (!from.empty() && from != scene.substr(scene.find_last_of('/') + 1))
-        spdlog::warn("{}: is a lightmap of {}, not of {}", path, from, scene);
+    warnAboutScene(image, path, scene);
     return image;
+}
+
+void warnAboutLayers(const LayeredImage& image, const std::string& path, const std::string& scene) {
+    warnAboutScene(image.composite, path, scene);
+    for (const LayeredImage::Layer& layer : image.layers)
+        if (const auto stale = layer.attributes.find(layer_attribute::kStale);
+            stale != layer.attributes.end())
+            spdlog::warn("{}: stale: {}: bake it again", path, stale->second);
 }
 
 } // namespace relume

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "assets/images/float_image.h"
+#include "assets/images/layered_exr.h"
 #include "bake/baker/baker.h"
 
 namespace relume {
@@ -15,5 +16,8 @@ void addLightmapAttributes(FloatImage& image, const std::string& scene, const Ba
 /// Reads a lightmap that the user made before, of layers their composite. Warns where it was baked for
 /// another scene. Throws Error where it does not hold lighting.
 FloatImage readLightmap(const std::string& path, const std::string& scene);
+
+/// Warns where the layers of a file were baked for another scene, or are no longer of it.
+void warnAboutLayers(const LayeredImage& image, const std::string& path, const std::string& scene);
 
 } // namespace relume

@@ -292,6 +292,12 @@ TEST_F(ExportCommand, LayersGiveTheirSum) {
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < a.planes[c].size(); ++i)
             ASSERT_NEAR(a.planes[c][i], b.planes[c][i], 1e-5f * std::abs(a.planes[c][i]));
+    const std::string other = path("other.glb");
+    std::filesystem::copy_file(scene_, other);
+    const ProcessResult run =
+        runRelume({"export", other, "-o", path("c"), "--for", "godot", "--layers", path("layers.exr")});
+    EXPECT_NE(run.err.find("layers.exr: is a lightmap of room.glb, not of " + other), std::string::npos)
+        << run.err;
 }
 
 TEST_F(ExportCommand, LightProbesComeAlongAsTheEngineReadsThem) {
