@@ -5,6 +5,8 @@
 #include "assets/base/passing_folder.h"
 #include "assets/foreign/blender_script.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -26,17 +28,19 @@ namespace {
 namespace fs = std::filesystem;
 
 // Between fork and exec only what is safe there is called.
-[[noreturn]] void becomeBlender(char* const* arguments, pid_t parent) {
+[[noreturn]] void becomeBlender(char* const* arguments, pid_t parent, const char* complaints) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(127);
     const int nothing = open("/dev/null", O_RDWR);
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO})
         dup2(nothing, stream);
+    const int file = open(complaints, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    dup2(file >= 0 ? file : nothing, STDERR_FILENO);
     execv(arguments[0], arguments);
     _exit(127);
 }
 
-int runBlender(std::vector<std::string> words, const std::string& path) {
+int runBlender(std::vector<std::string> words, const std::string& path, const std::string& complaints) {
     std::vector<char*> arguments;
     for (std::string& word : words)
         arguments.push_back(word.data());
@@ -45,11 +49,26 @@ int runBlender(std::vector<std::string> words, const std::string& path) {
     if (child < 0)
         throw Error(
             fmt::format("{}: Blender does not start ({}): close other programs", path, std::strerror(errno)));
-    if (child == 0) becomeBlender(arguments.data(), parent);
+    if (child == 0) becomeBlender(arguments.data(), parent, complaints.c_str());
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     return status;
+}
+
+// Returns the Python module that Blender's exporter misses, "" where that is not what it complains about.
+// Debian's Blender comes without numpy, by which it writes glTF files.
+std::string missingModule(const std::string& complaints) {
+    const std::string before = "ModuleNotFoundError: No module named '";
+    std::ifstream file(complaints);
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with(before)) continue;
+        const std::string name = line.substr(before.size(), line.rfind('\'') - before.size());
+        const bool plain = std::all_of(name.begin(), name.end(),
+                                       [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+        return plain ? name : "";
+    }
+    return "";
 }
 
 } // namespace
@@ -68,12 +87,20 @@ std::vector<uint8_t> exportByBlender(const std::string& blender, const std::stri
     const PassingFolder folder(fs::temp_directory_path(), "relume_blend_");
     const std::string script = folder.file("relume_link.py"), level = folder.file("level.glb");
     std::ofstream(script, std::ios::binary) << blenderScript();
+    const std::string complaints = folder.file("complaints.txt");
     const int status = runBlender({blender, "--background", "--factory-startup", "--disable-autoexec",
                                    fs::absolute(path).string(), "--python-exit-code", "1", "--python", script,
                                    "--", level, "--mean-sky"},
-                                  path);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !fs::exists(level))
+                                  path, complaints);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !fs::exists(level)) {
+        const std::string missing = missingModule(complaints);
+        if (!missing.empty())
+            throw Error(fmt::format(
+                "{}: Blender's Python lacks {}, by which it writes glTF files: install it (Debian: "
+                "apt install python3-{})",
+                path, missing, missing));
         throw Error(path + ": Blender cannot read it or write its glTF file: open it there and export it");
+    }
     RegularFile file(level, "export the .blend file by hand");
     std::vector<uint8_t> bytes(file.size());
     file.read(reinterpret_cast<char*>(bytes.data()), bytes.size());

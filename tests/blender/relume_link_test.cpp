@@ -27,7 +27,7 @@ class RelumeLink : public testing::Test {
 protected:
     void SetUp() override {
         if (runProgram("/usr/bin/env", {"blender", "--version"}).status != 0)
-            GTEST_SKIP() << "Blender is not there: install Debian's package blender";
+            GTEST_SKIP() << "Blender is not there: install Debian's packages blender and python3-numpy";
         blender({"-b", "-P", kFolder + "make_room.py", "--", room_});
         blender({"-b", room_, "-P", kAddOn, "--", level_});
     }

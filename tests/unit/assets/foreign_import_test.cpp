@@ -5,6 +5,7 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "assets/base/worker_pool.h"
+#include "assets/foreign/blender_export.h"
 #include "assets/foreign/foreign_scene.h"
 #include "assets/foreign/load_scene.h"
 #include "assets/gltf/gltf.h"
@@ -160,6 +161,24 @@ TEST(ForeignImport, MutatedFilesEndInAnErrorOrAScene) {
         }
     });
     EXPECT_EQ(scenes + errors, files.size() * kMutations);
+}
+
+TEST(BlenderExport, TellsWhichModuleOfPythonIsMissing) {
+    const TemporaryFolder folder;
+    const std::string room = writeFile(folder, "room.blend", "BLENDER");
+    const auto told = [&](const std::string& complaint) -> std::string {
+        try {
+            exportByBlender(script(folder, "echo \"" + complaint + "\" >&2; exit 1"), room);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_TRUE(contains(told("ModuleNotFoundError: No module named 'numpy'"),
+                         "room.blend: Blender's Python lacks numpy"));
+    EXPECT_TRUE(contains(told("Error: File format is not supported"), "room.blend: Blender cannot read it"));
+    EXPECT_TRUE(
+        contains(told("ModuleNotFoundError: No module named 'a b'"), "room.blend: Blender cannot read it"));
 }
 
 } // namespace
