@@ -92,6 +92,7 @@ void shoot(ShotOptions o) {
     const auto start = Clock::now();
     const InterruptGuard guard;
     const ShotRequest shot = resolveShotOptions(o);
+    o.bake.files.output = shotOutput(o);
     BakeRequest request = resolveBakeOptions(o.bake);
     const bool frames = o.isSeries() && !isVideo(o.bake.files.output);
     CommandFiles files;

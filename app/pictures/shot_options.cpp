@@ -2,6 +2,7 @@
 
 #include "app/edit/choice_options.h"
 #include "app/pictures/make_frame_writer.h"
+#include "app/text/frame_names.h"
 #include "app/text/option_checks.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -116,6 +117,9 @@ void addShotOptions(CLI::App& command, ShotOptions& o) {
         ->needs("--path");
     command.add_option("--fps", o.fps, "With --turntable or --path: pictures per second (default: 25)")
         ->check(numberFrom(FrameWriter::kLeastRate, FrameWriter::kMostRate));
+    command.add_flag(
+        "--mp4", o.mp4,
+        "With --turntable or --path: make a video (by ffmpeg); OUTPUT gets the ending .mp4 if it lacks it");
     command.add_flag("--no-caption", o.noCaption,
                      "With --turntable or --path: leave out scene, light and where the camera is on its way");
     command.add_flag("--overwrite", o.overwrite,
@@ -133,8 +137,10 @@ ShotRequest resolveShotOptions(const ShotOptions& o) {
     const std::string& output = o.bake.files.output;
     if (!o.isSeries() && !output.ends_with(".png"))
         throw UsageError("--output: '" + output + "' does not end in .png");
-    for (const auto& [given, option] :
-         {std::pair(o.fps > 0, "--fps"), {o.noCaption, "--no-caption"}, {o.overwrite, "--overwrite"}})
+    for (const auto& [given, option] : {std::pair(o.fps > 0, "--fps"),
+                                        {o.mp4, "--mp4"},
+                                        {o.noCaption, "--no-caption"},
+                                        {o.overwrite, "--overwrite"}})
         if (given && !o.isSeries())
             throw UsageError(std::string(option) + ": is about a series: give --turntable or --path, too");
     if (!o.path.empty() && !o.eye.empty())
@@ -144,9 +150,19 @@ ShotRequest resolveShotOptions(const ShotOptions& o) {
     ShotRequest request = resolvePictureOptions(o);
     if (o.fps > 0) request.rate = o.fps;
     if (o.isSeries())
-        checkSeries(
-            {.path = output, .width = request.width, .height = request.height, .overwrite = o.overwrite});
+        checkSeries({.path = shotOutput(o),
+                     .width = request.width,
+                     .height = request.height,
+                     .overwrite = o.overwrite});
     return request;
+}
+
+std::string shotOutput(const ShotOptions& o) {
+    std::string output = o.bake.files.output;
+    if (!o.mp4 || output.empty() || isVideo(output)) return output;
+    while (output.size() > 1 && output.ends_with('/'))
+        output.pop_back();
+    return output + ".mp4";
 }
 
 ShotRequest resolvePictureOptions(const ShotOptions& o) {

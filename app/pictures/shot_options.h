@@ -26,6 +26,7 @@ struct ShotOptions {
     std::string path;       // where the camera goes: one of shotPaths(), "": nowhere
     double seconds = 0;     // that this takes; 0: as long as it takes by itself
     double fps = 0;         // pictures per second, 0: kSeriesRate
+    bool mp4 = false;       // a series is a video, whatever the output's ending
     bool noCaption = false; // in pictures of a series
     bool overwrite = false; // the frames that the folder holds
 
@@ -44,6 +45,8 @@ struct ShotRequest {
     DrawSettings draw;
 };
 ShotRequest resolveShotOptions(const ShotOptions& options);
+/// Returns where the picture or the series goes: with --mp4 the output has that ending.
+std::string shotOutput(const ShotOptions& options);
 /// Does the same for the options of addPictureOptions().
 ShotRequest resolvePictureOptions(const ShotOptions& options);
 

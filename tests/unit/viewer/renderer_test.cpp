@@ -160,6 +160,24 @@ TEST(ShotOptions, RefusesWhatIsWrong) {
     }
 }
 
+TEST(ShotOptions, AVideoHasItsEnding) {
+    ShotOptions options = shot();
+    options.mp4 = true;
+    EXPECT_THROW(resolveShotOptions(options), UsageError) << "of one picture there is no video";
+    options.turntable = 8;
+    for (const auto& [output, named] :
+         {std::pair("turn", "turn.mp4"), {"turn/", "turn.mp4"}, {"a.mp4", "a.mp4"}}) {
+        options.bake.files.output = output;
+        EXPECT_EQ(shotOutput(options), named);
+        EXPECT_NO_THROW(resolveShotOptions(options)) << output;
+    }
+    options.size = "641x360";
+    options.bake.files.output = "turn";
+    EXPECT_THROW(resolveShotOptions(options), UsageError) << "a video's width is even";
+    options.mp4 = false;
+    EXPECT_EQ(shotOutput(options), "turn");
+}
+
 TEST(ShotOptions, ChoosesTheCameraAskedFor) {
     const Scene scene = generateScene("cornell_geom");
     const WorldMesh mesh = meshOf(scene);
