@@ -1,7 +1,9 @@
 #include "app/live/session.h"
 
 #include "app/live/reload.h"
+#include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/gltf/gltf_camera_motion.h"
 #include "assets/model/scene_limits.h"
 #include "bake/trace/make_tracer.h"
 
@@ -310,6 +312,17 @@ uint32_t mapSize(const Session& session) {
     const LoadedScene* scene = session.scene();
     const LightmapPages pages = scene ? scene->prepared.atlas.pages : LightmapPages();
     return pages.sheetOf(session.document().bake.size);
+}
+
+std::vector<Camera> cameraMotion(const Session& session, double rate, uint32_t most) {
+    if (session.scene() == nullptr) return {};
+    for (const Camera& camera : session.scene()->prepared.scene.cameras) {
+        try {
+            return readCameraMotion(session.path(), session.choice(), camera.name, rate, most).cameras;
+        } catch (const Error&) { // another one may be moved
+        }
+    }
+    return {};
 }
 
 } // namespace relume

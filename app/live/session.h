@@ -152,4 +152,8 @@ private:
 /// Returns the edge of the map of all pages of a session's lightmap [texels].
 uint32_t mapSize(const Session& session);
 
+/// Returns where the first animation of a session's file takes the first camera that it moves, `rate` times
+/// per second; empty where it moves none, or there would be more than `most`.
+std::vector<Camera> cameraMotion(const Session& session, double rate, uint32_t most);
+
 } // namespace relume

@@ -17,10 +17,8 @@ uint32_t framesOf(double seconds) {
 
 } // namespace
 
-Shots::Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Caption caption,
-             ScenePath path)
-    : picture_(picture), preferences_(preferences), feedback_(feedback), caption_(std::move(caption)),
-      path_(std::move(path)) {}
+Shots::Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Asked asked)
+    : picture_(picture), preferences_(preferences), feedback_(feedback), asked_(std::move(asked)) {}
 
 std::string Shots::folder() const {
     return preferences_.captureFolder.empty() ? defaultCaptureFolder()
@@ -44,6 +42,10 @@ void Shots::perform(Action action) {
             return begin(
                 cameraPath(marks, framesOf(kLegSeconds * static_cast<double>(marks.size() - 1)) + 1));
         return feedback_.note("a way needs two bookmarks of this scene: store some (Ctrl+B)");
+    case Action::RecordAnimation:
+        if (std::vector<ViewCamera> cameras = asked_.motion(Capture::kRate); !cameras.empty())
+            return begin(std::move(cameras));
+        return feedback_.note("the file has no animation that moves a camera");
     default:
         return toggleRecording();
     }
@@ -51,14 +53,14 @@ void Shots::perform(Action action) {
 
 std::vector<ViewCamera> Shots::stops() const {
     std::vector<ViewCamera> cameras;
-    if (const auto marks = preferences_.bookmarks.find(path_()); marks != preferences_.bookmarks.end())
+    if (const auto marks = preferences_.bookmarks.find(asked_.path()); marks != preferences_.bookmarks.end())
         for (const Bookmark& mark : marks->second)
             cameras.push_back(mark.camera);
     return cameras;
 }
 
 void Shots::begin(std::vector<ViewCamera> cameras) {
-    if (path_().empty()) return feedback_.note("there is no scene to record: open one");
+    if (asked_.path().empty()) return feedback_.note("there is no scene to record: open one");
     if (recording()) return feedback_.note("a recording is under way: end it before (Ctrl+F12)");
     tour_ = Tour{.cameras = std::move(cameras),
                  .home = picture_.camera().camera(),
@@ -114,7 +116,7 @@ void Shots::toggleRecording() {
 Pixels Shots::captionedPicture() const {
     const gl::Framebuffer& picture = picture_.pane().picture();
     Pixels pixels = readPixels(picture.get(), picture.width(), picture.height());
-    if (preferences_.caption) pixels.caption = caption_();
+    if (preferences_.caption) pixels.caption = asked_.caption();
     return pixels;
 }
 

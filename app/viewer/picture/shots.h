@@ -19,10 +19,15 @@ class Shots {
 public:
     /// Returns the lines that are written into a picture.
     using Caption = std::function<std::vector<std::string>()>;
-    /// Returns the scene's path, by which bookmarks are kept; "" without a scene.
-    using ScenePath = std::function<std::string()>;
+    /// Says what is asked of the scene.
+    struct Asked {
+        Caption caption;
+        std::function<std::string()> path; // by which bookmarks are kept; "" without a scene
+        /// Returns where the file's animation takes a camera, so many times per second; empty: it moves none.
+        std::function<std::vector<ViewCamera>(double)> motion;
+    };
     /// The first three must outlive it.
-    Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Caption caption, ScenePath path);
+    Shots(SceneView& picture, Preferences& preferences, Feedback& feedback, Asked asked);
 
     /// Does an action from Screenshot to Caption.
     void perform(Action action);
@@ -63,8 +68,7 @@ private:
     SceneView& picture_;
     Preferences& preferences_;
     Feedback& feedback_;
-    Caption caption_;
-    ScenePath path_;
+    Asked asked_;
     Capture capture_;
     std::optional<Tour> tour_;
     std::optional<Waiting> shot_;

@@ -43,9 +43,10 @@ Viewer::Viewer(const ViewerDesc& desc)
       lights_(session_, baking_.status(), picture_, feedback_), comparison_(picture_, feedback_),
       editing_(session_, comparison_, progress_, feedback_), inspection_(*bake_, picture_),
       previews_(session_, *bake_, picture_),
-      shots_(
-          picture_, preferences_.values(), feedback_, [this] { return captionLines(); },
-          [this] { return files_.path(); }),
+      shots_(picture_, preferences_.values(), feedback_,
+             {.caption = [this] { return captionLines(); },
+              .path = [this] { return files_.path(); },
+              .motion = [this](double rate) { return cameraMotion(rate); }}),
       ui_(desc.logActions), lightKeys_(session_, picture_, lights_, editing_, feedback_),
       skyKeys_(session_, picture_, lights_, editing_, feedback_),
       mover_(session_, picture_, lights_, editing_, feedback_),
@@ -311,6 +312,14 @@ PanelContext Viewer::context() {
             .choose = [this](const GltfChoice& choice) { files_.choose(choice); },
             .selectLight = [this](const LightKey& key) { lights_.select(key); },
             .items = ui_.items()};
+}
+
+std::vector<ViewCamera> Viewer::cameraMotion(double rate) const {
+    constexpr uint32_t kMostPictures = 100000; // about an hour of a video
+    std::vector<ViewCamera> cameras;
+    for (const Camera& camera : relume::cameraMotion(session_, rate, kMostPictures))
+        cameras.push_back(cameraOfFile(camera, picture_.camera().bounds()));
+    return cameras;
 }
 
 std::vector<std::string> Viewer::captionLines() const {

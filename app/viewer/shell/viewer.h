@@ -73,6 +73,7 @@ private:
     std::string furnishedLine() const;
     void drawOverlay();
     std::vector<std::string> captionLines() const;
+    std::vector<ViewCamera> cameraMotion(double rate) const;
     float pixelsPerPoint() const;
 
     // These are in viewer_input.cpp.

@@ -87,6 +87,8 @@ std::vector<Shortcut> makeShortcuts() {
         {Action::Record, 0, GLFW_KEY_F12, kCtrl, "Capture", "Start or stop recording"},
         {Action::RecordTurn, 0, GLFW_KEY_F12, kCtrl | kShift, "Capture", "Record a turn"},
         {Action::RecordPath, 0, GLFW_KEY_F12, kAlt, "Capture", "Record the way through all bookmarks"},
+        {Action::RecordAnimation, 0, GLFW_KEY_F12, kAlt | kShift, "Capture",
+         "Record the file's camera animation"},
         {Action::Caption, 0, 0, 0, "Capture", "Caption"},
         {Action::Help, 0, GLFW_KEY_F1, 0, "Help", "All keys"},
         {Action::Help, 0, GLFW_KEY_SLASH, kShift, "Help", "All keys"},

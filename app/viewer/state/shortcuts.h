@@ -59,6 +59,7 @@ enum class Action : uint8_t {
     Record,
     RecordTurn,
     RecordPath,
+    RecordAnimation,
     Caption,
     ReloadShaders,
     Help,
