@@ -1,6 +1,7 @@
 #include "app/pictures/series.h"
 
 #include "app/text/interrupt.h"
+#include "assets/base/error.h"
 #include "renderer/camera_path.h"
 #include "renderer/caption.h"
 
@@ -36,6 +37,8 @@ void captionByTime(CameraSeries& series, double seconds) {
 void takeSeries(PictureStudio& studio, const LightmapTexture& lightmap, DrawSettings draw,
                 const CameraSeries& series, FrameWriter& writer) {
     for (size_t i = 0; i < series.cameras.size(); ++i) {
+        if (InterruptGuard::requested() && writer.keepsFrames() && writer.count() > 0)
+            throw Error(fmt::format("interrupted: {} frames were written", writer.count()));
         stopIfInterrupted();
         studio.setCamera(series.cameras[i]);
         FloatImage picture = studio.take(lightmap, draw);

@@ -223,6 +223,22 @@ TEST(ShotTurntable, IsASeriesOfPicturesThatBeginsWithTheShot) {
         EXPECT_EQ(with(wrong).status, 2) << wrong[1];
 }
 
+TEST(ShotTurntable, SaysHowManyFramesThereAreWhenItIsStopped) {
+    const TemporaryFolder folder;
+    const std::string out = folder.path("turn");
+    const std::string stopsAtThree =
+        "\"$@\" & until [ -e \"$0/frame_0003.png\" ]; do sleep 0.02; done; kill $!; wait $!";
+    const std::string scene = std::string(RELUME_SOURCE_DIR) + "/assets/scenes/cornell_small.glb";
+    const ProcessResult run = runProgram("/bin/sh",
+                                         {"-c", stopsAtThree, out, RELUME_BINARY, "shot", scene, "--view",
+                                          "albedo", "--size", "64x48", "--turntable", "100000", "-o", out},
+                                         nullptr, 120);
+    EXPECT_EQ(run.status, 1);
+    const auto frames = std::distance(std::filesystem::directory_iterator(out), {});
+    EXPECT_TRUE(contains(run.err, "interrupted: " + std::to_string(frames) + " frames were written"))
+        << run.err;
+}
+
 TEST(ShotPath, GoesThroughBookmarksAndCameras) {
     const TemporaryFolder folder;
     const std::string config = folder.path("config");
