@@ -67,6 +67,11 @@ void furnishUvs(PreparedScene& prepared, const PrepareDesc& desc) {
     if (made.shortened > 0)
         prepared.madeUvs += fmt::format(", {} longer than the lightmap with {:.3g} along themselves",
                                         made.shortened, made.leastDensity);
+    if (made.coarser > 0)
+        prepared.madeUvs +=
+            fmt::format(", {} of {} objects with {:.2g} of that or more, so that the others stay where "
+                        "they are: open the file again to make all alike",
+                        made.coarser, made.objects, made.leastShare);
     spdlog::warn("{}: {}", desc.path, prepared.madeUvs);
 }
 

@@ -104,7 +104,7 @@ void SceneLoader::start(const PrepareDesc& desc, bool early) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
-    if (path_ != unwrapped_) memory_ = {}; // another file has other charts
+    if (path_ != unwrapped_ || early) memory_ = {}; // another file has other charts
     unwrapped_ = path_;
     progress_ = {}; // nobody else has it now
     files_ = {};

@@ -42,7 +42,8 @@ public:
     const std::string& path() const { return path_; }
     LoadProgress progress() const;
     /// Begins to load; nothing may be loading.
-    /// `early`: takeEarly() is asked.
+    /// `early`: takeEarly() is asked, and lightmap UVs are made as if the file had never been read; else
+    /// charts stay where they were in the file's last load, as far as they fit.
     void start(const PrepareDesc& desc, bool early);
     /// Returns the scene under way as far as it can be drawn, where the rest takes a while: its geometry
     /// without lightmap UVs, its materials and its view. Each is returned once; nullptr: none, or none yet.

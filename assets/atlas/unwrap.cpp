@@ -40,6 +40,10 @@ bool isStillUsed(const std::vector<ChartLayout>& now, const std::vector<ChartLay
     return static_cast<double>(touched) >= kStillUsed * static_cast<double>(touchedBefore);
 }
 
+/// The shares of its density at which something new is tried to be fitted in, before all else has to move: an
+/// atlas is as dense as it goes, so that there is room for little.
+constexpr double kShares[] = {1.0, 0.85, 0.7, 0.5};
+
 /// Makes the UVs of one scene.
 class Unwrapper {
 public:
@@ -59,6 +63,7 @@ private:
     /// Lays the charts out where the memory has them; returns false where that does not go.
     bool layOutAgain(const ObjectCharts& charts);
     std::vector<std::optional<ChartPlace>> remembered(const ObjectCharts& charts);
+    void scaleByShare(ObjectCharts& charts) const;
     void dealTheRest(const ObjectCharts& charts, const std::vector<std::optional<ChartPlace>>& places);
     PagedDesc paged() const { return {size_, desc_.density, pages_}; }
     void tell();
@@ -76,6 +81,7 @@ private:
     uint32_t size_ = 0;                   // of a page
     uint32_t pages_ = 1;
     std::vector<uint32_t> page_; // per object
+    std::vector<double> share_;  // per object, of its density (UnwrapMemory::Object)
     PagedLayout layout_;
     UnwrapResult result_;
 };
@@ -207,7 +213,7 @@ void Unwrapper::failForTooLarge(const std::vector<LayoutChart>& charts) const {
 }
 
 /// Returns the places that charts of objects had, by the objects' names first and their order else, and notes
-/// their pages.
+/// their pages and shares.
 std::vector<std::optional<ChartPlace>> Unwrapper::remembered(const ObjectCharts& charts) {
     std::vector<std::optional<ChartPlace>> places(charts.charts.size());
     std::map<std::pair<size_t, std::string>, std::vector<size_t>> named; // the last first
@@ -230,6 +236,7 @@ std::vector<std::optional<ChartPlace>> Unwrapper::remembered(const ObjectCharts&
             if (from.empty()) continue;
             used[from.back()] = true;
             page_[i] = memory_->objects[from.back()].page;
+            share_[i] = memory_->objects[from.back()].share;
             const std::vector<ChartPlace>& own = memory_->objects[from.back()].places;
             std::copy(own.begin(), own.end(), places.begin() + static_cast<std::ptrdiff_t>(charts.first[i]));
         }
@@ -254,28 +261,44 @@ void Unwrapper::dealTheRest(const ObjectCharts& charts,
         page_[without[i]] = dealt[i];
 }
 
+void Unwrapper::scaleByShare(ObjectCharts& charts) const {
+    for (size_t i = 0; i < charts.objects(); ++i)
+        for (size_t c = charts.first[i]; c < charts.end(i); ++c)
+            charts.charts[c].scale *= share_[i];
+}
+
 bool Unwrapper::layOutAgain(const ObjectCharts& charts) {
     if (!memory_ || memory_->size != size_ || memory_->asked != desc_.density ||
         memory_->layouts.size() != pages_ || size_ == 0)
         return false;
     page_.assign(parts_.objects.size(), 0);
+    share_.assign(parts_.objects.size(), 1.0);
     std::vector<std::optional<ChartPlace>> places = remembered(charts);
+    ObjectCharts shared = charts;
+    scaleByShare(shared);
     // An object that is smaller or larger now looks for a new place; all its charts do.
     for (size_t i = 0; i < parts_.objects.size(); ++i) {
         const size_t begin = charts.first[i], end = charts.end(i);
         bool same = places[begin].has_value();
         for (size_t c = begin; same && c < end; ++c)
-            same = isAsBefore(charts.charts[c], memory_->layouts[page_[i]], innerSize(paged()), *places[c]);
+            same = isAsBefore(shared.charts[c], memory_->layouts[page_[i]], innerSize(paged()), *places[c]);
         for (size_t c = begin; !same && c < end; ++c)
             places[c].reset();
         result_.stayed += same;
     }
     dealTheRest(charts, places);
-    std::optional<PagedLayout> layout = extendPages(charts, paged(), memory_->layouts, page_, places);
-    if (layout && isStillUsed(layout->layouts, memory_->layouts)) {
+    for (const double share : kShares) {
+        for (size_t i = 0; i < parts_.objects.size(); ++i)
+            if (!places[charts.first[i]]) share_[i] = share;
+        shared = charts;
+        scaleByShare(shared);
+        std::optional<PagedLayout> layout = extendPages(shared, paged(), memory_->layouts, page_, places);
+        if (!layout) continue;
+        if (!isStillUsed(layout->layouts, memory_->layouts)) break;
         layout_ = std::move(*layout);
         return true;
     }
+    share_.assign(parts_.objects.size(), 1.0);
     result_.stayed = 0;
     return false;
 }
@@ -285,6 +308,7 @@ void Unwrapper::layOut() {
     const bool known = memory_ && memory_->size > 0 && memory_->asked == desc_.density;
     pages_ = desc_.pages > 0 ? desc_.pages : known ? static_cast<uint32_t>(memory_->layouts.size()) : 1;
     size_ = desc_.size > 0 ? desc_.size : known ? memory_->size : 0;
+    share_.assign(parts_.objects.size(), 1.0);
     if (layOutAgain(all)) return;
     size_ = chooseSize(all);
     try {
@@ -350,7 +374,8 @@ void Unwrapper::remember() {
                                     object.shape,
                                     layout_.page[i],
                                     {begin + static_cast<std::ptrdiff_t>(all.first[i]),
-                                     begin + static_cast<std::ptrdiff_t>(all.end(i))}});
+                                     begin + static_cast<std::ptrdiff_t>(all.end(i))},
+                                    share_[i]});
     }
     memory_->shapes = std::move(parts_.shapes);
     memory_->layouts = std::move(layout_.layouts);
@@ -380,6 +405,10 @@ void Unwrapper::tell() {
     result_.size = size_;
     result_.pages = pages_;
     result_.density = result_.leastDensity = layout_.density();
+    for (const double share : share_) {
+        result_.coarser += share < 1.0;
+        result_.leastShare = std::min(result_.leastShare, share);
+    }
     for (const ChartLayout& layout : layout_.layouts) {
         result_.shortened += layout.shortened;
         if (layout.shortened > 0)

@@ -26,6 +26,8 @@ struct UnwrapResult {
     double density = 0.0;      // [texels/m] used, for objects whose own factor is 1; 0: for none
     uint32_t shortened = 0;    // charts that are longer than the atlas, and so are shortened to it
     double leastDensity = 0.0; // [texels/m] that one of these has along itself; density where there are none
+    uint32_t coarser = 0;      // objects that came or changed and got less than their density
+    double leastShare = 1.0;   // of its density that one of these has
     double covered = 0.0;      // share of all pages' texels that charts touch
     double reserved = 0.0;     // share of these and of the gutters around them
 };
@@ -37,9 +39,10 @@ struct UnwrapResult {
 /// chart, which moves and is scaled to the density; where all meshes have one, the scene stays as it is.
 /// Splits vertices where charts meet. Textures that read TEXCOORD_1 read another set from then on
 /// (freeSecondSet()); a mesh whose textures need three sets is left alone and warned about. With a memory,
-/// what did not change since the unwrap that left it stays where it is if all still fits; then the memory is
-/// that of this unwrap. Throws Error where there are more charts than texels, and for a density that would
-/// need absurdly many. Where nothing is cut, the scene's pages stay what they are.
+/// what did not change since the unwrap that left it stays where it is if all still fits, what came or
+/// changed at half of its density at the least; then the memory is that of this unwrap. Throws Error where
+/// there are more charts than texels, and for a density that would need absurdly many. Where nothing is cut,
+/// the scene's pages stay what they are.
 UnwrapResult unwrap(Scene& scene, const UnwrapDesc& desc, UnwrapMemory* memory = nullptr);
 
 /// Throws Error for a scene of points and lines, which no lightmap UVs would help.

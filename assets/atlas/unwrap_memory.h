@@ -30,6 +30,7 @@ struct UnwrapMemory {
         size_t shape = 0;
         uint32_t page = 0;
         std::vector<ChartPlace> places; // one per chart of the shape
+        double share = 1.0;             // of its density, where it came or changed and there was no more room
     };
     uint32_t size = 0;                // of a page [texels]; 0: nothing is remembered
     double asked = 0.0;               // UnwrapDesc::density

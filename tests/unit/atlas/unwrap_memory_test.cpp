@@ -93,6 +93,28 @@ TEST(UnwrapMemory, AChangedMeshLosesItsPlaceAndNoOther) {
     EXPECT_EQ(uvsOf(next, "Object 4"), uvsOf(renamed, "Renamed"));
 }
 
+TEST(UnwrapMemory, WhatGrewIsCoarserBeforeAllMoves) {
+    UnwrapMemory memory;
+    Scene first = someObjects(), next = someObjects(), again = someObjects();
+    const UnwrapResult before = unwrap(first, {.size = 256}, &memory);
+    for (Scene* scene : {&next, &again})
+        scene->instances[2].transform = glm::scale(scene->instances[2].transform, glm::vec3(1.3f));
+    const UnwrapResult after = unwrap(next, {.size = 256}, &memory);
+    EXPECT_EQ(after.stayed, 5u);
+    EXPECT_EQ(after.density, before.density);
+    EXPECT_EQ(before.coarser, 0u);
+    EXPECT_EQ(after.coarser, 1u);
+    EXPECT_LT(after.leastShare, 1.0);
+    EXPECT_EQ(uvsOf(first, "Object 5"), uvsOf(next, "Object 5"));
+    const AtlasStatistics former = measureAtlas(first, buildAtlas(first, 256), 256),
+                          statistics = measureAtlas(next, buildAtlas(next, 256), 256);
+    EXPECT_EQ(statistics.overlap, 0.0);
+    EXPECT_GT(statistics.texelDensityMin, 0.65 * former.texelDensityMin);
+    EXPECT_LT(statistics.texelDensityMin, 0.9 * former.texelDensityMin);
+    EXPECT_EQ(unwrap(again, {.size = 256}, &memory).stayed, 6u) << "it stays coarser, and where it is";
+    EXPECT_EQ(uvsOf(next, "Object 2"), uvsOf(again, "Object 2"));
+}
+
 TEST(UnwrapMemory, AllMovesWhereItNoLongerFits) {
     UnwrapMemory memory;
     Scene first = someObjects(), next = someObjects();
