@@ -114,7 +114,7 @@ PreparedScene prepareScene(const PrepareDesc& desc, const std::function<void(con
     // As many as a density needs are those that an unwrap made, or else those of the file.
     const uint32_t asked = desc.pages.value_or(0);
     result.atlas = buildAtlas(result.scene, result.size, desc.furnishing.unwrap,
-                              LightmapPages{asked > 0 ? asked : result.scene.pages});
+                              LightmapPages{asked > 0 ? asked : result.scene.pages}, desc.rects);
     warn(result.atlas.warnings);
     const size_t before = result.scene.warnings.size();
     result.mesh = flatten(result.scene, result.atlas);

@@ -46,8 +46,11 @@ struct PrepareDesc {
     // Returns how much of an edge memory allows for a scene of so many pages, `size` at the least.
     std::function<uint32_t(const Scene&, LightmapPages pages, uint32_t edge)> fitting = {};
     Furnishing furnishing = {};
-    UnwrapMemory* memory = nullptr; // of the file's last unwrap, by which charts stay where they are
-    bool edited = false;            // edits follow, which may add light: furnishLight() is called after them
+    // Of the file's last atlas, by which charts that are made, and rectangles of UVs that objects bring, stay
+    // where they are.
+    UnwrapMemory* memory = nullptr;
+    RectMemory* rects = nullptr;
+    bool edited = false; // edits follow, which may add light: furnishLight() is called after them
 };
 
 /// Takes size and pages from a lightmap that is there: the gutters of a repacked atlas depend on both.

@@ -76,6 +76,7 @@ std::unique_ptr<LoadedScene> SceneLoader::load(const PrepareDesc& desc, uint64_t
     };
     PrepareDesc remembered = desc;
     remembered.memory = &memory_;
+    remembered.rects = &rects_;
     scene->prepared = early ? prepareScene(remembered, whenRead) : prepareScene(remembered);
     const Scene& file = scene->prepared.scene;
     scene->geometry = makeGeometry(file, scene->prepared.mesh);
@@ -104,7 +105,10 @@ void SceneLoader::start(const PrepareDesc& desc, bool early) {
     ASSERT(!loading());
     unwanted_ = false;
     path_ = desc.path;
-    if (path_ != unwrapped_ || early) memory_ = {}; // another file has other charts
+    if (path_ != unwrapped_ || early) { // another file has other charts
+        memory_ = {};
+        rects_ = {};
+    }
     unwrapped_ = path_;
     progress_ = {}; // nobody else has it now
     files_ = {};

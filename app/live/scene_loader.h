@@ -71,6 +71,7 @@ private:
     FileSet files_;         // for the thread that loads, until it is ready
     std::string unwrapped_; // the path whose unwrap is remembered
     UnwrapMemory memory_;   // for the thread that loads
+    RectMemory rects_;      // likewise
     uint64_t loads_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -56,13 +57,14 @@ private:
     }
     // A shorter series than the one before it must not end in that one's frames.
     void begin() {
-        makeFolder(folder_);
+        made_.emplace(folder_);
         std::error_code code;
         for (const fs::path& frame : old_)
             fs::remove(frame, code); // what cannot be removed cannot be replaced either, which is told then
     }
 
     std::string folder_;
+    std::optional<FolderForFiles> made_; // goes again where no frame could be written
     std::vector<fs::path> old_;
 };
 

@@ -222,10 +222,16 @@ double areaOf(const Footprint& f) {
     return f.extent.x * f.extent.y * f.metres * f.metres;
 }
 
-/// Packs the rectangles at the highest common density [texels/m] at which all fit, found by bisection.
-std::vector<std::vector<PackedRect>>
-packDensest(const Scene& scene, const std::vector<std::vector<Footprint>>& pages, uint32_t size) {
-    std::vector<std::vector<PackedRect>> rects, best;
+struct DensestPacking {
+    std::vector<std::vector<PackedRect>> rects; // of each page
+    double density = 0.0;                       // [texels/m]
+};
+
+/// Packs the rectangles at the highest common density at which all fit, found by bisection.
+DensestPacking packDensest(const Scene& scene, const std::vector<std::vector<Footprint>>& pages,
+                           uint32_t size) {
+    DensestPacking best;
+    std::vector<std::vector<PackedRect>> rects;
     double area = 0.0; // of the fullest page
     size_t count = 0;
     for (const std::vector<Footprint>& footprints : pages) {
@@ -236,26 +242,39 @@ packDensest(const Scene& scene, const std::vector<std::vector<Footprint>>& pages
         count += footprints.size();
     }
     double low = 0.0, high = area > 0.0 ? size / std::sqrt(area) : 1.0;
-    if (packPagesAt(pages, high, size, rects)) return rects;
+    if (packPagesAt(pages, high, size, rects)) return {rects, high};
     constexpr int kSteps = 14; // leaves 1/16384 of the bound
     for (int step = 0; step < kSteps; ++step) {
         tellWatch("atlas", double(step) / kSteps);
         const double middle = 0.5 * (low + high);
         const bool fits = packPagesAt(pages, middle, size, rects);
         (fits ? low : high) = middle;
-        if (fits) best = rects;
+        if (fits) best = {rects, middle};
     }
-    if (best.empty() && packPagesAt(pages, 0.0, size, rects)) best = rects;
-    if (best.empty())
+    if (best.rects.empty() && packPagesAt(pages, 0.0, size, rects)) best = {rects, 0.0};
+    if (best.rects.empty())
         throw Error(fmt::format(
             "{}: {} instances do not fit {} of {} x {} texels: use a larger --size", scene.path, count,
             pages.size() == 1 ? "a lightmap" : fmt::format("{} pages", pages.size()), size, size));
     return best;
 }
 
-void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t size, LightmapAtlas& atlas) {
+/// Gives an instance its rectangle. The bounds lie on whole texels: charts aligned to texels inside the
+/// mesh's own rectangle stay so.
+void place(LightmapAtlas& atlas, const Footprint& footprint, const PackedRect& packed, uint32_t page,
+           uint32_t size) {
+    const double border = borderOf(atlas.pages);
+    AtlasRect& rect = atlas.instances[footprint.instance];
+    const glm::dvec2 extent(packed.width, packed.height), corner(packed.x + border, packed.y + border);
+    const glm::dvec2 scale = extent / footprint.extent / double(size);
+    rect.scale = glm::vec2(scale);
+    rect.offset = glm::vec2(corner / double(size) - footprint.low * scale);
+    rect.page = page;
+}
+
+std::vector<Footprint> footprintsOf(const Scene& scene, const std::vector<MeshChoice>& choices,
+                                    const LightmapAtlas& atlas) {
     std::vector<Footprint> all;
-    std::vector<double> areas;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         if (atlas.instances[i].texCoord < 0) continue;
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
@@ -263,32 +282,59 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
         const double area = worldArea(scene.instances[i], scene.meshes[mesh], choices[mesh].texCoord);
         const double metres = quality.uvArea > 0.0 ? std::sqrt(area / quality.uvArea) : 0.0;
         all.push_back({i, quality.low, quality.high - quality.low, metres});
-        areas.push_back(areaOf(all.back()));
     }
-    const std::vector<uint32_t> dealt = dealToPages(areas, atlas.pages.count);
-    std::vector<std::vector<Footprint>> pages(atlas.pages.count);
+    return all;
+}
+
+/// Lays the rectangles where the memory has them; tells whether that goes.
+bool repackAsBefore(const Scene& scene, const std::vector<Footprint>& all, uint32_t size,
+                    LightmapAtlas& atlas, RectMemory& memory) {
+    if (memory.size != size || memory.pages != atlas.pages.count || !(memory.density > 0.0)) return false;
+    std::vector<WantedRect> wanted;
+    for (const Footprint& f : all) {
+        const glm::dvec2 metres = f.extent * f.metres;
+        wanted.push_back({scene.instances[f.instance].name, texels(metres.x, memory.density, size),
+                          texels(metres.y, memory.density, size)});
+    }
+    std::optional<RememberedRects> again =
+        placeAgain(memory, wanted, size - 2 * borderOf(atlas.pages), kMeshGutter);
+    if (!again) return false;
     for (size_t i = 0; i < all.size(); ++i)
-        pages[dealt[i]].push_back(all[i]);
+        place(atlas, all[i], again->objects[i].rect, again->objects[i].page, size);
+    if (again->coarser > 0)
+        atlas.warnings.push_back(fmt::format("{}: {} of {} objects have {:.2g} of the texels per metre of "
+                                             "others, or more, so that the others stay "
+                                             "where they are: open the file again to make all alike",
+                                             scene.path, again->coarser, all.size(), again->leastShare));
+    memory.objects = std::move(again->objects);
+    return true;
+}
+
+void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t size, LightmapAtlas& atlas,
+            RectMemory* memory) {
+    const std::vector<Footprint> all = footprintsOf(scene, choices, atlas);
+    atlas.repacked = true;
     const uint32_t border = borderOf(atlas.pages);
     if (size <= 2 * border)
         throw Error(fmt::format("{}: pages of {} x {} texels are all border: use a larger --size", scene.path,
                                 size, size));
-    const std::vector<std::vector<PackedRect>> rects = packDensest(scene, pages, size - 2 * border);
-    for (size_t page = 0; page < pages.size(); ++page)
-        for (size_t i = 0; i < pages[page].size(); ++i) {
-            // The bounds lie on whole texels: charts aligned to texels inside the mesh's own rectangle stay
-            // so.
-            const Footprint& footprint = pages[page][i];
-            const PackedRect& packed = rects[page][i];
-            AtlasRect& rect = atlas.instances[footprint.instance];
-            const glm::dvec2 extent(packed.width, packed.height),
-                corner(packed.x + border, packed.y + border);
-            const glm::dvec2 scale = extent / footprint.extent / double(size);
-            rect.scale = glm::vec2(scale);
-            rect.offset = glm::vec2(corner / double(size) - footprint.low * scale);
-            rect.page = static_cast<uint32_t>(page);
-        }
-    atlas.repacked = true;
+    if (memory && repackAsBefore(scene, all, size, atlas, *memory)) return;
+    std::vector<double> areas;
+    for (const Footprint& footprint : all)
+        areas.push_back(areaOf(footprint));
+    const std::vector<uint32_t> dealt = dealToPages(areas, atlas.pages.count);
+    std::vector<std::vector<Footprint>> pages(atlas.pages.count);
+    for (size_t i = 0; i < all.size(); ++i)
+        pages[dealt[i]].push_back(all[i]);
+    const DensestPacking packed = packDensest(scene, pages, size - 2 * border);
+    if (memory)
+        *memory = {.size = size, .pages = atlas.pages.count, .density = packed.density, .objects = {}};
+    std::vector<size_t> next(pages.size(), 0);
+    for (size_t i = 0; i < all.size(); ++i) {
+        const PackedRect& rect = packed.rects[dealt[i]][next[dealt[i]]++];
+        place(atlas, all[i], rect, dealt[i], size);
+        if (memory) memory->objects.push_back({scene.instances[all[i].instance].name, dealt[i], rect});
+    }
 }
 
 std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas,
@@ -324,7 +370,7 @@ std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapA
 } // namespace
 
 LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped,
-                         std::optional<LightmapPages> pages) {
+                         std::optional<LightmapPages> pages, RectMemory* memory) {
     ASSERT(size > 0);
     LightmapAtlas atlas;
     atlas.pages = pages.value_or(LightmapPages{scene.pages});
@@ -335,8 +381,11 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped,
     Warnings warnings;
     const std::vector<MeshChoice> choices = chooseSets(scene, unwrapped, atlas, warnings);
     const bool asItIs = atlas.pages.count == scene.pages && formOneAtlas(scene, atlas);
-    if (!asItIs) repack(scene, choices, size, atlas);
     atlas.warnings = warnings.lines(scene.path);
+    if (!asItIs)
+        repack(scene, choices, size, atlas, memory);
+    else if (memory)
+        *memory = {};
     return atlas;
 }
 

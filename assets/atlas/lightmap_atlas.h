@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "assets/atlas/rect_memory.h"
 #include "assets/model/lightmap_pages.h"
 #include "assets/model/scene.h"
 
@@ -41,9 +42,10 @@ struct LightmapAtlas {
 /// instance without usable UVs blocks light and is warned about. Throws Error where no instance has usable
 /// UVs. Messages advise an unwrap, unless the scene is `unwrapped` already. There are as many pages as the
 /// scene has, each of edge `size`, unless another number is asked for, for which all is packed anew: no
-/// instance spans two, and the pages are filled alike.
+/// instance spans two, and the pages are filled alike. With a memory, rectangles of objects that are about as
+/// large as before stay where they are, as placeAgain() says; then the memory is of this atlas.
 LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped = false,
-                         std::optional<LightmapPages> pages = {});
+                         std::optional<LightmapPages> pages = {}, RectMemory* memory = nullptr);
 
 /// Returns the atlas with the sheet of all its pages as its only page.
 LightmapAtlas onOneSheet(LightmapAtlas atlas);

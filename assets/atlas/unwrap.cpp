@@ -23,9 +23,7 @@ namespace {
 
 constexpr uint32_t kMostTexels = 16384; // to a side of an atlas whose size the density decides
 constexpr uint32_t kLeastSize = 64;     // of a lightmap [texels]
-// Places are given up where so little of the atlas is still used: the file has become another one.
-constexpr double kStillUsed = 0.5;
-constexpr double kTold = 0.995; // of the density asked for: less is worth a warning
+constexpr double kTold = 0.995;         // of the density asked for: less is worth a warning
 
 std::string nameOf(const Scene& scene, const Mesh& mesh) {
     return scene.path + ": mesh " + inQuotes(mesh.name);
@@ -39,10 +37,6 @@ bool isStillUsed(const std::vector<ChartLayout>& now, const std::vector<ChartLay
         touchedBefore += layout.touched;
     return static_cast<double>(touched) >= kStillUsed * static_cast<double>(touchedBefore);
 }
-
-/// The shares of its density at which something new is tried to be fitted in, before all else has to move: an
-/// atlas is as dense as it goes, so that there is room for little.
-constexpr double kShares[] = {1.0, 0.85, 0.7, 0.5};
 
 /// Makes the UVs of one scene.
 class Unwrapper {

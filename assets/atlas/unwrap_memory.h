@@ -10,6 +10,12 @@
 
 namespace relume {
 
+// Places are given up where so little of the atlas is still used: the file has become another one.
+constexpr double kStillUsed = 0.5;
+// The shares of its density at which something new is tried to be fitted in, before all else has to move: an
+// atlas is as dense as it goes, so that there is room for little.
+constexpr double kShares[] = {1.0, 0.85, 0.7, 0.5};
+
 /// The charts of a mesh in the proportions in which instances of it stand in the world, without their size
 /// and rotation.
 struct UnwrapShape {
