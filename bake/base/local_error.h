@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "assets/base/worker_pool.h"
 #include "bake/base/shader_types.h"
 
 namespace relume {
@@ -21,9 +22,19 @@ struct LocalError {
 double medianLight(std::span<const uint32_t> lightBins);
 LocalError localErrorOf(std::span<const uint32_t> errorBins);
 
-/// Returns what noise and the bias of smoothing make together, from the error of the noise alone and both
-/// sums of squares over all texels. Which texels the bias is in is too uncertain to be told: it is taken to
-/// be where the noise is. What is left of it below nothing, by chance, is none.
-LocalError withBias(const LocalError& error, double noise, double bias);
+/// Returns percentiles of errors that are normally distributed, from counts of texels by the standard
+/// deviation of theirs, in the same bins. All is 0 where nothing is off.
+LocalError normalErrorOf(std::span<const double> deviationBins);
+
+/// A chunk's sums over its texels of squares, relative to the square of what local error is relative to.
+struct ChunkSquares {
+    double texels = 0;
+    double noise = 0; // >= 0
+    double bias = 0;  // of smoothing, as it was estimated: below nothing by chance
+};
+/// Returns what noise and the bias of smoothing make together, from the error of the noise alone. Where a
+/// chunk's bias stands out of the noise of its estimate, it is taken to be there; what is left of it in the
+/// sum of all others, to be where their noise is.
+LocalError withBias(WorkerPool& pool, const LocalError& noise, std::span<const ChunkSquares> chunks);
 
 } // namespace relume

@@ -37,31 +37,6 @@ std::vector<Part> overSlices(WorkerPool& pool, std::span<const shader::Patch> pa
     return parts;
 }
 
-// Returns the share of texels that are off by more than this, relatively.
-double shareBeyond(double error, std::span<const double> deviations) {
-    double beyond = 0, all = 0;
-    for (size_t bin = 0; bin < deviations.size(); ++bin) {
-        all += deviations[bin];
-        if (bin == 0 || deviations[bin] == 0) continue; // the first bin's are not off
-        const double place = (static_cast<double>(bin) + 0.5) / double{shader::kErrorBinsPerOctave};
-        const double deviation = std::exp2(double{shader::kLeastErrorOctave} + place);
-        beyond += deviations[bin] * std::erfc(error / (std::sqrt(2.0) * deviation));
-    }
-    return all > 0 ? beyond / all : 0.0;
-}
-
-// Returns the error that this share of all texels stays below, by halving its logarithm's range.
-double percentile(double share, std::span<const double> deviations) {
-    double low = -60.0, high = 60.0; // octaves
-    if (shareBeyond(std::exp2(low), deviations) <= 1.0 - share) return 0.0;
-    constexpr int kHalvings = 40;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (low + high);
-        (shareBeyond(std::exp2(middle), deviations) > 1.0 - share ? low : high) = middle;
-    }
-    return std::exp2(high);
-}
-
 } // namespace
 
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
@@ -95,8 +70,7 @@ LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
     for (const Deviations& part : parts)
         for (size_t bin = 0; bin < deviations.size(); ++bin)
             deviations[bin] += part.bins[bin];
-    const auto at = [&](double share) { return percentile(share, deviations); };
-    return {.p50 = at(0.5), .p90 = at(0.9), .p95 = at(0.95), .p99 = at(0.99)};
+    return normalErrorOf(deviations);
 }
 
 void CompositeReport::tell(const Layers& layers, SolverProgress& progress, bool weighedAnew) {

@@ -1,5 +1,7 @@
 #include "bake/links/link_errors.h"
 
+#include "assets/base/portions.h"
+
 #include <algorithm>
 
 namespace relume {
@@ -12,6 +14,15 @@ namespace {
 constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
 
 } // namespace
+
+LinkErrors::LinkErrors(LinkKit& kit) : kit_(kit), pass_(kit.input.device), shown_(kit.chunkCount(), 0) {
+    constexpr size_t kPortion = 1024; // chunks
+    const std::vector<shader::Patch>& patches = kit.input.patches.scene.patches;
+    runPortions(kit.input.device.workers(), shown_.size(), kPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin * shader::kChunk; i < end * shader::kChunk; ++i)
+            if (shader::patchIsShown(patches[i].flags)) ++shown_[i / shader::kChunk];
+    });
+}
 
 template<typename T>
 std::vector<T> LinkErrors::chunkSums() const {
@@ -45,14 +56,17 @@ LinkErrors::Local LinkErrors::local() const {
     const std::span<const uint32_t> all = bins;
     Local local{.median = medianLight(all.first(shader::kLightBins)),
                 .error = localErrorOf(all.subspan(shader::kLightBins))};
-    double noise = 0, bias = 0;
-    for (const shader::LocalSums& sums : localSums()) {
-        local.direct += sums.direct;
-        local.links += double(sums.indirect) + std::max(0.0f, sums.bias);
-        noise += double(sums.direct) + sums.indirect;
-        bias += sums.bias;
+    std::vector<ChunkSquares> chunks;
+    const std::vector<shader::LocalSums> sums = localSums();
+    for (size_t i = 0; i < sums.size(); ++i) {
+        local.direct += sums[i].direct;
+        local.links += double(sums[i].indirect) + std::max(0.0f, sums[i].bias);
+        chunks.push_back({.texels = double(shown_[i]),
+                          .noise = double(sums[i].direct) + sums[i].indirect,
+                          .bias = sums[i].bias});
     }
-    local.error = withBias(local.error, noise, bias);
+    if (kit_.buffers.rows) // else nothing is smoothed
+        local.error = withBias(kit_.input.device.workers(), local.error, chunks);
     return local;
 }
 

@@ -11,7 +11,7 @@ namespace relume {
 /// each makes it of its own chunks, and all learn what all of them say; so all make the same calls.
 class LinkErrors {
 public:
-    explicit LinkErrors(LinkKit& kit) : kit_(kit), pass_(kit.input.device) {}
+    explicit LinkErrors(LinkKit& kit);
 
     /// Makes the result after the state's sample passes, smoothed by sigma [texels]. Returns what sums over
     /// all patches say.
@@ -40,6 +40,7 @@ private:
 
     LinkKit& kit_;
     ResolvePass pass_;
+    std::vector<uint8_t> shown_; // per chunk: texels that are shown
 };
 
 } // namespace relume

@@ -35,29 +35,60 @@ TEST(LocalErrorBins, PercentilesAreThoseOfTheSortedValues) {
     EXPECT_NEAR(told.p99, at(0.99), 0.02 * at(0.99));
 }
 
-// Noise and a bias of either sign in proportion to it, as they are taken to be.
-TEST(LocalErrorBins, BiasAddsToNoiseAsSquaresDo) {
+// Texels of chunks of 64 with noise of unlike strength and, in some of them, a bias; the bias
+// of a chunk is estimated with noise of its own. Returns what is told of noise alone and of both, and what is
+// true.
+struct ToldAndTrue {
+    LocalError noise, told, truly;
+};
+ToldAndTrue biasedChunks(double bias, double shareOfChunks) {
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
-    std::bernoulli_distribution sign;
+    std::bernoulli_distribution isBiased(shareOfChunks);
     std::vector<float> noise, both;
-    double noiseSquares = 0, biasSquares = 0;
-    for (uint32_t i = 0; i < 20000; ++i) {
-        const double own = std::exp2(4.0 * i / 20000.0) * 0.01; // a texel's standard error
-        const double error = own * normal(random), bias = (sign(random) ? 0.7 : -0.7) * own;
-        noise.push_back(static_cast<float>(std::abs(error)));
-        both.push_back(static_cast<float>(std::abs(error + bias)));
-        noiseSquares += error * error;
-        biasSquares += bias * bias;
+    std::vector<ChunkSquares> chunks;
+    for (uint32_t c = 0; c < 2000; ++c) {
+        const double own = std::exp2(4.0 * c / 2000.0) * 0.01; // its texels' standard error
+        const double of = isBiased(random) ? bias * own : 0.0;
+        ChunkSquares chunk{.texels = shader::kChunk};
+        for (uint32_t i = 0; i < shader::kChunk; ++i) {
+            const double error = own * normal(random), off = of * normal(random);
+            noise.push_back(static_cast<float>(std::abs(error)));
+            both.push_back(static_cast<float>(std::abs(error + off)));
+            chunk.noise += own * own;
+            chunk.bias += off * off + own * own * normal(random); // as uncertain as 64 texels leave it
+        }
+        chunks.push_back(chunk);
     }
-    const LocalError alone = localErrorOf(errorBins(noise)), truly = localErrorOf(errorBins(both));
-    const LocalError told = withBias(alone, noiseSquares, biasSquares);
-    EXPECT_LT(alone.p95, 0.87 * truly.p95);
-    EXPECT_NEAR(told.p50, truly.p50, 0.1 * truly.p50);
-    EXPECT_NEAR(told.p95, truly.p95, 0.06 * truly.p95);
-    EXPECT_NEAR(told.p99, truly.p99, 0.1 * truly.p99);
-    EXPECT_EQ(withBias(alone, noiseSquares, -1.0).p95, alone.p95);
-    EXPECT_EQ(withBias({0, 0, 0, 0}, 0.0, 1.0).p95, 0.0);
+    WorkerPool pool(2);
+    const LocalError alone = localErrorOf(errorBins(noise));
+    return {alone, withBias(pool, alone, chunks), localErrorOf(errorBins(both))};
+}
+
+void expectNear(const LocalError& told, const LocalError& truly, double share) {
+    EXPECT_NEAR(told.p50, truly.p50, share * truly.p50);
+    EXPECT_NEAR(told.p95, truly.p95, share * truly.p95);
+    EXPECT_NEAR(told.p99, truly.p99, share * truly.p99);
+}
+
+TEST(LocalErrorBins, BiasAddsToNoiseWhereItIs) {
+    const ToldAndTrue none = biasedChunks(0.0, 0.0);
+    expectNear(none.told, none.noise, 0.05);
+    const ToldAndTrue everywhere = biasedChunks(0.7, 1.0);
+    EXPECT_LT(everywhere.noise.p95, 0.87 * everywhere.truly.p95);
+    expectNear(everywhere.told, everywhere.truly, 0.12);
+    // Much bias in few places is nothing to the median, and little to what most texels stay below.
+    const ToldAndTrue few = biasedChunks(12.0, 0.03);
+    EXPECT_GT(few.truly.p99, 2.0 * few.noise.p99);
+    EXPECT_NEAR(few.told.p50, few.truly.p50, 0.1 * few.truly.p50);
+    EXPECT_NEAR(few.told.p95, few.truly.p95, 0.25 * few.truly.p95);
+}
+
+TEST(LocalErrorBins, WithoutChunksNoiseIsAllThatIsTold) {
+    WorkerPool pool(1);
+    const LocalError told = withBias(pool, {0.1, 0.2, 0.3, 0.4}, {});
+    EXPECT_EQ(told.p50, 0.1);
+    EXPECT_EQ(told.p99, 0.4);
 }
 
 TEST(LocalErrorBins, WhatIsExactIsOffByNothing) {
