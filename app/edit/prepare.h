@@ -46,8 +46,8 @@ struct PrepareDesc {
     // Returns how much of an edge memory allows for a scene of so many pages, `size` at the least.
     std::function<uint32_t(const Scene&, LightmapPages pages, uint32_t edge)> fitting = {};
     Furnishing furnishing = {};
-    // Of the file's last atlas, by which charts that are made, and rectangles of UVs that objects bring, stay
-    // where they are.
+    // The file's last atlas is remembered by these: charts that are made stay where they are, and so do
+    // rectangles of UVs that objects bring.
     UnwrapMemory* memory = nullptr;
     RectMemory* rects = nullptr;
     bool edited = false; // edits follow, which may add light: furnishLight() is called after them

@@ -10,8 +10,8 @@
 namespace relume {
 namespace {
 
-// What ranks share goes in portions of so many bytes: little against what /dev/shm has in a container (64
-// MiB), and much against what a submit takes.
+// Ranks share arrays in portions of so many bytes: that is little against what /dev/shm has in a container
+// (64 MiB), and much against what a submit takes.
 constexpr VkDeviceSize kPortionBytes = VkDeviceSize{16} << 20;
 constexpr size_t kChunksAtATime = 1024; // of a thread that looks through all
 

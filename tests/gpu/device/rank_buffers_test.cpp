@@ -1,4 +1,4 @@
-// What ranks bring each other of buffers on their devices, through memory that they share and by messages.
+// Ranks bring each other parts of buffers on their devices, through memory that they share and by messages.
 #include "bake/gather/rank_chunks.h"
 #include "tests/gpu/gpu_environment.h"
 #include "tests/unit/ranks/thread_ranks.h"
@@ -26,7 +26,7 @@ PatchSet tiledPatches() {
     return patches;
 }
 
-// What a word of a chunk is worth once its rank has written it, in one call after another.
+// A word of a chunk has this value once its rank has written it; each call has other ones.
 uint32_t wordOf(uint32_t call, uint32_t chunk, uint32_t word) {
     return (call * kChunks + chunk) * 7919 + word;
 }

@@ -92,8 +92,8 @@ TEST_F(ChunkSampling, EndsWhereTheLocalErrorIsReached) {
     }
 }
 
-// What is told is what is left, smoothed or not. Here light comes into the dark room by two bounces,
-// so that noise of what links read, which replicates share, is a part of it.
+// The error that is told is the one that is left, smoothed or not. Here light comes into the dark room by two
+// bounces, so that noise of what links read, which replicates share, is a part of it.
 TEST_F(ChunkSampling, TellsTheLocalErrorThatIsThere) {
     for (const bool perChunk : {false, true})
         for (const bool smooth : {false, true}) {
