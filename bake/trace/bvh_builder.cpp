@@ -60,10 +60,6 @@ struct Bin {
     uint32_t count = 0;
 };
 
-void add(BvhContent& content, const BvhItem& item) {
-    content.box.add(item.box), content.area += item.area;
-}
-
 // Tells whether a ray that enters this box is stopped there more likely than in the other, by the triangles'
 // share of the box's surface.
 bool stopsMoreThan(const BvhContent& content, const BvhContent& other) {
@@ -75,21 +71,12 @@ uint32_t halfFloatAbove(double extent) {
     return (std::bit_cast<uint32_t>(float(extent)) >> 16) + 1;
 }
 
-// The nodes of a subtree; their indices are counted from its own root.
-struct Piece {
-    std::vector<BvhNode> nodes;
-    uint32_t depth = 0;
-};
-
 class BvhBuilder {
 public:
-    BvhBuilder(std::vector<BvhItem>& items, float margin, WorkerPool* pool)
-        : items_(items), margin_(margin), pool_(pool) {}
+    BvhBuilder(std::vector<BvhItem>& items, WorkerPool* pool) : items_(items), pool_(pool) {}
 
-    // Adds a tree over items [first, last) and returns its root's number: that of a node or, negative, of a
-    // leaf.
-    int build(Piece& piece, uint32_t first, uint32_t last, uint32_t level);
-    BvhContent contentOf(uint32_t first, uint32_t last) const;
+    // Adds a tree over items [first, last) and returns its root's number.
+    int build(BvhTree& tree, uint32_t first, uint32_t last, uint32_t level);
 
 private:
     static Split bestSplit(std::span<const BvhItem> items, const Binning& binning);
@@ -97,7 +84,6 @@ private:
     uint32_t part(uint32_t first, uint32_t last, uint32_t level);
 
     std::vector<BvhItem>& items_;
-    float margin_; // [m], added around boxes
     WorkerPool* pool_;
 };
 
@@ -168,48 +154,107 @@ uint32_t BvhBuilder::part(uint32_t first, uint32_t last, uint32_t level) {
     return first + count / 2;
 }
 
-BvhContent BvhBuilder::contentOf(uint32_t first, uint32_t last) const {
-    BvhContent content;
-    for (uint32_t i = first; i < last; ++i)
-        add(content, items_[i]);
-    return content;
-}
-
-// Puts a subtree that was built elsewhere behind what `piece` has.
-int append(Piece& piece, const Piece& subtree, int root) {
-    if (root < 0) return root;
-    const int base = int(piece.nodes.size());
-    for (BvhNode node : subtree.nodes) {
-        if (node.child0 >= 0) node.child0 += base;
-        if (node.child1 >= 0) node.child1 += base;
-        piece.nodes.push_back(node);
+// Puts a subtree that was built elsewhere behind what `tree` has, and returns where its root is.
+int append(BvhTree& tree, const BvhTree& subtree, int root) {
+    const int base = int(tree.nodes.size());
+    for (BvhTree::Node node : subtree.nodes) {
+        if (node.parent != BvhTree::kNone) node.parent += base;
+        for (int& child : node.child)
+            if (child != BvhTree::kNone) child += base;
+        tree.nodes.push_back(node);
     }
-    piece.depth = std::max(piece.depth, subtree.depth);
     return base + root;
 }
 
-int BvhBuilder::build(Piece& piece, uint32_t first, uint32_t last, uint32_t level) {
+int BvhBuilder::build(BvhTree& tree, uint32_t first, uint32_t last, uint32_t level) {
     const uint32_t middle = last - first > 1 ? part(first, last, level) : first;
-    if (middle == first) return ~int(first << 3 | (last - first));
-    const size_t index = piece.nodes.size();
-    piece.nodes.emplace_back();
-    piece.depth = std::max(piece.depth, level + 1);
+    const int index = int(tree.nodes.size());
+    BvhTree::Node& added = tree.nodes.emplace_back();
+    if (middle == first) {
+        added.first = first, added.count = last - first;
+        for (uint32_t i = first; i < last; ++i)
+            added.content.add({items_[i].box, items_[i].area});
+        return index;
+    }
     int child0 = 0, child1 = 0;
     if (pool_ != nullptr && level < kTaskLevels && last - first >= kTaskMin) {
-        Piece right;
+        BvhTree right;
         pool_->run(2, [&](uint32_t side) {
             if (side == 0)
-                child0 = build(piece, first, middle, level + 1);
+                child0 = build(tree, first, middle, level + 1);
             else
                 child1 = build(right, middle, last, level + 1);
         });
-        child1 = append(piece, right, child1);
+        child1 = append(tree, right, child1);
     } else {
-        child0 = build(piece, first, middle, level + 1);
-        child1 = build(piece, middle, last, level + 1);
+        child0 = build(tree, first, middle, level + 1);
+        child1 = build(tree, middle, last, level + 1);
     }
-    piece.nodes[index] = bvhNode(contentOf(first, middle), child0, contentOf(middle, last), child1, margin_);
-    return int(index);
+    BvhTree::Node& node = tree.nodes[size_t(index)];
+    node.child[0] = child0, node.child[1] = child1;
+    for (const int child : node.child) {
+        tree.nodes[size_t(child)].parent = index;
+        node.content.add(tree.nodes[size_t(child)].content);
+    }
+    return index;
+}
+
+// Puts a tree into the form that the shaders walk.
+class BvhWriter {
+public:
+    BvhWriter(const WorldMesh& mesh, std::span<const BvhItem> items, const BvhTree& tree, float margin)
+        : mesh_(mesh), items_(items), tree_(tree), margin_(margin) {
+        bvh_.nodes.reserve(tree.nodes.size() / 2 + 1);
+        bvh_.triangles.reserve(items.size());
+    }
+
+    Bvh write(uint32_t level) {
+        const int root = place(0, level);
+        if (root < 0) { // the traversal begins at a node: one with the leaf on both sides
+            const BvhContent& content = tree_.nodes[0].content;
+            bvh_.nodes.push_back(bvhNode(content, root, content, root, margin_));
+            bvh_.depth = level + 1;
+        }
+        return std::move(bvh_);
+    }
+
+private:
+    // Returns the number of a node or, negative, of a leaf.
+    int place(int index, uint32_t level) {
+        const BvhTree::Node& node = tree_.nodes[size_t(index)];
+        if (node.leaf()) return placeLeaf(node);
+        const size_t at = bvh_.nodes.size();
+        bvh_.nodes.emplace_back();
+        bvh_.depth = std::max(bvh_.depth, level + 1);
+        const int child0 = place(node.child[0], level + 1), child1 = place(node.child[1], level + 1);
+        bvh_.nodes[at] = bvhNode(contentOf(node.child[0]), child0, contentOf(node.child[1]), child1, margin_);
+        return int(at);
+    }
+    const BvhContent& contentOf(int index) const { return tree_.nodes[size_t(index)].content; }
+
+    int placeLeaf(const BvhTree::Node& leaf) {
+        const auto first = uint32_t(bvh_.triangles.size());
+        for (const BvhItem& item : items_.subspan(leaf.first, leaf.count)) {
+            const glm::vec3* corner = &mesh_.positions[size_t(item.triangle) * 3];
+            const uint32_t masked = item.triangle >= mesh_.opaqueCount ? 0x80000000u : 0u;
+            bvh_.triangles.push_back({corner[0], item.triangle | masked, corner[1], 0, corner[2], 0});
+        }
+        return ~int(first << 3 | leaf.count);
+    }
+
+    const WorldMesh& mesh_;
+    std::span<const BvhItem> items_;
+    const BvhTree& tree_;
+    const float margin_; // [m], added around boxes
+    Bvh bvh_;
+};
+
+// Moves what gains, unless that makes ways through the tree longer than the traversal's stack.
+void reinsertWithin(BvhTree& tree, uint32_t level, WorkerPool* pool) {
+    if (tree.nodes.front().leaf()) return;
+    BvhTree moved = tree;
+    reinsert(moved, pool);
+    if (level + moved.depth() <= shader::kBvhDepth) tree = std::move(moved);
 }
 
 std::vector<BvhItem> itemsOf(const WorldMesh& mesh, std::span<const uint32_t> triangles) {
@@ -282,23 +327,12 @@ Bvh buildBvh(const WorldMesh& mesh, WorkerPool* pool) {
 Bvh buildBvh(const WorldMesh& mesh, const BvhDesc& desc) {
     ASSERT(!desc.triangles.empty() && desc.triangles.size() < kMostBvhTriangles);
     std::vector<BvhItem> items = itemsOf(mesh, desc.triangles);
-    BvhBuilder builder(items, desc.margin, desc.pool);
-    Piece piece;
-    piece.nodes.reserve(items.size());
-    const int root = builder.build(piece, 0, uint32_t(items.size()), desc.level);
-    if (root < 0) { // the traversal begins at a node: one with the leaf on both sides
-        const BvhContent content = builder.contentOf(0, uint32_t(items.size()));
-        piece.nodes.push_back(bvhNode(content, root, content, root, desc.margin));
-        piece.depth = desc.level + 1;
-    }
-    Bvh bvh{std::move(piece.nodes), {}, piece.depth};
+    BvhTree tree;
+    tree.nodes.reserve(items.size());
+    BvhBuilder(items, desc.pool).build(tree, 0, uint32_t(items.size()), desc.level);
+    if (desc.reinsert) reinsertWithin(tree, desc.level, desc.pool);
+    Bvh bvh = BvhWriter(mesh, items, tree, desc.margin).write(desc.level);
     ASSERT(bvh.depth <= shader::kBvhDepth);
-    bvh.triangles.reserve(items.size());
-    for (const BvhItem& item : items) {
-        const glm::vec3* corner = &mesh.positions[size_t(item.triangle) * 3];
-        const uint32_t masked = item.triangle >= mesh.opaqueCount ? 0x80000000u : 0u;
-        bvh.triangles.push_back({corner[0], item.triangle | masked, corner[1], 0, corner[2], 0});
-    }
     return bvh;
 }
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <type_traits>
 
@@ -130,7 +131,11 @@ EmbreeScene::Impl::Impl(const TraceScene& traceScene, WorkerPool& workers)
 // Makes what only blocks need, when they are asked for, from patches as they are marked by then.
 void EmbreeScene::Impl::prepareBlocks() {
     chunks = buildChunks(scene.patches, scene.rtrad);
-    bvh = buildBvh(scene.mesh, &pool);
+    std::vector<uint32_t> all(scene.mesh.triangleCount());
+    std::iota(all.begin(), all.end(), 0u);
+    bvh = buildBvh(
+        scene.mesh,
+        {.triangles = all, .margin = bvhMargin(bvhReach(scene.mesh)), .pool = &pool, .reinsert = false});
 }
 
 void EmbreeScene::Impl::build() {

@@ -207,7 +207,8 @@ void MovingBvh::join(const WorldMesh& mesh) {
     int child = kNoTriangle;
     bvh_.depth = depth_ + 1;
     if (!there.empty()) {
-        const Bvh own = buildBvh(mesh, {.triangles = there, .margin = margin_, .level = 1, .pool = pool_});
+        const Bvh own = buildBvh(
+            mesh, {.triangles = there, .margin = margin_, .level = 1, .pool = pool_, .reinsert = false});
         const auto base = int(bvh_.nodes.size());
         const auto first = uint32_t(bvh_.triangles.size());
         const auto moved = [&](int below) {
