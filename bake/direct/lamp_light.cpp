@@ -1,5 +1,6 @@
 #include "bake/direct/lamp_light.h"
 
+#include "assets/base/clock.h"
 #include "assets/base/error.h"
 #include "bake/vk/commands.h"
 
@@ -193,17 +194,20 @@ HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
             .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
 }
 
-void LampLight::sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const {
-    sampleLamps(pool, host(light, work));
-}
-
-void LampLight::gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
-                            const vk::Buffer& sums, const vk::Buffer& direct) const {
-    HostLamps gather = host(light, work);
-    gather.newSums = newSums;
-    gather.sums = sums.as<glm::vec4>();
-    gather.direct = direct.as<glm::vec4>();
-    gatherLamps(pool, gather);
+PointTimes LampLight::traceOnCpu(const LightBuffers& light, const Work& work, const OnCpu& on) const {
+    HostLamps lamps = host(light, work);
+    lamps.newSums = on.newSums;
+    lamps.sums = on.sums.as<glm::vec4>();
+    lamps.direct = on.direct.as<glm::vec4>();
+    sampleLamps(on.pool, lamps);
+    PointTimes times;
+    const auto start = Clock::now();
+    on.tracer.segments(VK_NULL_HANDLE, segments(light, work, on.rays));
+    times.trace = secondsSince(start);
+    const auto traced = Clock::now();
+    gatherLamps(on.pool, lamps);
+    times.gather = secondsSince(traced);
+    return times;
 }
 
 void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {

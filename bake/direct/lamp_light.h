@@ -5,6 +5,7 @@
 #include "bake/base/chunk_order.h"
 #include "bake/direct/host_lamps.h"
 #include "bake/direct/penumbra.h"
+#include "bake/direct/point_trace.h"
 #include "bake/lights/lamps.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/trace/tracer.h"
@@ -61,12 +62,18 @@ public:
     };
     /// Records the samples. The caller writes the barriers, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
-    /// Tells whether the CPU can do both, where it traces: this holds for all analytic lights but the sky.
+    /// Tells whether the CPU can do without the device, where it traces: this holds for all analytic lights
+    /// but the sky.
     bool onCpu(uint32_t group) const;
-    void sampleOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work) const;
-    /// Does what recordGather does, at once. newSums says that nothing is in the sums yet.
-    void gatherOnCpu(WorkerPool& pool, const LightBuffers& light, const Work& work, bool newSums,
-                     const vk::Buffer& sums, const vk::Buffer& direct) const;
+    /// What the CPU works with, and where the light goes: as for recordGather.
+    struct OnCpu {
+        WorkerPool& pool;
+        Tracer& tracer;
+        const vk::Buffer &rays, &sums, &direct; // rays: as in SegmentWork
+        bool newSums = false;                   // nothing is in the sums yet
+    };
+    /// Samples, traces and gathers on the CPU, at once.
+    PointTimes traceOnCpu(const LightBuffers& light, const Work& work, const OnCpu& on) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
     SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after

@@ -88,7 +88,7 @@ void LayerLights::assignEmitters(const std::vector<std::unique_ptr<Layer>>& laye
 }
 
 bool LayerLights::onCpu(const DirectPart& part) const {
-    return !part.emitters && kit_.input.tracer.onCpu() && kit_.gatherPass.onCpu() && lamps_.onCpu(part.group);
+    return !part.emitters && kit_.tracesOnCpu() && lamps_.onCpu(part.group);
 }
 
 void LayerLights::traceOnCpu(const Portion& portion) {
@@ -96,15 +96,15 @@ void LayerLights::traceOnCpu(const Portion& portion) {
                                .samplePass = portion.samplePass,
                                .range = portion.range,
                                .penumbra = portion.penumbra};
-    WorkerPool& pool = kit_.gatherPass.pool();
-    lamps_.sampleOnCpu(pool, kit_.input.light, work);
-    const auto start = Clock::now();
-    kit_.input.tracer.segments(VK_NULL_HANDLE, lamps_.segments(kit_.input.light, work, kit_.buffers.rays));
-    const auto traced = Clock::now();
-    kit_.progress.traceSeconds += secondsSince(start);
-    lamps_.gatherOnCpu(pool, kit_.input.light, work, portion.newSums, kit_.buffers.directSums,
-                       kit_.buffers.direct);
-    kit_.progress.gatherSeconds += secondsSince(traced);
+    const PointTimes times = lamps_.traceOnCpu(kit_.input.light, work,
+                                               {.pool = kit_.gatherPass.pool(),
+                                                .tracer = kit_.input.tracer,
+                                                .rays = kit_.buffers.rays,
+                                                .sums = kit_.buffers.directSums,
+                                                .direct = kit_.buffers.direct,
+                                                .newSums = portion.newSums});
+    kit_.progress.traceSeconds += times.trace;
+    kit_.progress.gatherSeconds += times.gather;
 }
 
 void LayerLights::trace(VkCommandBuffer cmd, const Portion& portion,

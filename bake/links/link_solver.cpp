@@ -263,7 +263,7 @@ uint32_t LinkSolver::chunksOfStage() const {
 }
 
 template<typename Lights>
-void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
+PointTimes LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};
@@ -271,14 +271,12 @@ void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange ra
         work.notes = buffers.notes ? &buffers.notes : nullptr;
         work.soFar = &buffers.direct;
     }
-    const PointTimes times = tracePoints(
+    return tracePoints(
         {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(light, work, buffers.rays),
         [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },
         [&](VkCommandBuffer cmd) {
             lights.recordGather(cmd, light, work, buffers.directSums, buffers.direct);
         });
-    progress_.traceSeconds += times.trace;
-    progress_.gatherSeconds += times.gather;
 }
 
 // A rank may have no chunk in a pass.
@@ -288,9 +286,24 @@ void LinkSolver::directBatch() {
         const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
         const ChunkRange range = kit_.nextRange(directRate_, most);
         const auto start = Clock::now();
-        if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range);
+        const auto note = [this](const PointTimes& times) {
+            progress_.traceSeconds += times.trace;
+            progress_.gatherSeconds += times.gather;
+        };
+        if (emitters_.rays(0) > 0) note(traceDirect(emitters_, 0, range));
+        // The device's kernels take longer on a CPU than code of its own, which knows neither the sky nor
+        // notes.
+        const bool onCpu = kit_.tracesOnCpu() && !kit_.buffers.notes;
         for (uint32_t group = 0; group < lamps_.groups(); ++group)
-            traceDirect(lamps_, group, range);
+            note(onCpu && lamps_.onCpu(group)
+                     ? lamps_.traceOnCpu(kit_.input.light,
+                                         {.group = group, .samplePass = pass_.first, .range = range},
+                                         {.pool = kit_.gatherPass.pool(),
+                                          .tracer = kit_.input.tracer,
+                                          .rays = kit_.buffers.rays,
+                                          .sums = kit_.buffers.directSums,
+                                          .direct = kit_.buffers.direct})
+                     : traceDirect(lamps_, group, range));
         directRate_.note(range.count, batchMs_, secondsSince(start));
         kit_.order.finish(range);
         if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
