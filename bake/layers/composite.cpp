@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace relume {
 namespace {
@@ -25,6 +26,12 @@ Variances variancesOf(const Layer& layer) {
     if (!(sampled > 0.0) || !(all > 0.0)) return {};
     const double unit = sampled * layer.light * layer.light / all;
     return {unit * layer.directVariance, unit * layer.indirectVariance};
+}
+
+// Returns the share of a layer's indirect variance that is bias of smoothing.
+double biasShareOf(const Layer& layer) {
+    const double bias = std::accumulate(layer.sketch.bias.begin(), layer.sketch.bias.end(), 0.0);
+    return layer.indirectVariance > 0.0 ? std::clamp(bias / layer.indirectVariance, 0.0, 1.0) : 0.0;
 }
 
 // A layer's indirect error as the composite has it.
@@ -89,7 +96,7 @@ Composite compositeOf(std::span<Layer* const> layers) {
     Composite composite;
     composite.shares.resize(layers.size());
     std::vector<Weighed> indirect;
-    double light = 0, variance = 0, later = 0;
+    double light = 0, variance = 0, later = 0, alone = 0, bias = 0;
     for (size_t i = 0; i < layers.size(); ++i) {
         const Layer& layer = *layers[i];
         const Variances own = variancesOf(layer);
@@ -100,9 +107,14 @@ Composite compositeOf(std::span<Layer* const> layers) {
         composite.shares[i].error = weight * layer.light * layer.error;
         variance += composite.shares[i].direct;
         indirect.push_back(weighedOf(layer, own.indirect));
+        alone += square * own.indirect;
+        bias += square * own.indirect * biasShareOf(layer);
     }
     if (!(light > 0.0)) return composite;
-    variance += shareIndirect(indirect, composite.shares);
+    const double together = shareIndirect(indirect, composite.shares);
+    variance += together;
+    if (alone > 0.0) composite.alike = together / alone;
+    composite.bias = std::sqrt(composite.alike * bias) / light;
     for (Composite::Share& share : composite.shares) {
         share.direct /= light * light;
         share.indirect /= light * light;

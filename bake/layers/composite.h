@@ -17,6 +17,9 @@ struct Composite {
     };
     double error = 0;     // relRMSE
     double iteration = 0; // what later bounces still bring, relative to the mean light
+    // What layers' indirect errors have in common: the square of their sum over the sum of their squares.
+    double alike = 1;
+    double bias = 0; // of smoothing, where layers know it chunk by chunk; part of error
     std::vector<Share> shares;
 };
 

@@ -1,4 +1,6 @@
 #include "bake/layers/composite_report.h"
+
+#include "assets/base/portions.h"
 #include "bake/layers/composite.h"
 
 #include <algorithm>
@@ -39,8 +41,18 @@ std::vector<Part> overSlices(WorkerPool& pool, std::span<const shader::Patch> pa
 
 } // namespace
 
-LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error) {
+namespace {
+
+// What turns a patch's w into how far it is off relative to its light.
+struct LocalScale {
+    double deviation = 0; // 0: nothing is off
+    float least = 1e-30f; // light that is as good as none [cd/m^2]
+
+    double of(const glm::vec4& light) const { return deviation * light.w / std::max(meanOf(light), least); }
+};
+
+LocalScale scaleOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<const shader::Patch> patches,
+                   double error) {
     const std::vector<Slice> slices = overSlices<Slice>(pool, patches, [&](size_t i, Slice& slice) {
         const float own = meanOf(light[i]);
         slice.light += own;
@@ -57,13 +69,17 @@ LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
         for (size_t bin = 0; bin < all.lights.size(); ++bin)
             all.lights[bin] += slice.lights[bin];
     }
-    if (!(all.light > 0) || !(all.square > 0)) return {0, 0, 0, 0};
-    const double scale = error * (all.light / all.count) / std::sqrt(all.square / all.count);
-    const auto least = static_cast<float>(std::max(kLocalFloor * medianLight(all.lights), 1e-30));
+    if (!(all.light > 0) || !(all.square > 0)) return {};
+    return {.deviation = error * (all.light / all.count) / std::sqrt(all.square / all.count),
+            .least = static_cast<float>(std::max(kLocalFloor * medianLight(all.lights), 1e-30))};
+}
+
+LocalError noiseOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<const shader::Patch> patches,
+                   const LocalScale& scale) {
+    if (!(scale.deviation > 0)) return {0, 0, 0, 0};
     const std::vector<Deviations> parts =
         overSlices<Deviations>(pool, patches, [&](size_t i, Deviations& part) {
-            const double deviation = scale * light[i].w / std::max(meanOf(light[i]), least);
-            ++part.bins[shader::binOf(static_cast<float>(deviation), shader::kLeastErrorOctave,
+            ++part.bins[shader::binOf(static_cast<float>(scale.of(light[i])), shader::kLeastErrorOctave,
                                       shader::kErrorBinsPerOctave, shader::kErrorBins)];
         });
     std::vector<double> deviations(shader::kErrorBins);
@@ -72,6 +88,52 @@ LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
             deviations[bin] += part.bins[bin];
     return normalErrorOf(deviations);
 }
+
+} // namespace
+
+LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
+                        std::span<const shader::Patch> patches, double error) {
+    return noiseOf(pool, light, patches, scaleOf(pool, light, patches, error));
+}
+
+LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
+                        std::span<const shader::Patch> patches, double error, std::span<const double> bias) {
+    const LocalScale scale = scaleOf(pool, light, patches, error);
+    std::vector<ChunkSquares> chunks(bias.size());
+    runPortions(pool, chunks.size(), kSlice / shader::kChunk, [&](size_t begin, size_t end) {
+        for (size_t c = begin; c < end; ++c) {
+            double inverse = 0; // sum of squares of what light is relative to, inverted
+            for (size_t i = c * shader::kChunk; i < (c + 1) * shader::kChunk; ++i) {
+                if (!shader::patchIsShown(patches[i].flags)) continue;
+                const double off = scale.of(light[i]), own = std::max(meanOf(light[i]), scale.least);
+                chunks[c].texels += 1;
+                chunks[c].noise += off * off;
+                inverse += 1.0 / (own * own);
+            }
+            if (chunks[c].texels > 0) chunks[c].bias = bias[c] * inverse / chunks[c].texels;
+        }
+    });
+    return withBias(pool, noiseOf(pool, light, patches, scale), chunks);
+}
+
+namespace {
+
+// Returns the bias of smoothing of the layers' sum for each chunk, as localErrorOf() takes it; empty where no
+// layer knows its own. `alike` is as of Composite: biases have as much in common as errors.
+std::vector<double> biasOf(std::span<Layer* const> layers, double alike) {
+    std::vector<double> bias;
+    for (const Layer* layer : layers) {
+        const glm::dvec3 weight(layer->source.weight);
+        // Of the mean of R, G and B it is a third of what it is of the three together, if they go alike.
+        const double share = alike * glm::dot(weight, weight) / 3.0 / 3.0;
+        bias.resize(std::max(bias.size(), layer->sketch.bias.size()), 0.0);
+        for (size_t c = 0; c < layer->sketch.bias.size(); ++c)
+            bias[c] += share * layer->sketch.bias[c];
+    }
+    return bias;
+}
+
+} // namespace
 
 void CompositeReport::tell(const Layers& layers, SolverProgress& progress, bool weighedAnew) {
     local_.reset();
@@ -96,9 +158,15 @@ void CompositeReport::measure(const Layers& layers) {
     for (const std::unique_ptr<Layer>& layer : layers)
         if (layer->shines()) shining.push_back(layer.get());
     const Composite composite = compositeOf(shining);
-    const double square = composite.error * composite.error - composite.iteration * composite.iteration;
-    local_ = localErrorOf(kit_.input.device.workers(), mixer_.light(layers), kit_.input.patches.scene.patches,
-                          std::sqrt(std::max(0.0, square)));
+    const double square = composite.error * composite.error - composite.iteration * composite.iteration -
+                          composite.bias * composite.bias;
+    const std::vector<double> bias = biasOf(shining, composite.alike);
+    WorkerPool& pool = kit_.input.device.workers();
+    const std::vector<glm::vec4>& light = mixer_.light(layers);
+    const std::vector<shader::Patch>& patches = kit_.input.patches.scene.patches;
+    const double error = std::sqrt(std::max(0.0, square));
+    local_ = bias.empty() ? localErrorOf(pool, light, patches, error)
+                          : localErrorOf(pool, light, patches, error, bias);
 }
 
 } // namespace relume

@@ -17,6 +17,10 @@ namespace relume {
 /// where nothing is lit.
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
                         std::span<const shader::Patch> patches, double error);
+/// Returns it with the bias of smoothing: `bias` holds for each chunk the sum over its patches of the square
+/// of what the mean of R, G and B is off by it, as it was estimated [(cd/m^2)^2].
+LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
+                        std::span<const shader::Patch> patches, double error, std::span<const double> bias);
 
 /// Has the schedule decide how far layers go, and tells how far the composite is off. Its local error takes a
 /// pass over all patches: it is measured where it plays a part, but not while somebody turns a light up and

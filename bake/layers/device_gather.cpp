@@ -18,7 +18,7 @@ DeviceGather::DeviceGather(LinkKit& kit, const LayerPass& pass)
     : kit_(kit), layerPass_(pass), bounces_(kit.input.device, kit.input.light, kit.buffers.linkSums),
       resolvePass_(kit.input.device), chunkSums_(kit.input.device),
       sketch_(kit.input.device, {.size = kSketchEntries * sizeof(glm::vec3), .name = "sketch of an error"}) {
-    kit.reserveBack(kSketchAt + sketch_.size());
+    kit.reserveBack(kLevelSumsAt + uint64_t{kit.chunkCount()} * sizeof(shader::ResolveSums));
 }
 
 void DeviceGather::recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) {
@@ -77,6 +77,8 @@ void DeviceGather::recordChunkSums(VkCommandBuffer cmd, uint32_t width, VkDevice
 LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t linkSamplePasses, double sigma) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
+    const bool smooths = linkSamplePasses > 0 && buffers.rows;
+    const size_t chunks = kit_.chunkCount();
     VkCommandBuffer cmd = kit_.commands.begin();
     if (linkSamplePasses > 0) {
         const vk::Buffer& own = lane > 0 ? bounces_.sums(lane) : buffers.linkSums;
@@ -87,6 +89,8 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
                              .sigma = static_cast<float>(sigma),
                              .sums = lane > 0 ? &bounces_.sums(lane) : nullptr});
         recordChunkSums(cmd, kResolveValues, 0);
+        if (smooths)
+            kit_.recordBack(cmd, buffers.chunkSums, chunks * sizeof(shader::ResolveSums), kLevelSumsAt);
         vk::barrier(cmd);
     }
     layerPass_.recordResult(cmd, light, layer, linkSamplePasses > 0 ? &buffers.result : nullptr,
@@ -99,6 +103,11 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
         sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
         const auto* entries = kit_.back<glm::vec3>(kSketchAt, kSketchEntries);
         sums.sketch.entries.assign(entries, entries + kSketchEntries);
+    }
+    if (smooths) {
+        const auto* perChunk = kit_.back<shader::ResolveSums>(kLevelSumsAt, chunks);
+        std::transform(perChunk, perChunk + chunks, std::back_inserter(sums.sketch.bias),
+                       [](const shader::ResolveSums& chunk) { return chunk.bias; });
     }
     sums.result = *kit_.back<glm::vec4>(sizeof(shader::ResolveSums));
     return sums;

@@ -9,7 +9,8 @@
 namespace relume {
 
 constexpr uint32_t kSketchEntries = shader::kSketchStride * shader::kSketchParts * shader::kReplicates;
-constexpr uint64_t kSketchAt = 256; // where a GPU's is read back, behind sums [bytes]
+// Where a GPU's is read back, behind sums, and behind it the sums of each chunk [bytes].
+constexpr uint64_t kSketchAt = 256, kLevelSumsAt = kSketchAt + kSketchEntries * sizeof(glm::vec3);
 
 /// The error of a layer's indirect light in a few numbers: how far each replicate is from their mean, summed
 /// over patches that share an entry, each with a random sign. What two layers' sketches have in common (the
@@ -17,6 +18,9 @@ constexpr uint64_t kSketchAt = 256; // where a GPU's is read back, behind sums [
 /// the same links, so that this is much, but it is seldom all.
 struct ErrorSketch {
     std::vector<glm::vec3> entries; // [group][replicate], as SketchPush has it
+    // How far smoothing moves each chunk's light beyond what noise explains (ResolveSums::bias); empty:
+    // nothing is smoothed, or it is not known.
+    std::vector<float> bias;
 
     bool empty() const { return entries.empty(); }
     /// Returns the sum of squares.

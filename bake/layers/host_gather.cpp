@@ -2,6 +2,8 @@
 
 #include "bake/gather/host_resolve.h"
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -96,6 +98,9 @@ LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkSampleP
                             size_t{kit_.chunkCount()} * shader::kChunk);
     if (linkSamplePasses > 0)
         level.sketch = sketchOf(kit_.gatherPass.pool(), patches, buffers.linkSums.as<glm::vec4>());
+    if (smooths)
+        std::transform(sums.indirect.begin(), sums.indirect.end(), std::back_inserter(level.sketch.bias),
+                       [](const shader::ResolveSums& chunk) { return chunk.bias; });
     return level;
 }
 

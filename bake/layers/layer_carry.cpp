@@ -158,6 +158,7 @@ private:
         to.indirectVariance = from.indirectVariance;
         to.iterationError = from.iterationError;
         to.sketch = std::move(from.sketch);
+        to.sketch.bias.clear(); // its chunks are others
         to.error = from.error;
         to.redo = from.redo;
         to.redoSteps = from.redoSteps;

@@ -46,7 +46,7 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
     const uint64_t sketch = onCpu ? 0 : kSketchEntries * sizeof(glm::vec3);
     const uint64_t sums =
         chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4)) + shader::kRayCounters * sizeof(uint32_t);
-    const uint64_t back = std::max(sums, kSketchAt + sketch);
+    const uint64_t back = std::max(sums, onCpu ? 0 : kLevelSumsAt + chunks * sizeof(shader::ResolveSums));
     const uint64_t bounces = onCpu ? 0 : kTurns * (count * sizeof(glm::uvec2) + chunks * sizeof(glm::vec4));
     // The composite, and where somebody watches the sum of the layers that do not change.
     const uint64_t mixed = (settings.live ? 2 : 1) * count * sizeof(glm::vec4);

@@ -233,7 +233,7 @@ LevelSums LayerSolver::resolveLevel(const BounceJob::Lane& lane, uint32_t index)
 }
 
 void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint32_t gathers) {
-    const LevelSums sums = resolveLevel(lane, index);
+    LevelSums sums = resolveLevel(lane, index);
     const glm::dvec4 total = sums.result;
     requireFiniteLight(total.x, total.y + sums.indirect.indirect + sums.indirect.raw);
     Layer& layer = *lane.layer;
@@ -242,7 +242,7 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
     layer.count = total.z;
     layer.directVariance = total.y;
     layer.indirectVariance = smoothedVariance(sums.indirect);
-    layer.sketch = sums.sketch;
+    layer.sketch = std::move(sums.sketch);
     // The light that bounces have converged to is gathered once more; of several gathers the last one is what
     // was measured.
     const double more = gathers > 1 ? 1.0 : lane.series.ratio;
@@ -367,7 +367,7 @@ SolverState LayerSolver::state() {
     ASSERT(!done_);
     SolverState state{progress_, progress_.passSeconds, {}};
     for (const std::unique_ptr<Layer>& layer : layers())
-        appendLayerState(*layer, penumbra_.parts().count, state.own);
+        appendLayerState(*layer, {penumbra_.parts().count, kit_.chunkCount()}, state.own);
     return state;
 }
 
@@ -384,7 +384,7 @@ std::vector<StatePart> LayerSolver::stateParts() {
 }
 
 void LayerSolver::restore(const SolverState& state) {
-    const size_t each = layerStateBytes(penumbra_.parts().count);
+    const size_t each = layerStateBytes({penumbra_.parts().count, kit_.chunkCount()});
     if (state.own.size() != layers().size() * each)
         throw Error("this state is not of such a solver: bake from the start");
     abortPass();
@@ -393,7 +393,8 @@ void LayerSolver::restore(const SolverState& state) {
     progress_.passSeconds = state.passSeconds;
     progress_.cacheBytes = cacheBytes;
     for (size_t i = 0; i < layers().size(); ++i) {
-        takeLayerState(*layers()[i], std::span(state.own).subspan(i * each, each));
+        takeLayerState(*layers()[i], {penumbra_.parts().count, kit_.chunkCount()},
+                       std::span(state.own).subspan(i * each, each));
         mixer_.changed(i);
     }
     done_ = false;

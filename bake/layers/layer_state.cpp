@@ -12,17 +12,18 @@ struct LayerState {
     SmoothingWidth width;
     double light = 0, count = 0, directVariance = 0, indirectVariance = 0, iterationError = 1, error = 1;
     LayerPlan plan;
+    bool biasKnown = false;
 };
 
 constexpr size_t kSketchBytes = kSketchEntries * sizeof(glm::vec3);
 
 } // namespace
 
-size_t layerStateBytes(uint32_t parts) {
-    return sizeof(LayerState) + kSketchBytes + parts;
+size_t layerStateBytes(const LayerStateSize& size) {
+    return sizeof(LayerState) + kSketchBytes + size.chunks * sizeof(float) + size.parts;
 }
 
-void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes) {
+void appendLayerState(Layer& layer, const LayerStateSize& size, std::vector<uint8_t>& bytes) {
     LayerState own;
     std::memset(static_cast<void*>(&own), 0, sizeof own); // padding, too
     own.directSamplePasses = layer.directSamplePasses;
@@ -36,23 +37,32 @@ void appendLayerState(Layer& layer, uint32_t parts, std::vector<uint8_t>& bytes)
     own.error = layer.error;
     own.plan.wanted = layer.plan.wanted; // by name, as the whole would bring its padding along
     own.plan.converged = layer.plan.converged;
+    own.biasKnown = !layer.sketch.bias.empty();
     const auto* from = reinterpret_cast<const uint8_t*>(&own);
     bytes.insert(bytes.end(), from, from + sizeof own);
     std::vector<glm::vec3> entries = layer.sketch.entries;
     entries.resize(kSketchEntries, glm::vec3(0.0f)); // which is as good as none
     const auto* sketch = reinterpret_cast<const uint8_t*>(entries.data());
     bytes.insert(bytes.end(), sketch, sketch + kSketchBytes);
-    layer.penumbra.resize(parts, 0);
+    std::vector<float> bias = layer.sketch.bias;
+    bias.resize(size.chunks, 0.0f);
+    const auto* biases = reinterpret_cast<const uint8_t*>(bias.data());
+    bytes.insert(bytes.end(), biases, biases + bias.size() * sizeof(float));
+    layer.penumbra.resize(size.parts, 0);
     bytes.insert(bytes.end(), layer.penumbra.begin(), layer.penumbra.end());
 }
 
-void takeLayerState(Layer& layer, std::span<const uint8_t> bytes) {
+void takeLayerState(Layer& layer, const LayerStateSize& size, std::span<const uint8_t> bytes) {
     LayerState from;
     std::memcpy(&from, bytes.data(), sizeof from);
     const std::span<const uint8_t> sketch = bytes.subspan(sizeof from, kSketchBytes);
-    const std::span<const uint8_t> penumbra = bytes.subspan(sizeof from + kSketchBytes);
+    const size_t biasBytes = size.chunks * sizeof(float);
+    const std::span<const uint8_t> bias = bytes.subspan(sizeof from + kSketchBytes, biasBytes);
+    const std::span<const uint8_t> penumbra = bytes.subspan(sizeof from + kSketchBytes + biasBytes);
     layer.sketch.entries.resize(kSketchEntries);
     std::memcpy(layer.sketch.entries.data(), sketch.data(), kSketchBytes);
+    layer.sketch.bias.resize(from.biasKnown ? size.chunks : 0);
+    std::memcpy(layer.sketch.bias.data(), bias.data(), layer.sketch.bias.size() * sizeof(float));
     layer.penumbra.assign(penumbra.begin(), penumbra.end());
     layer.directSamplePasses = from.directSamplePasses;
     layer.directSteps.clear();

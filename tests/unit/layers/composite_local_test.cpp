@@ -74,6 +74,26 @@ TEST(CompositeLocalError, IsRelativeToTheTexelsOwnLight) {
     expectWithinABin(darkest(0.001f), 20.0);
 }
 
+// One chunk in eight has a bias of twice its noise: 95 % of all are within what the root of both squares
+// says.
+TEST(CompositeLocalError, HasTheBiasOfSmoothingWhereItIs) {
+    Texels texels;
+    texels.add(size_t{800} * shader::kChunk, 0.5f, 1.0f);
+    WorkerPool pool(2);
+    std::vector<double> bias(800, 0.0);
+    const double noise = 0.01; // relative
+    for (size_t c = 0; c < bias.size(); c += 8)
+        bias[c] = shader::kChunk * std::pow(2.0 * noise * 0.5, 2.0);
+    const LocalError alone = localErrorOf(pool, texels.light, texels.patches, noise);
+    const LocalError none =
+        localErrorOf(pool, texels.light, texels.patches, noise, std::vector<double>(800, 0.0));
+    const LocalError both = localErrorOf(pool, texels.light, texels.patches, noise, bias);
+    EXPECT_EQ(none.p95, alone.p95);
+    // Of one in eight with a deviation of 2.236 and seven with 1 a twentieth are beyond 2.396.
+    expectWithinABin(both.p95, 2.396 * noise);
+    EXPECT_NEAR(both.p50, alone.p50, 0.2 * alone.p50);
+}
+
 TEST(CompositeLocalError, LeavesOutWhatIsNotShown) {
     Texels texels;
     texels.add(1000, 1.0f, 1.0f);
