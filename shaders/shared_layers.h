@@ -1,9 +1,12 @@
 // These are the push constants of the kernels of layers, one light's share of the lightmap each. The file is
 // part of shared.h, which includes it.
 
-// Patches in a penumbra take all sample passes of direct light, the others the first one and then one in so
-// many.
+// Patches in a penumbra take all sample passes of direct light, the others the first one, the one in the
+// middle of these and then one in so many.
 const uint kPenumbraSamplePasses = 8u;
+FUNCTION bool allTakeSamplePass(uint samplePass) {
+    return samplePass % kPenumbraSamplePasses == 0u || samplePass == kPenumbraSamplePasses / 2u;
+}
 
 // Adds some sample passes of direct light to those before.
 struct LayerDirectPush {

@@ -5,8 +5,8 @@ struct EmitterSamplesPush {
     ADDRESS polygons; // EmitterPolygon[]
     ADDRESS nodes;    // EmitterNode[]
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
-    ADDRESS picks;    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's probability
-    ADDRESS parts;    // lib/light/penumbra.glsl, as penumbra
+    ADDRESS picks; // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's chance, form factor
+    ADDRESS parts; // lib/light/penumbra.glsl, as penumbra
     ADDRESS penumbra; // 0: every patch takes every sample pass
     ADDRESS covers;   // as of ClosestPush
     uint firstChunk;

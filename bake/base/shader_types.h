@@ -18,6 +18,7 @@ using glm::uint;
 #include "shaders/lib/light/polygon_sample.glsl"
 #include "shaders/lib/light/emitters.glsl"
 #include "shaders/lib/light/lamps.glsl"
+#include "shaders/lib/light/seen_light.glsl"
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/units.glsl"
 #include "shaders/lib/packed_light.glsl"

@@ -20,7 +20,7 @@ constexpr uint32_t kLightBits = 32;      // lib/light/penumbra.glsl
 
 // Does what lib/light/penumbra_sample_passes.glsl does.
 bool leftOut(const HostLamps& work, size_t index) {
-    if (!work.penumbra || work.samplePass % shader::kPenumbraSamplePasses == 0) return false;
+    if (!work.penumbra || shader::allTakeSamplePass(work.samplePass)) return false;
     const glm::uvec2& lights = work.penumbra[work.parts[index]];
     return (lights.x & lights.y) == 0;
 }
@@ -181,13 +181,10 @@ Gathered gatherLamp(const Lamp& lamp, const Patch& p, const glm::vec4* targets, 
     }
     const float whole = shader::lampWhole(lamp, p);
     result.shareless = whole < 0.0f && all > 0.0f;
-    const float share = all > 0.0f ? visible / all : 0.0f;
-    for (uint32_t q = 0; q < kReplicates; ++q) {
-        const auto replicates = static_cast<float>(kReplicates);
-        const float residual = all > 0.0f ? replicates * (seen[q] - share * part[q]) / all : 0.0f;
-        result.light[q] = whole >= 0.0f ? whole * (share + residual) // a ratio, as in direct.comp
-                                        : seen[q] * (replicates / static_cast<float>(lamp.samples));
-    }
+    const float count = static_cast<float>(lamp.samples) / static_cast<float>(kReplicates);
+    for (uint32_t q = 0; q < kReplicates; ++q)
+        result.light[q] =
+            whole >= 0.0f ? shader::seenLight(whole, count, part[q], seen[q], all, visible) : seen[q] / count;
     return result;
 }
 

@@ -147,7 +147,7 @@ bool DirectJob::orderSamplePass() {
     const TileParts& parts = tools_->penumbra.parts();
     kit.beginPass();
     std::vector<uint8_t> take = repairStep_ ? repairedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
-    const bool penumbraAlone = samplePass_ % shader::kPenumbraSamplePasses != 0;
+    const bool penumbraAlone = !shader::allTakeSamplePass(samplePass_);
     if (penumbraAlone && penumbra_.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
             penumbra_.push_back(static_cast<uint8_t>(parts.any(i, layer_->penumbra)));

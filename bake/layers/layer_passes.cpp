@@ -7,25 +7,45 @@ namespace {
 
 using shader::kChunk;
 
+// Counts the sample passes before `end` that patches outside penumbrae take.
+uint32_t takenByAll(uint32_t end) {
+    uint32_t count = 0;
+    for (uint32_t samplePass = 0; samplePass < end; ++samplePass)
+        count += shader::allTakeSamplePass(samplePass) ? 1 : 0;
+    return count;
+}
+
 } // namespace
+
+DirectShares directShares(uint32_t before, uint32_t added) {
+    // Where penumbrae are follows from the first sample pass, so what it says of patches outside would be
+    // chosen by itself: it counts there only as long as there is no other.
+    const auto outside = [](uint32_t end) {
+        const uint32_t taken = takenByAll(end);
+        return taken > 1 ? taken - 1 : taken;
+    };
+    const bool forgets = takenByAll(before) == 1 && takenByAll(before + added) > 1;
+    const uint32_t all[] = {outside(before + added), before + added};
+    const uint32_t of[] = {forgets ? all[0] : all[0] - outside(before), added};
+    DirectShares shares;
+    for (int i = 0; i < 2; ++i) {
+        if (of[i] == 0) continue;
+        shares.scale[i] = 1.0f / static_cast<float>(of[i]);
+        shares.share[i] = static_cast<float>(of[i]) / static_cast<float>(all[i]);
+    }
+    return shares;
+}
 
 void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const DirectWork& work,
                              const Penumbra& penumbra) const {
-    shader::LayerDirectPush push{.sums = work.sums.address(),
-                                 .direct = work.direct.address(),
-                                 .parts = penumbra.parts.address(),
-                                 .penumbra = penumbra.lights.address(),
-                                 .patchCount = light.chunkCount * kChunk,
-                                 .scale = glm::vec2(0.0f),
-                                 .share = glm::vec2(0.0f)};
-    const uint32_t every[] = {shader::kPenumbraSamplePasses, 1};
-    for (int i = 0; i < 2; ++i) {
-        const auto taken = [&](uint32_t of) { return (of + every[i] - 1) / every[i]; };
-        const uint32_t all = taken(work.before + work.added), added = all - taken(work.before);
-        if (added == 0) continue;
-        push.scale[i] = 1.0f / static_cast<float>(added);
-        push.share[i] = static_cast<float>(added) / static_cast<float>(all);
-    }
+    const DirectShares shares = directShares(work.before, work.added);
+    const shader::LayerDirectPush push{.sums = work.sums.address(),
+                                       .direct = work.direct.address(),
+                                       .parts = penumbra.parts.address(),
+                                       .penumbra = penumbra.lights.address(),
+                                       .patchCount = light.chunkCount * kChunk,
+                                       .scale = shares.scale,
+                                       .share = shares.share};
     dispatchChunks(direct_, cmd, push, light.chunkCount);
 }
 

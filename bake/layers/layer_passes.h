@@ -10,6 +10,14 @@
 
 namespace relume {
 
+/// What sample passes that are added to direct light count, for patches outside penumbrae and within: the
+/// factor from a replicate's sum to its mean, and their share among all; 0: there are none.
+struct DirectShares {
+    glm::vec2 scale{0.0f}, share{0.0f};
+};
+/// Returns them for `added` sample passes after the first `before`. The first two are added together.
+DirectShares directShares(uint32_t before, uint32_t added);
+
 /// Holds the kernels that treat layers as wholes. The caller sets the barriers.
 class LayerPass {
 public:

@@ -1,12 +1,14 @@
-// Adds the light of the mesh lights' points that are seen to the replicates' sums: F_polygon L sum(V f) /
-// sum(f), f being each point's own form factor. There is one workgroup per chunk and one invocation per
-// patch.
+// Adds the light of the mesh lights' points that are seen to the replicates' sums. Where all polygons are
+// sampled, replicates tell each other the share that is seen (lib/light/seen_light.glsl); a pick belongs to one
+// replicate, and its light is F_polygon L sum(V f) / sum(f), f being each point's own form factor. There is one
+// workgroup per chunk and one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 layout(push_constant, scalar) uniform Push { DirectPush push; };
 #include "lib/light/penumbra_sample_passes.glsl"
+#include "lib/light/seen_light.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -30,7 +32,8 @@ void main() {
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     for (uint pick = 0u; pick < push.pickCount; ++pick) {
-        vec3 light = VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane).rgb;
+        vec4 picked = VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane);
+        vec3 light = picked.rgb;
         uint first = pick * push.pointCount;
         float sum = 0.0, visible = 0.0;
         float part[kReplicates], partVisible[kReplicates]; // of each replicate's points
@@ -51,10 +54,9 @@ void main() {
         if (visible < sum) hiddenEmitters |= bit;
         if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
         for (uint q = 0u; q < kReplicates; ++q) {
-            // A ratio's error comes from the residuals V - share alone: what is seen as a whole is exact
-            // [Cochran 1977, Sampling Techniques, 6.3].
-            float residual = sum > 0.0 ? float(kReplicates) * (partVisible[q] - share * part[q]) / sum : 0.0;
-            if (all) value[q] += light * (share + residual);
+            float count = float(push.pointCount / kReplicates); // of each replicate's points
+            if (all && picked.w > 0.0)
+                value[q] += light * (seenLight(picked.w, count, part[q], partVisible[q], sum, visible) / picked.w);
             else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
         }
     }

@@ -43,10 +43,12 @@ void main() {
         sequence = replicateIndex(number) * push.pointCount;
     }
     vec3 light = vec3(0.0);
+    float whole = 0.0; // form factor, without shadows
     EmitterPolygon e;
     if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !samplePassLeftOut(index)) {
         e = loadEmitterPolygon(push.polygons, emitter);
-        light = e.radiance * (emitterFormFactor(p.position, p.shading, e) / probability);
+        whole = emitterFormFactor(p.position, p.shading, e);
+        light = e.radiance * (whole / probability);
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
     bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p, e);
@@ -74,6 +76,9 @@ void main() {
         }
         VEC4_AT(push.targets, (base + s) * kChunk + lane) = point;
     }
-    if (near) light = e.radiance * (factors / (float(push.pointCount) * probability));
-    VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane) = vec4(light, 0.0);
+    if (near) {
+        whole = factors / float(push.pointCount);
+        light = e.radiance * (whole / probability);
+    }
+    VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane) = vec4(light, whole);
 }

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/light/lamp_group.glsl"
+#include "lib/light/seen_light.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -57,7 +58,7 @@ void main() {
             partSeen[s % kReplicates] += ray.light;
             visible += ray.light.r;
         }
-        float whole = lampWhole(l, p), share = all > 0.0 ? visible / all : 0.0;
+        float whole = lampWhole(l, p);
         // Where no share is known, what is reached is asked again.
         if (l.samples > 1u && whole < 0.0 && all > 0.0) {
             if (!takesNotes()) reachedLamps = hiddenLamps = ~0u;
@@ -67,9 +68,9 @@ void main() {
             vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
             if (l.samples == 1u) {
                 unit = partSeen[0];
-            } else if (whole >= 0.0) { // a ratio, and its residuals as in direct.comp
-                float residual = all > 0.0 ? float(kReplicates) * (partSeen[q].r - share * part[q].r) / all : 0.0;
-                unit = vec3(whole * (share + residual));
+            } else if (whole >= 0.0) {
+                float count = float(l.samples / kReplicates);
+                unit = vec3(seenLight(whole, count, part[q].r, partSeen[q].r, all, visible));
             }
             if (note.known) {
                 vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);

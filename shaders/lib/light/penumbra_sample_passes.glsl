@@ -4,7 +4,7 @@
 #include "lib/light/light_notes.glsl"
 
 bool samplePassLeftOut(uint patchIndex) {
-    return push.penumbra != 0ul && push.parts != 0ul && push.samplePass % kPenumbraSamplePasses != 0u && !inPenumbra(patchIndex);
+    return push.penumbra != 0ul && push.parts != 0ul && !allTakeSamplePass(push.samplePass) && !inPenumbra(patchIndex);
 }
 
 // Notes in the first sample pass what the others are to do; bit i is for the lights i % 32.

@@ -1,4 +1,6 @@
 // This tests the direct light of layers, whose rays go where neighbours see different shares of a light.
+#include "assets/generate/generate.h"
+#include "assets/images/metrics.h"
 #include "bake/surface/tile_parts.h"
 #include "tests/gpu/layered.h"
 
@@ -47,6 +49,23 @@ TEST(Penumbra, TakesTheRays) {
     EXPECT_GT(perPatch, 0.15 * kPoints);
     EXPECT_LE(relativeError(bake.image(), everyRay(scene)), 2e-3);
     EXPECT_LE(bake.progress().error, 4e-3); // the rays sample the texels, too
+}
+
+// With four points per sample pass, some of which lie below the horizon of what is turned away, and few
+// sample passes outside penumbrae: neither is to show in the mean, however few points tell what is seen.
+TEST(Penumbra, FewPointsAreRightInTheMean) {
+    const Scene scene = generateScene("cornell_statue");
+    BakeDesc desc = kDirect;
+    desc.size = 64;
+    const FloatImage layers = bakeScene(scene, desc).lighting;
+    desc.layers = false;
+    desc.samples = 4 * kPoints;
+    const FloatImage all = bakeScene(scene, desc).lighting;
+    const NamedImage few{layers, "layers"}, every{all, "every ray"};
+    const ImagePair pair(few, every);
+    const Metrics metrics = pair.measure();
+    EXPECT_NEAR(metrics.bias, 0.0, 5e-4 * metrics.meanB);
+    EXPECT_NEAR(pair.darkBias(), 0.0, 0.02) << "a ratio of the sums of four points is 0.13 too dark";
 }
 
 // Where no share is known each sample counts, and nothing may be left out.
