@@ -4,6 +4,7 @@
 #include "bake/show/publisher.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/patches.h"
+#include "bake/vk/program.h"
 
 #include <memory>
 
@@ -45,6 +46,8 @@ void warmUp(const vk::Device& device, const std::function<bool()>& wanted) {
     std::string why;
     const std::unique_ptr<Tracer> tracer =
         makeTracer(chooseTracer(device.info(), why), device, patches.scene, light.patches);
+    // The search for what stands in texels, which this square needs none of, has a kernel of its own.
+    if (tracer->records()) const vk::ComputeProgram compiled(device, "places");
     SolverSettings settings;
     settings.method = Method::Hybrid;
     settings.layers.on = settings.live = true;
