@@ -50,7 +50,7 @@ double shareBeyond(double error, std::span<const double> deviations) {
 double normalPercentile(double share, std::span<const double> deviations) {
     double low = -60.0, high = 60.0; // octaves
     if (shareBeyond(std::exp2(low), deviations) <= 1.0 - share) return 0.0;
-    constexpr int kHalvings = 40;
+    constexpr int kHalvings = 24; // to a hundred thousandth of an octave
     for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (low + high);
         (shareBeyond(std::exp2(middle), deviations) > 1.0 - share ? low : high) = middle;
