@@ -65,7 +65,7 @@ public:
     /// Tells whether the CPU can do without the device, where it traces: this holds for all analytic lights
     /// but the sky.
     bool onCpu(uint32_t group) const;
-    /// What the CPU works with, and where the light goes: as for recordGather.
+    /// This is what the CPU works with; the light goes where that of recordGather goes.
     struct OnCpu {
         WorkerPool& pool;
         Tracer& tracer;

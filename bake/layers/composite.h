@@ -17,7 +17,8 @@ struct Composite {
     };
     double error = 0;     // relRMSE
     double iteration = 0; // what later bounces still bring, relative to the mean light
-    // What layers' indirect errors have in common: the square of their sum over the sum of their squares.
+    // The square of the sum of layers' indirect errors over the sum of their squares tells what they have in
+    // common.
     double alike = 1;
     double bias = 0; // of smoothing, where layers know it chunk by chunk; part of error
     std::vector<Share> shares;

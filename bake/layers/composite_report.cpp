@@ -43,7 +43,7 @@ std::vector<Part> overSlices(WorkerPool& pool, std::span<const shader::Patch> pa
 
 namespace {
 
-// What turns a patch's w into how far it is off relative to its light.
+// The scale turns a patch's w into how far it is off relative to its light.
 struct LocalScale {
     double deviation = 0; // 0: nothing is off
     float least = 1e-30f; // light that is as good as none [cd/m^2]
@@ -124,7 +124,7 @@ std::vector<double> biasOf(std::span<Layer* const> layers, double alike) {
     std::vector<double> bias;
     for (const Layer* layer : layers) {
         const glm::dvec3 weight(layer->source.weight);
-        // Of the mean of R, G and B it is a third of what it is of the three together, if they go alike.
+        // The bias of the mean of R, G and B is a third of that of the three together, if they go alike.
         const double share = alike * glm::dot(weight, weight) / 3.0 / 3.0;
         bias.resize(std::max(bias.size(), layer->sketch.bias.size()), 0.0);
         for (size_t c = 0; c < layer->sketch.bias.size(); ++c)

@@ -9,7 +9,7 @@
 namespace relume {
 
 constexpr uint32_t kSketchEntries = shader::kSketchStride * shader::kSketchParts * shader::kReplicates;
-// Where a GPU's is read back, behind sums, and behind it the sums of each chunk [bytes].
+// A GPU's sketch is read back behind sums, and the sums of each chunk behind it [bytes].
 constexpr uint64_t kSketchAt = 256, kLevelSumsAt = kSketchAt + kSketchEntries * sizeof(glm::vec3);
 
 /// The error of a layer's indirect light in a few numbers: how far each replicate is from their mean, summed

@@ -18,8 +18,8 @@ uint32_t takenByAll(uint32_t end) {
 } // namespace
 
 DirectShares directShares(uint32_t before, uint32_t added) {
-    // Where penumbrae are follows from the first sample pass, so what it says of patches outside would be
-    // chosen by itself: it counts there only as long as there is no other.
+    // The first sample pass says where penumbrae are, so what it says of patches outside would be chosen by
+    // itself: it counts there only as long as there is no other.
     const auto outside = [](uint32_t end) {
         const uint32_t taken = takenByAll(end);
         return taken > 1 ? taken - 1 : taken;
