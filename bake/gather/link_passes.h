@@ -136,9 +136,11 @@ private:
 /// Makes sums over chunks: of what a bounce changed, and of the result with its errors.
 class ResolvePass {
 public:
-    explicit ResolvePass(const vk::Device& device)
-        : change_(device, "change"), coarse_(device, "coarse_error"), smooth_(device, "smooth"),
-          resolve_(device, "resolve") {}
+    /// Without `resolves` only record() is left out: the CPU makes results (host_resolve.h).
+    ResolvePass(const vk::Device& device, bool resolves)
+        : change_(device, "change"), coarse_(device, "coarse_error"),
+          smooth_(resolves ? vk::ComputeProgram(device, "smooth") : vk::ComputeProgram()),
+          resolve_(resolves ? vk::ComputeProgram(device, "resolve") : vk::ComputeProgram()) {}
     /// Compares ligOut with ligIn: makes a vec4 per chunk in chunkSums.
     void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                       const SomeChunks& chunks = {}) const;

@@ -39,6 +39,8 @@ public:
     std::span<const ChunkRange> own() const { return deal_.runsOf(ranks_.rank()); }
     /// Returns the chunks whose patches are smoothed along rows: its own, and those beside them.
     const std::vector<ChunkRange>& rows() const { return rows_; }
+    /// Returns a mark per chunk for each of these; none where this process works alone.
+    std::span<const uint8_t> rowMarks() const { return near_.rows; }
     /// Returns those of the chunks that are marked which are its own, with one mark per chunk.
     std::vector<uint8_t> ownOf(std::vector<uint8_t> marks) const;
 

@@ -16,7 +16,7 @@ constexpr uint32_t kResultValues = sizeof(glm::vec4) / sizeof(float);
 
 DeviceGather::DeviceGather(LinkKit& kit, const LayerPass& pass)
     : kit_(kit), layerPass_(pass), bounces_(kit.input.device, kit.input.light, kit.buffers.linkSums),
-      resolvePass_(kit.input.device), chunkSums_(kit.input.device),
+      resolvePass_(kit.input.device, true), chunkSums_(kit.input.device),
       sketch_(kit.input.device, {.size = kSketchEntries * sizeof(glm::vec3), .name = "sketch of an error"}) {
     kit.reserveBack(kLevelSumsAt + uint64_t{kit.chunkCount()} * sizeof(shader::ResolveSums));
 }

@@ -1,6 +1,7 @@
 #include "bake/links/link_errors.h"
 
 #include "assets/base/portions.h"
+#include "bake/gather/host_resolve.h"
 
 #include <algorithm>
 
@@ -15,7 +16,9 @@ constexpr double kGapShare2 = 0.18, kGapShare4 = 0.36;
 
 } // namespace
 
-LinkErrors::LinkErrors(LinkKit& kit) : kit_(kit), pass_(kit.input.device), shown_(kit.chunkCount(), 0) {
+LinkErrors::LinkErrors(LinkKit& kit)
+    : kit_(kit), pass_(kit.input.device, !kit.gatherPass.onCpu()), shown_(kit.chunkCount(), 0) {
+    if (!kit.rankChunks.alone()) own_ = kit.rankChunks.ownOf(std::vector<uint8_t>(kit.chunkCount(), 1));
     constexpr size_t kPortion = 1024; // chunks
     const std::vector<shader::Patch>& patches = kit.input.patches.scene.patches;
     runPortions(kit.input.device.workers(), shown_.size(), kPortion, [&](size_t begin, size_t end) {
@@ -32,19 +35,57 @@ std::vector<T> LinkErrors::chunkSums() const {
 }
 
 shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) const {
-    VkCommandBuffer cmd = kit_.commands.begin();
-    pass_.record(cmd, kit_.input.light, kit_.buffers,
-                 {.size = kit_.input.patches.scene.size,
-                  .samples = state.linkSamplePasses * kit_.linksOfSamplePass,
-                  .directSamplePasses = state.directSamplePasses,
-                  .sigma = static_cast<float>(sigma),
-                  .scaled = state.scaled,
-                  .local = bool(kit_.buffers.local),
-                  .floor = static_cast<float>(kLocalFloor * state.median),
-                  .rows = kit_.rankChunks.rows(),
-                  .chunks = kit_.rankChunks.own()});
-    kit_.run(cmd);
+    if (kit_.gatherPass.onCpu()) {
+        resolveOnHost(state, sigma);
+    } else {
+        VkCommandBuffer cmd = kit_.commands.begin();
+        pass_.record(cmd, kit_.input.light, kit_.buffers,
+                     {.size = kit_.input.patches.scene.size,
+                      .samples = state.linkSamplePasses * kit_.linksOfSamplePass,
+                      .directSamplePasses = state.directSamplePasses,
+                      .sigma = static_cast<float>(sigma),
+                      .scaled = state.scaled,
+                      .local = bool(kit_.buffers.local),
+                      .floor = static_cast<float>(kLocalFloor * state.median),
+                      .rows = kit_.rankChunks.rows(),
+                      .chunks = kit_.rankChunks.own()});
+        kit_.run(cmd);
+    }
     return sumsOf(chunkSums<shader::ResolveSums>());
+}
+
+void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
+    const LinkBuffers& buffers = kit_.buffers;
+    const bool smooths = bool(buffers.rows);
+    const auto scale = [](float samples) { return samples > 0.0f ? 1.0f / samples : 0.0f; };
+    const auto links = static_cast<float>(state.linkSamplePasses * kit_.linksOfSamplePass);
+    auto* bins = buffers.local.as<uint32_t>();
+    uint32_t* const errorBins = bins + shader::kLightBins;
+    resolveLinks(kit_.gatherPass.pool(),
+                 {.smoothing = {.patches = kit_.input.light.patches.as<shader::Patch>(),
+                                .patchChart = buffers.patchChart.as<uint32_t>(),
+                                .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
+                                .distances = smooths ? buffers.distances.as<float>() : nullptr,
+                                .sums = buffers.linkSums.as<glm::vec4>(),
+                                .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
+                                .scales = state.scaled ? buffers.scales.as<glm::vec2>() : nullptr,
+                                .size = kit_.input.patches.scene.size,
+                                .chunkCount = kit_.chunkCount(),
+                                .reach = smooths ? smoothingReach(static_cast<float>(sigma)) : 0,
+                                .sigma = static_cast<float>(sigma),
+                                .rowChunks = kit_.rankChunks.rowMarks(),
+                                .chunks = own_},
+                  .directSums = state.directSamplePasses > 0 && buffers.directSums
+                                    ? buffers.directSums.as<glm::vec4>()
+                                    : nullptr,
+                  .result = buffers.result.as<glm::vec4>(),
+                  .scale = scale(links / static_cast<float>(shader::kReplicates)),
+                  .directScale = scale(static_cast<float>(state.directSamplePasses)),
+                  .floor = static_cast<float>(kLocalFloor * state.median),
+                  .sums = buffers.chunkSums.as<shader::ResolveSums>(),
+                  .local = reinterpret_cast<shader::LocalSums*>(errorBins + shader::kErrorBins),
+                  .lightBins = bins,
+                  .errorBins = errorBins});
 }
 
 LinkErrors::Local LinkErrors::local() const {

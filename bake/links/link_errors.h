@@ -34,6 +34,7 @@ public:
     glm::dvec4 change() const;
 
 private:
+    void resolveOnHost(const LinkState& state, double sigma) const;
     std::vector<shader::LocalSums> localSums() const; // per chunk, of all ranks
     template<typename T>
     std::vector<T> chunkSums() const; // likewise
@@ -41,6 +42,7 @@ private:
     LinkKit& kit_;
     ResolvePass pass_;
     std::vector<uint8_t> shown_; // per chunk: texels that are shown
+    std::vector<uint8_t> own_;   // per chunk: 1 if this rank's; empty: all are
 };
 
 } // namespace relume
