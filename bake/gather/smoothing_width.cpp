@@ -13,7 +13,7 @@ constexpr double kSigmaStep = 0.1, kLeastWidth = 0.3, kMostSigma = 4.0;
 constexpr double kSigmaGrowth = 2.0; // per try
 constexpr uint32_t kSigmaTries = 3;
 // A width within this factor of the best one is left alone: the error hardly depends on it there.
-constexpr double kSigmaSlack = 1.25;
+constexpr double kSigmaSlack = 1.1;
 
 // Returns the variance of a Gaussian of this width that is sampled at whole texels [texels^2]: it is less
 // than sigma^2 where that is narrow, and nothing below the least width.

@@ -8,8 +8,8 @@
 namespace relume {
 namespace {
 
-// The error is looked at again when so much of the sample passes that it seems to need are done (variance
-// falls as 1 / samplePasses or faster), and when their number has doubled.
+// The error is looked at again when this share of the sample passes that it still seems to need are done, and
+// when their number has doubled at the latest.
 constexpr double kCheckShare = 0.6, kCheckGrowth = 2.0;
 // 95 % of normally distributed errors are within so many standard deviations.
 constexpr double kDeviationsOf95 = 1.96;
@@ -56,9 +56,19 @@ ChunkPlanRules LinkSchedule::planRules(const LinkState& state) const {
     return plan;
 }
 
+// The sample passes to come are those that this schedule will choose, and each kind's variance falls as one
+// over their number.
 uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
-    const double growth = std::min(kCheckGrowth, kCheckShare * excess * excess);
-    return std::max(state.samplePasses() + 1, static_cast<uint32_t>(growth * state.samplePasses()));
+    const auto variance = [&](const LinkState& at) {
+        return state.directChoice * state.directAtCheck / std::max(1u, at.directSamplePasses) +
+               state.linkChoice * state.linksAtCheck / std::max(1u, at.linkSamplePasses);
+    };
+    const uint32_t now = state.samplePasses();
+    const double allowed = variance(state) / (excess * excess), farthest = (kCheckGrowth - 1.0) / kCheckShare;
+    LinkState ahead = state;
+    while (variance(ahead) > allowed && ahead.samplePasses() - now < farthest * now && !isDone(ahead))
+        ++(wantsDirect(ahead) ? ahead.directSamplePasses : ahead.linkSamplePasses);
+    return now + std::max(1u, static_cast<uint32_t>(kCheckShare * (ahead.samplePasses() - now)));
 }
 
 bool LinkSchedule::wantsDirect(const LinkState& state) const {

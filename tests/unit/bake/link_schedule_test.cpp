@@ -168,9 +168,15 @@ TEST(LinkSchedule, TheErrorIsFoundAgainWhenItMayHaveFallenEnough) {
     EXPECT_FALSE(schedule.wantsCheck(after(0, 0)));
     EXPECT_TRUE(schedule.wantsCheck(after(1, 1)));
     LinkState state = after(50, 50);
+    state.directChoice = 0.2; // each takes as much away for its cost
+    state.linkChoice = 0.8;
     EXPECT_EQ(schedule.nextCheck(state, 10.0), 200u) << "at twice as many, however far it is";
-    EXPECT_EQ(schedule.nextCheck(state, 1.5), 135u) << ".6 of 225 that it seems to need";
-    EXPECT_EQ(schedule.nextCheck(state, 1.01), 101u);
+    EXPECT_EQ(schedule.nextCheck(state, 1.25), 134u) << ".6 of 57 that it still seems to need";
+    EXPECT_EQ(schedule.nextCheck(state, 1.005), 101u);
+    LinkState uneven = after(4, 96);
+    uneven.directChoice = 0.9;
+    uneven.linkChoice = 0.1;
+    EXPECT_EQ(schedule.nextCheck(uneven, 1.25), 101u) << "two more of direct light take a third of it away";
     state.nextCheck = 101;
     EXPECT_FALSE(schedule.wantsCheck(state));
     state.linkSamplePasses = 51;
