@@ -15,6 +15,9 @@ using shader::kChunk;
 
 // A submit interpolates so many chunks: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
+// A submit of direct light goes on with another portion where it lacks this share of one: shorter ones fill a
+// GPU less and trace slower (the town by a seventh).
+constexpr double kLeastPortion = 0.5;
 // Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
 // many times at most.
 constexpr double kStricter = 0.8;
@@ -262,8 +265,10 @@ uint32_t LinkSolver::chunksOfStage() const {
     return state_.stage == Stage::Links ? senders_.chunks() : kit_.chunkCount();
 }
 
+// Traces a portion; cmd is that of a tracer that records.
 template<typename Lights>
-PointTimes LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range) {
+void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range, VkCommandBuffer cmd,
+                             uint32_t mark) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};
@@ -271,42 +276,67 @@ PointTimes LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRa
         work.notes = buffers.notes ? &buffers.notes : nullptr;
         work.soFar = &buffers.direct;
     }
-    return tracePoints(
-        {kit_.commands, kit_.timestamps, kit_.input.tracer}, lights.segments(light, work, buffers.rays),
-        [&](VkCommandBuffer cmd) { lights.recordSamples(cmd, light, work); },
-        [&](VkCommandBuffer cmd) {
-            lights.recordGather(cmd, light, work, buffers.directSums, buffers.direct);
-        });
+    const PointTracer on{kit_.commands, kit_.timestamps, kit_.input.tracer};
+    const SegmentWork segments = lights.segments(light, work, buffers.rays);
+    const auto samples = [&](VkCommandBuffer to) { lights.recordSamples(to, light, work); };
+    const auto gather = [&](VkCommandBuffer to) {
+        lights.recordGather(to, light, work, buffers.directSums, buffers.direct);
+    };
+    if (cmd != VK_NULL_HANDLE) return recordPoints(cmd, on, segments, samples, gather, mark);
+    noteDirect(tracePoints(on, segments, samples, gather));
 }
 
-// A rank may have no chunk in a pass.
+void LinkSolver::noteDirect(const PointTimes& times) {
+    progress_.traceSeconds += times.trace;
+    progress_.gatherSeconds += times.gather;
+}
+
+// A device's kernels take longer on a CPU than code of the CPU's own, which knows neither the sky nor notes.
+bool LinkSolver::lampsOnCpu(uint32_t group) const {
+    return kit_.tracesOnCpu() && !kit_.buffers.notes && lamps_.onCpu(group);
+}
+
+// Traces all lights for a range of chunks.
+void LinkSolver::traceDirect(ChunkRange range, DirectSubmit& submit) {
+    const auto trace = [&](const auto& lights, uint32_t group) {
+        submit.makeRoom();
+        traceDirect(lights, group, range, submit.commands(), submit.nextMark());
+    };
+    if (emitters_.rays(0) > 0) trace(emitters_, 0);
+    for (uint32_t group = 0; group < lamps_.groups(); ++group) {
+        if (!lampsOnCpu(group)) {
+            trace(lamps_, group);
+            continue;
+        }
+        noteDirect(lamps_.traceOnCpu(kit_.input.light,
+                                     {.group = group, .samplePass = pass_.first, .range = range},
+                                     {.pool = kit_.gatherPass.pool(),
+                                      .tracer = kit_.input.tracer,
+                                      .rays = kit_.buffers.rays,
+                                      .sums = kit_.buffers.directSums,
+                                      .direct = kit_.buffers.direct}));
+    }
+}
+
+// A rank may have no chunk in a pass. Where a tracer records, portions follow each other in one submit: one
+// of them alone is too short for a large GPU.
 void LinkSolver::directBatch() {
     if (kit_.order.left() > 0) {
         const uint32_t batch = std::min(kit_.buffers.batchChunks, emitters_.batchChunks());
         const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
-        const ChunkRange range = kit_.nextRange(directRate_, most);
+        const double wanted = directRate_.wanted(batchMs_);
         const auto start = Clock::now();
-        const auto note = [this](const PointTimes& times) {
-            progress_.traceSeconds += times.trace;
-            progress_.gatherSeconds += times.gather;
-        };
-        if (emitters_.rays(0) > 0) note(traceDirect(emitters_, 0, range));
-        // The device's kernels take longer on a CPU than code of its own, which knows neither the sky nor
-        // notes.
-        const bool onCpu = kit_.tracesOnCpu() && !kit_.buffers.notes;
-        for (uint32_t group = 0; group < lamps_.groups(); ++group)
-            note(onCpu && lamps_.onCpu(group)
-                     ? lamps_.traceOnCpu(kit_.input.light,
-                                         {.group = group, .samplePass = pass_.first, .range = range},
-                                         {.pool = kit_.gatherPass.pool(),
-                                          .tracer = kit_.input.tracer,
-                                          .rays = kit_.buffers.rays,
-                                          .sums = kit_.buffers.directSums,
-                                          .direct = kit_.buffers.direct})
-                     : traceDirect(lamps_, group, range));
-        directRate_.note(range.count, batchMs_, secondsSince(start));
-        kit_.order.finish(range);
-        if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
+        DirectSubmit submit(kit_);
+        double done = 0;
+        do {
+            const ChunkRange range = kit_.nextRange(directRate_, most);
+            traceDirect(range, submit);
+            done += range.count;
+            kit_.order.finish(range);
+            if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
+        } while (submit.goesOn() && kit_.order.left() > 0 && done + kLeastPortion * most < wanted);
+        submit.finish();
+        directRate_.note(done, batchMs_, secondsSince(start));
     }
     if (kit_.order.left() > 0) return;
     const auto counters =

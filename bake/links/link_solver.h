@@ -11,6 +11,7 @@
 #include "bake/gather/link_batches.h"
 #include "bake/gather/radiance_pass.h"
 #include "bake/gather/sample_plan.h"
+#include "bake/links/direct_submit.h"
 #include "bake/links/footprint.h"
 #include "bake/links/link_errors.h"
 
@@ -68,8 +69,12 @@ private:
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
     void directBatch();
+    void traceDirect(ChunkRange range, DirectSubmit& submit);
     template<typename Lights>
-    PointTimes traceDirect(const Lights& lights, uint32_t group, ChunkRange range);
+    void traceDirect(const Lights& lights, uint32_t group, ChunkRange range, VkCommandBuffer cmd,
+                     uint32_t mark);
+    void noteDirect(const PointTimes& times);
+    bool lampsOnCpu(uint32_t group) const;
     void linkBatch();
     void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
     bool wantsDistances() const {
