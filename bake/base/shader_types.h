@@ -7,7 +7,11 @@
 namespace relume::shader {
 using namespace glm; // GLSL's names: vec3, uint, dot, ...
 using glm::uint;
+#ifdef RELUME_INLINE_SHADERS // loops that are to become vector code must not call
+#define FUNCTION [[gnu::always_inline]] inline
+#else
 #define FUNCTION inline
+#endif
 #define INOUT(T) T&
 #include "shaders/shared.h"
 #include "shaders/lib/patch_flags.glsl"

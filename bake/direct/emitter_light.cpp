@@ -1,5 +1,7 @@
 #include "bake/direct/emitter_light.h"
 
+#include "bake/direct/host_emitters.h"
+
 #include <algorithm>
 
 namespace relume {
@@ -83,6 +85,18 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .pointCount = group.points,
                                           .all = group.all ? 1u : 0u};
     samples_.dispatch(cmd, push, work.range.count, group.picks);
+}
+
+PointTimes EmitterLight::traceOnCpu(const LightBuffers& light, const Work& work,
+                                    const PointsOnCpu& on) const {
+    const Group& group = groups_[work.group];
+    const SegmentWork rays = segments(light, work, on.rays);
+    const HostEmitters emitters{.points = hostPoints(light, rays, work.penumbra, on),
+                                .polygons = {group.polygons.as<shader::EmitterPolygon>(), group.picks},
+                                .picks = picks_.as<glm::vec4>(),
+                                .pointCount = group.points};
+    return tracePointsOnCpu(
+        on, rays, [&] { sampleEmitters(on.pool, emitters); }, [&] { gatherEmitters(on.pool, emitters); });
 }
 
 SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,

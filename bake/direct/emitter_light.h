@@ -4,6 +4,7 @@
 
 #include "bake/base/chunk_order.h"
 #include "bake/direct/penumbra.h"
+#include "bake/direct/point_trace.h"
 #include "bake/lights/emitters.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/trace/tracer.h"
@@ -35,6 +36,11 @@ public:
     };
     /// Records the samples. The caller writes the barriers, here and below.
     void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
+    /// Tells whether the CPU can do without the device, where it traces: this holds where all polygons are
+    /// sampled.
+    bool onCpu(uint32_t group) const { return groups_[group].all; }
+    /// Samples, traces and gathers on the CPU, at once; the light goes where that of recordGather goes.
+    PointTimes traceOnCpu(const LightBuffers& light, const Work& work, const PointsOnCpu& on) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
     SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after

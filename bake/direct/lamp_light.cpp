@@ -1,7 +1,7 @@
 #include "bake/direct/lamp_light.h"
 
-#include "assets/base/clock.h"
 #include "assets/base/error.h"
+#include "bake/direct/host_lamps.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -175,39 +175,14 @@ const LampLight::Programs& LampLight::programsOf(uint32_t group) const {
     return sky && device_.info().software() ? skyPrograms_ : programs_;
 }
 
-HostLamps LampLight::host(const LightBuffers& light, const Work& work) const {
+PointTimes LampLight::traceOnCpu(const LightBuffers& light, const Work& work, const PointsOnCpu& on) const {
     const Group& group = groups_[work.group];
-    const vk::Buffer* covers = light.coversIf(desc_.allOver);
-    return {.patches = light.patches.as<shader::Patch>(),
-            .covers = covers ? covers->as<shader::PatchCover>() : nullptr,
-            .lamps = std::span(set_.lamps).subspan(group.first, group.count),
-            .targets = targets_.as<glm::vec4>(),
-            .bits = bits_.as<uint32_t>(),
-            .parts = work.penumbra ? work.penumbra->parts.as<uint32_t>() : nullptr,
-            .penumbra = work.penumbra ? work.penumbra->lights.as<glm::uvec2>() : nullptr,
-            .firstChunk = work.range.first,
-            .chunkCount = work.range.count,
-            .targetCount = group.targets,
-            .samplePass = work.samplePass,
-            .patchCount = light.chunkCount * kChunk,
-            .reach = set_.reach,
-            .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
-}
-
-PointTimes LampLight::traceOnCpu(const LightBuffers& light, const Work& work, const OnCpu& on) const {
-    HostLamps lamps = host(light, work);
-    lamps.newSums = on.newSums;
-    lamps.sums = on.sums.as<glm::vec4>();
-    lamps.direct = on.direct.as<glm::vec4>();
-    sampleLamps(on.pool, lamps);
-    PointTimes times;
-    const auto start = Clock::now();
-    on.tracer.segments(VK_NULL_HANDLE, segments(light, work, on.rays));
-    times.trace = secondsSince(start);
-    const auto traced = Clock::now();
-    gatherLamps(on.pool, lamps);
-    times.gather = secondsSince(traced);
-    return times;
+    const SegmentWork rays = segments(light, work, on.rays);
+    const HostLamps lamps{.points = hostPoints(light, rays, work.penumbra, on),
+                          .lamps = std::span(set_.lamps).subspan(group.first, group.count),
+                          .reach = set_.reach};
+    return tracePointsOnCpu(
+        on, rays, [&] { sampleLamps(on.pool, lamps); }, [&] { gatherLamps(on.pool, lamps); });
 }
 
 void LampLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {

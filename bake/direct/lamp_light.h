@@ -3,7 +3,6 @@
 #include <span>
 
 #include "bake/base/chunk_order.h"
-#include "bake/direct/host_lamps.h"
 #include "bake/direct/penumbra.h"
 #include "bake/direct/point_trace.h"
 #include "bake/lights/lamps.h"
@@ -65,15 +64,8 @@ public:
     /// Tells whether the CPU can do without the device, where it traces: this holds for all analytic lights
     /// but the sky.
     bool onCpu(uint32_t group) const;
-    /// This is what the CPU works with; the light goes where that of recordGather goes.
-    struct OnCpu {
-        WorkerPool& pool;
-        Tracer& tracer;
-        const vk::Buffer &rays, &sums, &direct; // rays: as in SegmentWork
-        bool newSums = false;                   // nothing is in the sums yet
-    };
-    /// Samples, traces and gathers on the CPU, at once.
-    PointTimes traceOnCpu(const LightBuffers& light, const Work& work, const OnCpu& on) const;
+    /// Samples, traces and gathers on the CPU, at once; the light goes where that of recordGather goes.
+    PointTimes traceOnCpu(const LightBuffers& light, const Work& work, const PointsOnCpu& on) const;
     /// Returns the segments to the points; `rays` is as in SegmentWork.
     SegmentWork segments(const LightBuffers& light, const Work& work, const vk::Buffer& rays) const;
     /// Adds to sums, vec4[kReplicates][patches], and updates direct, vec4 per patch: their mean after
@@ -108,7 +100,6 @@ private:
     void group(const std::vector<uint32_t>& sets); // of each light
     const Programs& programsOf(uint32_t group) const;
     shader::LampPush push(const LightBuffers& light, const Work& work) const;
-    HostLamps host(const LightBuffers& light, const Work& work) const;
 
     const vk::Device& device_;
     Desc desc_;

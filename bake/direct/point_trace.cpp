@@ -49,4 +49,17 @@ PointTimes tracePoints(const PointTracer& on, const SegmentWork& work,
     return times;
 }
 
+PointTimes tracePointsOnCpu(const PointsOnCpu& on, const SegmentWork& work,
+                            const std::function<void()>& samples, const std::function<void()>& gather) {
+    samples();
+    PointTimes times;
+    const auto start = Clock::now();
+    on.tracer.segments(VK_NULL_HANDLE, work);
+    times.trace = secondsSince(start);
+    const auto traced = Clock::now();
+    gather();
+    times.gather = secondsSince(traced);
+    return times;
+}
+
 } // namespace relume

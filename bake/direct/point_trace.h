@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "assets/base/worker_pool.h"
 #include "bake/trace/tracer.h"
 #include "bake/vk/commands.h"
 
@@ -30,5 +31,16 @@ void recordPoints(VkCommandBuffer cmd, const PointTracer& on, const SegmentWork&
 PointTimes tracePoints(const PointTracer& on, const SegmentWork& work,
                        const std::function<void(VkCommandBuffer)>& samples,
                        const std::function<void(VkCommandBuffer)>& gather);
+
+/// The means by which one batch runs on the CPU alone, without the device; its light goes to these buffers.
+struct PointsOnCpu {
+    WorkerPool& pool;
+    Tracer& tracer;
+    const vk::Buffer &rays, &sums, &direct; // rays: as in SegmentWork
+    bool newSums = false;                   // nothing is in the sums yet
+};
+/// Draws points, traces rays to them and gathers their light, at once.
+PointTimes tracePointsOnCpu(const PointsOnCpu& on, const SegmentWork& work,
+                            const std::function<void()>& samples, const std::function<void()>& gather);
 
 } // namespace relume

@@ -88,21 +88,33 @@ void LayerLights::assignEmitters(const std::vector<std::unique_ptr<Layer>>& laye
 }
 
 bool LayerLights::onCpu(const DirectPart& part) const {
-    return !part.emitters && kit_.tracesOnCpu() && lamps_.onCpu(part.group);
+    return kit_.tracesOnCpu() && (part.emitters ? emitters_.onCpu(part.group) : lamps_.onCpu(part.group));
 }
 
 void LayerLights::traceOnCpu(const Portion& portion) {
-    const LampLight::Work work{.group = portion.part.group,
-                               .samplePass = portion.samplePass,
-                               .range = portion.range,
-                               .penumbra = portion.penumbra};
-    const PointTimes times = lamps_.traceOnCpu(kit_.input.light, work,
-                                               {.pool = kit_.gatherPass.pool(),
-                                                .tracer = kit_.input.tracer,
-                                                .rays = kit_.buffers.rays,
-                                                .sums = kit_.buffers.directSums,
-                                                .direct = kit_.buffers.direct,
-                                                .newSums = portion.newSums});
+    portion.part.emitters ? traceOnCpuWith(emitters_, portion) : traceOnCpuWith(lamps_, portion);
+}
+
+template<typename Lights>
+typename Lights::Work LayerLights::workOf(const Portion& portion) {
+    return {.group = portion.part.group,
+            .samplePass = portion.samplePass,
+            .range = portion.range,
+            .penumbra = portion.penumbra};
+}
+
+template<typename Lights>
+void LayerLights::traceOnCpuWith(const Lights& lights, const Portion& portion) {
+    note(lights.traceOnCpu(kit_.input.light, workOf<Lights>(portion),
+                           {.pool = kit_.gatherPass.pool(),
+                            .tracer = kit_.input.tracer,
+                            .rays = kit_.buffers.rays,
+                            .sums = kit_.buffers.directSums,
+                            .direct = kit_.buffers.direct,
+                            .newSums = portion.newSums}));
+}
+
+void LayerLights::note(const PointTimes& times) {
     kit_.progress.traceSeconds += times.trace;
     kit_.progress.gatherSeconds += times.gather;
 }
@@ -116,10 +128,7 @@ void LayerLights::trace(VkCommandBuffer cmd, const Portion& portion,
 template<typename Lights>
 void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
                             const std::function<void(VkCommandBuffer)>& before) {
-    const typename Lights::Work work{.group = portion.part.group,
-                                     .samplePass = portion.samplePass,
-                                     .range = portion.range,
-                                     .penumbra = portion.penumbra};
+    const typename Lights::Work work = workOf<Lights>(portion);
     const LightBuffers& light = kit_.input.light;
     const PointTracer on{kit_.commands, kit_.timestamps, kit_.input.tracer};
     const SegmentWork segments = lights.segments(light, work, kit_.buffers.rays);
@@ -131,9 +140,7 @@ void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Por
         lights.recordGather(to, light, work, kit_.buffers.directSums, kit_.buffers.direct);
     };
     if (cmd != VK_NULL_HANDLE) return recordPoints(cmd, on, segments, samples, gather, portion.mark);
-    const PointTimes times = tracePoints(on, segments, samples, gather);
-    kit_.progress.traceSeconds += times.trace;
-    kit_.progress.gatherSeconds += times.gather;
+    note(tracePoints(on, segments, samples, gather));
 }
 
 } // namespace relume

@@ -63,6 +63,11 @@ private:
     };
     void assignEmitters(const std::vector<std::unique_ptr<Layer>>& layers);
     template<typename Lights>
+    static typename Lights::Work workOf(const Portion& portion);
+    template<typename Lights>
+    void traceOnCpuWith(const Lights& lights, const Portion& portion);
+    void note(const PointTimes& times);
+    template<typename Lights>
     void traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
                    const std::function<void(VkCommandBuffer)>& before);
 

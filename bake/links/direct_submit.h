@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bake/direct/point_trace.h"
 #include "bake/gather/link_kit.h"
 
 namespace relume {
@@ -10,15 +11,14 @@ class DirectSubmit {
 public:
     explicit DirectSubmit(LinkKit& kit) : kit_(kit), records_(!kit.input.tracer.onCpu()) { begin(); }
 
+    /// Tells whether portions are recorded.
+    bool records() const { return records_; }
+    /// Returns the first of the next portion's three marks. Submits what is recorded where no marks are left.
+    uint32_t nextMark();
+    /// Returns what the portion whose marks were asked for is recorded to.
     VkCommandBuffer commands() const { return commands_; }
-    /// Submits what is recorded where the next portion has no marks of time left.
-    void makeRoom() {
-        if (portions_ < LinkKit::kMostPortions) return;
-        finish();
-        begin();
-    }
-    /// Returns the first of the next portion's three marks.
-    uint32_t nextMark() { return records_ ? 3 * portions_++ : 0; }
+    /// Takes note of the times of a portion that was made at once.
+    void note(const PointTimes& times);
     /// Tells whether another portion may go into the same submit.
     bool goesOn() const { return records_ && portions_ < LinkKit::kMostPortions; }
     /// Submits and waits, and takes note of the times.

@@ -265,57 +265,35 @@ uint32_t LinkSolver::chunksOfStage() const {
     return state_.stage == Stage::Links ? senders_.chunks() : kit_.chunkCount();
 }
 
-// Traces a portion; cmd is that of a tracer that records.
 template<typename Lights>
-void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range, VkCommandBuffer cmd,
-                             uint32_t mark) {
+void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};
+    bool onCpu = kit_.tracesOnCpu() && lights.onCpu(group);
     if constexpr (requires { work.notes; }) {
         work.notes = buffers.notes ? &buffers.notes : nullptr;
         work.soFar = &buffers.direct;
+        onCpu = onCpu && !work.notes;
     }
+    // The device's kernels take longer on a CPU than code of its own, which knows neither the sky nor picks
+    // nor notes.
+    if (onCpu)
+        return submit.note(lights.traceOnCpu(light, work,
+                                             {.pool = kit_.gatherPass.pool(),
+                                              .tracer = kit_.input.tracer,
+                                              .rays = buffers.rays,
+                                              .sums = buffers.directSums,
+                                              .direct = buffers.direct}));
     const PointTracer on{kit_.commands, kit_.timestamps, kit_.input.tracer};
     const SegmentWork segments = lights.segments(light, work, buffers.rays);
     const auto samples = [&](VkCommandBuffer to) { lights.recordSamples(to, light, work); };
     const auto gather = [&](VkCommandBuffer to) {
         lights.recordGather(to, light, work, buffers.directSums, buffers.direct);
     };
-    if (cmd != VK_NULL_HANDLE) return recordPoints(cmd, on, segments, samples, gather, mark);
-    noteDirect(tracePoints(on, segments, samples, gather));
-}
-
-void LinkSolver::noteDirect(const PointTimes& times) {
-    progress_.traceSeconds += times.trace;
-    progress_.gatherSeconds += times.gather;
-}
-
-// A device's kernels take longer on a CPU than code of the CPU's own, which knows neither the sky nor notes.
-bool LinkSolver::lampsOnCpu(uint32_t group) const {
-    return kit_.tracesOnCpu() && !kit_.buffers.notes && lamps_.onCpu(group);
-}
-
-// Traces all lights for a range of chunks.
-void LinkSolver::traceDirect(ChunkRange range, DirectSubmit& submit) {
-    const auto trace = [&](const auto& lights, uint32_t group) {
-        submit.makeRoom();
-        traceDirect(lights, group, range, submit.commands(), submit.nextMark());
-    };
-    if (emitters_.rays(0) > 0) trace(emitters_, 0);
-    for (uint32_t group = 0; group < lamps_.groups(); ++group) {
-        if (!lampsOnCpu(group)) {
-            trace(lamps_, group);
-            continue;
-        }
-        noteDirect(lamps_.traceOnCpu(kit_.input.light,
-                                     {.group = group, .samplePass = pass_.first, .range = range},
-                                     {.pool = kit_.gatherPass.pool(),
-                                      .tracer = kit_.input.tracer,
-                                      .rays = kit_.buffers.rays,
-                                      .sums = kit_.buffers.directSums,
-                                      .direct = kit_.buffers.direct}));
-    }
+    if (!submit.records()) return submit.note(tracePoints(on, segments, samples, gather));
+    const uint32_t mark = submit.nextMark(); // may begin other commands
+    recordPoints(submit.commands(), on, segments, samples, gather, mark);
 }
 
 // A rank may have no chunk in a pass. Where a tracer records, portions follow each other in one submit: one
@@ -330,7 +308,9 @@ void LinkSolver::directBatch() {
         double done = 0;
         do {
             const ChunkRange range = kit_.nextRange(directRate_, most);
-            traceDirect(range, submit);
+            if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range, submit);
+            for (uint32_t group = 0; group < lamps_.groups(); ++group)
+                traceDirect(lamps_, group, range, submit);
             done += range.count;
             kit_.order.finish(range);
             if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);

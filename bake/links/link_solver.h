@@ -69,12 +69,8 @@ private:
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
     void directBatch();
-    void traceDirect(ChunkRange range, DirectSubmit& submit);
     template<typename Lights>
-    void traceDirect(const Lights& lights, uint32_t group, ChunkRange range, VkCommandBuffer cmd,
-                     uint32_t mark);
-    void noteDirect(const PointTimes& times);
-    bool lampsOnCpu(uint32_t group) const;
+    void traceDirect(const Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit);
     void linkBatch();
     void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
     bool wantsDistances() const {

@@ -15,16 +15,8 @@ EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index);
 
 layout(local_size_x = 64) in;
 
-// The salts keep the numbers of picks and of points apart from those of directions, which start from the same
-// seeds.
-const uint kPickSalt = 0x5bd1e995u, kPointSalt = 0x1b873593u;
-
-// Nearer than this many patch sizes the form factor in the middle of a texel is off by some per cent of its mean.
-const float kNearSizes = 2.0;
-
-bool isNear(Patch p, EmitterPolygon e) {
-    return polygonDistance(p.position, e) < kNearSizes * sqrt(p.area);
-}
+// The salt keeps the numbers of picks apart from those of directions, which start from the same seeds.
+const uint kPickSalt = 0x5bd1e995u;
 
 void main() {
     uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
@@ -51,7 +43,7 @@ void main() {
         light = e.radiance * (whole / probability);
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
-    bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p, e);
+    bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p.position, p.area, e);
     float factors = 0.0;
     PatchCover cover = coverOf(index);
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
@@ -63,7 +55,7 @@ void main() {
             // picked, a pick's points belong to one.
             uint number = all ? push.samplePass * push.pointCount + s : pick;
             uint turn = all ? replicateIndex(number) : sequence + s;
-            uint seed = hash32((replicateSeed(key, number) ^ kPointSalt) + (all ? emitter : 0u));
+            uint seed = emitterPointSeed(key, number, all ? emitter : 0u);
             uint target = pick * push.pointCount + s;
             uint start = startNumber(target, push.samplePass, all ? push.pointCount : push.pickCount * push.pointCount,
                                      all ? 1u : push.pointCount);

@@ -1,5 +1,11 @@
 // Lights with an area, sampled as lights. It is legal as GLSL and as C++ (namespace relume::shader); it comes
-// after lib/light/polygon_sample.glsl. Occlusion is left to the caller.
+// after lib/light/polygon_sample.glsl and lib/sampling.glsl. Occlusion is left to the caller.
+
+// The salt keeps the numbers of points apart from those of directions, which start from the same seeds.
+CONST uint kPointSalt = 0x1b873593u;
+
+// Nearer than this many patch sizes the form factor in the middle of a texel is off by some per cent of its mean.
+CONST float kNearSizes = 2.0f;
 
 // Returns the exact form factor from a point p [m] of unit normal n to the whole polygon, clipped to the
 // horizon of n. It is in [0, 1], and 0 behind the polygon.
@@ -34,6 +40,9 @@ FUNCTION float polygonDistance(vec3 p, EmitterPolygon e) {
                min(segmentDistance(p, e.c2, e.c3), segmentDistance(p, e.c3, e.c0)));
 }
 
+// Tells whether the light of the polygon differs over a patch at p [m], whose area is this [m^2].
+FUNCTION bool isNear(vec3 p, float area, EmitterPolygon e) { return polygonDistance(p, e) < kNearSizes * sqrt(area); }
+
 FUNCTION PolygonPart emitterPart(EmitterPolygon e) {
     PolygonPart q;
     q.a = e.c0;
@@ -56,6 +65,12 @@ FUNCTION float emitterPointFactor(vec3 p, vec3 n, EmitterPolygon e, vec3 y) {
     float received = dot(n, d), sent = -0.5f * dot(emitterFront(e), d); // cosines times distance; times area
     if (!(received > 0.0f && sent > 0.0f && d2 > 0.0f)) return 0.0f;
     return kInvPi * (received / d2) * (sent / d2);
+}
+
+// Returns the seed of point `number` of a patch, whose key is this, on a polygon that all patches sample; of picks the
+// emitter is 0.
+FUNCTION uint emitterPointSeed(uint key, uint number, uint emitter) {
+    return hash32((replicateSeed(key, number) ^ kPointSalt) + emitter);
 }
 
 struct EmitterSample {

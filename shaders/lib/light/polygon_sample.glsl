@@ -116,38 +116,56 @@ FUNCTION PolygonPart halfOf(PolygonPart q, bool first, bool alongX) {
     return h;
 }
 
+// What is left of a polygon after some halvings, and the numbers that say where in it the point lies.
+struct PolygonRest {
+    PolygonPart part;
+    vec2 u;       // in [0, 1)^2
+    float weight; // as of PolygonPoint
+    float whole;  // form factor of the part, > 0
+};
+
+// Halves the part once; level says how many halvings there were before.
+FUNCTION void halve(vec3 p, vec3 n, uint level, INOUT(PolygonRest) r) {
+    PolygonPart q = r.part;
+    float area = 0.5f; // the first half's share
+    bool alongX = (level & 1u) == 0u;
+    if (q.shape == kEmitterParallelogram) {
+        vec3 x = q.b - q.a, y = q.d - q.a;
+        alongX = dot(x, x) >= dot(y, y);
+    } else if (q.shape == kEmitterQuad) {
+        area = q.split;
+    } else {
+        q = longestFirst(q);
+    }
+    PolygonPart half1 = halfOf(q, true, alongX);
+    float lit = polygonFormFactor(p, n, half1.a, half1.b, half1.c, half1.d);
+    float share = clamp(lit / r.whole, kLeastHalf, 1.0f - kLeastHalf);
+    float v = alongX ? r.u.x : r.u.y;
+    bool first = v < share;
+    float chance = first ? share : 1.0f - share;
+    v = min((first ? v : v - share) / chance, 0.99999994f);
+    if (alongX) r.u.x = v;
+    else r.u.y = v;
+    r.weight *= (first ? area : 1.0f - area) / chance;
+    r.whole = first ? lit : max(r.whole - lit, 0.0f);
+    if (first) r.part = half1;
+    else r.part = halfOf(q, false, alongX);
+}
+
 // Returns a point for the receiver at p [m] of unit normal n, for uniform u in [0, 1)^2.
 FUNCTION PolygonPoint polygonPoint(vec3 p, vec3 n, PolygonPart q, vec2 u) {
-    PolygonPoint result;
-    result.weight = 1.0f;
-    float whole = -1.0f;
-    for (uint level = 0u; level < kMostHalvings && !isEven(p, q); ++level) {
-        if (whole < 0.0f) whole = polygonFormFactor(p, n, q.a, q.b, q.c, q.d);
-        if (!(whole > 0.0f)) break;
-        float area = 0.5f; // the first half's share
-        bool alongX = (level & 1u) == 0u;
-        if (q.shape == kEmitterParallelogram) {
-            vec3 x = q.b - q.a, y = q.d - q.a;
-            alongX = dot(x, x) >= dot(y, y);
-        } else if (q.shape == kEmitterQuad) {
-            area = q.split;
-        } else {
-            q = longestFirst(q);
-        }
-        PolygonPart half1 = halfOf(q, true, alongX);
-        float lit = polygonFormFactor(p, n, half1.a, half1.b, half1.c, half1.d);
-        float share = clamp(lit / whole, kLeastHalf, 1.0f - kLeastHalf);
-        float v = alongX ? u.x : u.y;
-        bool first = v < share;
-        float chance = first ? share : 1.0f - share;
-        v = min((first ? v : v - share) / chance, 0.99999994f);
-        if (alongX) u.x = v;
-        else u.y = v;
-        result.weight *= (first ? area : 1.0f - area) / chance;
-        whole = first ? lit : max(whole - lit, 0.0f);
-        if (first) q = half1;
-        else q = halfOf(q, false, alongX);
+    PolygonRest r;
+    r.part = q;
+    r.u = u;
+    r.weight = 1.0f;
+    r.whole = -1.0f;
+    for (uint level = 0u; level < kMostHalvings && !isEven(p, r.part); ++level) {
+        if (r.whole < 0.0f) r.whole = polygonFormFactor(p, n, q.a, q.b, q.c, q.d);
+        if (!(r.whole > 0.0f)) break;
+        halve(p, n, level, r);
     }
-    result.point = partPoint(q, u);
+    PolygonPoint result;
+    result.weight = r.weight;
+    result.point = partPoint(r.part, r.u);
     return result;
 }

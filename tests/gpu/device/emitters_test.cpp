@@ -17,6 +17,7 @@ namespace {
 const char* const kKernel = R"(#version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
+#include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
 #include "lib/light/polygon_sample.glsl"
 #include "lib/light/emitters.glsl"

@@ -1,0 +1,100 @@
+#include "bake/direct/host_points.h"
+
+#include <atomic>
+
+namespace relume {
+namespace {
+
+using shader::kChunk;
+using shader::kReplicates;
+using shader::Patch;
+
+constexpr size_t kLightBits = 32; // lib/light/penumbra.glsl
+
+void addBits(uint32_t& to, uint32_t bits) {
+    const std::atomic_ref<uint32_t> all(to);
+    if ((bits & ~all.load(std::memory_order_relaxed)) != 0) all.fetch_or(bits, std::memory_order_relaxed);
+}
+
+} // namespace
+
+HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, const Penumbra* penumbra,
+                      const PointsOnCpu& on) {
+    return {.patches = light.patches.as<Patch>(),
+            .covers = segments.covers ? segments.covers->as<shader::PatchCover>() : nullptr,
+            .targets = segments.targets->as<glm::vec4>(),
+            .bits = segments.bits->as<uint32_t>(),
+            .parts = penumbra ? penumbra->parts.as<uint32_t>() : nullptr,
+            .penumbra = penumbra ? penumbra->lights.as<glm::uvec2>() : nullptr,
+            .sums = on.sums.as<glm::vec4>(),
+            .newSums = on.newSums,
+            .direct = on.direct.as<glm::vec4>(),
+            .firstChunk = segments.firstChunk,
+            .chunkCount = segments.chunkCount,
+            .targetCount = segments.targetCount,
+            .samplePass = segments.samplePass,
+            .patchCount = light.chunkCount * kChunk,
+            .scale = 1.0f / static_cast<float>(kReplicates * (segments.samplePass + 1))};
+}
+
+const uint32_t* HostPoints::bitsOf(uint32_t chunk, uint32_t target) const {
+    const uint32_t words = (targetCount + kTargetsPerWord - 1) / kTargetsPerWord;
+    return bits + (size_t{chunk} * words + target / kTargetsPerWord) * kChunk;
+}
+
+bool HostPoints::leftOut(size_t patch) const {
+    if (!penumbra || shader::allTakeSamplePass(samplePass)) return false;
+    const glm::uvec2& lights = penumbra[parts[patch]];
+    return (lights.x & lights.y) == 0;
+}
+
+bool PatchLanes::load(const HostPoints& work, size_t first) {
+    bool any = false;
+    for (uint32_t i = 0; i < kChunk; ++i) {
+        const Patch& p = work.patches[first + i];
+        own.x[i] = p.position.x, own.y[i] = p.position.y, own.z[i] = p.position.z;
+        nx[i] = p.normal.x, ny[i] = p.normal.y, nz[i] = p.normal.z;
+        sx[i] = p.shading.x, sy[i] = p.shading.y, sz[i] = p.shading.z;
+        offset[i] = p.offset, area[i] = p.area;
+        key[i] = shader::seedKey(p);
+        const bool takesPart = !work.leftOut(first + i);
+        sends[i] = takesPart && (p.flags & shader::kPatchSends) != 0 ? 1 : 0;
+        any = any || takesPart;
+    }
+    return any;
+}
+
+void TargetLanes::store(glm::vec4* targets) const {
+    for (uint32_t i = 0; i < kChunk; ++i)
+        targets[i] = {x[i], y[i], z[i], w[i]};
+}
+
+void HostGathered::note(size_t light, bool isReached, bool isHidden) {
+    const uint32_t bit = 1u << (light % kLightBits);
+    if (isReached) reached |= bit;
+    if (isHidden) hidden |= bit;
+}
+
+bool takesLight(const HostPoints& work, size_t patch) {
+    if ((work.patches[patch].flags & shader::kPatchSends) != 0 && !work.leftOut(patch)) return true;
+    for (size_t q = 0; work.newSums && q < kReplicates; ++q)
+        work.sums[q * work.patchCount + patch] = glm::vec4(0.0f);
+    return false;
+}
+
+void addGathered(const HostPoints& work, size_t patch, const HostGathered& gathered) {
+    if (work.penumbra && work.samplePass == 0) {
+        glm::uvec2& lights = work.penumbra[work.parts[patch]];
+        addBits(lights.x, gathered.reached);
+        addBits(lights.y, gathered.hidden);
+    }
+    glm::vec3 total(0.0f);
+    for (size_t q = 0; q < kReplicates; ++q) {
+        glm::vec4& sum = work.sums[q * work.patchCount + patch];
+        sum = glm::vec4((work.newSums ? glm::vec3(0.0f) : glm::vec3(sum)) + gathered.value[q], 0.0f);
+        total += glm::vec3(sum);
+    }
+    work.direct[patch] = glm::vec4(glm::max(total * work.scale, 0.0f), 1.0f);
+}
+
+} // namespace relume

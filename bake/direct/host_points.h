@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+
+#include "bake/base/shader_types.h"
+#include "bake/direct/penumbra.h"
+#include "bake/direct/point_trace.h"
+#include "bake/surface/light_buffers.h"
+#include "bake/trace/chunk_starts.h"
+
+namespace relume {
+
+/// What sampling and gathering of lights in loops of C++ works with, be they mesh lights or analytic ones,
+/// for devices whose memory is the CPU's own. Pointers are to what the lights have in their buffers; per
+/// patch: padding included.
+struct HostPoints {
+    const shader::Patch* patches = nullptr;
+    const shader::PatchCover* covers = nullptr; // where samples start; nullptr: at patches' own points
+    glm::vec4* targets = nullptr;               // [chunk - firstChunk][targetCount][64], as in LampPush
+    const uint32_t* bits = nullptr;             // which of them are seen, as in SegmentPush
+    const uint32_t* parts = nullptr;            // per patch
+    glm::uvec2* penumbra =
+        nullptr;                 // per part, shaders/lib/light/penumbra.glsl; nullptr: all patches take part
+    glm::vec4* sums = nullptr;   // [kReplicates][patchCount], added to
+    bool newSums = false;        // nothing is in the sums yet
+    glm::vec4* direct = nullptr; // per patch: the mean so far
+    uint32_t firstChunk = 0, chunkCount = 0;
+    uint32_t targetCount = 0; // of the group, per patch
+    uint32_t samplePass = 0;
+    uint32_t patchCount = 0;
+    float scale = 1; // from the sum of all sums to the mean
+
+    size_t firstPatch(uint32_t chunk) const { return size_t{firstChunk + chunk} * shader::kChunk; }
+    /// Returns the chunk's row of 64 targets.
+    glm::vec4* targetsOf(uint32_t chunk, uint32_t target) const {
+        return targets + (size_t{chunk} * targetCount + target) * shader::kChunk;
+    }
+    /// Returns the chunk's row of 64 words that hold the target's bit.
+    const uint32_t* bitsOf(uint32_t chunk, uint32_t target) const;
+    /// Tells whether the patch takes no part in the sample pass, as
+    /// shaders/lib/light/penumbra_sample_passes.glsl does.
+    bool leftOut(size_t patch) const;
+};
+HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, const Penumbra* penumbra,
+                      const PointsOnCpu& on);
+
+/// Holds a chunk by component.
+struct PatchLanes {
+    using Lane = ChunkStarts::Lane;
+    ChunkStarts::Points own, at; // the patches' points; where the sample starts
+    Lane nx, ny, nz, sx, sy, sz; // normals and shading normals
+    Lane offset, area;
+    std::array<uint32_t, shader::kChunk> key, sends; // sends: 1 where the patch also takes part, else 0
+
+    /// Loads the chunk that begins with this patch. Returns whether any patch takes part.
+    bool load(const HostPoints& work, size_t first);
+};
+
+/// Holds a row of targets by component.
+struct TargetLanes {
+    PatchLanes::Lane x, y, z, w;
+
+    void store(glm::vec4* targets) const;
+};
+
+/// What a patch has gathered in a sample pass.
+struct HostGathered {
+    std::array<glm::vec3, shader::kReplicates> value{}; // of each replicate
+    uint32_t reached = 0, hidden = 0;                   // bits of lights, by which penumbrae are found
+
+    /// Takes note that a light was reached or hidden, of which this is the number in its group.
+    void note(size_t light, bool isReached, bool isHidden);
+};
+/// Tells whether the patch has anything to gather; else its new sums are zero with this call.
+bool takesLight(const HostPoints& work, size_t patch);
+/// Adds what the patch has gathered to its sums.
+void addGathered(const HostPoints& work, size_t patch, const HostGathered& gathered);
+
+} // namespace relume
