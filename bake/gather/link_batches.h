@@ -48,7 +48,7 @@ public:
     /// record.
     void run(const Portion& portion, const Steps& steps, bool atOnce);
     /// Tells whether the CPU traces and gathers.
-    bool onCpu() const { return kit_.gatherPass.onCpu() && !kit_.input.tracer.records(); }
+    bool onCpu() const { return kit_.tracesOnCpu(); }
 
     /// Returns how many chunks whose links are there make a batch.
     double wanted() const { return gatherRate_.wanted(kit_.batchMs); }

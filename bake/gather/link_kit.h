@@ -46,8 +46,8 @@ public:
     VkDeviceSize lightBytes() const { return LightBuffers::lightBytes(input.patches); }
     /// Tells whether the device may be wider than a batch (BatchRate).
     bool wide() const { return !input.device.info().software(); }
-    /// Tells whether the CPU traces and reads and writes what it works on in place.
-    bool tracesOnCpu() const { return gatherPass.onCpu() && input.tracer.onCpu(); }
+    /// Tells whether the CPU alone traces, and reads and writes what it works on in place.
+    bool tracesOnCpu() const { return gatherPass.onCpu() && !input.tracer.records(); }
     /// Begins a pass over all chunks.
     void beginPass() { order.begin(chunkCount(), seen); }
     /// Returns the next chunks. cost is that of a chunk over that of those that the rate is of; done is the

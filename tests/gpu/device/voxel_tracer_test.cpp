@@ -351,18 +351,29 @@ TEST(MixedTracer, everyPartIsItsTracers) {
     EXPECT_EQ(questions.links(*mixed), questions.links(*voxel)); // one group of samples, the first
 }
 
-class VoxelMethods : public testing::TestWithParam<Method> {};
+struct VoxelMethod {
+    Method method;
+    bool layers = false;
+};
 
-// A room with a plate is lit alike by rays, by marches and by both, within what voxels can tell.
+class VoxelMethods : public testing::TestWithParam<VoxelMethod> {};
+
+// A room with a plate is lit alike by rays, by marches and by both, within what voxels can tell. It has a
+// mesh light and an analytic one, which CPUs sample by code of their own where they trace all rays.
 TEST_P(VoxelMethods, bakeTheSameLightNearly) {
     PlateRoom room;
+    Scene scene = room.maker.scene();
+    Light bulb;
+    bulb.transform[3] = {0.6f, 0.5f, 1.4f, 1.0f};
+    scene.lights.push_back(bulb);
+    const Method method = GetParam().method;
     const auto mean = [&](const VoxelSettings& voxels) {
-        const std::unique_ptr<Baker> baker =
-            makeBaker(room.maker.scene(), {.size = room.maker.size(),
-                                           .passes = 3,
-                                           .method = GetParam(),
-                                           .samples = isPairMethod(GetParam()) ? 0u : 64u,
-                                           .voxels = voxels});
+        const std::unique_ptr<Baker> baker = makeBaker(scene, {.size = room.maker.size(),
+                                                               .passes = GetParam().layers ? 0u : 3u,
+                                                               .method = method,
+                                                               .samples = isPairMethod(method) ? 0u : 64u,
+                                                               .voxels = voxels,
+                                                               .layers = GetParam().layers});
         while (!baker->solver().done())
             baker->solver().step();
         double sum = 0;
@@ -378,8 +389,11 @@ TEST_P(VoxelMethods, bakeTheSameLightNearly) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, VoxelMethods,
-                         testing::Values(Method::Pure, Method::Directional, Method::Hybrid),
-                         [](const auto& method) { return std::string(methodName(method.param)); });
+                         testing::Values(VoxelMethod{Method::Pure}, VoxelMethod{Method::Directional},
+                                         VoxelMethod{Method::Hybrid}, VoxelMethod{Method::Hybrid, true}),
+                         [](const auto& test) {
+                             return test.param.layers ? "layers" : std::string(methodName(test.param.method));
+                         });
 
 } // namespace
 } // namespace relume
