@@ -82,8 +82,11 @@ ChunkRange ChunkOrder::next(uint32_t most, uint32_t gap) const {
     const uint32_t limit = first + std::min(most, count_ - first);
     uint32_t end = first + 1;
     if (preferred_ == 0) {
-        while (end < limit && marks_[end] != 0)
+        // The last two ranges of a run are of one length: a short one is hardly worth a submit.
+        const uint32_t farthest = limit + std::min(most, count_ - limit);
+        while (end < farthest && marks_[end] != 0)
             ++end;
+        if (end > limit) end = end - limit == most ? limit : first + (end - first + 1) / 2;
         return {first, end - first};
     }
     for (uint32_t chunk = end; chunk < limit && marks_[chunk] != 0 && chunk - end <= gap; ++chunk)

@@ -38,8 +38,9 @@ public:
     bool prefersSome() const { return preferred_ > 0; } // of those that are left
     bool isLeft(uint32_t chunk) const { return marks_[chunk] != 0; }
     /// Returns what comes next: up to `most` (> 0) consecutive chunks that are left, from the first preferred
-    /// one on, or from the first one where none is preferred. A run of preferred ones goes on to the next run
-    /// over no more than `gap` others. A count of 0 means that none is left.
+    /// one on, or from the first one where none is preferred: fewer where a short rest of their run would be
+    /// left. A run of preferred ones goes on to the next run over no more than `gap` others. A count of 0
+    /// means that none is left.
     ChunkRange next(uint32_t most, uint32_t gap) const;
     void finish(ChunkRange range);
 

@@ -15,7 +15,7 @@ using shader::kReplicates;
 
 constexpr uint32_t kGroupRays = LampLight::kMostGroupRays;
 // A batch of such groups has so many chunks, whose targets are 64 KiB each; of smaller groups it has more.
-constexpr uint32_t kGpuLampChunks = 2048, kSoftwareLampChunks = 512;
+constexpr uint32_t kGpuLampChunks = 4096, kSoftwareLampChunks = 512;
 constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
 
 // Returns the rays to a light without extent: a shadow's edge in a texel has to be sampled, too.

@@ -33,8 +33,10 @@ TEST(ChunkOrder, WithoutPreferencesFromTheFirstToTheLast) {
     EXPECT_EQ(order.next(kAll, 0), ChunkRange{});
     order.begin(10, {});
     EXPECT_EQ(order.count(), 10u);
-    EXPECT_EQ(inOrder(order, 4, 2), (Ranges{{0, 4}, {4, 4}, {8, 2}}));
+    EXPECT_EQ(inOrder(order, 4, 2), (Ranges{{0, 4}, {4, 3}, {7, 3}}));
     EXPECT_EQ(order.next(kAll, 0), ChunkRange{});
+    order.begin(12, {});
+    EXPECT_EQ(inOrder(order, 4, 2), (Ranges{{0, 4}, {4, 4}, {8, 4}}));
     order.begin(20, {});
     EXPECT_EQ(inOrder(order, kAll, 0), (Ranges{{0, 20}}));
 }
