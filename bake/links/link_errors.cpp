@@ -153,4 +153,10 @@ glm::dvec4 LinkErrors::change() const {
     return sumsOf(chunkSums<glm::vec4>());
 }
 
+glm::dvec4 LinkErrors::sendOnHost(const std::vector<uint8_t>& full) const {
+    kit_.gatherPass.sendOnCpu(kit_.input.light, kit_.settings.transport.reflectivity, full,
+                              kit_.buffers.chunkSums.as<glm::vec4>());
+    return sumsOf(chunkSums<glm::vec4>());
+}
+
 } // namespace relume

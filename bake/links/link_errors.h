@@ -32,6 +32,8 @@ public:
     /// Compares the light of a bounce with the one before. Returns the sums over all patches as ChangePush
     /// has them.
     glm::dvec4 change() const;
+    /// Does so on the CPU, and makes what patches send of the light that came; full is as HostSend has it.
+    glm::dvec4 sendOnHost(const std::vector<uint8_t>& full) const;
 
 private:
     void resolveOnHost(const LinkState& state, double sigma) const;

@@ -98,8 +98,10 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .chunks = ownChunks(kit_.rankChunks, coarse_.count > 0),
                       .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
-      disc_(makeDisc()), radiancePass_(input.device), directSamplePasses_(kit_.chunkCount()),
-      linkSamplePasses_(senders_.chunks()), directRate_(kit_.wide()) {
+      disc_(makeDisc()), radiancePass_(input.device),
+      sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
+                   kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
+      directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()), directRate_(kit_.wide()) {
     ASSERT(input.ranks.alone() || !settings.live);
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -350,24 +352,28 @@ void LinkSolver::shareRadiance() {
     kit_.run(cmd);
 }
 
-void LinkSolver::beginBounce() {
+// Begins a bounce; `sent` says that what patches send is there.
+void LinkSolver::beginBounce(bool sent) {
     const LinkBuffers& buffers = kit_.buffers;
     state_.last = schedule_.isLastBounce(state_);
-    VkCommandBuffer cmd = kit_.commands.begin();
-    if (state_.last) recordUndo(cmd);
-    if (state_.bounce == 0) {
-        const std::span<const ChunkRange> own = kit_.rankChunks.own();
-        const uint32_t samples =
-            kit_.settings.passes > 0 ? 0 : state_.linkSamplePasses * kit_.linksOfSamplePass;
-        if (buffers.carried && samples > 0 && !state_.scaled)
-            kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f, own);
-        else
-            kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales(), own);
-        vk::barrier(cmd);
+    if (!sent || kit_.settings.live) {
+        VkCommandBuffer cmd = kit_.commands.begin();
+        if (state_.last) recordUndo(cmd);
+        if (state_.bounce == 0) {
+            const std::span<const ChunkRange> own = kit_.rankChunks.own();
+            const uint32_t samples =
+                kit_.settings.passes > 0 ? 0 : state_.linkSamplePasses * kit_.linksOfSamplePass;
+            if (buffers.carried && samples > 0 && !state_.scaled)
+                kit_.gatherPass.recordCarry(cmd, kit_.input.light, buffers, direct(), 0.0f, own);
+            else
+                kit_.gatherPass.recordCompose(cmd, kit_.input.light, buffers, direct(), samples, scales(),
+                                              own);
+            vk::barrier(cmd);
+        }
+        if (!sent) recordRadiance(cmd);
+        if (buffers.coarseSums) vkCmdFillBuffer(cmd, buffers.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
+        kit_.run(cmd);
     }
-    recordRadiance(cmd);
-    if (buffers.coarseSums) vkCmdFillBuffer(cmd, buffers.coarseSums.handle(), 0, VK_WHOLE_SIZE, 0);
-    kit_.run(cmd);
     shareRadiance();
     beginOrder();
     if (!schedule_.hasSolution(state_)) {
@@ -467,7 +473,7 @@ void LinkSolver::endBounce() {
     ++progress_.passes;
     const bool converges = schedule_.converges(state_);
     if (converges) {
-        const glm::dvec4 total = errors_.change();
+        const glm::dvec4 total = sendsOnHost_ ? errors_.sendOnHost(senders_.full()) : errors_.change();
         const double mean = state_.series.learn(total);
         if (state_.bounce == 0) state_.convergence.add(total.w / std::max(1.0, 3.0 * total.z));
         state_.convergence.add(mean);
@@ -477,7 +483,7 @@ void LinkSolver::endBounce() {
     ++state_.bounce;
     if (!state_.last) {
         if (converges) state_.last = schedule_.hasConverged(state_);
-        return beginBounce();
+        return beginBounce(converges && sendsOnHost_);
     }
     if (kit_.settings.passes == 0) {
         state_.series.error *= state_.series.ratio; // this bounce's own share

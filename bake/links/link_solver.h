@@ -78,7 +78,7 @@ private:
     }
     void recordRadiance(VkCommandBuffer cmd);
     void shareRadiance();
-    void beginBounce();
+    void beginBounce(bool sent = false);
     void interpolate();
     void carry();
     void endBounce();
@@ -107,6 +107,7 @@ private:
     std::optional<Footprints> footprints_;
     Disc disc_;
     RadiancePass radiancePass_;
+    bool sendsOnHost_; // the CPU makes what patches send after a bounce
     LinkState state_;
     ChunkSamplePasses directSamplePasses_, linkSamplePasses_;
     ChunkSamplePasses::Pass pass_;       // under way
