@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -11,7 +12,9 @@ namespace relume {
 class FrameWriter {
 public:
     struct Desc {
-        std::string path;               // FILE.mp4, else a folder
+        std::string path; // FILE.mp4, else a folder
+        /// Where set, tells names for a video, one per call; it takes the first that nothing has, not `path`.
+        std::function<std::string()> nextName = nullptr;
         uint32_t width = 0, height = 0; // of all frames [pixels]
         double rate = 2;                // of a video [frames/s], within the next two
         double hold = 0;                // how long a video stays on its last frame [s]
@@ -23,9 +26,9 @@ public:
     virtual ~FrameWriter() = default;
     /// Writes the next frame so many times. Throws Error.
     virtual void write(const FloatImage& frame, uint32_t times) = 0;
-    /// Ends the series after the last frame. Without it, frames in a folder stay but a video does not. Throws
-    /// Error.
-    virtual void finish() = 0;
+    /// Ends the series after the last frame and returns the path that it has. Without it, frames in a folder
+    /// stay but a video does not. Throws Error.
+    virtual std::string finish() = 0;
     /// Tells whether the frames so far are worth something without finish().
     virtual bool keepsFrames() const = 0;
     uint32_t count() const { return count_; } // frames so far

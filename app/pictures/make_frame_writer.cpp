@@ -42,7 +42,7 @@ public:
         for (uint32_t i = 0; i < times; ++i)
             writeFileAtomically(fmt::format("{}/frame_{:04}.png", folder_, ++count_), png, OnFailure::Drop);
     }
-    void finish() override {}
+    std::string finish() override { return folder_; }
     bool keepsFrames() const override { return true; }
 
 private:

@@ -187,12 +187,14 @@ void VideoWriter::write(const FloatImage& frame, uint32_t times) {
         send();
 }
 
-void VideoWriter::finish() {
+std::string VideoWriter::finish() {
     for (int more = static_cast<int>(std::lround(desc_.hold * desc_.rate)) - 1; more > 0; --more)
         send();
     closeDescriptor(pipe_);
     if (wait() != 0) fail();
+    if (desc_.nextName) return file_->commitAnew(desc_.nextName);
     file_->commit();
+    return desc_.path;
 }
 
 } // namespace relume

@@ -20,7 +20,7 @@ public:
     VideoWriter& operator=(const VideoWriter&) = delete;
 
     void write(const FloatImage& frame, uint32_t times) override;
-    void finish() override;
+    std::string finish() override;
     bool keepsFrames() const override { return false; }
 
 private:

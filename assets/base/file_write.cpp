@@ -183,14 +183,16 @@ int AtomicFile::takeName() {
     const int error = spool_.replace(target_.real);
     // Something that was not to be seen before keeps the name; the content may still be another.
     if (error != 0 && target_.kind == WriteTarget::Kind::Regular && overwrite() == 0) return 0;
-    if (error != 0) return error;
-    // Makes the new name last; the data is safe already, so a folder that cannot be flushed is no error.
+    if (error == 0) flushFolder();
+    return error;
+}
+
+// Makes a new name last; the data is safe already, so a folder that cannot be flushed is no error.
+void AtomicFile::flushFolder() const {
     const int folder = open(target_.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder >= 0) {
-        fsync(folder);
-        close(folder);
-    }
-    return 0;
+    if (folder < 0) return;
+    fsync(folder);
+    close(folder);
 }
 
 int AtomicFile::flush() const {
@@ -205,6 +207,21 @@ void AtomicFile::commit() {
     if (way_ == WriteWay::Stream) error = pour();
     if (error != 0 || way_ == WriteWay::Refuse) fail(error);
     spool_ = Spool();
+}
+
+std::string AtomicFile::commitAnew(const std::function<std::string()>& nextName) {
+    int error = way_ == WriteWay::Replace ? flush() : 0;
+    while (way_ == WriteWay::Replace && error == 0) {
+        std::string name = nextName();
+        error = spool_.take(name);
+        if (error == 0) {
+            spool_ = Spool();
+            flushFolder();
+            return name;
+        }
+        if (error == EEXIST) error = 0;
+    }
+    fail(error);
 }
 
 // Saves the content beside what could not be written, or where the system keeps such files. Returns "" where

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -39,6 +40,10 @@ public:
     int descriptor() const { return spool_.descriptor(); }
     /// Flushes to the disk and gives the file its name.
     void commit();
+    /// Flushes to the disk and gives the file the first name of those that `nextName` tells, one per call,
+    /// that nothing has, in the folder of `path`: of two programs that would take one name, both keep their
+    /// files. Returns it.
+    std::string commitAnew(const std::function<std::string()>& nextName);
 
     /// Does of commit() what can still fail and changes nothing: flushes to the disk. Returns errno, or 0.
     int flush() const;
@@ -50,6 +55,7 @@ private:
     bool takeRefuge(std::string_view rest);
     void keepRights() const;
     int takeName();
+    void flushFolder() const;
     int overwrite() const;
     int pour() const;
     [[noreturn]] void fail(int error);

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,6 +45,8 @@ constexpr std::string_view kSettled = "settled: ";
         setenv("MESA_SHADER_CACHE_DIR", (std::string(home) + "/.cache").c_str(), 0);
     setenv("HOME", desc.home.c_str(), 1);
     setenv("XDG_CONFIG_HOME", (desc.home + "/config").c_str(), 1);
+    mkdir((desc.home + "/Pictures").c_str(),
+          0755); // for its screenshots, which then lie with no other viewer's
     std::vector<char*> argv{const_cast<char*>(RELUME_BINARY)};
     for (const std::string& argument : desc.arguments)
         argv.push_back(const_cast<char*>(argument.c_str()));

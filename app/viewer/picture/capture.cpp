@@ -3,6 +3,7 @@
 #include "app/pictures/make_frame_writer.h"
 #include "app/viewer/window/path_completion.h"
 #include "assets/base/error.h"
+#include "assets/base/file_write.h"
 #include "assets/base/log.h"
 #include "assets/images/image_file.h"
 #include "renderer/caption.h"
@@ -48,12 +49,24 @@ FloatImage imageOf(const Pixels& pixels, bool even) {
     return image;
 }
 
-void makeFolder(const std::string& folder) {
+[[noreturn]] void failToMake(const std::string& folder, const std::error_code& code) {
+    throw Error(folder + ": cannot be made: " + code.message() + ": set captureFolder in the preferences");
+}
+
+void makeFolders(const std::string& folder) {
     std::error_code code;
     fs::create_directories(folder, code);
-    if (code)
-        throw Error(folder + ": cannot be made: " + code.message() +
-                    ": set captureFolder in the preferences");
+    if (code) failToMake(folder, code);
+}
+
+// Makes a folder of a name that no other viewer took, and returns it.
+std::string makeFolderForFrames(const std::string& folder) {
+    for (;;) {
+        std::string name = captureName(folder, "");
+        std::error_code code;
+        if (fs::create_directory(name, code)) return name;
+        if (code) failToMake(name, code);
+    }
 }
 
 } // namespace
@@ -82,8 +95,6 @@ std::string captureName(const std::string& folder, const std::string& ending) {
             number = 10 * number + (name[i] - '0');
         last = std::max(last, number);
     }
-    // Should somebody else take the name between this look and the writing, freePath() of the writer finds
-    // out.
     return fmt::format("{}/{}{:03}{}", folder, start, last + 1, ending);
 }
 
@@ -184,8 +195,10 @@ void Capture::work() {
 
 // Begins a video where there is ffmpeg, else a folder.
 void Capture::beginRecording(const Job& job) {
-    makeFolder(job.path);
-    FrameWriter::Desc desc{.path = captureName(job.path, ".mp4"),
+    makeFolders(job.path);
+    const auto nextName = [folder = job.path] { return captureName(folder, ".mp4"); };
+    FrameWriter::Desc desc{.path = nextName(),
+                           .nextName = nextName,
                            .width = job.pixels.width & ~1u,
                            .height = job.pixels.height & ~1u,
                            .rate = kRate};
@@ -193,18 +206,18 @@ void Capture::beginRecording(const Job& job) {
         writer_ = makeFrameWriter(desc);
     } catch (const Error& error) {
         spdlog::info("{}", error.what());
-        desc.path = captureName(job.path, "");
+        desc.path = makeFolderForFrames(job.path);
         writer_ = makeFrameWriter(desc);
     }
-    recordingPath_ = desc.path;
 }
 
 void Capture::write(const Job& job) {
     if (job.times == 0 && !job.ends) {
-        makeFolder(job.path);
-        const std::string path = captureName(job.path, ".png");
-        writeImage(path, imageOf(job.pixels, false));
-        spdlog::info("wrote {}", path);
+        makeFolders(job.path);
+        const auto nextName = [&] { return captureName(job.path, ".png"); };
+        AtomicFile file(nextName());
+        file.write(encodePng(imageOf(job.pixels, false), job.path));
+        spdlog::info("wrote {}", file.commitAnew(nextName));
         return;
     }
     if (failed_) return;
@@ -214,8 +227,8 @@ void Capture::write(const Job& job) {
     if (job.times > 0) writer_->write(imageOf(job.pixels, true), writer_->keepsFrames() ? 1 : job.times);
     if (!job.ends) return;
     const uint32_t count = writer_->count();
-    writer_->finish();
-    spdlog::info("wrote {} ({} frames)", recordingPath_, count);
+    const std::string path = writer_->finish();
+    spdlog::info("wrote {} ({} frames)", path, count);
 }
 
 } // namespace relume

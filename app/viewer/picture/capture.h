@@ -75,7 +75,6 @@ private:
     bool quit_ = false;
     // These belong to the writing thread.
     std::unique_ptr<FrameWriter> writer_;
-    std::string recordingPath_;
     bool failed_ = false;
     std::thread thread_;
 };

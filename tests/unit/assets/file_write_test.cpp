@@ -248,6 +248,21 @@ TEST_F(FileWrite, WhatCannotTakeItsNameIsSavedBeside) {
     EXPECT_EQ(contentOf(path("o.saved.exr")), "of another day");
 }
 
+TEST_F(FileWrite, ANewNameIsTheFirstThatNothingHas) {
+    const std::string taken = make("taken", "old"), free = path("free");
+    Names names = {free, taken};
+    const auto nextName = [&] {
+        std::string name = names.back();
+        names.pop_back();
+        return name;
+    };
+    AtomicFile file(taken);
+    file.write("new");
+    EXPECT_EQ(file.commitAnew(nextName), free);
+    EXPECT_EQ(contentOf(taken), "old");
+    EXPECT_EQ(contentOf(free), "new");
+}
+
 TEST_F(FileWrite, WhatIsOfNoUseIsNotSaved) {
     const std::string target = path("o.exr");
     AtomicFile file(target, OnFailure::Drop);

@@ -10,9 +10,11 @@
 #include "app/viewer/window/redraw_pacer.h"
 #include "tests/temporary_folder.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
@@ -298,6 +300,38 @@ TEST_F(CaptureName, ScreenshotsAreWrittenWithoutOverwriting) {
     } // which waits for them
     std::vector<fs::path> files(fs::directory_iterator{folder_.path()}, fs::directory_iterator{});
     EXPECT_EQ(files.size(), 2u);
+}
+
+// Two viewers that write into one folder take their names at the same time.
+TEST_F(CaptureName, ManyWritersLoseNoScreenshot) {
+    constexpr size_t kWriters = 4, kEach = 8;
+    {
+        std::array<Capture, kWriters> writers;
+        for (size_t shot = 0; shot < kEach; ++shot)
+            for (Capture& writer : writers)
+                writer.screenshot({2, 2, std::vector<uint8_t>(16, uint8_t{1})}, folder_.path());
+    }
+    size_t files = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+        ++files;
+        EXPECT_GT(fs::file_size(entry), 0u) << entry.path();
+    }
+    EXPECT_EQ(files, kWriters * kEach);
+}
+
+TEST_F(CaptureName, ManyWritersLoseNoRecording) {
+    constexpr size_t kWriters = 4;
+    {
+        std::array<Capture, kWriters> writers;
+        for (Capture& writer : writers) {
+            writer.start(folder_.path(), 1.0);
+            writer.frame({4, 4, std::vector<uint8_t>(64, 40)}, 1.0);
+        }
+        for (Capture& writer : writers)
+            writer.stop(2.0);
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator{}),
+              std::ptrdiff_t{kWriters});
 }
 
 TEST_F(CaptureName, ARecordingHoldsWhatWasOnScreen) {
