@@ -159,6 +159,7 @@ struct LocalSums {
     float direct;   // variance
     float indirect; // variance, smoothed
     float bias;     // as of ResolveSums
+    float fourth;   // powers of the bias, not its square: how unevenly it lies
 };
 struct SmoothPush {
     ADDRESS patches;

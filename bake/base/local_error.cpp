@@ -86,19 +86,37 @@ BiasSums sumOver(WorkerPool& pool, std::span<const ChunkSquares> chunks, const A
     return all;
 }
 
-// Counts texels by their standard deviation, which comes of square(chunk) over all its texels.
-template<typename Square>
-std::vector<double> deviationBins(WorkerPool& pool, std::span<const ChunkSquares> chunks,
-                                  const Square& square) {
+/// Two kinds of texels of a chunk, by the squares of all texels that are off as this kind.
+struct Kinds {
+    double share = 1;             // of texels that are of the first kind
+    double first = 0, second = 0; // sums of squares, were all texels of this kind
+};
+
+// Returns the share of a chunk's texels in which its bias lies, from how much its fourth powers exceed what
+// they would be were it the same everywhere. Those of a normal distribution are kNormal times that.
+double shareOfBias(const ChunkSquares& chunk) {
+    constexpr double kNormal = 3.0;
+    const double even = chunk.bias * chunk.bias / chunk.texels;
+    return kNormal * even < chunk.fourth ? std::max(kNormal * even / chunk.fourth, 1.0 / chunk.texels) : 1.0;
+}
+
+// Counts texels by their standard deviation, which kinds(chunk) tells.
+template<typename Tell>
+std::vector<double> deviationBins(WorkerPool& pool, std::span<const ChunkSquares> chunks, const Tell& kinds) {
     std::vector<std::vector<double>> parts((chunks.size() + kBiasPortion - 1) / kBiasPortion);
     runPortions(pool, chunks.size(), kBiasPortion, [&](size_t begin, size_t end) {
         std::vector<double>& bins = parts[begin / kBiasPortion];
         bins.assign(shader::kErrorBins, 0.0);
         for (const ChunkSquares& chunk : chunks.subspan(begin, end - begin)) {
             if (!(chunk.texels > 0)) continue;
-            const auto deviation = static_cast<float>(std::sqrt(square(chunk) / chunk.texels));
-            bins[shader::binOf(deviation, shader::kLeastErrorOctave, shader::kErrorBinsPerOctave,
-                               shader::kErrorBins)] += chunk.texels;
+            const auto add = [&](double share, double squares) {
+                const auto deviation = static_cast<float>(std::sqrt(squares / chunk.texels));
+                bins[shader::binOf(deviation, shader::kLeastErrorOctave, shader::kErrorBinsPerOctave,
+                                   shader::kErrorBins)] += share * chunk.texels;
+            };
+            const Kinds of = kinds(chunk);
+            add(of.share, of.first);
+            if (of.share < 1.0) add(1.0 - of.share, of.second);
         }
     });
     std::vector<double> all(shader::kErrorBins, 0.0);
@@ -141,10 +159,12 @@ LocalError withBias(WorkerPool& pool, const LocalError& noise, std::span<const C
         sums.bias += chunk.bias;
     });
     const double spread = rest.noise > 0 ? std::max(0.0, rest.bias) / rest.noise : 0.0;
-    const LocalError before =
-        normalErrorOf(deviationBins(pool, chunks, [](const ChunkSquares& chunk) { return chunk.noise; }));
+    const LocalError before = normalErrorOf(
+        deviationBins(pool, chunks, [](const ChunkSquares& chunk) { return Kinds{.first = chunk.noise}; }));
     const LocalError after = normalErrorOf(deviationBins(pool, chunks, [&](const ChunkSquares& chunk) {
-        return chunk.noise + (standsOut(chunk) ? chunk.bias : spread * chunk.noise);
+        if (!standsOut(chunk)) return Kinds{.first = chunk.noise * (1.0 + spread)};
+        const double share = shareOfBias(chunk);
+        return Kinds{.share = share, .first = chunk.noise + chunk.bias / share, .second = chunk.noise};
     }));
     const auto grown = [](double told, double from, double to) { return from > 0 ? told * to / from : told; };
     return {.p50 = grown(noise.p50, before.p50, after.p50),

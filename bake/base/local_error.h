@@ -31,10 +31,12 @@ struct ChunkSquares {
     double texels = 0;
     double noise = 0; // >= 0
     double bias = 0;  // of smoothing, as it was estimated: below nothing by chance
+    /// Fourth powers of the bias, as they were estimated: how unevenly it lies; nothing: it lies evenly.
+    double fourth = 0;
 };
 /// Returns what noise and the bias of smoothing make together, from the error of the noise alone. Where a
-/// chunk's bias stands out of the noise of its estimate, it is taken to be there; what is left of it in the
-/// sum of all others, to be where their noise is.
+/// chunk's bias stands out of the noise of its estimate, it is taken to be there, in as many texels as its
+/// fourth powers tell; what is left of it in the sum of all others, to be where their noise is.
 LocalError withBias(WorkerPool& pool, const LocalError& noise, std::span<const ChunkSquares> chunks);
 
 } // namespace relume

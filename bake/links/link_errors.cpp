@@ -104,7 +104,8 @@ LinkErrors::Local LinkErrors::local() const {
         local.links += double(sums[i].indirect) + std::max(0.0f, sums[i].bias);
         chunks.push_back({.texels = double(shown_[i]),
                           .noise = double(sums[i].direct) + sums[i].indirect,
-                          .bias = sums[i].bias});
+                          .bias = sums[i].bias,
+                          .fourth = sums[i].fourth});
     }
     if (kit_.buffers.rows) // else nothing is smoothed
         local.error = withBias(kit_.input.device.workers(), local.error, chunks);

@@ -40,9 +40,12 @@ LocalSums localTerm(vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplica
         atomicAdd(local.errors[binOf(error, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins)], 1u);
     }
     float move = 0.25 * channelMean(moved[0] + moved[1] + moved[2] + moved[3]);
+    // Replicates know nothing of each other, so the mean of this product is what they have in common.
+    float fourth = channelMean(moved[0]) * channelMean(moved[1]) * channelMean(moved[2]) * channelMean(moved[3]);
     return LocalSums(dot(directOff, directOff) / (3.0 * relativeTo * relativeTo),
                      dot(off, off) / (3.0 * relativeTo * relativeTo),
-                     (move * move - dot(moves, moves) / 3.0) / (relativeTo * relativeTo));
+                     (move * move - dot(moves, moves) / 3.0) / (relativeTo * relativeTo),
+                     fourth / (relativeTo * relativeTo * relativeTo * relativeTo));
 }
 
 void main() {
@@ -89,7 +92,7 @@ void main() {
         term.count = 1.0;
     }
     if (push.local != 0ul)
-        localTerms[lane] = patchIsShown(flags) ? localTerm(light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0);
+        localTerms[lane] = patchIsShown(flags) ? localTerm(light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0, 0.0);
     VEC4_AT(push.result, index) = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
     terms[lane] = term;
     barrier();
@@ -109,6 +112,7 @@ void main() {
         total.direct += localTerms[i].direct;
         total.indirect += localTerms[i].indirect;
         total.bias += localTerms[i].bias;
+        total.fourth += localTerms[i].fourth;
     }
     LocalErrors(push.local).items[chunk] = total;
 }

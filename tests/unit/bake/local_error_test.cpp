@@ -41,10 +41,10 @@ TEST(LocalErrorBins, PercentilesAreThoseOfTheSortedValues) {
 struct ToldAndTrue {
     LocalError noise, told, truly;
 };
-ToldAndTrue biasedChunks(double bias, double shareOfChunks) {
-    std::mt19937 random(5);
-    std::normal_distribution<double> normal;
-    std::bernoulli_distribution isBiased(shareOfChunks);
+ToldAndTrue biasedChunks(double bias, double shareOfChunks, double shareOfTexels = 1.0) {
+    std::mt19937 random(5), randomFourth(6);
+    std::normal_distribution<double> normal, normalFourth;
+    std::bernoulli_distribution isBiased(shareOfChunks), isBiasedThere(shareOfTexels);
     std::vector<float> noise, both;
     std::vector<ChunkSquares> chunks;
     for (uint32_t c = 0; c < 2000; ++c) {
@@ -52,11 +52,17 @@ ToldAndTrue biasedChunks(double bias, double shareOfChunks) {
         const double of = isBiased(random) ? bias * own : 0.0;
         ChunkSquares chunk{.texels = shader::kChunk};
         for (uint32_t i = 0; i < shader::kChunk; ++i) {
-            const double error = own * normal(random), off = of * normal(random);
+            const double error = own * normal(random);
+            const double off = isBiasedThere(randomFourth) ? of * normal(random) : 0.0;
             noise.push_back(static_cast<float>(std::abs(error)));
             both.push_back(static_cast<float>(std::abs(error + off)));
             chunk.noise += own * own;
             chunk.bias += off * off + own * own * normal(random); // as uncertain as 64 texels leave it
+            // Four replicates, each of twice the mean's error, are multiplied.
+            double product = 1;
+            for (int replicate = 0; replicate < 4; ++replicate)
+                product *= off + 2.0 * own * normalFourth(randomFourth);
+            chunk.fourth += product;
         }
         chunks.push_back(chunk);
     }
@@ -82,6 +88,13 @@ TEST(LocalErrorBins, BiasAddsToNoiseWhereItIs) {
     EXPECT_GT(few.truly.p99, 2.0 * few.noise.p99);
     EXPECT_NEAR(few.told.p50, few.truly.p50, 0.1 * few.truly.p50);
     EXPECT_NEAR(few.told.p95, few.truly.p95, 0.25 * few.truly.p95);
+}
+
+TEST(LocalErrorBins, BiasInFewTexelsOfAChunkIsNotSpreadOverAll) {
+    const ToldAndTrue edges = biasedChunks(12.0, 0.3, 0.1);
+    EXPECT_GT(edges.truly.p99, 1.5 * edges.noise.p99);
+    EXPECT_NEAR(edges.told.p50, edges.truly.p50, 0.1 * edges.truly.p50);
+    EXPECT_NEAR(edges.told.p95, edges.truly.p95, 0.15 * edges.truly.p95);
 }
 
 TEST(LocalErrorBins, WithoutChunksNoiseIsAllThatIsTold) {
