@@ -29,25 +29,55 @@ float ev100Of(float exposure) {
     return -exposure - std::log2(1.2f);
 }
 
-// Leaves out the lines that are for a lightmap of several pages, or those for one, and the marks of the
-// others.
-std::string forPages(const std::string& text, uint32_t pages) {
-    const std::string own = pages > 1 ? "@MANY@" : "@ONE@", other = pages > 1 ? "@ONE@" : "@MANY@";
+// Returns what stands between quotes for a name, in GDScript, C#, and Rust.
+std::string inQuotedText(std::string name) {
+    replaceAll(name, "\\", "\\\\");
+    replaceAll(name, "\"", "\\\"");
+    return name;
+}
+
+// Returns a text of which each line, its end included, is what change(line) gives.
+template<typename Change>
+std::string changeLines(const std::string& text, const Change& change) {
     std::string out;
     for (size_t begin = 0; begin < text.size();) {
         const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
-        std::string line = text.substr(begin, end - begin);
-        if (line.starts_with(own)) line.erase(0, own.size());
-        if (!line.starts_with(other)) out += line;
+        out += change(text.substr(begin, end - begin));
         begin = end;
     }
     return out;
 }
 
+// Leaves out the lines that are for a lightmap of several pages, or those for one, and the marks of the
+// others.
+std::string forPages(const std::string& text, uint32_t pages) {
+    const std::string own = pages > 1 ? "@MANY@" : "@ONE@", other = pages > 1 ? "@ONE@" : "@MANY@";
+    return changeLines(text, [&](std::string line) {
+        if (line.starts_with(own)) line.erase(0, own.size());
+        return line.starts_with(other) ? std::string() : line;
+    });
+}
+
+// Makes of each line that begins with a mark one for each material that the lightmap lights.
+std::string forMaterials(const std::string& text, const std::vector<LitMaterial>& lit) {
+    const std::string mark = "@EACH@";
+    return changeLines(text, [&](const std::string& line) {
+        if (!line.starts_with(mark)) return line;
+        std::string lines;
+        for (const LitMaterial& material : lit) {
+            std::string own = line.substr(mark.size());
+            replaceAll(own, "@PAGE@", std::to_string(material.page));
+            replaceAll(own, "@MATERIAL@", inQuotedText(material.name));
+            lines += own;
+        }
+        return lines;
+    });
+}
+
 } // namespace
 
 bool knowsPages(Engine engine) {
-    return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::PlayCanvas;
+    return engine != Engine::Any; // whose light is in textures of another size
 }
 
 const std::vector<std::string>& engineNames() {
@@ -78,6 +108,7 @@ std::vector<EngineFile> engineFiles(Engine engine, const EngineFacts& facts) {
         replaceAll(file.text, "@FACTOR@", fmt::format("{:.6g}", std::exp2(facts.exposure)));
         replaceAll(file.text, "@SKY@",
                    fmt::format("[{:.6g}, {:.6g}, {:.6g}]", facts.sky.r, facts.sky.g, facts.sky.b));
+        file.text = forMaterials(file.text, facts.lit);
         out.push_back(std::move(file));
     }
     return out;

@@ -61,7 +61,9 @@ private:
         for (TextureRef* texture : usesOf(material))
             texture->texCoord = setOf(use.moved, *texture);
         if (!use.mapped || material.pane) material = shining(material);
-        // Engines find materials by name.
+        // Engines find materials by name, and some have the name in a line of their code.
+        std::replace_if(
+            material.name.begin(), material.name.end(), [](unsigned char c) { return c < ' '; }, ' ');
         if (material.name.empty()) material.name = fmt::format("Material {}", use.original);
         const std::string name = material.name;
         for (int number = 2; !names_.insert(material.name).second; ++number)

@@ -153,6 +153,13 @@ void joinPages(Engine engine, LightmapAtlas& atlas, FloatImage& lightmap) {
     noteLightmapPages(lightmap, atlas.pages);
 }
 
+std::vector<LitMaterial> litMaterials(const EngineScene& level) {
+    std::vector<LitMaterial> lit;
+    for (size_t i = 0; i < level.scene.materials.size(); ++i)
+        if (level.lit[i]) lit.push_back({level.scene.materials[i].name, level.page[i]});
+    return lit;
+}
+
 std::string linesOf(const std::vector<ExportExtra>& extras) {
     std::string lines = "\n";
     for (const ExportExtra& extra : extras)
@@ -256,7 +263,8 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     for (EngineFile& file : engineFiles(desc.engine, {.name = name,
                                                      .exposure = result.exposure,
                                                      .sky = meanOf(scene.sky),
-                                                     .pages = atlas.pages.count})) {
+                                                     .pages = atlas.pages.count,
+                                                     .lit = litMaterials(level)})) {
         if (file.name == kReadmeName && !desc.extras.empty()) file.text += linesOf(desc.extras);
         write(file.name, file.text);
     }

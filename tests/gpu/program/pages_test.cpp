@@ -10,9 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace relume {
 namespace {
@@ -164,10 +167,39 @@ TEST_F(PagedFiles, AreATextureEachForEnginesThatLoadThem) {
     const std::string loader = bytesOf(path("web/loader.js"));
     EXPECT_TRUE(contains(loader, "{ length: 3 }")) << loader;
     EXPECT_FALSE(contains(loader, "@")) << loader;
-    // Godot gets one texture with all of them.
-    run({"export", kScene, "--lightmap", lightmap, "--for", "godot", "-o", path("game")});
+    // In any viewer of glTF files light is emission, by one texture of all of them.
+    run({"export", kScene, "--lightmap", lightmap, "--for", "any", "-o", path("game")});
     EXPECT_EQ(readImage(path("game/lightmap.exr")).width, 96u);
     EXPECT_FALSE(jsonOfGlb(path("game/scene.glb"))["scenes"][0].contains("extras"));
+}
+
+// These engines tell pages by the names of materials, which are in their own code.
+TEST_F(PagedFiles, AreTheOnesThatAnEnginesCodeHasForItsMaterials) {
+    const std::string lightmap = bake("a.exr");
+    for (const auto& [engine, code, line] :
+         {std::array<std::string, 3>{"godot", "level.gd", "    \"{}\": {},"},
+          {"unity", "RelumeLightmap.cs", "        {{ \"{}\", {} }},"},
+          {"bevy", "relume_lightmap.rs", "    (\"{}\", {}),"}}) {
+        const std::string folder = path(engine) + "/";
+        run({"export", kScene, "--lightmap", lightmap, "--for", engine, "-o", folder});
+        const std::string text = bytesOf(folder + code);
+        EXPECT_FALSE(contains(text, "@EACH") || contains(text, "@PAGE") || contains(text, "@MATERIAL"))
+            << text;
+        size_t lit = 0;
+        const nlohmann::json glb = jsonOfGlb(folder + "scene.glb");
+        for (const auto& material : glb["materials"]) {
+            if (!material.contains("extensions") || !material["extensions"].contains("MOZ_lightmap"))
+                continue;
+            ++lit;
+            EXPECT_TRUE(contains(text, fmt::format(fmt::runtime(line), material["name"].get<std::string>(),
+                                                   material["extras"]["relume"]["page"].get<int>()) +
+                                           "\n"))
+                << engine << ": " << material["name"];
+        }
+        EXPECT_GE(lit, kPages);
+        for (uint32_t page = 0; page < kPages; ++page)
+            EXPECT_EQ(readImage(folder + fmt::format("lightmap.{}.exr", page)).width, 48u);
+    }
 }
 
 } // namespace

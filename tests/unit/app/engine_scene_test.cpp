@@ -265,21 +265,25 @@ TEST(FillBetween, NothingComesOfNothing) {
 }
 
 TEST(EngineFiles, NothingIsLeftToFillIn) {
-    const std::set<std::string> marks = {"@NAME@", "@EV@", "@EV100@", "@FACTOR@", "@SKY@"};
-    for (size_t engine = 0; engine < engineNames().size(); ++engine) {
-        const auto files =
-            engineFiles(static_cast<Engine>(engine), {.name = "level", .exposure = 1, .sky = {1, 2, 3}});
-        EXPECT_TRUE(std::any_of(files.begin(), files.end(), [](const EngineFile& file) {
-            return file.name == "README.txt";
-        })) << engineNames()[engine];
-        for (const EngineFile& file : files) {
-            for (const std::string& mark : marks)
-                EXPECT_FALSE(contains(file.text, mark)) << file.name << " has " << mark;
-            if (file.name == "README.txt") {
-                EXPECT_LE(std::count(file.text.begin(), file.text.end(), '\n'), 12) << engineNames()[engine];
+    const std::set<std::string> marks = {"@NAME@", "@EV@",   "@EV100@", "@FACTOR@", "@SKY@",     "@PAGES@",
+                                         "@ONE@",  "@MANY@", "@EACH@",  "@PAGE@",   "@MATERIAL@"};
+    for (const uint32_t pages : {1u, 3u})
+        for (size_t engine = 0; engine < engineNames().size(); ++engine) {
+            const auto files = engineFiles(
+                static_cast<Engine>(engine),
+                {.name = "level", .exposure = 1, .sky = {1, 2, 3}, .pages = pages, .lit = {{"Wall", 2}}});
+            EXPECT_TRUE(std::any_of(files.begin(), files.end(), [](const EngineFile& file) {
+                return file.name == "README.txt";
+            })) << engineNames()[engine];
+            for (const EngineFile& file : files) {
+                for (const std::string& mark : marks)
+                    EXPECT_FALSE(contains(file.text, mark)) << file.name << " has " << mark;
+                if (file.name == "README.txt") {
+                    EXPECT_LE(std::count(file.text.begin(), file.text.end(), '\n'), 12)
+                        << engineNames()[engine];
+                }
             }
         }
-    }
 }
 
 TEST(EngineFiles, ANameIsNoMarkup) {
@@ -287,6 +291,21 @@ TEST(EngineFiles, ANameIsNoMarkup) {
         if (file.name == "index.html") {
             EXPECT_TRUE(contains(file.text, "a&lt;b>&amp;c"));
         }
+}
+
+TEST(EngineFiles, ANameEndsNoTextInQuotes) {
+    for (const EngineFile& file :
+         engineFiles(Engine::Godot, {.name = "level", .pages = 3, .lit = {{R"(a "b\c)", 2}}}))
+        if (file.name == "level.gd") {
+            EXPECT_TRUE(contains(file.text, R"("a \"b\\c": 2,)")) << file.text;
+        }
+}
+
+TEST(EngineScene, NamesOfMaterialsAreOneLine) {
+    ThreeObjects three;
+    three.scene.materials[0].name = "of two\nlines";
+    const EngineScene out = engineScene(three.scene, three.atlas, kAmbient);
+    EXPECT_EQ(out.scene.materials[0].name, "of two lines");
 }
 
 TEST(EngineFiles, UnknownEnginesAreToldWithThoseThatThereAre) {

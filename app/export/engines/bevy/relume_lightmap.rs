@@ -12,22 +12,32 @@
 //!     AmbientLight { brightness: 0.0, ..default() }, // the lightmap has all light
 //! ));
 //! ```
-use bevy::gltf::{Gltf, GltfLoaderSettings, GltfMaterialName};
+@ONE@use bevy::gltf::{Gltf, GltfLoaderSettings, GltfMaterialName};
+@MANY@use bevy::gltf::{Gltf, GltfMaterialName};
 use bevy::pbr::Lightmap;
 use bevy::prelude::*;
 use bevy::prelude::WorldAssetRoot as LevelRoot; // before Bevy 0.19: SceneRoot
-use std::collections::HashSet;
+@ONE@use std::collections::HashSet;
+@MANY@use std::collections::HashMap;
 
 /// The exposure at which Relume showed the level. Lightmap and emission are in cd/m^2.
 pub const EV100: f32 = @EV100@;
 
+@MANY@/// The pages that light materials, by their names.
+@MANY@const PAGES: &[(&str, usize)] = &[
+@MANY@@EACH@    ("@MATERIAL@", @PAGE@),
+@MANY@];
+@MANY@
 /// A level whose lightmap is on its way or in place.
 #[derive(Resource)]
 pub struct RelumeLevel {
     gltf: Handle<Gltf>,
-    lightmap: Handle<Image>,
-    /// Names of the materials that the lightmap lights; none as long as the file is being read.
-    lit: Option<HashSet<String>>,
+@ONE@    lightmap: Handle<Image>,
+@ONE@    /// Names of the materials that the lightmap lights; none as long as the file is being read.
+@ONE@    lit: Option<HashSet<String>>,
+@MANY@    lightmaps: Vec<Handle<Image>>,
+@MANY@    /// Pages by the names of the materials that they light; none as long as the file is being read.
+@MANY@    lit: Option<HashMap<&'static str, usize>>,
 }
 
 pub struct RelumeLightmapPlugin;
@@ -38,14 +48,17 @@ impl Plugin for RelumeLightmapPlugin {
     }
 }
 
-/// Loads scene.glb and lightmap.ktx2 of a folder below `assets/`, and shows them when they are read.
+@ONE@/// Loads scene.glb and lightmap.ktx2 of a folder below `assets/`, and shows them when they are read.
+@MANY@/// Loads scene.glb, lightmap.0.ktx2 and so on of a folder below `assets/`, and shows them when they are read.
 pub fn spawn_level(commands: &mut Commands, asset_server: &AssetServer, folder: &str) {
     commands.insert_resource(RelumeLevel {
-        gltf: asset_server.load_with_settings(
-            format!("{folder}/scene.glb"),
-            |settings: &mut GltfLoaderSettings| settings.include_source = true,
-        ),
-        lightmap: asset_server.load(format!("{folder}/lightmap.ktx2")),
+@ONE@        gltf: asset_server.load_with_settings(
+@ONE@            format!("{folder}/scene.glb"),
+@ONE@            |settings: &mut GltfLoaderSettings| settings.include_source = true,
+@ONE@        ),
+@ONE@        lightmap: asset_server.load(format!("{folder}/lightmap.ktx2")),
+@MANY@        gltf: asset_server.load(format!("{folder}/scene.glb")),
+@MANY@        lightmaps: (0..@PAGES@).map(|page| asset_server.load(format!("{folder}/lightmap.{page}.ktx2"))).collect(),
         lit: None,
     });
 }
@@ -55,14 +68,15 @@ fn begin_level(mut commands: Commands, files: Res<Assets<Gltf>>, mut level: ResM
         return;
     }
     let Some(file) = files.get(&level.gltf) else { return };
-    let Some(source) = &file.source else { return };
-    let lit = source
-        .document
-        .materials()
-        .filter(|material| material.extension_value("MOZ_lightmap").is_some())
-        .filter_map(|material| material.name().map(str::to_string))
-        .collect();
-    level.lit = Some(lit);
+@ONE@    let Some(source) = &file.source else { return };
+@ONE@    let lit = source
+@ONE@        .document
+@ONE@        .materials()
+@ONE@        .filter(|material| material.extension_value("MOZ_lightmap").is_some())
+@ONE@        .filter_map(|material| material.name().map(str::to_string))
+@ONE@        .collect();
+@ONE@    level.lit = Some(lit);
+@MANY@    level.lit = Some(PAGES.iter().copied().collect());
     if let Some(scene) = &file.default_scene {
         commands.spawn(LevelRoot(scene.clone()));
     }
@@ -81,8 +95,11 @@ fn light_meshes(
             material.lightmap_exposure = 1.0;
             material.emissive_exposure_weight = 1.0; // emission is in cd/m^2, too
         }
-        if lit.contains(&name.0) {
-            commands.entity(entity).insert(Lightmap { image: level.lightmap.clone(), ..default() });
-        }
+@ONE@        if lit.contains(&name.0) {
+@ONE@            commands.entity(entity).insert(Lightmap { image: level.lightmap.clone(), ..default() });
+@ONE@        }
+@MANY@        if let Some(&page) = lit.get(name.0.as_str()) {
+@MANY@            commands.entity(entity).insert(Lightmap { image: level.lightmaps[page].clone(), ..default() });
+@MANY@        }
     }
 }

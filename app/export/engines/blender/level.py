@@ -9,6 +9,7 @@ import os
 import struct
 
 import bpy
+import numpy
 
 folder = os.path.dirname(os.path.abspath(__file__))
 exposure = @EV@  # [EV], at which Relume showed the level
@@ -16,11 +17,12 @@ LONGEST_NAME = 60  # [bytes]; Blender before 5.0 cuts names at 63, at a whole le
 
 
 def lit_materials(path):
-    """Returns the names of the materials that have MOZ_lightmap."""
+    """Returns the pages of the lightmap by the names of the materials that they light."""
     with open(path, "rb") as file:
         length = struct.unpack("<5I", file.read(20))[3]
         materials = json.loads(file.read(length)).get("materials", [])
-    return {m["name"] for m in materials if "MOZ_lightmap" in m.get("extensions", {})}
+    return {m["name"]: m.get("extras", {}).get("relume", {}).get("page", 0)
+            for m in materials if "MOZ_lightmap" in m.get("extensions", {})}
 
 
 def light(material, picture):
@@ -77,20 +79,33 @@ def light(material, picture):
     links.new(shown, output.inputs["Surface"])
 
 
-def is_lit(name, lit):
-    """Tells whether a material's name is one of `lit`, which Blender may have cut."""
-    return name in lit or any(whole.startswith(name) for whole in lit if len(name.encode()) >= LONGEST_NAME)
+def page_of(material, lit):
+    """Returns the page that lights a material, whose name Blender may have cut, or None."""
+    name = material.name
+    if name in lit:
+        return lit[name]
+    if len(name.encode()) < LONGEST_NAME or not any(whole.startswith(name) for whole in lit):
+        return None
+@ONE@    return 0
+@MANY@    return dict(material.get("relume", {})).get("page", 0)  # the file's extras
 
 
+# Debian 12 has Blender 3.4 with NumPy 1.24, which left out a name that this Blender's importer asks for.
+if not hasattr(numpy, "bool"):
+    numpy.bool = bool
 bpy.ops.wm.read_factory_settings(use_empty=True)
 level = os.path.join(folder, "scene.glb")
 bpy.ops.import_scene.gltf(filepath=level)
-lightmap = bpy.data.images.load(os.path.join(folder, "lightmap.exr"))
-lightmap.colorspace_settings.name = "Non-Color"
+@ONE@names = ["lightmap.exr"]
+@MANY@names = [f"lightmap.{page}.exr" for page in range(@PAGES@)]
+lightmaps = [bpy.data.images.load(os.path.join(folder, name)) for name in names]
+for lightmap in lightmaps:
+    lightmap.colorspace_settings.name = "Non-Color"
 lit = lit_materials(level)
 for material in bpy.data.materials:
-    if material.use_nodes and is_lit(material.name, lit):
-        light(material, lightmap)
+    page = page_of(material, lit)
+    if material.use_nodes and page is not None:
+        light(material, lightmaps[page])
 scene = bpy.context.scene
 scene.view_settings.exposure = exposure
 cameras = [thing for thing in scene.objects if thing.type == "CAMERA"]
