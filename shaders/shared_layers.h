@@ -7,6 +7,10 @@ const uint kPenumbraSamplePasses = 8u;
 FUNCTION bool allTakeSamplePass(uint samplePass) {
     return samplePass % kPenumbraSamplePasses == 0u || samplePass == kPenumbraSamplePasses / 2u;
 }
+// So many sample passes are taken together, where the step has as many, from as many on: replicates then tell
+// each other the share that is seen by four times as many points (lib/light/seen_light.glsl). The first of
+// them alone is for all.
+const uint kSamplePassesTogether = 4u;
 
 // Adds some sample passes of direct light to those before.
 struct LayerDirectPush {

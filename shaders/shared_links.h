@@ -10,9 +10,10 @@ struct EmitterSamplesPush {
     ADDRESS penumbra; // 0: every patch takes every sample pass
     ADDRESS covers;   // as of ClosestPush
     uint firstChunk;
-    uint samplePass;
+    uint samplePass; // where several are taken together, the first one over their number
+    uint together;   // sample passes; with picks that are drawn 1
     uint pickCount;
-    uint pointCount; // per pick, a multiple of kReplicates
+    uint pointCount; // per pick, of all these sample passes; each has a multiple of kReplicates
     uint all;        // 1: pick i is mesh light i; 0: picks are drawn
 };
 struct DirectPush {
@@ -24,10 +25,7 @@ struct DirectPush {
     ADDRESS parts;
     ADDRESS penumbra; // as of EmitterSamplesPush
     uint firstChunk;
-    uint samplePass;
-    uint pickCount;
-    uint pointCount;
-    uint all;
+    uint samplePass, together, pickCount, pointCount, all; // as of EmitterSamplesPush
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };
@@ -48,8 +46,8 @@ struct LampPush {
     float reach;       // [m], out of the scene from anywhere in it
     uint firstChunk;
     uint firstLamp;
-    uint counts; // of the group: lights | targets per patch << 16
-    uint samplePass;
+    uint counts;               // of the group: lights | targets per patch << 16
+    uint samplePass, together; // as of EmitterSamplesPush
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };

@@ -81,8 +81,9 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .covers = covers ? covers->address() : 0,
                                           .firstChunk = work.range.first,
                                           .samplePass = work.samplePass,
+                                          .together = work.together,
                                           .pickCount = group.picks,
-                                          .pointCount = group.points,
+                                          .pointCount = group.points * work.together,
                                           .all = group.all ? 1u : 0u};
     samples_.dispatch(cmd, push, work.range.count, group.picks);
 }
@@ -91,7 +92,7 @@ PointTimes EmitterLight::traceOnCpu(const LightBuffers& light, const Work& work,
                                     const PointsOnCpu& on) const {
     const Group& group = groups_[work.group];
     const SegmentWork rays = segments(light, work, on.rays);
-    const HostEmitters emitters{.points = hostPoints(light, rays, work.penumbra, on),
+    const HostEmitters emitters{.points = hostPoints(light, rays, work.together, work.penumbra, on),
                                 .polygons = {group.polygons.as<shader::EmitterPolygon>(), group.picks},
                                 .picks = picks_.as<glm::vec4>(),
                                 .pointCount = group.points};
@@ -105,33 +106,35 @@ SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
     // The points of a pick belong to one replicate, those of a light that is always sampled to all in turn.
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
-            .targetCount = group.targets(),
+            .targetCount = group.targets() * work.together,
             .targets = &targets_,
             .bits = &bits_,
             .rays = &rays,
             .covers = light.coversIf(allOver_),
             .samplePass = work.samplePass,
-            .turn = group.all ? group.points : group.targets(),
+            .turn = group.all ? group.points * work.together : group.targets(),
             .run = group.all ? 1 : group.points};
 }
 
 void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                                 const vk::Buffer& sums, const vk::Buffer& direct) const {
     const Group& group = groups_[work.group];
-    const shader::DirectPush push{.targets = targets_.address(),
-                                  .picks = picks_.address(),
-                                  .bits = bits_.address(),
-                                  .sums = sums.address(),
-                                  .direct = direct.address(),
-                                  .parts = work.penumbra ? work.penumbra->parts.address() : 0,
-                                  .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
-                                  .firstChunk = work.range.first,
-                                  .samplePass = work.samplePass,
-                                  .pickCount = group.picks,
-                                  .pointCount = group.points,
-                                  .all = group.all ? 1u : 0u,
-                                  .patchCount = light.chunkCount * kChunk,
-                                  .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
+    const shader::DirectPush push{
+        .targets = targets_.address(),
+        .picks = picks_.address(),
+        .bits = bits_.address(),
+        .sums = sums.address(),
+        .direct = direct.address(),
+        .parts = work.penumbra ? work.penumbra->parts.address() : 0,
+        .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+        .firstChunk = work.range.first,
+        .samplePass = work.samplePass,
+        .together = work.together,
+        .pickCount = group.picks,
+        .pointCount = group.points * work.together,
+        .all = group.all ? 1u : 0u,
+        .patchCount = light.chunkCount * kChunk,
+        .scale = 1.0f / static_cast<float>(kReplicates * work.together * (work.samplePass + 1))};
     gather_.dispatch(cmd, push, work.range.count);
 }
 

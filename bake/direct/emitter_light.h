@@ -25,11 +25,14 @@ public:
     /// Returns the rays per patch and sample pass of the group; 0 means that nothing in it shines, and no
     /// batch of it is to be made.
     uint32_t rays(uint32_t group) const { return groups_[group].targets(); }
-    uint32_t batchChunks() const { return batchChunks_; } // at most in one batch
+    uint32_t batchChunks() const { return batchChunks_; } // at most in one batch of one sample pass
+    /// Tells whether several sample passes may be one Work, where replicates tell each other the share that
+    /// is seen by the points of all. The points of a pick are of one sample pass, in which it is drawn.
+    bool goTogether(uint32_t group) const { return groups_[group].all; }
     struct Work {
         uint32_t group = 0;
-        uint32_t samplePass = 0;
-        ChunkRange range; // count: at most batchChunks()
+        uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
+        ChunkRange range;                      // count: at most batchChunks() / together
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
         const Penumbra* penumbra = nullptr;

@@ -358,6 +358,12 @@ void begin(const HostPoints& on, const PatchLanes& lanes, const Loops& loops, co
     }
 }
 
+// Leaves out the patches that do not take this one of the sample passes.
+void leaveOut(const PatchLanes& lanes, uint32_t samplePass, Pick& pick) {
+    for (uint32_t i = 0; lanes.unalike && i < kChunk; ++i)
+        if (samplePass >= lanes.taken[i]) pick.sample.shines[i] = 0;
+}
+
 // Makes one point for each patch of the chunk.
 void samplePoint(const PatchLanes& lanes, const Loops& loops, const SampleDesc& desc, Pick& pick) {
     const Loops::Shape& shape = loops.of(desc.polygon);
@@ -368,7 +374,7 @@ void samplePoint(const PatchLanes& lanes, const Loops& loops, const SampleDesc& 
     Lane factors;
     loops.formFactors(lanes, lanes.at, desc.polygon, factors);
     for (uint32_t i = 0; pick.anyNear && i < kChunk; ++i)
-        pick.factors[i] += factors[i];
+        pick.factors[i] += sample.shines[i] != 0 ? factors[i] : 0.0f;
     for (uint32_t first = 0; anyUneven && first < kChunk; first += kBlock)
         if (anyOf(sample.uneven.data() + first, kBlock))
             halveBlock(lanes, desc, shape, factors, first, sample);
@@ -393,13 +399,14 @@ void sampleChunk(const HostEmitters& work, uint32_t chunk, const Loops& loops) {
     }
     ChunkStarts starts;
     starts.setPatches(on.patches + first, on.covers ? on.covers + first : nullptr);
-    for (uint32_t s = 0; s < work.pointCount; ++s) {
+    for (uint32_t s = 0; s < work.allPoints(); ++s) {
         // The start has the same number: the points of one polygon are a turn, and take turns among
         // replicates.
-        const uint32_t number = on.samplePass * work.pointCount + s;
+        const uint32_t number = on.samplePass * work.allPoints() + s;
         starts.make(number, lanes.at);
         for (uint32_t k = 0; k < count; ++k) {
-            glm::vec4* targets = on.targetsOf(chunk, k * work.pointCount + s);
+            glm::vec4* targets = on.targetsOf(chunk, k * work.allPoints() + s);
+            if (s % work.pointCount == 0) leaveOut(lanes, s / work.pointCount, picks[k]);
             if (picks[k].shines) {
                 const EmitterPolygon& e = work.polygons[k];
                 samplePoint(lanes, loops, {e, k, number, e.offset * shader::emitterNormal(e)}, picks[k]);
@@ -412,8 +419,11 @@ void sampleChunk(const HostEmitters& work, uint32_t chunk, const Loops& loops) {
     for (size_t k = 0; k < count; ++k) {
         Pick& pick = picks[k];
         for (uint32_t i = 0; i < kChunk; ++i) {
-            if (pick.anyNear && pick.near[i] != 0)
-                pick.whole[i] = pick.factors[i] / static_cast<float>(work.pointCount);
+            if (pick.anyNear && pick.near[i] != 0) {
+                pick.whole[i] = pick.factors[i] / static_cast<float>(work.pointCount * lanes.taken[i]);
+                // What is seen of a near light is as uneven over a texel as a penumbra.
+                on.noteLights(first + i, HostGathered::bitOf(k), HostGathered::bitOf(k));
+            }
             picked[k * kChunk + i] = glm::vec4(pick.light(work.polygons[k], i), pick.whole[i]);
         }
     }
@@ -427,8 +437,8 @@ struct PointSums {
 
 PointSums sumPoints(const HostEmitters& work, uint32_t chunk, uint32_t pick) {
     PointSums sums;
-    for (uint32_t s = 0; s < work.pointCount; ++s) {
-        const uint32_t target = pick * work.pointCount + s, q = s % kReplicates;
+    for (uint32_t s = 0; s < work.allPoints(); ++s) {
+        const uint32_t target = pick * work.allPoints() + s, q = s % kReplicates;
         const uint32_t bit = 1u << (target % kTargetsPerWord);
         const float* factors = &work.points.targetsOf(chunk, target)->w;
         const uint32_t* bits = work.points.bitsOf(chunk, target);
@@ -446,7 +456,10 @@ PointSums sumPoints(const HostEmitters& work, uint32_t chunk, uint32_t pick) {
 
 void gatherChunk(const HostEmitters& work, uint32_t chunk) {
     const size_t count = work.polygons.size();
-    const float points = static_cast<float>(work.pointCount / kReplicates); // of each replicate
+    const size_t firstPatch = work.points.firstPatch(chunk);
+    std::array<uint32_t, kChunk> taken;
+    for (uint32_t i = 0; i < kChunk; ++i)
+        taken[i] = work.points.takenSamplePasses(firstPatch + i);
     std::array<HostGathered, kChunk> gathered;
     for (uint32_t k = 0; k < count; ++k) {
         const PointSums sums = sumPoints(work, chunk, k);
@@ -455,16 +468,19 @@ void gatherChunk(const HostEmitters& work, uint32_t chunk) {
             const glm::vec3 light(picks[i]);
             const float whole = picks[i].w;
             if (light == glm::vec3(0.0f) || !(whole > 0.0f)) continue;
+            const float points =
+                static_cast<float>(work.pointCount * taken[i] / kReplicates); // of each replicate
             gathered[i].note(k, sums.visible[i] > 0.0f, sums.visible[i] < sums.all[i]);
             for (uint32_t q = 0; q < kReplicates; ++q)
                 gathered[i].value[q] +=
-                    light * (shader::seenLight(whole, points, sums.part[q][i], sums.seen[q][i], sums.all[i],
+                    light * (static_cast<float>(taken[i]) *
+                             shader::seenLight(whole, points, sums.part[q][i], sums.seen[q][i], sums.all[i],
                                                sums.visible[i]) /
                              whole);
         }
     }
     for (uint32_t i = 0; i < kChunk; ++i) {
-        const size_t patch = work.points.firstPatch(chunk) + i;
+        const size_t patch = firstPatch + i;
         if (takesLight(work.points, patch)) addGathered(work.points, patch, gathered[i]);
     }
 }

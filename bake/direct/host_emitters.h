@@ -14,7 +14,10 @@ struct HostEmitters {
     HostPoints points;
     std::span<const shader::EmitterPolygon> polygons; // of one group, few of them
     glm::vec4* picks = nullptr; // [chunk - firstChunk][polygons.size()][64], as in EmitterSamplesPush
-    uint32_t pointCount = 0;    // on each polygon, a multiple of kReplicates
+    uint32_t pointCount = 0;    // on each polygon and sample pass, a multiple of kReplicates
+
+    /// Returns the points on each polygon of all sample passes that are taken together.
+    uint32_t allPoints() const { return pointCount * points.together; }
 };
 void sampleEmitters(WorkerPool& pool, const HostEmitters& work);
 void gatherEmitters(WorkerPool& pool, const HostEmitters& work);

@@ -82,21 +82,26 @@ SampleLamp chooseSampleLamp() {
 
 void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
     const HostPoints& on = work.points;
-    const size_t first = on.firstPatch(chunk);
+    const size_t firstPatch = on.firstPatch(chunk);
     PatchLanes lanes;
-    if (!lanes.load(on, first)) {
+    if (!lanes.load(on, firstPatch)) {
         std::fill_n(on.targetsOf(chunk, 0), size_t{on.targetCount} * kChunk, glm::vec4(0.0f));
         return;
     }
     ChunkStarts starts;
-    starts.setPatches(on.patches + first, on.covers ? on.covers + first : nullptr);
+    starts.setPatches(on.patches + firstPatch, on.covers ? on.covers + firstPatch : nullptr);
     TargetLanes out;
     for (const Lamp& lamp : work.lamps) {
-        for (uint32_t s = 0; s < lamp.samples; ++s) {
-            const uint32_t number = on.samplePass * lamp.samples + s;
+        const uint32_t samples = lamp.samples * on.together, first = lamp.firstTarget * on.together;
+        for (uint32_t s = 0; s < samples; ++s) {
+            if (lamp.samples == 1 && s > 0) { // it has the same sample in each sample pass
+                std::fill_n(on.targetsOf(chunk, first + s), kChunk, glm::vec4(0.0f));
+                continue;
+            }
+            const uint32_t number = on.samplePass * samples + s;
             starts.make(number, lanes.at);
             sample(lanes, {lamp, number, work.reach}, out);
-            out.store(on.targetsOf(chunk, lamp.firstTarget + s));
+            out.store(on.targetsOf(chunk, first + s), lanes, s / lamp.samples);
         }
     }
 }
@@ -108,12 +113,13 @@ struct Gathered {
     bool shareless = false; // no share of the whole light can be known
 };
 
-Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, uint32_t lane) {
+Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, uint32_t lane, uint32_t taken) {
+    const uint32_t samples = lamp.samples > 1 ? lamp.samples * taken : 1;
     Gathered result;
     std::array<float, kReplicates> part{}, seen{};
     float all = 0.0f, visible = 0.0f;
-    for (uint32_t s = 0; s < lamp.samples; ++s) {
-        const uint32_t target = lamp.firstTarget + s;
+    for (uint32_t s = 0; s < samples; ++s) {
+        const uint32_t target = lamp.firstTarget * on.together + s;
         const float w = on.targetsOf(chunk, target)[lane].w, light = std::abs(w);
         const bool reached =
             w > 0.0f && (on.bitsOf(chunk, target)[lane] >> (target % kTargetsPerWord) & 1) != 0;
@@ -131,7 +137,7 @@ Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, uint
     }
     const float whole = shader::lampWhole(lamp, on.patches[on.firstPatch(chunk) + lane]);
     result.shareless = whole < 0.0f && all > 0.0f;
-    const float count = static_cast<float>(lamp.samples) / static_cast<float>(kReplicates);
+    const float count = static_cast<float>(samples) / static_cast<float>(kReplicates);
     for (uint32_t q = 0; q < kReplicates; ++q)
         result.light[q] =
             whole >= 0.0f ? shader::seenLight(whole, count, part[q], seen[q], all, visible) : seen[q] / count;
@@ -142,12 +148,13 @@ void gatherChunk(const HostLamps& work, uint32_t chunk) {
     for (uint32_t lane = 0; lane < kChunk; ++lane) {
         const size_t patch = work.points.firstPatch(chunk) + lane;
         if (!takesLight(work.points, patch)) continue;
+        const uint32_t taken = work.points.takenSamplePasses(patch);
         HostGathered gathered;
         for (size_t k = 0; k < work.lamps.size(); ++k) {
             const Lamp& lamp = work.lamps[k];
-            const Gathered one = gatherLamp(work.points, lamp, chunk, lane);
+            const Gathered one = gatherLamp(work.points, lamp, chunk, lane, taken);
             for (uint32_t q = 0; q < kReplicates; ++q)
-                gathered.value[q] += lamp.color * one.light[q];
+                gathered.value[q] += lamp.color * (static_cast<float>(taken) * one.light[q]);
             gathered.note(k, one.reached, one.hidden);
             if (one.shareless) gathered.reached = gathered.hidden = ~0u;
         }

@@ -12,7 +12,7 @@ namespace relume {
 /// of threads.
 struct HostLamps {
     HostPoints points;
-    std::span<const shader::Lamp> lamps; // of one group
+    std::span<const shader::Lamp> lamps; // of one group, with the samples of one sample pass
     float reach = 0;                     // out of the scene [m]
 };
 void sampleLamps(WorkerPool& pool, const HostLamps& work);

@@ -18,8 +18,8 @@ void addBits(uint32_t& to, uint32_t bits) {
 
 } // namespace
 
-HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, const Penumbra* penumbra,
-                      const PointsOnCpu& on) {
+HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, uint32_t together,
+                      const Penumbra* penumbra, const PointsOnCpu& on) {
     return {.patches = light.patches.as<Patch>(),
             .covers = segments.covers ? segments.covers->as<shader::PatchCover>() : nullptr,
             .targets = segments.targets->as<glm::vec4>(),
@@ -33,8 +33,9 @@ HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, co
             .chunkCount = segments.chunkCount,
             .targetCount = segments.targetCount,
             .samplePass = segments.samplePass,
+            .together = together,
             .patchCount = light.chunkCount * kChunk,
-            .scale = 1.0f / static_cast<float>(kReplicates * (segments.samplePass + 1))};
+            .scale = 1.0f / static_cast<float>(kReplicates * together * (segments.samplePass + 1))};
 }
 
 const uint32_t* HostPoints::bitsOf(uint32_t chunk, uint32_t target) const {
@@ -42,14 +43,23 @@ const uint32_t* HostPoints::bitsOf(uint32_t chunk, uint32_t target) const {
     return bits + (size_t{chunk} * words + target / kTargetsPerWord) * kChunk;
 }
 
-bool HostPoints::leftOut(size_t patch) const {
-    if (!penumbra || shader::allTakeSamplePass(samplePass)) return false;
+uint32_t HostPoints::takenSamplePasses(size_t patch) const {
+    if (!penumbra) return together;
     const glm::uvec2& lights = penumbra[parts[patch]];
-    return (lights.x & lights.y) == 0;
+    if ((lights.x & lights.y) != 0) return together;
+    return shader::allTakeSamplePass(samplePass * together) ? 1 : 0;
+}
+
+void HostPoints::noteLights(size_t patch, uint32_t reached, uint32_t hidden) const {
+    if (!penumbra || samplePass != 0) return;
+    glm::uvec2& lights = penumbra[parts[patch]];
+    addBits(lights.x, reached);
+    addBits(lights.y, hidden);
 }
 
 bool PatchLanes::load(const HostPoints& work, size_t first) {
     bool any = false;
+    unalike = false;
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
         own.x[i] = p.position.x, own.y[i] = p.position.y, own.z[i] = p.position.z;
@@ -57,7 +67,9 @@ bool PatchLanes::load(const HostPoints& work, size_t first) {
         sx[i] = p.shading.x, sy[i] = p.shading.y, sz[i] = p.shading.z;
         offset[i] = p.offset, area[i] = p.area;
         key[i] = shader::seedKey(p);
-        const bool takesPart = !work.leftOut(first + i);
+        taken[i] = work.takenSamplePasses(first + i);
+        unalike = unalike || taken[i] != work.together;
+        const bool takesPart = taken[i] > 0;
         sends[i] = takesPart && (p.flags & shader::kPatchSends) != 0 ? 1 : 0;
         any = any || takesPart;
     }
@@ -69,25 +81,32 @@ void TargetLanes::store(glm::vec4* targets) const {
         targets[i] = {x[i], y[i], z[i], w[i]};
 }
 
+void TargetLanes::store(glm::vec4* targets, const PatchLanes& lanes, uint32_t samplePass) {
+    for (uint32_t i = 0; lanes.unalike && i < kChunk; ++i)
+        w[i] = samplePass < lanes.taken[i] ? w[i] : 0.0f;
+    store(targets);
+}
+
+uint32_t HostGathered::bitOf(size_t light) {
+    return 1u << (light % kLightBits);
+}
+
 void HostGathered::note(size_t light, bool isReached, bool isHidden) {
-    const uint32_t bit = 1u << (light % kLightBits);
+    const uint32_t bit = bitOf(light);
     if (isReached) reached |= bit;
     if (isHidden) hidden |= bit;
 }
 
 bool takesLight(const HostPoints& work, size_t patch) {
-    if ((work.patches[patch].flags & shader::kPatchSends) != 0 && !work.leftOut(patch)) return true;
+    if ((work.patches[patch].flags & shader::kPatchSends) != 0 && work.takenSamplePasses(patch) > 0)
+        return true;
     for (size_t q = 0; work.newSums && q < kReplicates; ++q)
         work.sums[q * work.patchCount + patch] = glm::vec4(0.0f);
     return false;
 }
 
 void addGathered(const HostPoints& work, size_t patch, const HostGathered& gathered) {
-    if (work.penumbra && work.samplePass == 0) {
-        glm::uvec2& lights = work.penumbra[work.parts[patch]];
-        addBits(lights.x, gathered.reached);
-        addBits(lights.y, gathered.hidden);
-    }
+    work.noteLights(patch, gathered.reached, gathered.hidden);
     glm::vec3 total(0.0f);
     for (size_t q = 0; q < kReplicates; ++q) {
         glm::vec4& sum = work.sums[q * work.patchCount + patch];

@@ -25,8 +25,8 @@ struct HostPoints {
     bool newSums = false;        // nothing is in the sums yet
     glm::vec4* direct = nullptr; // per patch: the mean so far
     uint32_t firstChunk = 0, chunkCount = 0;
-    uint32_t targetCount = 0; // of the group, per patch
-    uint32_t samplePass = 0;
+    uint32_t targetCount = 0;              // of the group, per patch
+    uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
     uint32_t patchCount = 0;
     float scale = 1; // from the sum of all sums to the mean
 
@@ -37,12 +37,14 @@ struct HostPoints {
     }
     /// Returns the chunk's row of 64 words that hold the target's bit.
     const uint32_t* bitsOf(uint32_t chunk, uint32_t target) const;
-    /// Tells whether the patch takes no part in the sample pass, as
+    /// Returns how many of these sample passes the patch takes, as
     /// shaders/lib/light/penumbra_sample_passes.glsl does.
-    bool leftOut(size_t patch) const;
+    uint32_t takenSamplePasses(size_t patch) const;
+    /// Notes in the first sample pass which lights a patch's points have reached and not reached, a bit each.
+    void noteLights(size_t patch, uint32_t reached, uint32_t hidden) const;
 };
-HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, const Penumbra* penumbra,
-                      const PointsOnCpu& on);
+HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, uint32_t together,
+                      const Penumbra* penumbra, const PointsOnCpu& on);
 
 /// Holds a chunk by component.
 struct PatchLanes {
@@ -51,6 +53,8 @@ struct PatchLanes {
     Lane nx, ny, nz, sx, sy, sz; // normals and shading normals
     Lane offset, area;
     std::array<uint32_t, shader::kChunk> key, sends; // sends: 1 where the patch also takes part, else 0
+    std::array<uint32_t, shader::kChunk> taken;      // sample passes
+    bool unalike = false;                            // some take not all sample passes
 
     /// Loads the chunk that begins with this patch. Returns whether any patch takes part.
     bool load(const HostPoints& work, size_t first);
@@ -61,6 +65,8 @@ struct TargetLanes {
     PatchLanes::Lane x, y, z, w;
 
     void store(glm::vec4* targets) const;
+    /// Does so, and makes those 0 whose patches do not take this one of the sample passes.
+    void store(glm::vec4* targets, const PatchLanes& lanes, uint32_t samplePass);
 };
 
 /// What a patch has gathered in a sample pass.
@@ -70,6 +76,7 @@ struct HostGathered {
 
     /// Takes note that a light was reached or hidden, of which this is the number in its group.
     void note(size_t light, bool isReached, bool isHidden);
+    static uint32_t bitOf(size_t light);
 };
 /// Tells whether the patch has anything to gather; else its new sums are zero with this call.
 bool takesLight(const HostPoints& work, size_t patch);

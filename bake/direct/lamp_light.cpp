@@ -153,10 +153,11 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .reach = set_.reach,
             .firstChunk = work.range.first,
             .firstLamp = group.first,
-            .counts = group.count | group.targets << 16,
+            .counts = group.count | (group.targets * work.together) << 16,
             .samplePass = work.samplePass,
+            .together = work.together,
             .patchCount = light.chunkCount * kChunk,
-            .scale = 1.0f / static_cast<float>(kReplicates * (work.samplePass + 1))};
+            .scale = 1.0f / static_cast<float>(kReplicates * work.together * (work.samplePass + 1))};
 }
 
 bool LampLight::onCpu(uint32_t group) const {
@@ -178,7 +179,7 @@ const LampLight::Programs& LampLight::programsOf(uint32_t group) const {
 PointTimes LampLight::traceOnCpu(const LightBuffers& light, const Work& work, const PointsOnCpu& on) const {
     const Group& group = groups_[work.group];
     const SegmentWork rays = segments(light, work, on.rays);
-    const HostLamps lamps{.points = hostPoints(light, rays, work.penumbra, on),
+    const HostLamps lamps{.points = hostPoints(light, rays, work.together, work.penumbra, on),
                           .lamps = std::span(set_.lamps).subspan(group.first, group.count),
                           .reach = set_.reach};
     return tracePointsOnCpu(
@@ -195,13 +196,13 @@ SegmentWork LampLight::segments(const LightBuffers& light, const Work& work, con
     const Group& group = groups_[work.group];
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
-            .targetCount = group.targets,
+            .targetCount = group.targets * work.together,
             .targets = &targets_,
             .bits = &bits_,
             .rays = &rays,
             .covers = light.coversIf(desc_.allOver),
             .samplePass = work.samplePass,
-            .turn = set_.lamps[group.first].samples};
+            .turn = set_.lamps[group.first].samples * work.together};
 }
 
 void LampLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,

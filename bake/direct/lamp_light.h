@@ -46,11 +46,11 @@ public:
     uint32_t rays(uint32_t group) const { return groups_[group].targets; }
     float reach() const { return set_.reach; } // how far away rays to the sky and to suns end [m]
     bool hasSky() const { return !set_.empty() && set_.lamps.back().type == shader::kLampSky; }
-    uint32_t batchChunks() const { return batchChunks_; } // at most in one batch
+    uint32_t batchChunks() const { return batchChunks_; } // at most in one batch of one sample pass
     struct Work {
         uint32_t group = 0;
-        uint32_t samplePass = 0;
-        ChunkRange range; // count: at most batchChunks()
+        uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
+        ChunkRange range;                      // count: at most batchChunks() / together
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
         const Penumbra* penumbra = nullptr;

@@ -69,8 +69,10 @@ DirectJob::End DirectJob::batch(bool pauses) {
     while (more) {
         const DirectPart& part = layer_->parts[part_];
         if (part.rays > 0) {
-            const double cost = static_cast<double>(part.rays) / LayerLights::kPoints;
-            const ChunkRange range = kit.nextRange(rate, tools_->lights.batchChunks(part), cost, done);
+            const uint32_t passes = portionPasses();
+            const double cost = static_cast<double>(part.rays) * passes / LayerLights::kPoints;
+            const ChunkRange range =
+                kit.nextRange(rate, tools_->lights.batchChunks(part, passes), cost, done);
             trace(cmd, range, 3 * portions);
             ++portions;
             done += range.count * cost;
@@ -100,12 +102,22 @@ DirectJob::End DirectJob::batch(bool pauses) {
     return end;
 }
 
+uint32_t DirectJob::together() const {
+    return samplePassesTogether(samplePass_, endOfStep());
+}
+
+// Returns how many of them the part under way takes in one portion.
+uint32_t DirectJob::portionPasses() const {
+    return tools_->lights.goTogether(layer_->parts[part_]) ? together() : 1;
+}
+
 // Traces a portion; cmd is that of a tracer that records.
 void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
     LinkKit& kit = tools_->kit;
     PenumbraMap& penumbra = tools_->penumbra;
     LayerLights::Portion portion{.part = layer_->parts[part_],
-                                 .samplePass = samplePass_,
+                                 .samplePass = samplePass_ + within_,
+                                 .together = portionPasses(),
                                  .range = range,
                                  .penumbra = &penumbra.onDevice(),
                                  .mark = mark};
@@ -147,7 +159,7 @@ bool DirectJob::orderSamplePass() {
     const TileParts& parts = tools_->penumbra.parts();
     kit.beginPass();
     std::vector<uint8_t> take = repairStep_ ? repairedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
-    const bool penumbraAlone = !shader::allTakeSamplePass(samplePass_);
+    const bool penumbraAlone = !shader::allTakeSamplePass(samplePass_ + within_);
     if (penumbraAlone && penumbra_.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
             penumbra_.push_back(static_cast<uint8_t>(parts.any(i, layer_->penumbra)));
@@ -165,21 +177,25 @@ bool DirectJob::orderSamplePass() {
 
 // Goes on to a sample pass in which any chunk takes part; tells whether the step has one.
 bool DirectJob::seekSamplePass() {
-    for (; samplePass_ < endOfStep(); ++samplePass_)
+    for (; samplePass_ < endOfStep(); samplePass_ += together())
         if (orderSamplePass()) return true;
     return false;
 }
 
-// Goes on to the part of a step that comes next. Returns false where the step is over, or what comes depends
-// on what the first sample pass meets.
+// Goes on to the sample pass of the part that comes next, or the next part of a step. Returns false where the
+// step is over, or what comes depends on what the first sample pass meets.
 bool DirectJob::nextPart() {
+    if (portionPasses() == 1)
+        while (++within_ < together())
+            if (orderSamplePass()) return true;
+    within_ = 0;
     if (++part_ < layer_->parts.size()) {
         orderSamplePass(); // the same chunks as of the part before
         return true;
     }
     part_ = 0;
     if (samplePass_ == 0 && (repairStep_ || endOfStep() > 1)) return false;
-    ++samplePass_;
+    samplePass_ += together();
     return seekSamplePass();
 }
 

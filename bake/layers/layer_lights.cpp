@@ -98,7 +98,8 @@ void LayerLights::traceOnCpu(const Portion& portion) {
 template<typename Lights>
 typename Lights::Work LayerLights::workOf(const Portion& portion) {
     return {.group = portion.part.group,
-            .samplePass = portion.samplePass,
+            .samplePass = portion.samplePass / portion.together,
+            .together = portion.together,
             .range = portion.range,
             .penumbra = portion.penumbra};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -31,15 +32,19 @@ public:
     float reach() const { return lamps_.reach(); }
     /// Returns how many mesh lights there are in all layers.
     size_t emitterCount() const;
-    /// Returns how many chunks a batch of the part may have.
-    uint32_t batchChunks(const DirectPart& part) const {
-        return part.emitters ? emitters_.batchChunks() : lamps_.batchChunks();
+    /// Tells whether several sample passes of the part may be one portion.
+    bool goTogether(const DirectPart& part) const {
+        return !part.emitters || emitters_.goTogether(part.group);
+    }
+    /// Returns how many chunks a batch of the part may have, with so many sample passes in one.
+    uint32_t batchChunks(const DirectPart& part, uint32_t together) const {
+        return std::max(1u, (part.emitters ? emitters_.batchChunks() : lamps_.batchChunks()) / together);
     }
 
-    /// One portion of a sample pass of a part.
+    /// One portion of a sample pass of a part, or of several.
     struct Portion {
         DirectPart part;
-        uint32_t samplePass = 0;
+        uint32_t samplePass = 0, together = 1; // the first one, a multiple of their number
         ChunkRange range;
         const Penumbra* penumbra = nullptr;
         bool newSums = false; // nothing is in the sums yet: the CPU writes all of them

@@ -36,6 +36,12 @@ DirectShares directShares(uint32_t before, uint32_t added) {
     return shares;
 }
 
+uint32_t samplePassesTogether(uint32_t samplePass, uint32_t end) {
+    constexpr uint32_t kMost = shader::kSamplePassesTogether;
+    const bool begins = samplePass >= kMost && samplePass % kMost == 0;
+    return begins && samplePass + kMost <= end ? kMost : 1;
+}
+
 void LayerPass::recordDirect(VkCommandBuffer cmd, const LightBuffers& light, const DirectWork& work,
                              const Penumbra& penumbra) const {
     const DirectShares shares = directShares(work.before, work.added);

@@ -18,6 +18,10 @@ struct DirectShares {
 /// Returns them for `added` sample passes after the first `before`. The first two are added together.
 DirectShares directShares(uint32_t before, uint32_t added);
 
+/// Returns how many sample passes of direct light are taken together from this one on, in a step that ends
+/// before `end`: each step has the same ones again where it is repaired.
+uint32_t samplePassesTogether(uint32_t samplePass, uint32_t end);
+
 /// Holds the kernels that treat layers as wholes. The caller sets the barriers.
 class LayerPass {
 public:

@@ -16,7 +16,7 @@ constexpr double kSegmentLinks = 1.0;
 constexpr double kGatherShare = 0.15;
 // A level aims at this share of the variance that is allowed: a little too much costs bounces of another
 // level.
-constexpr double kAimed = 0.85;
+constexpr double kAimed = 0.95;
 // The sum's bounces are made of so many links per patch: their noise is then about what hybrid's aim is.
 constexpr uint32_t kSumLinks = 64;
 

@@ -26,7 +26,8 @@ void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
-    if (samplePassLeftOut(index)) return;
+    uint taken = takenSamplePasses(index);
+    if (taken == 0u) return;
     bool all = push.all != 0u;
     uint reachedEmitters = 0u, hiddenEmitters = 0u;
     vec3 value[kReplicates];
@@ -54,9 +55,9 @@ void main() {
         if (visible < sum) hiddenEmitters |= bit;
         if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
         for (uint q = 0u; q < kReplicates; ++q) {
-            float count = float(push.pointCount / kReplicates); // of each replicate's points
+            float count = float(push.pointCount / push.together * taken / kReplicates); // of each replicate's points
             if (all && picked.w > 0.0)
-                value[q] += light * (seenLight(picked.w, count, part[q], partVisible[q], sum, visible) / picked.w);
+                value[q] += light * (float(taken) * seenLight(picked.w, count, part[q], partVisible[q], sum, visible) / picked.w);
             else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
         }
     }

@@ -34,23 +34,26 @@ void main() {
         emitter = pickEmitter(p.position, p.shading, sobolPoint(replicateIndex(number), seed).x, probability);
         sequence = replicateIndex(number) * push.pointCount;
     }
+    uint taken = takenSamplePasses(index), points = push.pointCount / push.together * taken;
     vec3 light = vec3(0.0);
     float whole = 0.0; // form factor, without shadows
     EmitterPolygon e;
-    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && !samplePassLeftOut(index)) {
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && taken > 0u) {
         e = loadEmitterPolygon(push.polygons, emitter);
         whole = emitterFormFactor(p.position, p.shading, e);
         light = e.radiance * (whole / probability);
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
     bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p.position, p.area, e);
+    // What is seen of a near light is as uneven over a texel as a penumbra.
+    if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
     float factors = 0.0;
     PatchCover cover = coverOf(index);
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
     vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
     for (uint s = 0u; s < push.pointCount; ++s) {
         vec4 point = vec4(0.0);
-        if (shines) {
+        if (shines && s < points) {
             // If all polygons are sampled, a patch's points take turns among the replicates; if they are
             // picked, a pick's points belong to one.
             uint number = all ? push.samplePass * push.pointCount + s : pick;
@@ -69,7 +72,7 @@ void main() {
         VEC4_AT(push.targets, (base + s) * kChunk + lane) = point;
     }
     if (near) {
-        whole = factors / float(push.pointCount);
+        whole = factors / float(points);
         light = e.radiance * (whole / probability);
     }
     VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane) = vec4(light, whole);

@@ -29,7 +29,8 @@ void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
-    if (samplePassLeftOut(index)) return;
+    uint taken = takenSamplePasses(index);
+    if (taken == 0u) return;
     Patch p = loadPatch(push.patches, index);
     PatchCover cover = coverOf(index); // the sky's samples are made again
     vec3 value[kReplicates];
@@ -47,7 +48,8 @@ void main() {
         vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
         for (uint q = 0u; q < kReplicates; ++q) part[q] = partSeen[q] = vec3(0.0);
         float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
-        for (uint s = 0u; s < l.samples; ++s) {
+        uint samples = takenSamples(l, taken);
+        for (uint s = 0u; s < samples; ++s) {
             LampRay ray = sampled(l, p, cover, s);
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
@@ -65,18 +67,18 @@ void main() {
             else if (visible > 0.0 && wholeLight(l, p).r < 0.0) hiddenLamps |= bit;
         }
         for (uint q = 0u; q < kReplicates; ++q) {
-            vec3 unit = partSeen[q] * (float(kReplicates) / float(l.samples));
+            vec3 unit = partSeen[q] * (float(kReplicates) / float(samples));
             if (l.samples == 1u) {
                 unit = partSeen[0];
             } else if (whole >= 0.0) {
-                float count = float(l.samples / kReplicates);
+                float count = float(samples / kReplicates);
                 unit = vec3(seenLight(whole, count, part[q].r, partSeen[q].r, all, visible));
             }
             if (note.known) {
                 vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);
                 unit = noted + float(kNoteSamplePasses) * (unit - noted);
             }
-            value[q] += l.color * unit;
+            value[q] += l.color * (float(taken) * unit);
         }
     }
     if ((p.flags & kPatchSends) == 0u) return;

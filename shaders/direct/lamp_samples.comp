@@ -11,11 +11,11 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
-    bool leftOut = samplePassLeftOut(index) || !lampNote(l, p, index, gl_WorkGroupID.y).asked;
+    uint samples = lampNote(l, p, index, gl_WorkGroupID.y).asked ? takenSamples(l, takenSamplePasses(index)) : 0u;
     PatchCover cover = coverOf(index);
-    for (uint s = 0u; s < l.samples; ++s) {
+    for (uint s = 0u; s < targetsOf(l); ++s) {
         vec4 target = vec4(0.0);
-        if (!leftOut) {
+        if (s < samples) {
             LampRay ray = lampRay(l, p, cover, s);
             float light = isLamp(l, kLampSky) ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
             target = vec4(ray.target, ray.traced ? light : -light);

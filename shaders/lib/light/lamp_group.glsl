@@ -14,7 +14,17 @@ float skyRow(uint index) { return uintBitsToFloat(WORD_AT(push.skyRows, index));
 #include "lib/light/sky.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };
-Lamp loadLamp(uint indexInGroup) { return Lamps(push.lamps).items[push.firstLamp + indexInGroup]; }
+// Its samples are those of all sample passes that are taken together; a light of one sample has the same one in each.
+Lamp loadLamp(uint indexInGroup) {
+    Lamp l = Lamps(push.lamps).items[push.firstLamp + indexInGroup];
+    if (l.samples > 1u) l.samples *= push.together;
+    l.firstTarget *= push.together;
+    return l;
+}
+uint targetsOf(Lamp l) { return max(l.samples, push.together); }
+uint takenSamples(Lamp l, uint takenSamplePasses) {
+    return l.samples > 1u ? l.samples / push.together * takenSamplePasses : min(takenSamplePasses, 1u);
+}
 
 uint lampCount() { return push.counts & 0xffffu; }
 uint targetCount() { return push.counts >> 16; }

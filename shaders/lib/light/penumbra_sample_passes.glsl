@@ -1,10 +1,12 @@
-// Tells which patches take part in push.samplePass of direct light; with push.penumbra 0, or notes of each patch
-// (lib/light/light_notes.glsl), all do.
+// Tells which patches take part in the sample passes of direct light that are taken together; with
+// push.penumbra 0, or notes of each patch (lib/light/light_notes.glsl), all do.
 #include "lib/light/penumbra.glsl"
 #include "lib/light/light_notes.glsl"
 
-bool samplePassLeftOut(uint patchIndex) {
-    return push.penumbra != 0ul && push.parts != 0ul && !allTakeSamplePass(push.samplePass) && !inPenumbra(patchIndex);
+// Returns how many of these sample passes the patch takes: the first ones.
+uint takenSamplePasses(uint patchIndex) {
+    if (push.penumbra == 0ul || push.parts == 0ul || inPenumbra(patchIndex)) return push.together;
+    return allTakeSamplePass(push.samplePass * push.together) ? 1u : 0u; // no other one of them is for all
 }
 
 // Notes in the first sample pass what the others are to do; bit i is for the lights i % 32.

@@ -68,6 +68,22 @@ TEST(Penumbra, FewPointsAreRightInTheMean) {
     EXPECT_NEAR(pair.darkBias(), 0.0, 0.02) << "a ratio of the sums of four points is 0.13 too dark";
 }
 
+// Layers take four points of a light per sample pass, plain bakes 16. They are the same points, so the layer
+// is to be no noisier: of mesh lights, near ones too, and of analytic ones.
+TEST(Penumbra, FewPointsPerSamplePassAreNoNoisier) {
+    for (const Scene& scene : {generateScene("cornell_statue"), shaded()}) {
+        BakeDesc desc = kDirect;
+        desc.size = 64;
+        desc.samples = 256;
+        const FloatImage layers = bakeScene(scene, desc).lighting;
+        desc.layers = false;
+        const FloatImage plain = bakeScene(scene, desc).lighting;
+        desc.samples = 8192;
+        const FloatImage all = bakeScene(scene, desc).lighting;
+        EXPECT_LT(relativeError(layers, all), 1.25 * relativeError(plain, all)) << scene.path;
+    }
+}
+
 // Where no share is known each sample counts, and nothing may be left out.
 TEST(Penumbra, IsEverywhereWhereTheWholeLightIsUnknown) {
     const Scene scene = shaded(LightType::Disc);

@@ -40,5 +40,22 @@ TEST(DirectShares, OutsideTheFirstCountsUntilThereIsAnother) {
             << pass;
 }
 
+TEST(SamplePassesTogether, AreWholeInTheirStep) {
+    std::vector<uint32_t> begins;
+    for (uint32_t pass = 0; pass < 18; pass += samplePassesTogether(pass, 18))
+        begins.push_back(pass);
+    EXPECT_EQ(begins, (std::vector<uint32_t>{0, 1, 2, 3, 4, 8, 12, 16, 17}));
+    EXPECT_EQ(samplePassesTogether(6, 16), 1u) << "they begin at a multiple of their number";
+    EXPECT_EQ(samplePassesTogether(4, 7), 1u);
+}
+
+// Patches outside penumbrae take the first of them or none.
+TEST(SamplePassesTogether, TheFirstAloneIsForAll) {
+    for (uint32_t pass = shader::kSamplePassesTogether; pass < 200; ++pass)
+        if (pass % shader::kSamplePassesTogether != 0) {
+            EXPECT_FALSE(shader::allTakeSamplePass(pass)) << pass;
+        }
+}
+
 } // namespace
 } // namespace relume

@@ -123,7 +123,7 @@ TEST(NextLayer, WhatHasConvergedStays) {
 TEST(NextLayer, TheWorstComesNext) {
     const ScheduleRules rules = onCpu(offlineRules());
     EXPECT_EQ(stepOf(rules, layersOf(at(2, 2).off(0.02), at(4, 4).off(0.03), at(6, 6).off(0.025))),
-              "layer 1 to 32+32");
+              "layer 1 to 32+24");
     EXPECT_EQ(stepOf(rules, layersOf(at(2, 2).off(0.04), at(4, 4).off(0.03))).substr(0, 7), "layer 0");
 }
 

@@ -46,7 +46,7 @@ TEST(LayerShares, LinksCostLessWhereOthersShareThem) {
     EXPECT_EQ(wantedOf(many), "4+8, 2+2 done, 2+2 done, 2+2 done");
 }
 
-// The composite is off by less than .01, each by more; alone it needs (.012 / .01)^2 / .85 times the samples.
+// The composite is off by less than .01, each by more; alone it needs (.012 / .01)^2 / .95 times the samples.
 TEST(LayerShares, WhatIsSoloedGoesOn) {
     const LayerSchedule::Layers layers = layersOf(direct(0.012), direct(0.012));
     EXPECT_EQ(wantedOf(layers), "2+2 done, 2+2 done");
@@ -58,7 +58,7 @@ TEST(LayerShares, WhatIsSoloedGoesOn) {
 
 TEST(LayerShares, EachHasItsOwnErrorWhereThatIsAsked) {
     const ScheduleRules both = {.error = 0.01, .layerError = 0.01};
-    EXPECT_EQ(wantedOf(layersOf(direct(0.005), direct(0.0135)), both), "2+2 done, 8+2");
+    EXPECT_EQ(wantedOf(layersOf(direct(0.005), direct(0.0142)), both), "2+2 done, 8+2");
     EXPECT_EQ(wantedOf(layersOf(direct(0.005), direct(0.01)), both), "2+2 done, 2+2 done");
 }
 
