@@ -1,6 +1,7 @@
 #include "app/edit/furnishing_options.h"
 
 #include "app/text/option_checks.h"
+#include "assets/base/error.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,7 @@
 #include "app/offline/bake_statistics.h"
 
 #include "assets/base/file_write.h"
+#include "bake/layers/layer_solver.h"
 #include "bake/trace/voxel_map.h"
 
 #include <iostream>

@@ -38,7 +38,7 @@ template<uint32_t kType>
         const shader::LampSample s =
             shader::lampSample(lamp, p, own, shader::sobolPoint(index, seed), desc.reach);
         const float height = glm::dot(s.target - p.position, p.normal);
-        const bool traced = (lanes.sends[i] != 0) & (height > lanes.offset[i]);
+        const bool traced = (lanes.sends[i] & (height > lanes.offset[i] ? 1u : 0u)) != 0; // sends: 0 or 1
         out.x[i] = s.target.x, out.y[i] = s.target.y, out.z[i] = s.target.z;
         out.w[i] = traced ? s.factor : -s.factor;
     }

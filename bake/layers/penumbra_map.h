@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bake/direct/penumbra.h"
 #include "bake/gather/link_kit.h"
 #include "bake/surface/tile_parts.h"
 

@@ -6,7 +6,6 @@
 #include <atomic>
 
 namespace relume {
-namespace {
 
 glm::vec4 albedoOf(const PatchSet& patches, size_t patch, const Material& material) {
     return material.baseColor * patches.albedoPattern[patch];
@@ -22,8 +21,6 @@ bool applyBaseColor(PatchSet& patches, size_t patch, const Material& material) {
     patches.albedo[patch] = clamped ? glm::min(albedo, glm::vec4(patches.maxAlbedo)) : albedo;
     return clamped;
 }
-
-} // namespace
 
 bool applyMaterial(PatchSet& patches, size_t patch, const Material& material) {
     patches.emission[patch] = glm::vec4(material.emission, 0.0f) * patches.emissionPattern[patch];
