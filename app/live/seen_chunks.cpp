@@ -1,5 +1,7 @@
 #include "app/live/seen_chunks.h"
 
+#include "renderer/shader_types.h"
+
 #include <algorithm>
 
 namespace relume {

@@ -1,9 +1,11 @@
 #include "app/live/warm_up.h"
 
+#include "bake/baker/make_solver.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/show/publisher.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/patches.h"
+#include "bake/trace/make_tracer.h"
 #include "bake/vk/program.h"
 
 #include <memory>
