@@ -13,7 +13,8 @@ class FrameWriter {
 public:
     struct Desc {
         std::string path; // FILE.mp4, else a folder
-        /// Where set, tells names for a video, one per call; it takes the first that nothing has, not `path`.
+        /// This tells names for a video where it is set, one per call; the video takes the first that nothing
+        /// has, not `path`.
         std::function<std::string()> nextName = nullptr;
         uint32_t width = 0, height = 0; // of all frames [pixels]
         double rate = 2;                // of a video [frames/s], within the next two

@@ -421,7 +421,7 @@ void sampleChunk(const HostEmitters& work, uint32_t chunk, const Loops& loops) {
         for (uint32_t i = 0; i < kChunk; ++i) {
             if (pick.anyNear && pick.near[i] != 0) {
                 pick.whole[i] = pick.factors[i] / static_cast<float>(work.pointCount * lanes.taken[i]);
-                // What is seen of a near light is as uneven over a texel as a penumbra.
+                // A near light is seen as unevenly over a texel as in a penumbra.
                 on.noteLights(first + i, HostGathered::bitOf(k), HostGathered::bitOf(k));
             }
             picked[k * kChunk + i] = glm::vec4(pick.light(work.polygons[k], i), pick.whole[i]);

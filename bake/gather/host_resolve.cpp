@@ -168,8 +168,10 @@ private:
         local.indirect += glm::dot(off, off) / (3.0f * square);
         local.bias += (move * move - glm::dot(moves, moves) / 3.0f) / square;
         // Replicates know nothing of each other, so the mean of this product is what they have in common.
-        local.fourth += channelMean(indirect.moved[0]) * channelMean(indirect.moved[1]) *
-                        channelMean(indirect.moved[2]) * channelMean(indirect.moved[3]) / (square * square);
+        float fourth = 1.0f;
+        for (const Float4& one : indirect.moved)
+            fourth *= channelMean(one) / relativeTo;
+        local.fourth += fourth;
     }
 
     const LinkResolve& work_;

@@ -37,6 +37,10 @@ public:
     const ChunkDeal& deal() const { return deal_; }
     /// Returns the runs of this rank's chunks.
     std::span<const ChunkRange> own() const { return deal_.runsOf(ranks_.rank()); }
+    /// Returns the chunks whose links this rank keeps; none where it works alone and keeps those of all.
+    std::vector<ChunkRange> linked() const {
+        return alone() ? std::vector<ChunkRange>() : std::vector<ChunkRange>(own().begin(), own().end());
+    }
     /// Returns the chunks whose patches are smoothed along rows: its own, and those beside them.
     const std::vector<ChunkRange>& rows() const { return rows_; }
     /// Returns a mark per chunk for each of these; none where this process works alone.

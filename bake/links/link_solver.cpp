@@ -50,13 +50,6 @@ SolverSettings withTransport(SolverSettings settings) {
     return settings;
 }
 
-// Returns the chunks whose links are kept; none where there are all of them.
-std::vector<ChunkRange> ownChunks(const RankChunks& chunks, bool coarse) {
-    ASSERT(chunks.alone() || !coarse);
-    return chunks.alone() ? std::vector<ChunkRange>()
-                          : std::vector<ChunkRange>(chunks.own().begin(), chunks.own().end());
-}
-
 // Makes what links read of the patches' radiance.
 void recordReadable(VkCommandBuffer cmd, const LinkKit& kit, const std::optional<Footprints>& footprints) {
     const LightBuffers& light = kit.input.light;
@@ -95,14 +88,14 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .links = kit_.linksOfSamplePass,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
-                      .chunks = ownChunks(kit_.rankChunks, coarse_.count > 0),
+                      .chunks = kit_.rankChunks.linked(),
                       .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
       disc_(makeDisc()), radiancePass_(input.device),
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
       directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()), directRate_(kit_.wide()) {
-    ASSERT(input.ranks.alone() || !settings.live);
+    ASSERT(input.ranks.alone() || (!settings.live && coarse_.count == 0));
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
     LinkBuffers& buffers = kit_.buffers;

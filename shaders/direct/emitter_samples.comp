@@ -45,7 +45,7 @@ void main() {
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
     bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p.position, p.area, e);
-    // What is seen of a near light is as uneven over a texel as a penumbra.
+    // A near light is seen as unevenly over a texel as in a penumbra.
     if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
     float factors = 0.0;
     PatchCover cover = coverOf(index);

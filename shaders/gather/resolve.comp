@@ -41,11 +41,12 @@ LocalSums localTerm(vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplica
     }
     float move = 0.25 * channelMean(moved[0] + moved[1] + moved[2] + moved[3]);
     // Replicates know nothing of each other, so the mean of this product is what they have in common.
-    float fourth = channelMean(moved[0]) * channelMean(moved[1]) * channelMean(moved[2]) * channelMean(moved[3]);
+    float fourth = 1.0;
+    for (uint q = 0u; q < kReplicates; ++q) fourth *= channelMean(moved[q]) / relativeTo;
     return LocalSums(dot(directOff, directOff) / (3.0 * relativeTo * relativeTo),
                      dot(off, off) / (3.0 * relativeTo * relativeTo),
                      (move * move - dot(moves, moves) / 3.0) / (relativeTo * relativeTo),
-                     fourth / (relativeTo * relativeTo * relativeTo * relativeTo));
+                     fourth);
 }
 
 void main() {
