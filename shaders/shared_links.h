@@ -73,11 +73,14 @@ struct LinkDistancePush {
     ADDRESS links;     // uint[chunkCount][sampleCount][64]
     ADDRESS receivers; // Patch[] that the links start at: patches, or of a coarser grid
     ADDRESS nodes;     // PyramidNode[], what links from patchCount on mean
-    ADDRESS distances; // float[], per receiver [m]
+    ADDRESS distances; // float[][2], per receiver, along rows and columns of texels [m]
+    ADDRESS patchChart;
+    ADDRESS texelToPatch;
     uint firstChunk;
     uint chunkCount;
     uint sampleCount;
     uint patchCount;
+    uint size; // lightmap edge [texels]; 0: receivers are not the patches, and both distances are the same
 };
 struct PyramidPush {
     ADDRESS nodes;    // PyramidNode[]
@@ -102,8 +105,8 @@ struct InterpolatePush {
     ADDRESS direct;          // vec4[] added to ligOut; 0: nothing
     ADDRESS ligOut;          // vec4[]
     ADDRESS sums;            // vec4[kReplicates][patchCount], added to; 0: not
-    ADDRESS coarseDistances; // float[receiverCount] [m]
-    ADDRESS distances;       // float[patchCount], written; 0: not
+    ADDRESS coarseDistances; // float[receiverCount][2] [m]
+    ADDRESS distances;       // float[patchCount][2], written; 0: not
     uint firstChunk;
     uint chunkCount;
     uint patchCount;
@@ -168,7 +171,7 @@ struct SmoothPush {
     ADDRESS directSums; // vec4[kReplicates][patchCount]; 0: none
     ADDRESS result;     // vec4[patchCount]: lighting, standard error
     ADDRESS chunkSums;  // ResolveSums[chunkCount]
-    ADDRESS distances;  // float[patchCount] [m], of what lights a patch
+    ADDRESS distances;  // float[patchCount][2] [m], of what lights a patch, along rows and columns
     ADDRESS scales;     // vec2[chunkCount]: in place of scale and directScale; 0: these hold for all
     ADDRESS
     local; // uint[kLightBins + kErrorBins], then LocalSums[chunkCount] (lib/local_error.glsl); 0: none

@@ -125,7 +125,8 @@ inline void LineSmoother::load(uint32_t firstLine, uint32_t at, Place& place) co
         place.gx[lane] = p.normal.x, place.gy[lane] = p.normal.y, place.gz[lane] = p.normal.z;
         place.sx[lane] = p.shading.x, place.sy[lane] = p.shading.y, place.sz[lane] = p.shading.z;
         const float area = std::max(p.area, 1e-30f);
-        const float sigma = std::min(work_.sigma, kDistanceShare * work_.distances[index] / std::sqrt(area));
+        const float distance = down_ ? work_.distances[index].y : work_.distances[index].x;
+        const float sigma = std::min(work_.sigma, kDistanceShare * distance / std::sqrt(area));
         place.falloff[lane] = -0.5f / (sigma * sigma * area);
         const auto chart = static_cast<int32_t>(work_.patchChart[index]);
         if (sigma > kLeastSigma) place.chart[lane] = chart;

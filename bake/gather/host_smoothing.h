@@ -16,7 +16,7 @@ struct HostSmoothing {
     const shader::Patch* patches = nullptr;
     const uint32_t* patchChart = nullptr;
     const uint32_t* texelToPatch = nullptr; // [size][size]
-    const float* distances = nullptr;       // [m]; not needed where nothing is smoothed, as rows
+    const glm::vec2* distances = nullptr;   // [m]; not needed where nothing is smoothed, as rows
     const glm::vec4* sums = nullptr;        // over links, [kReplicates][patches]
     glm::vec4* rows = nullptr;              // as sums, written: the smoothed ones
     const glm::vec2* scales = nullptr;      // per chunk: x multiplies its sums; nullptr: nothing does

@@ -62,6 +62,7 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         coarseSums = vk::Buffer(device, {.size = vec4s(kReplicates * receiverCount), .name = "coarse sums"});
     }
     batchChunks = linkBatchChunks(chunks, device.info().software());
+    size = patches.scene.size;
     if (desc.direct)
         directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
     linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
@@ -71,10 +72,10 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
         notes = vk::Buffer(device, {.size = chunks * sizeof(glm::uvec2), .name = "notes of lights"});
     if (desc.smooth) {
         rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
-        distances = vk::Buffer(device, {.size = count * sizeof(float), .name = "link distances"});
+        distances = vk::Buffer(device, {.size = count * sizeof(glm::vec2), .name = "link distances"});
         if (desc.coarse)
             coarseDistances =
-                vk::Buffer(device, {.size = receiverCount * sizeof(float), .name = "coarse distances"});
+                vk::Buffer(device, {.size = receiverCount * sizeof(glm::vec2), .name = "coarse distances"});
     }
     result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
     chunkSums = vk::Buffer(device, {.size = chunks * kSumBytes, .name = "sums per chunk"});
@@ -92,9 +93,9 @@ uint64_t LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64
         receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates)) +
         (receivers > 0 ? count * sizeof(shader::CoarseTaps) : 0);
     const uint64_t direct = desc.direct ? vec4s(kReplicates) : 0;
-    const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(float) : 0;
+    const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(glm::vec2) : 0;
     const uint64_t carried = desc.carries ? vec4s(1) : 0;
-    const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(float) : 0;
+    const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(glm::vec2) : 0;
     const uint64_t notes = desc.notes ? extent.chunkCount * sizeof(glm::uvec2) : 0;
     const uint64_t localError =
         desc.local ? localBytes(extent.chunkCount) + extent.chunkCount * sizeof(glm::vec2) : 0;
@@ -216,10 +217,13 @@ void LinkGatherPass::recordDistances(VkCommandBuffer cmd, const LightBuffers& li
         .receivers = coarse ? buffers.receivers.address() : light.patches.address(),
         .nodes = work.nodes,
         .distances = coarse ? buffers.coarseDistances.address() : buffers.distances.address(),
+        .patchChart = buffers.patchChart.address(),
+        .texelToPatch = buffers.texelToPatch.address(),
         .firstChunk = work.range.first,
         .chunkCount = work.range.count,
         .sampleCount = work.samples,
-        .patchCount = light.chunkCount * kChunk};
+        .patchCount = light.chunkCount * kChunk,
+        .size = coarse ? 0 : buffers.size};
     dispatchChunks(distance_, cmd, push, work.range.count);
 }
 

@@ -29,7 +29,7 @@ struct LinkBuffers {
     vk::Buffer direct;        // vec4 per patch, the mean
     vk::Buffer carried;       // vec4 per patch: light of links that later ones read (carriedShare)
     vk::Buffer notes;         // uvec2 per chunk, of lights (lib/light/light_notes.glsl)
-    vk::Buffer distances;     // float per patch [m], where there is smoothing
+    vk::Buffer distances;     // vec2 per patch, along rows and columns [m], where there is smoothing
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back
     vk::Buffer sums;          // or over all of them
@@ -37,6 +37,7 @@ struct LinkBuffers {
     vk::Buffer scales;        // vec2 per chunk, where chunks have sample passes of their own
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit
+    uint32_t size = 0;        // lightmap edge [texels]
     // These are there where links are followed from fewer patches than there are.
     vk::Buffer receivers, taps, neighbours; // Patch, CoarseTaps, CoarseNeighbours
     vk::Buffer coarseDistances;             // as distances, per receiver

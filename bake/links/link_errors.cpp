@@ -65,7 +65,7 @@ void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
                  {.smoothing = {.patches = kit_.input.light.patches.as<shader::Patch>(),
                                 .patchChart = buffers.patchChart.as<uint32_t>(),
                                 .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
-                                .distances = smooths ? buffers.distances.as<float>() : nullptr,
+                                .distances = smooths ? buffers.distances.as<glm::vec2>() : nullptr,
                                 .sums = buffers.linkSums.as<glm::vec4>(),
                                 .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
                                 .scales = state.scaled ? buffers.scales.as<glm::vec2>() : nullptr,

@@ -35,7 +35,7 @@ std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
             {buffers.direct, kLight},
             {buffers.carried, kLight},
             {buffers.notes, sizeof(glm::uvec2)},
-            {buffers.distances, kChunk * sizeof(float)}};
+            {buffers.distances, kChunk * sizeof(glm::vec2)}};
 }
 
 } // namespace
@@ -60,7 +60,7 @@ void LinkSolver::check() {
 void LinkSolver::resolve() {
     if (kit_.buffers.rows) { // smoothing reads what is near, of other ranks, too
         kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
-        kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(float)});
+        kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(glm::vec2)});
     }
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
     const bool isNew = state_.median == 0;

@@ -23,11 +23,14 @@ void main() {
             sum[q] += weights[t] * VEC4_AT(push.coarse, q * push.receiverCount + receivers[t]).rgb;
     }
     if (push.distances != 0ul) { // harmonic means, like these themselves
-        float inverse = 0.0;
-        for (uint t = 0u; t < 4u; ++t) {
-            if (weights[t] != 0.0) inverse += weights[t] / FLOAT_AT(push.coarseDistances, receivers[t]);
+        for (uint axis = 0u; axis < 2u; ++axis) {
+            float inverse = 0.0;
+            for (uint t = 0u; t < 4u; ++t) {
+                if (weights[t] == 0.0) continue;
+                inverse += weights[t] / FLOAT_AT(push.coarseDistances, 2u * receivers[t] + axis);
+            }
+            FLOAT_AT(push.distances, 2u * index + axis) = 1.0 / max(inverse, 1e-30);
         }
-        FLOAT_AT(push.distances, index) = 1.0 / max(inverse, 1e-30);
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
     vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);

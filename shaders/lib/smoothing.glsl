@@ -4,7 +4,7 @@
 
 const uint kMaxReach = 8u; // texels
 // Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly
-// smoothed.
+// smoothed across them.
 const float kDistanceShare = 0.3;
 
 // Finds the patch of the same chart so many texels away along `axis`, and how much it counts: by distance in
@@ -40,7 +40,7 @@ Taps smoothingTaps(uint own, ivec2 axis) {
     uint chart = WORD_AT(push.patchChart, own), texelIndex = patchTexel(centre.flags);
     ivec2 texel = ivec2(texelIndex % push.size, texelIndex / push.size);
     bool placed = WORD_AT(push.texelToPatch, texelIndex) == own; // else it stands for a whole thin chart
-    float distance = FLOAT_AT(push.distances, own);
+    float distance = FLOAT_AT(push.distances, 2u * own + uint(axis.y));
     float sigma = min(push.sigma, kDistanceShare * distance / sqrt(max(centre.area, 1e-30)));
     placed = placed && sigma > 0.1;
     Taps taps;
