@@ -4,6 +4,7 @@
 
 #include "assets/base/watch.h"
 #include "tests/gpu/bake_scene.h"
+#include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>
 
