@@ -16,11 +16,12 @@ struct HostSmoothing {
     const shader::Patch* patches = nullptr;
     const uint32_t* patchChart = nullptr;
     const uint32_t* texelToPatch = nullptr; // [size][size]
-    const glm::vec2* distances = nullptr;   // [m]; not needed where nothing is smoothed, as rows
-    const glm::vec4* sums = nullptr;        // over links, [kReplicates][patches]
-    glm::vec4* rows = nullptr;              // as sums, written: the smoothed ones
-    const glm::vec2* scales = nullptr;      // per chunk: x multiplies its sums; nullptr: nothing does
-    uint32_t size = 0;                      // lightmap edge [texels]
+    const glm::vec2* distances =
+        nullptr; // [m], along rows and columns; not needed where nothing is smoothed, as rows
+    const glm::vec4* sums = nullptr;   // over links, [kReplicates][patches]
+    glm::vec4* rows = nullptr;         // as sums, written: the smoothed ones
+    const glm::vec2* scales = nullptr; // per chunk: x multiplies its sums; nullptr: nothing does
+    uint32_t size = 0;                 // lightmap edge [texels]
     uint32_t chunkCount = 0;
     uint32_t reach = 0; // [texels], 0: nothing is smoothed
     float sigma = 0;    // [texels]

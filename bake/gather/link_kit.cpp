@@ -22,6 +22,20 @@ ChunkRange LinkKit::nextRange(const BatchRate& rate, uint32_t most, double cost,
                       static_cast<uint32_t>(rate.perMs() / cost * kWorthASubmit));
 }
 
+HostSmoothing LinkKit::smoothing(double sigma, bool smooths) const {
+    const auto width = static_cast<float>(sigma);
+    return {.patches = input.light.patches.as<shader::Patch>(),
+            .patchChart = buffers.patchChart.as<uint32_t>(),
+            .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
+            .distances = smooths ? buffers.distances.as<glm::vec2>() : nullptr,
+            .sums = buffers.linkSums.as<glm::vec4>(),
+            .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
+            .size = buffers.size,
+            .chunkCount = chunkCount(),
+            .reach = smooths ? smoothingReach(width) : 0,
+            .sigma = width};
+}
+
 void LinkKit::reserveBack(VkDeviceSize bytes) {
     if (back_ && back_.size() >= bytes) return;
     back_ = vk::Buffer(input.device, {.size = bytes, .memory = vk::Memory::Host, .name = "sums for the CPU"});

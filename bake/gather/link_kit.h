@@ -4,6 +4,7 @@
 
 #include "bake/base/batch_rate.h"
 #include "bake/base/chunk_order.h"
+#include "bake/gather/host_smoothing.h"
 #include "bake/gather/link_passes.h"
 #include "bake/gather/rank_chunks.h"
 #include "bake/vk/commands.h"
@@ -48,6 +49,9 @@ public:
     bool wide() const { return !input.device.info().software(); }
     /// Tells whether the CPU alone traces, and reads and writes what it works on in place.
     bool tracesOnCpu() const { return gatherPass.onCpu() && !input.tracer.records(); }
+    /// Returns how sums over links are smoothed on the host by this width [texels], all chunks of them;
+    /// smooths is false where they are only read.
+    HostSmoothing smoothing(double sigma, bool smooths) const;
     /// Begins a pass over all chunks.
     void beginPass() { order.begin(chunkCount(), seen); }
     /// Returns the next chunks. cost is that of a chunk over that of those that the rate is of; done is the

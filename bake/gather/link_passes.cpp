@@ -333,7 +333,7 @@ void ResolvePass::record(VkCommandBuffer cmd, const LightBuffers& light, const L
         .firstChunk = 0,
         .chunkCount = 0,
         .patchCount = light.chunkCount * kChunk,
-        .size = work.size,
+        .size = buffers.size,
         .reach = reach,
         .sigma = work.sigma,
         .scale = work.samples > 0 ? 1.0f / perReplicate : 0.0f,

@@ -150,7 +150,6 @@ public:
     void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
                       uint32_t samples) const;
     struct Work {
-        uint32_t size = 0;                // lightmap edge [texels]
         uint32_t samples = 0;             // links per patch in linkSums
         uint32_t directSamplePasses = 0;  // in directSums; 0: no direct light
         float sigma = 0;                  // of smoothing [texels], 0: none

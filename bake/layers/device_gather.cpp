@@ -84,8 +84,7 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
         const vk::Buffer& own = lane > 0 ? bounces_.sums(lane) : buffers.linkSums;
         layerPass_.recordSketch(cmd, light, own, sketch_);
         resolvePass_.record(cmd, light, buffers,
-                            {.size = kit_.input.patches.scene.size,
-                             .samples = linkSamplePasses * kit_.linksOfSamplePass,
+                            {.samples = linkSamplePasses * kit_.linksOfSamplePass,
                              .sigma = static_cast<float>(sigma),
                              .sums = lane > 0 ? &bounces_.sums(lane) : nullptr});
         recordChunkSums(cmd, kResolveValues, 0);

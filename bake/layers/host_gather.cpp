@@ -75,25 +75,14 @@ glm::dvec4 HostGather::change(uint32_t slot, uint32_t) const {
 LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkSamplePasses, double sigma) {
     const LinkBuffers& buffers = kit_.buffers;
     const uint32_t samples = linkSamplePasses * kit_.linksOfSamplePass;
-    const auto width = static_cast<float>(sigma);
     const bool smooths = linkSamplePasses > 0 && buffers.rows;
     const float scale =
         samples > 0 ? static_cast<float>(shader::kReplicates) / static_cast<float>(samples) : 0.0f;
     const LayerResolveSums sums =
-        resolveLayer(kit_.gatherPass.pool(),
-                     {.smoothing = {.patches = kit_.input.light.patches.as<shader::Patch>(),
-                                    .patchChart = buffers.patchChart.as<uint32_t>(),
-                                    .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
-                                    .distances = smooths ? buffers.distances.as<glm::vec2>() : nullptr,
-                                    .sums = buffers.linkSums.as<glm::vec4>(),
-                                    .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
-                                    .size = kit_.input.patches.scene.size,
-                                    .chunkCount = kit_.chunkCount(),
-                                    .reach = smooths ? smoothingReach(width) : 0,
-                                    .sigma = width},
-                      .direct = layer.direct->as<glm::vec4>(),
-                      .result = layer.result.as<glm::vec4>(),
-                      .scale = scale});
+        resolveLayer(kit_.gatherPass.pool(), {.smoothing = kit_.smoothing(sigma, smooths),
+                                              .direct = layer.direct->as<glm::vec4>(),
+                                              .result = layer.result.as<glm::vec4>(),
+                                              .scale = scale});
     LevelSums level{sumsOf(sums.indirect), sumsOf(sums.result), {}};
     const std::span patches(kit_.input.light.patches.as<shader::Patch>(),
                             size_t{kit_.chunkCount()} * shader::kChunk);

@@ -40,8 +40,7 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
     } else {
         VkCommandBuffer cmd = kit_.commands.begin();
         pass_.record(cmd, kit_.input.light, kit_.buffers,
-                     {.size = kit_.input.patches.scene.size,
-                      .samples = state.linkSamplePasses * kit_.linksOfSamplePass,
+                     {.samples = state.linkSamplePasses * kit_.linksOfSamplePass,
                       .directSamplePasses = state.directSamplePasses,
                       .sigma = static_cast<float>(sigma),
                       .scaled = state.scaled,
@@ -56,25 +55,16 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
 
 void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
     const LinkBuffers& buffers = kit_.buffers;
-    const bool smooths = bool(buffers.rows);
     const auto scale = [](float samples) { return samples > 0.0f ? 1.0f / samples : 0.0f; };
     const auto links = static_cast<float>(state.linkSamplePasses * kit_.linksOfSamplePass);
     auto* bins = buffers.local.as<uint32_t>();
     uint32_t* const errorBins = bins + shader::kLightBins;
+    HostSmoothing smoothing = kit_.smoothing(sigma, bool(buffers.rows));
+    if (state.scaled) smoothing.scales = buffers.scales.as<glm::vec2>();
+    smoothing.rowChunks = kit_.rankChunks.rowMarks();
+    smoothing.chunks = own_;
     resolveLinks(kit_.gatherPass.pool(),
-                 {.smoothing = {.patches = kit_.input.light.patches.as<shader::Patch>(),
-                                .patchChart = buffers.patchChart.as<uint32_t>(),
-                                .texelToPatch = buffers.texelToPatch.as<uint32_t>(),
-                                .distances = smooths ? buffers.distances.as<glm::vec2>() : nullptr,
-                                .sums = buffers.linkSums.as<glm::vec4>(),
-                                .rows = smooths ? buffers.rows.as<glm::vec4>() : nullptr,
-                                .scales = state.scaled ? buffers.scales.as<glm::vec2>() : nullptr,
-                                .size = kit_.input.patches.scene.size,
-                                .chunkCount = kit_.chunkCount(),
-                                .reach = smooths ? smoothingReach(static_cast<float>(sigma)) : 0,
-                                .sigma = static_cast<float>(sigma),
-                                .rowChunks = kit_.rankChunks.rowMarks(),
-                                .chunks = own_},
+                 {.smoothing = smoothing,
                   .directSums = state.directSamplePasses > 0 && buffers.directSums
                                     ? buffers.directSums.as<glm::vec4>()
                                     : nullptr,

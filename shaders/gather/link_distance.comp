@@ -22,12 +22,12 @@ vec3 positionAt(ivec2 texel, uint chart, vec3 otherwise) {
 }
 
 // Returns the direction in the world in which a row or column of texels goes on; zero where that is unknown.
-vec3 wayOf(Patch patchOf, uint chart, ivec2 axis) {
+vec3 wayOf(Patch own, uint chart, ivec2 axis) {
     if (push.size == 0u) return vec3(0.0);
-    uint index = patchTexel(patchOf.flags);
+    uint index = patchTexel(own.flags);
     ivec2 texel = ivec2(index % push.size, index / push.size);
-    vec3 d = positionAt(texel + axis, chart, patchOf.position) -
-             positionAt(texel - axis, chart, patchOf.position);
+    vec3 d = positionAt(texel + axis, chart, own.position) -
+             positionAt(texel - axis, chart, own.position);
     return d * inversesqrt(max(dot(d, d), 1e-30));
 }
 

@@ -3,8 +3,8 @@
 
 
 const uint kMaxReach = 8u; // texels
-// Indirect light changes over lengths like the distance of what it comes from: in corners it is hardly
-// smoothed across them.
+// Indirect light changes over lengths like the distance of what it comes from: beside an edge of a
+// room it is hardly smoothed across that.
 const float kDistanceShare = 0.3;
 
 // Finds the patch of the same chart so many texels away along `axis`, and how much it counts: by distance in
