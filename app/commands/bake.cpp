@@ -52,9 +52,8 @@ void checkFiles(const BakeOptions& o, uint32_t pages) {
 class DeviceStart {
 public:
     explicit DeviceStart(const MachineOptions& machine)
-        : device_(std::async(std::launch::async, [&machine] {
-              return std::make_unique<const vk::Device>(vk::Device::Desc{
-                  .select = machine.device, .turn = machine.turn, .validation = machine.validate});
+        : device_(std::async(std::launch::async, [desc = deviceDesc(machine)] {
+              return std::make_unique<const vk::Device>(desc);
           })) {}
     /// Waits for the device; throws Error where there is none.
     std::unique_ptr<const vk::Device> get() { return device_.get(); }

@@ -86,7 +86,7 @@ void exportScene(const ExportCommand& o) {
     std::optional<PhaseProgress> phase(std::in_place, true);
     const PreparedScene prepared = prepareFor(request);
     stopIfInterrupted();
-    const vk::Device device({.select = o.bake.machine.device, .validation = o.bake.machine.validate});
+    const vk::Device device(deviceDesc(o.bake.machine));
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     phase.reset();
     if (!lightmap) desc.onFailure = OnFailure::Keep;

@@ -35,7 +35,8 @@ constexpr const char* kSecondGpu = "second";
 
 /// The device that a live bake runs on, and how its maps reach the display.
 struct BakeDeviceDesc {
-    std::string device = {}; // the same as vk::Device::Desc::select, or kSecondGpu
+    std::string device = {};   // the same as vk::Device::Desc::select, or kSecondGpu
+    uint64_t deviceMemory = 0; // as vk::Device::Desc::memoryLimit
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
     DisplayHost host = {};
@@ -98,6 +99,7 @@ struct BakeStatus {
     std::vector<ConvergencePoint> history;
     std::string device, tracer, display; // what was chosen, with the reason
     uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
+    uint64_t hostBytes = 0;              // of the machine's memory, which the device reads and writes
     uint64_t ballBytes = 0;              // of these, what lights the ball and the grid of probes
     uint32_t validationMessages = 0;
 };

@@ -83,6 +83,7 @@ void BakeLoop::openDevice() {
         vk::Device::Desc{.select = second ? "" : desc_.device,
                          .beside = second ? desc_.host.deviceUuids : std::vector<vk::DeviceUuid>{},
                          .validation = desc_.validation,
+                         .memoryLimit = desc_.deviceMemory,
                          .chosen = [](const vk::DeviceInfo& info) {
                              if (info.software()) yieldToOthers();
                          }});

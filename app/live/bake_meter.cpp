@@ -65,8 +65,8 @@ void BakeMeter::measure(BakeStatus& status, Solver& solver, const vk::Device& de
     status.rays = solver.raysSoFar();
     rays_.add(solver.progress().seconds, status.rays);
     status.raysPerSecond = rays_.perSecond();
-    const uint64_t all = device.info().deviceMemory;
-    status.deviceBytes = all - std::min(device.freeMemory(), all);
+    status.deviceBytes = device.usedMemory();
+    status.hostBytes = device.ledger().bytes() - device.ledger().deviceBytes();
     status.validationMessages = device.validationMessages();
 }
 

@@ -28,7 +28,7 @@ void bakeEdited(const BakeOptions& options, const SceneEdits& edits) {
     readEditedPicture(prepared.scene.sky);
     if (moved) prepared.mesh = flatten(prepared.scene, prepared.atlas);
     furnishLight(prepared, request.prepare.furnishing);
-    const vk::Device device({.select = options.machine.device, .validation = options.machine.validate});
+    const vk::Device device(deviceDesc(options.machine));
     spdlog::info("device: {} ({})", device.info().name, device.info().driver);
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     warnIfDark(prepared.scene, baker.patches());

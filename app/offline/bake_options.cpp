@@ -187,12 +187,24 @@ void addSolverOptionsBeside(CLI::App& command, BakeOptions& options,
     }
 }
 
+vk::Device::Desc deviceDesc(const MachineOptions& machine) {
+    return {.select = machine.device,
+            .turn = machine.turn,
+            .validation = machine.validate,
+            .memoryLimit = machine.memory};
+}
+
 void addMachineOptions(CLI::App& command, BakeOptions& o) {
     command.add_option("--tracer", o.machine.tracer, "What traces rays")
         ->capture_default_str()
         ->check(oneOf(tracerNames()));
     command.add_option("--device", o.machine.device,
                        "Vulkan device: index or part of its name (relume devices)");
+    command.add_option_function<std::string>(
+        "--device-memory",
+        [&o](const std::string& text) { o.machine.memory = typedMemory("--device-memory", text); },
+        "At most so much of the device's memory, as 512M or 2G (default: what is free); what does not fit is "
+        "read from the machine's own");
     command
         .add_option("--reflectivity", o.solve.reflectivity, "Scales the albedo (default 1; preset rtrad 0.9)")
         ->check(numberFrom(0.0, 10.0));

@@ -68,10 +68,14 @@ struct VoxelOptions {
 /// The device, and how it works.
 struct MachineOptions {
     std::string device, tracer = "auto", shaders;
+    uint64_t memory = 0; // of the device at most [bytes]; 0: all that is free
     double batchMs = 20;
     bool deviceGather = false, validate = false;
     uint32_t turn = 0; // which of several devices alike (vk::Device::Desc); no option: a process's place
 };
+
+/// Returns the device that is asked for.
+vk::Device::Desc deviceDesc(const MachineOptions& machine);
 
 /// The texels that are written.
 struct LightmapOptions {

@@ -43,8 +43,8 @@ std::string describeSettings(const BakeSettings& settings) {
     (void)probes, (void)ranks;
     const auto& [resolution, ratio] = voxels;
     const bool marches = ratio > 0 || tracer == TracerKind::Voxel;
-    const auto& [method, layers, pairs, links, cache, transport, passes, error, localError, batchMs, live] =
-        solver;
+    const auto& [method, layers, pairs, links, cache, transport, passes, error, localError, batchMs, live,
+                 spill] = solver;
     return fmt::format(
         "size={} passes={} error={} local-error={} method={}{} conservative={} voxels={} voxel-ratio={}{}{}",
         size, passes, error, localError, methodName(method),

@@ -84,6 +84,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                  {"raysSaved", p.raysSaved},
                  {"cacheBytes", p.cacheBytes},
                  {"cachedShare", p.cachedShare},
+                 {"spilledBytes", s.baker.spilledBytes()},
                  {"raysPerSecond", p.seconds > 0 ? static_cast<double>(p.rays) / p.seconds : 0.0},
                  {"traceSeconds", p.traceSeconds},
                  {"gatherSeconds", p.gatherSeconds},

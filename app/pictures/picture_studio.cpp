@@ -27,8 +27,7 @@ FloatImage PictureStudio::take(const LightmapTexture& lightmap, const DrawSettin
 
 PictureBake::PictureBake(const BakeOptions& options, const BakeRequest& request,
                          const PreparedScene& prepared)
-    : device_({.select = options.machine.device, .validation = options.machine.validate}),
-      size_(request.bake.size) {
+    : device_(deviceDesc(options.machine)), size_(request.bake.size) {
     spdlog::info("device: {} ({})", device_.info().name, device_.info().driver);
     baker_ = std::make_unique<Baker>(device_, prepared.scene, prepared.mesh, request.bake);
     spdlog::info("{} patches", baker_->patches().count);

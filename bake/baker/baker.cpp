@@ -5,8 +5,8 @@
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
 #include "bake/baker/cover_search.h"
-#include "bake/baker/host_room.h"
 #include "bake/baker/inside_search.h"
+#include "bake/baker/memory_plan.h"
 #include "bake/baker/object_mover.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/output/layer_sum.h"
@@ -21,9 +21,6 @@
 
 namespace relume {
 namespace {
-
-// A bake may take this share of the free memory: the driver needs some of its own.
-constexpr double kMemoryShare = 0.9;
 
 // The light of more patches is nothing that one sees at a glance.
 constexpr uint32_t kMostOfGlance = 1u << 21;
@@ -63,46 +60,6 @@ Pictures takePictures(Scene& scene) {
 
 } // namespace
 
-std::string Baker::sizeProblem(const vk::Device& device, const BakeSettings& settings,
-                               const SceneExtent& scene, uint64_t limit) {
-    const uint32_t size = settings.size;
-    const auto bytes = [&](uint32_t edge) {
-        BakeSettings smaller = settings;
-        smaller.size = edge;
-        return deviceBytes(smaller, scene, device.info().software());
-    };
-    const uint64_t needed = bytes(size);
-    // All pages are drawn side by side as one image.
-    const uint32_t sheetLimit = std::min(kMaxSheetSize, device.limits().maxImageDimension2D);
-    const uint32_t imageLimit = std::min(kMaxSize, scene.pages.edgeOf(sheetLimit));
-    if (needed <= limit && size <= imageLimit) return "";
-    constexpr uint32_t kStep = 64;
-    uint32_t fits = std::min(size, imageLimit) / kStep * kStep;
-    while (fits > 0 && bytes(fits) > limit)
-        fits -= kStep;
-    const std::string pages =
-        scene.pages.count > 1 ? " of " + std::to_string(scene.pages.count) + " pages" : "";
-    const std::string mend =
-        fits > 0 ? "--size " + std::to_string(fits) + pages + " fits" : "no size fits, close other programs";
-    if (needed <= limit)
-        return "--size " + std::to_string(size) + pages + " makes a map of " +
-               std::to_string(scene.pages.sheetOf(size)) + " texels a side, and '" + device.info().name +
-               "' takes " + std::to_string(scene.pages.sheetOf(imageLimit)) + ": " + mend;
-    return "--size " + std::to_string(size) + pages + " needs " + std::to_string(needed >> 20) + " MiB on '" +
-           device.info().name + "', which has " + std::to_string(limit >> 20) + " MiB to give: " + mend;
-}
-
-uint64_t Baker::deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software) {
-    const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
-    const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size; // at the most
-    const SolverExtent all{.chunkCount = static_cast<uint32_t>(patches / shader::kChunk + 1),
-                           .texels = texels,
-                           .software = software,
-                           .skyPixels = scene.skyPixels,
-                           .skyRows = scene.skyRows};
-    return memoryNeeds(settings, scene, all).total();
-}
-
 Baker::Baker(const vk::Device& device, const Scene& scene, BakeSurfaces surfaces,
              const BakeSettings& settings, PhaseHook phaseHook)
     : Baker(device, scene, nullptr, std::move(surfaces), settings, std::move(phaseHook), Preparation::Whole) {
@@ -120,9 +77,10 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
     PhaseClock clock(phases_);
     makePatches(std::move(surfaces.mesh), surfaces.former, clock);
     std::optional<Carry> carry = carryFrom(surfaces.former);
+    planSpill();
     {
         const vk::MemoryOwner owner("surface");
-        light_ = std::make_unique<LightBuffers>(device, patches_);
+        light_ = std::make_unique<LightBuffers>(device, patches_, settings_.solver.spill);
     }
     colours_ = std::make_unique<SurfaceColours>(scene.materials);
     clock.end("patches");
@@ -140,7 +98,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
     PhaseClock setUp(phases_);
     std::optional<LayerCarry> layers;
     if (carry) layers.emplace(layerCarry(*carry));
-    solver_ = makeSolver(solverInput(), settings.solver, layers ? &*layers : nullptr);
+    solver_ = makeSolver(solverInput(), settings_.solver, layers ? &*layers : nullptr);
     setUp.end("solver set-up");
 }
 
@@ -167,19 +125,29 @@ void Baker::requireRoom(BakeSurfaces& surfaces) const {
                     std::to_string(kPageStep) + ": give --size " +
                     std::to_string((settings_.size + kPageStep - 1) / kPageStep * kPageStep));
     const SceneExtent extent = extentOf(scene_, surfaces.mesh);
-    const auto problem = [&] {
-        const auto free = static_cast<double>(device_.freeMemory());
-        return sizeProblem(device_, settings_, extent, static_cast<uint64_t>(kMemoryShare * free));
-    };
+    const auto problem = [&] { return planMemory(settings_, extent, roomOn(device_)).problem; };
     std::string now = problem();
     if (!now.empty() && surfaces.former) {
         std::exchange(surfaces.former, nullptr)->layers = {};
         now = problem();
     }
     if (!now.empty()) throw Error(now);
-    const std::optional<uint64_t> host = freeHostMemory();
-    now = host ? hostProblem(settings_, extent, *host) : "";
-    if (!now.empty()) throw Error(now);
+}
+
+// Decides what the host's memory holds, now that it is known how many patches there are.
+void Baker::planSpill() {
+    settings_.solver.spill =
+        spillOf(settings_, extentOf(scene_, patches_.scene.mesh),
+                extentOf(patches_, scene_.sky, device_.info().software()), device_.freeMemory());
+    if (settings_.solver.spill == Spill::None) return;
+    spdlog::info("memory: '{}' has no room for all, {} MiB are read from this machine's memory",
+                 device_.info().name, spilledBytes() >> 20);
+}
+
+uint64_t Baker::spilledBytes() const {
+    return memoryNeeds(settings_, extentOf(scene_, patches_.scene.mesh),
+                       extentOf(patches_, scene_.sky, device_.info().software()))
+        .spilled;
 }
 
 void Baker::makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock) {
@@ -375,9 +343,11 @@ void Baker::onPhase(const char* phase, double done) const {
 
 void Baker::resetSolver(const SolverSettings& settings) {
     solver_ = {}; // before the new one takes its memory
+    const Spill spill = settings_.solver.spill;
     settings_.solver = settings;
+    settings_.solver.spill = std::min(spill, mostSpill(settings));
     makeCovers();
-    solver_ = makeSolver(solverInput(), settings);
+    solver_ = makeSolver(solverInput(), settings_.solver);
 }
 
 void Baker::restart(const SceneEdits& wanted, const SolverSettings& settings) {

@@ -98,16 +98,12 @@ public:
     /// Tells whether each layer of a light has come to its end, and lighting is asked for, which they sum up
     /// to.
     bool sumsLayers(const LightmapDesc& desc) const;
+    /// Returns the bytes of its buffers that are in the host's memory because the device has no room for
+    /// them.
+    uint64_t spilledBytes() const;
     /// Returns Solver::errors() as a grey image in lighting's unit; texels beside charts stay empty. Throws
     /// Error when there is nothing to tell yet.
     FloatImage errorMap() const;
-
-    /// Returns what is wrong with the size where `limit` bytes may be taken, and which one fits; "" when it
-    /// fits itself.
-    static std::string sizeProblem(const vk::Device& device, const BakeSettings& settings,
-                                   const SceneExtent& scene, uint64_t limit);
-    /// Returns the device bytes that a bake of this size takes when every texel is covered.
-    static uint64_t deviceBytes(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
 private:
     /// Holds what stays of a former bake.
@@ -119,6 +115,7 @@ private:
     Baker(const vk::Device& device, const Scene& scene, Scene* editable, BakeSurfaces surfaces,
           const BakeSettings& settings, PhaseHook phaseHook, Preparation preparation);
     void requireRoom(BakeSurfaces& surfaces) const;
+    void planSpill();
     bool goesOnWith(const FormerBake* former, const LightmapPages& pages) const;
     void makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock);
     void makeTracers();

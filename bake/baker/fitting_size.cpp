@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bake/baker/baker.h"
 #include "bake/baker/host_room.h"
 
 namespace relume {
@@ -12,18 +11,11 @@ constexpr uint64_t kShare = 2; // one part in so many of the room
 
 bool fits(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room) {
     if (scene.pages.sheetOf(settings.size) > std::min(kMaxSheetSize, room.imageEdge)) return false;
-    return Baker::deviceBytes(settings, scene, room.software) <= room.device / kShare &&
+    return mostMemoryNeeds(settings, scene, room.software).total() <= room.device / kShare &&
            (!room.host || hostNeeds(settings, scene) <= *room.host / kShare);
 }
 
 } // namespace
-
-BakeRoom roomOn(const vk::Device& device) {
-    return {.device = device.freeMemory(),
-            .host = freeHostMemory(),
-            .imageEdge = device.limits().maxImageDimension2D,
-            .software = device.info().software()};
-}
 
 uint32_t fittingSize(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room,
                      uint32_t least, uint32_t most) {
@@ -31,7 +23,7 @@ uint32_t fittingSize(const BakeSettings& settings, const SceneExtent& scene, con
         return size > kSizeStride ? (size - 1) / kSizeStride * kSizeStride : size / 2;
     };
     BakeSettings smaller = settings;
-    for (smaller.size = std::min(most, Baker::kMaxSize); smaller.size > least;
+    for (smaller.size = std::min(most, kMaxPageSize); smaller.size > least;
          smaller.size = below(smaller.size))
         if (fits(smaller, scene, room)) return smaller.size;
     return least;

@@ -4,8 +4,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-
-#include <fmt/format.h>
+#include <string>
 
 namespace relume {
 namespace {
@@ -17,33 +16,19 @@ constexpr uint64_t kReadBackBytes = sizeof(glm::vec4);
 constexpr uint64_t kTableBytes = sizeof(uint32_t);
 constexpr uint64_t kPatchBytes = sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
                                  sizeof(shader::PatchCover) + 4 * sizeof(glm::vec4) + 4 * sizeof(uint32_t);
+// The light that is read back, and the lightmap and the map of errors that are made of it.
+constexpr uint64_t kResultBytes = 3 * sizeof(glm::vec4);
 
 } // namespace
 
-uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene) {
+uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint64_t spilled) {
     const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
     const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size;
-    return std::max(texels * (kTexelBytes + kReadBackBytes),
-                    texels * (kTexelBytes + kTableBytes) + patches * kPatchBytes);
-}
-
-std::string hostProblem(const BakeSettings& settings, const SceneExtent& scene, uint64_t free) {
-    const auto bytes = [&](uint32_t size) {
-        BakeSettings smaller = settings;
-        smaller.size = size;
-        return hostNeeds(smaller, scene);
-    };
-    const uint64_t needed = bytes(settings.size);
-    if (needed <= free) return "";
-    constexpr uint32_t kStep = 64;
-    uint32_t fits = settings.size / kStep * kStep;
-    while (fits > 0 && bytes(fits) > free)
-        fits -= kStep;
-    const std::string pages = scene.pages.count > 1 ? fmt::format(" of {} pages", scene.pages.count) : "";
-    return fmt::format("--size {}{} needs {} MiB of this machine's memory, which has {} MiB free: {}",
-                       settings.size, pages, needed >> 20, free >> 20,
-                       fits > 0 ? fmt::format("--size {}{} fits", fits, pages)
-                                : std::string("no size fits, close other programs"));
+    const uint64_t read = texels * (kTexelBytes + kReadBackBytes);
+    const uint64_t made = texels * (kTexelBytes + kTableBytes) + patches * kPatchBytes;
+    const uint64_t baked =
+        spilled > 0 ? texels * (kTableBytes + kResultBytes) + patches * kPatchBytes + spilled : 0;
+    return std::max({read, made, baked});
 }
 
 std::optional<uint64_t> availableIn(std::string_view memInfo) {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "bake/baker/memory_needs.h"
@@ -11,12 +10,8 @@ namespace relume {
 
 /// Returns the most bytes of the host's memory that a bake's surfaces take at a time: what the CIT pass
 /// leaves, and the patches that are made of it, when every texel is covered. A device's own memory is not
-/// counted.
-uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene);
-
-/// Returns what is wrong with the size where the host has so much memory free, and which one fits; "" when it
-/// fits itself.
-std::string hostProblem(const BakeSettings& settings, const SceneExtent& scene, uint64_t free);
+/// counted, but so many bytes that it spills to the host once the patches are made.
+uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint64_t spilled = 0);
 
 /// Returns the memory that programs may still take, by the text of /proc/meminfo [bytes]; nothing where it
 /// does not say.

@@ -26,14 +26,9 @@ constexpr double kMostShare = 0.9;
 void shareMemory(const SolverInput& input, SolverSettings& settings) {
     SolverSettings bare = settings;
     bare.cache.kind = CacheSettings::Kind::None;
-    const uint64_t size = input.patches.scene.size;
-    const SolverExtent extent{.chunkCount = input.patches.chunkCount(),
-                              .texels = size * size,
-                              .software = input.device.info().software(),
-                              .skyPixels = input.scene.sky.pixels.size(),
-                              .skyRows = input.scene.sky.height};
+    const SolverExtent extent = extentOf(input.patches, input.scene.sky, input.device.info().software());
     const auto free = static_cast<double>(input.device.freeMemory());
-    const auto own = static_cast<double>(solverBytes(extent, bare));
+    const auto own = static_cast<double>(solverBytes(extent, bare).device);
     const double left = std::max(0.0, kMostShare * free - own) / (settings.layers.on ? 2 : 1);
     if (settings.cache.bytes == 0)
         settings.cache.bytes = static_cast<uint64_t>(std::min(kLinkMemoryShare * free, left));
@@ -42,6 +37,20 @@ void shareMemory(const SolverInput& input, SolverSettings& settings) {
 }
 
 } // namespace
+
+Spill mostSpill(const SolverSettings& settings) {
+    if (isPairMethod(settings.method)) return Spill::None;
+    return settings.links.footprint ? Spill::Links : kMostSpill;
+}
+
+SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software) {
+    const uint64_t size = patches.scene.size;
+    return {.chunkCount = patches.chunkCount(),
+            .texels = size * size,
+            .software = software,
+            .skyPixels = sky.pixels.size(),
+            .skyRows = sky.height};
+}
 
 MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry) {
     ASSERT(input.ranks.alone() || (!isPairMethod(settings.method) && !settings.layers.on));
@@ -66,11 +75,13 @@ MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings, 
     return {.solver = std::make_unique<LinkSolver>(input, complete)};
 }
 
-uint64_t solverBytes(const SolverExtent& extent, const SolverSettings& settings) {
-    if (isPairMethod(settings.method)) return pairSolverBytes(extent, settings);
+SpilledBytes solverBytes(const SolverExtent& extent, const SolverSettings& settings) {
+    if (isPairMethod(settings.method)) return {.device = pairSolverBytes(extent, settings)};
     if (!settings.layers.on) return linkSolverBytes(extent, settings);
-    const uint64_t layers = layerSolverBytes(extent, settings);
-    return settings.layers.optional ? std::max(layers, linkSolverBytes(extent, settings)) : layers;
+    const SpilledBytes layers = layerSolverBytes(extent, settings);
+    if (!settings.layers.optional) return layers;
+    const SpilledBytes links = linkSolverBytes(extent, settings);
+    return {std::max(layers.device, links.device), std::max(layers.host, links.host)};
 }
 
 } // namespace relume

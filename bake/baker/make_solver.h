@@ -16,13 +16,20 @@ struct MadeSolver {
     LayerSolver* layers = nullptr; // the same one, where each light has a layer
 };
 
+/// Tells how much of what a solver takes may be in the host's memory, from where the device reads it in the
+/// order of patches. Pair methods read all of it for each chunk, and footprints read light anywhere.
+Spill mostSpill(const SolverSettings& settings);
+
+/// Returns the extent of these patches; their lights are not counted.
+SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software);
+
 /// Makes a solver; one of layers goes on with what `carry` says, if anything. Throws Error when the method
 /// cannot run (too many pairs, not enough memory).
 MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings,
                       const LayerCarry* carry = nullptr);
 
-/// Returns the most device bytes that a solver's own buffers take at a time, beside LightBuffers, layers and
-/// what is kept in caches, but for the links of one sample pass of LinkSolver.
-uint64_t solverBytes(const SolverExtent& extent, const SolverSettings& settings);
+/// Returns the most bytes that a solver's own buffers take at a time, beside LightBuffers, layers and what is
+/// kept in caches, but for the links of one sample pass of LinkSolver.
+SpilledBytes solverBytes(const SolverExtent& extent, const SolverSettings& settings);
 
 } // namespace relume

@@ -84,7 +84,11 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
     const uint64_t tables = solver.texels * sizeof(uint32_t) + solver.patches() * sizeof(uint32_t);
     MemoryNeeds needs;
     needs.cit = solver.texels * kCitTexelBytes + triangles + pictures;
-    needs.surface = LightBuffers::bytes(solver.chunkCount, startsAllOver(settings.solver));
+    const SpilledBytes light =
+        LightBuffers::bytes(solver.chunkCount, startsAllOver(settings.solver), settings.solver.spill);
+    const SpilledBytes own = solverBytes(solver, settings.solver);
+    needs.surface = light.device;
+    needs.spilled = light.host + own.host;
     needs.trace = triangles;
     if (!tracesOnHost(settings, solver.software)) needs.trace += tables;
     // Its pass has the tables once more.
@@ -93,12 +97,23 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
         needs.inside = std::max(
             insideBytes(solver.chunkCount, solver.software),
             startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount, solver.software) : 0);
-    needs.solver = solverBytes(solver, settings.solver);
+    needs.solver = own.device;
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
     needs.probes = probeNeeds(settings, scene, solver, tables);
     if (solver.software)
         needs.host = kHostBytes * solver.patches() + pairSenderBytes(solver, settings.solver);
     return needs;
+}
+
+MemoryNeeds mostMemoryNeeds(const BakeSettings& settings, const SceneExtent& scene, bool software) {
+    const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
+    const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size;
+    return memoryNeeds(settings, scene,
+                       {.chunkCount = static_cast<uint32_t>(patches / shader::kChunk + 1),
+                        .texels = texels,
+                        .software = software,
+                        .skyPixels = scene.skyPixels,
+                        .skyRows = scene.skyRows});
 }
 
 } // namespace relume

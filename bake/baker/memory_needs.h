@@ -26,15 +26,19 @@ struct MemoryNeeds {
     uint64_t trace = 0;   // the tracer's tables and voxels
     uint64_t inside = 0;  // of the search for patches inside something, gone before the solver comes
     uint64_t solver = 0;
-    uint64_t edits = 0;  // to follow edits of colours
-    uint64_t probes = 0; // with a tracer of their own, beside all that stays
-    uint64_t host = 0;   // a software device's memory is the host's, which holds much of this once more
+    uint64_t edits = 0;   // to follow edits of colours
+    uint64_t probes = 0;  // with a tracer of their own, beside all that stays
+    uint64_t host = 0;    // a software device's memory is the host's, which holds much of this once more
+    uint64_t spilled = 0; // of the surface's and the solver's buffers in the host's memory; not in total()
 
-    /// Returns the most that is taken at a time.
+    /// Returns the most that is taken of the device's memory at a time.
     uint64_t total() const;
 };
 /// Returns what a bake needs; `solver.texels` counts those of the sheet of all pages.
 MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, const SolverExtent& solver);
+/// Returns what a bake needs at most: every texel is covered, and what is not known of the scene is as large
+/// as it can get. `software` says that the device is the CPU.
+MemoryNeeds mostMemoryNeeds(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
 /// Tells whether rays march through voxels, all or some of them.
 bool usesVoxels(const BakeSettings& settings);

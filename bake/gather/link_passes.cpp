@@ -63,21 +63,23 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     }
     batchChunks = linkBatchChunks(chunks, device.info().software());
     size = patches.scene.size;
-    if (desc.direct)
-        directSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "direct sums"});
-    linkSums = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "link sums"});
-    direct = vk::Buffer(device, {.size = vec4s(count), .name = "direct light"});
-    if (desc.carries) carried = vk::Buffer(device, {.size = vec4s(count), .name = "carried light"});
+    const auto spilled = [&](uint64_t bytes, Spill first, const char* name) {
+        return vk::Buffer(device, {.size = bytes, .memory = memoryFrom(first, desc.spill), .name = name});
+    };
+    if (desc.direct) directSums = spilled(vec4s(kReplicates * count), Spill::Direct, "direct sums");
+    linkSums = spilled(vec4s(kReplicates * count), Spill::Links, "link sums");
+    direct = spilled(vec4s(count), Spill::Direct, "direct light");
+    if (desc.carries) carried = spilled(vec4s(count), Spill::Links, "carried light");
     if (desc.notes)
         notes = vk::Buffer(device, {.size = chunks * sizeof(glm::uvec2), .name = "notes of lights"});
     if (desc.smooth) {
-        rows = vk::Buffer(device, {.size = vec4s(kReplicates * count), .name = "smoothed rows"});
-        distances = vk::Buffer(device, {.size = count * sizeof(glm::vec2), .name = "link distances"});
+        rows = spilled(vec4s(kReplicates * count), Spill::Smoothing, "smoothed rows");
+        distances = spilled(count * sizeof(glm::vec2), Spill::Smoothing, "link distances");
         if (desc.coarse)
             coarseDistances =
                 vk::Buffer(device, {.size = receiverCount * sizeof(glm::vec2), .name = "coarse distances"});
     }
-    result = vk::Buffer(device, {.size = vec4s(count), .name = "result"});
+    result = spilled(vec4s(count), Spill::Smoothing, "result");
     chunkSums = vk::Buffer(device, {.size = chunks * kSumBytes, .name = "sums per chunk"});
     sums = vk::Buffer(device, {.size = kSumBytes, .name = "sums over chunks"});
     if (desc.local) {
@@ -87,21 +89,24 @@ LinkBuffers::LinkBuffers(const vk::Device& device, const PatchSet& patches, cons
     rays = vk::Buffer(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "ray counters"});
 }
 
-uint64_t LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers) {
+SpilledBytes LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers) {
     const uint64_t count = extent.patches();
     const uint64_t coarse =
         receivers * (sizeof(shader::Patch) + sizeof(shader::CoarseNeighbours) + vec4s(kReplicates)) +
         (receivers > 0 ? count * sizeof(shader::CoarseTaps) : 0);
-    const uint64_t direct = desc.direct ? vec4s(kReplicates) : 0;
-    const uint64_t smooth = desc.smooth ? vec4s(kReplicates) + sizeof(glm::vec2) : 0;
-    const uint64_t carried = desc.carries ? vec4s(1) : 0;
     const uint64_t coarseDistances = desc.smooth ? receivers * sizeof(glm::vec2) : 0;
     const uint64_t notes = desc.notes ? extent.chunkCount * sizeof(glm::uvec2) : 0;
     const uint64_t localError =
         desc.local ? localBytes(extent.chunkCount) + extent.chunkCount * sizeof(glm::vec2) : 0;
-    return count * (sizeof(uint32_t) + vec4s(kReplicates + 2) + direct + smooth + carried) +
-           extent.texels * sizeof(uint32_t) + coarse + coarseDistances + localError + notes +
-           (uint64_t{extent.chunkCount} + 1) * kSumBytes + shader::kRayCounters * sizeof(uint32_t);
+    SpilledBytes bytes;
+    bytes.device = count * sizeof(uint32_t) + extent.texels * sizeof(uint32_t) + coarse + coarseDistances +
+                   localError + notes + (uint64_t{extent.chunkCount} + 1) * kSumBytes +
+                   shader::kRayCounters * sizeof(uint32_t);
+    const auto add = [&](uint64_t each, Spill first) { bytes.add(count * each, first, desc.spill); };
+    add(vec4s(1) + (desc.smooth ? vec4s(kReplicates) + sizeof(glm::vec2) : 0), Spill::Smoothing);
+    add(vec4s(1) + (desc.direct ? vec4s(kReplicates) : 0), Spill::Direct);
+    add(vec4s(kReplicates) + (desc.carries ? vec4s(1) : 0), Spill::Links);
+    return bytes;
 }
 
 uint32_t smoothingReach(float sigma) {

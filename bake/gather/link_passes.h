@@ -47,14 +47,15 @@ struct LinkBuffers {
     struct Desc {
         bool direct = false; // direct light is sampled
         bool smooth = false;
-        bool local = false;                    // local error is told
-        bool notes = false;                    // chunks take notes of lights
-        bool carries = false;                  // sample passes start from those before
+        bool local = false;   // local error is told
+        bool notes = false;   // chunks take notes of lights
+        bool carries = false; // sample passes start from those before
+        Spill spill = Spill::None;
         const CoarsePatches* coarse = nullptr; // bytes() takes their number instead
     };
     LinkBuffers(const vk::Device& device, const PatchSet& patches, const Desc& desc);
     /// Returns their bytes. Whoever makes `packed` counts it.
-    static uint64_t bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers);
+    static SpilledBytes bytes(const SolverExtent& extent, const Desc& desc, uint64_t receivers);
 };
 
 /// Returns how far smoothing looks [texels], 0 for not at all. sigma is its width [texels].

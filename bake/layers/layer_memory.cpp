@@ -18,7 +18,7 @@ constexpr uint64_t kTurns = 2;
 
 } // namespace
 
-uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
+SpilledBytes layerSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     constexpr uint32_t kPoints = LayerLights::kPoints;
     const uint64_t count = extent.patches(), chunks = extent.chunkCount;
     const uint32_t polygons = extent.lights ? extent.lights->polygonsOfOne : EmitterLight::kAllEmitters;
@@ -35,7 +35,7 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
     const uint32_t links =
         linksOfSamplePass(static_cast<uint32_t>(count), settings.links.samples, extent.software);
     // One batch of links that are not kept is there, nothing else for links.
-    const LinkBuffers::Desc desc{.direct = true, .smooth = settings.links.smooth};
+    const LinkBuffers::Desc desc{.direct = true, .smooth = settings.links.smooth, .spill = settings.spill};
     const uint64_t staging =
         LinkCache::mostBytes({.chunkCount = extent.chunkCount,
                               .links = links,
@@ -50,7 +50,9 @@ uint64_t layerSolverBytes(const SolverExtent& extent, const SolverSettings& sett
     const uint64_t bounces = onCpu ? 0 : kTurns * (count * sizeof(glm::uvec2) + chunks * sizeof(glm::vec4));
     // The composite, and where somebody watches the sum of the layers that do not change.
     const uint64_t mixed = (settings.live ? 2 : 1) * count * sizeof(glm::vec4);
-    return direct + LinkBuffers::bytes(extent, desc, 0) + staging + parts + back + sketch + bounces + mixed;
+    SpilledBytes bytes = LinkBuffers::bytes(extent, desc, 0);
+    bytes.device += direct + staging + parts + back + sketch + bounces + mixed;
+    return bytes;
 }
 
 } // namespace relume

@@ -45,7 +45,7 @@ LinkKit::Desc kitOf(const SolverInput& input, SolverSettings settings, SolverPro
         linksOfSamplePass(input.patches.count, settings.links.samples, input.device.info().software());
     return {.settings = settings,
             .linksOfSamplePass = links,
-            .buffers = {.direct = true, .smooth = settings.links.smooth},
+            .buffers = {.direct = true, .smooth = settings.links.smooth, .spill = settings.spill},
             .chunks = input.patches.chunkCount(),
             .progress = progress,
             .batchMs = batchMs};

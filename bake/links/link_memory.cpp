@@ -46,7 +46,7 @@ bool linksSeeSky(const Sky& sky, const SolverSettings& settings) {
     return settings.passes == 0 && settings.links.indirectScale == 1 && sky.shines() && sky.pixels.empty();
 }
 
-uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
+SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     const uint64_t count = extent.patches();
     const bool hybrid = settings.method == Method::Hybrid;
     // The last chunk may be padding but for one patch.
@@ -57,7 +57,8 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
                                  .smooth = hybrid && settings.links.smooth,
                                  .local = true,
                                  .notes = direct.lamps && samplesPerChunk(settings, extent.software),
-                                 .carries = settings.passes == 0};
+                                 .carries = settings.passes == 0,
+                                 .spill = settings.spill};
     // Charts a texel wide have so many receivers; those of compact ones are fewer.
     const uint32_t scale = settings.links.indirectScale;
     const uint64_t receivers = scale > 1 ? extent.receivers.value_or(count / scale) : 0;
@@ -73,7 +74,9 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const uint64_t nodes = settings.links.footprint ? extent.nodes.value_or(count) : 0;
     const uint64_t packed =
         extent.software && !settings.transport.deviceGather ? 0 : (count + nodes) * sizeof(glm::uvec2);
-    const uint64_t undo = settings.live && !desc.smooth ? shader::kReplicates * count * sizeof(glm::vec4) : 0;
+    SpilledBytes undo;
+    if (settings.live && !desc.smooth)
+        undo.add(shader::kReplicates * count * sizeof(glm::vec4), Spill::Links, settings.spill);
     // Radiance with nodes is made beside the one without, which goes before the rest comes.
     const uint64_t radiance = nodes * sizeof(glm::vec4);
     const uint64_t before = settings.links.footprint ? count * sizeof(glm::vec4) : 0;
@@ -81,9 +84,12 @@ uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& setti
     const uint64_t disc = settings.links.directions == DirectionSet::Lec
                               ? uint64_t{samples} / shader::kReplicates * sizeof(glm::vec2)
                               : 0;
-    return direct.bytes + LinkBuffers::bytes(extent, desc, receivers) + LinkCache::mostBytes(cache) +
-           (nodes > 0 ? Footprints::bytes(count, nodes) : 0) + radiance +
-           std::max(before, packed + undo + disc);
+    SpilledBytes bytes = LinkBuffers::bytes(extent, desc, receivers);
+    bytes.device += direct.bytes + LinkCache::mostBytes(cache) +
+                    (nodes > 0 ? Footprints::bytes(count, nodes) : 0) + radiance +
+                    std::max(before, packed + undo.device + disc);
+    bytes.host += undo.host;
+    return bytes;
 }
 
 } // namespace relume

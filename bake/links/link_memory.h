@@ -15,8 +15,8 @@ bool samplesPerChunk(const SolverSettings& settings, bool software);
 /// links of its own, and the sky is of one radiance. Else rays are sent to it, as to other lights.
 bool linksSeeSky(const Sky& sky, const SolverSettings& settings);
 
-/// Returns the most device bytes that LinkSolver takes at a time, beside LightBuffers. Where no number is
+/// Returns the most bytes that LinkSolver takes at a time, beside LightBuffers. Where no number is
 /// known for the cache (CacheSettings::bytes is 0), the links of a whole sample pass are kept.
-uint64_t linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings);
+SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings);
 
 } // namespace relume

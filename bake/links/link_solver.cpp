@@ -80,6 +80,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                         .local = true,
                         .notes = !lamps_.empty() && samplesPerChunk(settings, input.device.info().software()),
                         .carries = settings.passes == 0,
+                        .spill = settings.spill,
                         .coarse = coarse_.count > 0 ? &coarse_ : nullptr},
             .chunks = std::max(input.patches.chunkCount(), coarse_.chunkCount()),
             .progress = progress_,
@@ -113,8 +114,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
     }
     kit_.run(cmd);
     if (settings.live && !buffers.rows)
-        undo_ = vk::Buffer(input.device,
-                           {.size = buffers.linkSums.size(), .name = "sums before the sample pass"});
+        undo_ = vk::Buffer(input.device, {.size = buffers.linkSums.size(),
+                                          .memory = memoryFrom(Spill::Links, settings.spill),
+                                          .name = "sums before the sample pass"});
     progress_.cacheBytes = batches_.cache().bytes();
     progress_.cachedShare = batches_.cache().share();
 }

@@ -100,6 +100,7 @@ struct SolverSettings {
     double localError = 0; // link methods: and when the local error (localError95) is, too; 0: it may be any
     double batchMs = 20.0; // aim of one submit
     bool live = false;     // liveLight() will be asked, and abortPass() forgets at once: takes more memory
+    Spill spill = Spill::None; // which of the link methods' buffers are in the host's memory, at least
 };
 
 /// Tells whether samples start all over their texels.

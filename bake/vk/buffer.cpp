@@ -72,6 +72,7 @@ void Buffer::create(const Desc& desc) {
     if (desc.imported) byAddress.pNext = &import;
     memory_ = allocateMemory(*device_, {.size = desc.imported ? desc.size : needs.size,
                                         .type = type,
+                                        .ofHost = desc.memory == Memory::Host,
                                         .chain = &byAddress,
                                         .name = desc.name,
                                         .what = what});

@@ -9,7 +9,7 @@ namespace relume::vk {
 
 enum class Memory {
     Device, // device-local; mapped all the same where the device shares memory with the CPU
-    Host,   // host-visible, coherent, cached: staging, readback, results that the CPU writes
+    Host,   // host-visible, coherent, cached: staging, readback, results that the CPU writes, what is spilled
 };
 
 /// Owns a VkBuffer and its memory; move-only. A buffer is always usable as storage, as transfer source and
@@ -77,12 +77,13 @@ void uploadElements(const Device& device, const Buffer& buffer, const std::vecto
     uploadParts(device, buffer, values.data(), partsOf(indices, sizeof(T)));
 }
 
-/// Returns a device buffer with a copy of `values`; it has at least 16 bytes, so that an empty list has an
+/// Returns a buffer with a copy of `values`; it has at least 16 bytes, so that an empty list has an
 /// address too.
 template<typename T>
 Buffer makeBuffer(const Device& device, std::span<const T> values, const char* name,
-                  VkBufferUsageFlags extraUsage = 0) {
+                  VkBufferUsageFlags extraUsage = 0, Memory memory = Memory::Device) {
     Buffer buffer(device, {.size = values.size_bytes() < 16 ? 16 : values.size_bytes(),
+                           .memory = memory,
                            .extraUsage = extraUsage,
                            .name = name});
     if (!values.empty()) upload(device, buffer, values.data(), values.size_bytes());
@@ -90,8 +91,8 @@ Buffer makeBuffer(const Device& device, std::span<const T> values, const char* n
 }
 template<typename T>
 Buffer makeBuffer(const Device& device, const std::vector<T>& values, const char* name,
-                  VkBufferUsageFlags extraUsage = 0) {
-    return makeBuffer(device, std::span<const T>(values), name, extraUsage);
+                  VkBufferUsageFlags extraUsage = 0, Memory memory = Memory::Device) {
+    return makeBuffer(device, std::span<const T>(values), name, extraUsage, memory);
 }
 
 template<typename T>

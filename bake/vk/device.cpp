@@ -94,7 +94,7 @@ const DeviceInfo& chooseDevice(const std::vector<DeviceInfo>& infos, const std::
     return found;
 }
 
-Device::Device(const Desc& desc) {
+Device::Device(const Desc& desc) : memoryLimit_(desc.memoryLimit) {
     if (!openLoader()) throw Error("no Vulkan loader found: install libvulkan1");
     try {
         const InstanceDesc instanceDesc{
@@ -212,7 +212,16 @@ void Device::submit(const VkSubmitInfo& info) const {
 }
 
 uint64_t Device::freeMemory() const {
-    return freeDeviceMemory(physical_, memoryBudget_);
+    return std::min(freeDeviceMemory(physical_, memoryBudget_), freeOfLimit());
+}
+
+uint64_t Device::usedMemory() const {
+    return info_.deviceMemory - std::min(info_.deviceMemory, freeDeviceMemory(physical_, memoryBudget_));
+}
+
+uint64_t Device::freeOfLimit() const {
+    if (memoryLimit_ == 0) return UINT64_MAX;
+    return memoryLimit_ - std::min(memoryLimit_, ledger_->deviceBytes());
 }
 
 uint32_t Device::memoryType(uint32_t typeBits, VkMemoryPropertyFlags properties) const {

@@ -80,6 +80,8 @@ public:
         std::vector<DeviceUuid> beside = {};
         bool validation =
             false; // Khronos validation with synchronization validation; messages are counted and logged
+        // No more of the device's memory is taken than this [bytes]; 0: all that is free.
+        uint64_t memoryLimit = 0;
         // Called before the logical device and its pool of threads are made: these threads, and those of a
         // software driver, inherit the priority that the calling thread has then.
         std::function<void(const DeviceInfo&)> chosen = {};
@@ -105,8 +107,12 @@ public:
     const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& rayTracing() const { return rayTracing_; }
     bool anisotropy() const { return anisotropy_; } // samplers may filter anisotropically
     uint32_t accelScratchAlignment() const { return accelScratchAlignment_; }
-    /// Returns the device-local memory that is free now [bytes].
+    /// Returns the device-local memory that is free now, and within the limit [bytes].
     uint64_t freeMemory() const;
+    /// Returns the device-local memory that is in use now, whoever uses it [bytes].
+    uint64_t usedMemory() const;
+    /// Returns what the limit leaves now [bytes], the most there is where there is none.
+    uint64_t freeOfLimit() const;
     /// Returns the index of a memory type with these properties among `typeBits`; ~0u if there is none.
     uint32_t memoryType(uint32_t typeBits, VkMemoryPropertyFlags properties) const;
     /// Returns the memory type for Memory::Device: on a discrete GPU not the one the CPU sees too (a small
@@ -153,6 +159,7 @@ private:
     VkPhysicalDeviceMemoryProperties memory_{};
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayTracing_{};
     uint32_t accelScratchAlignment_ = 0;
+    uint64_t memoryLimit_ = 0;
     bool memoryBudget_ = false;
     bool debugUtils_ = false;
     bool anisotropy_ = false;

@@ -18,9 +18,10 @@ MemoryBlock allocateMemory(const Device& device, const MemoryDesc& desc) {
     if (desc.type == ~0u)
         throw Error(device.info().name + ": no memory type for " + desc.what + ": try another --device");
     // Asking for more than the heap has is against Vulkan's rules.
-    if (desc.size > device.heapSize(desc.type) || !device.ledger().admit())
+    const bool beyond = !desc.ofHost && desc.size > device.freeOfLimit();
+    if (beyond || desc.size > device.heapSize(desc.type) || !device.ledger().admit())
         checkMemory(device, VK_ERROR_OUT_OF_DEVICE_MEMORY, "", desc.what);
-    MemoryLedger::Account& account = device.ledger().open(desc.name);
+    MemoryLedger::Account& account = device.ledger().open(desc.name, desc.ofHost);
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, desc.chain};
     info.allocationSize = desc.size;
     info.memoryTypeIndex = desc.type;

@@ -9,6 +9,7 @@ namespace relume::vk {
 struct MemoryDesc {
     VkDeviceSize size = 0;       // [bytes]
     uint32_t type = ~0u;         // ~0u: there is none
+    bool ofHost = false;         // Memory::Host, which is none of the device's
     const void* chain = nullptr; // what follows VkMemoryAllocateInfo
     const char* name = "";       // for the device's ledger
     std::string what;            // for an Error: "buffer 'bits' of 3 MiB"

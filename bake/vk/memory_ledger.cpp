@@ -12,9 +12,11 @@ thread_local const char* memoryOwner = "";
 
 } // namespace
 
-MemoryLedger::Account& MemoryLedger::open(const std::string& name) {
+MemoryLedger::Account& MemoryLedger::open(const std::string& name, bool ofHost) {
     const std::lock_guard lock(mutex_);
-    return accounts_[{memoryOwner, name}];
+    Account& account = accounts_[{memoryOwner, name, ofHost}];
+    account.ofHost = ofHost;
+    return account;
 }
 
 void MemoryLedger::add(Account& account, uint64_t bytes) {
@@ -22,6 +24,9 @@ void MemoryLedger::add(Account& account, uint64_t bytes) {
     account.bytes += bytes;
     bytes_ += bytes;
     peak_ = std::max(peak_, bytes_);
+    if (account.ofHost) return;
+    deviceBytes_ += bytes;
+    devicePeak_ = std::max(devicePeak_, deviceBytes_);
 }
 
 void MemoryLedger::remove(Account& account, uint64_t bytes) {
@@ -29,11 +34,17 @@ void MemoryLedger::remove(Account& account, uint64_t bytes) {
     ASSERT(account.bytes >= bytes && bytes_ >= bytes);
     account.bytes -= bytes;
     bytes_ -= bytes;
+    if (!account.ofHost) deviceBytes_ -= bytes;
 }
 
 uint64_t MemoryLedger::bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_;
+}
+
+uint64_t MemoryLedger::deviceBytes() const {
+    const std::lock_guard lock(mutex_);
+    return deviceBytes_;
 }
 
 uint64_t MemoryLedger::bytesOf(const std::string& owner) const {
@@ -49,9 +60,15 @@ uint64_t MemoryLedger::peak() const {
     return peak_;
 }
 
+uint64_t MemoryLedger::devicePeak() const {
+    const std::lock_guard lock(mutex_);
+    return devicePeak_;
+}
+
 void MemoryLedger::resetPeak() {
     const std::lock_guard lock(mutex_);
     peak_ = bytes_;
+    devicePeak_ = deviceBytes_;
 }
 
 std::map<MemoryLedger::Key, uint64_t> MemoryLedger::entries() const {

@@ -9,29 +9,36 @@
 
 namespace relume::vk {
 
-/// Counts the memory that is allocated on a device, by owner and name. Any thread may use it.
+/// Counts the memory that is allocated on a device and, for it, on the host, by owner and name. Any thread
+/// may use it.
 class MemoryLedger {
 public:
     /// Tells whose memory it is ("pairs") and what it holds ("partial sums").
     struct Key {
         std::string owner, name;
+        bool ofHost = false; // Memory::Host
         auto operator<=>(const Key&) const = default;
     };
     /// The memory of one key. Its address holds as long as the ledger.
     struct Account {
         uint64_t bytes = 0;
+        bool ofHost = false;
     };
 
     /// Returns the account for memory of this name and the calling thread's MemoryOwner.
-    Account& open(const std::string& name);
+    Account& open(const std::string& name, bool ofHost = false);
     void add(Account& account, uint64_t bytes);
     void remove(Account& account, uint64_t bytes);
 
     uint64_t bytes() const; // allocated now
+    /// Returns those of them that are not Memory::Host.
+    uint64_t deviceBytes() const;
     /// Returns the bytes of one owner now.
     uint64_t bytesOf(const std::string& owner) const;
     /// Returns the most bytes that were allocated at a time since resetPeak(), or since the beginning.
     uint64_t peak() const;
+    /// Returns the same of deviceBytes().
+    uint64_t devicePeak() const;
     void resetPeak();
     /// Returns the bytes of all keys that hold memory now.
     std::map<Key, uint64_t> entries() const;
@@ -50,6 +57,7 @@ private:
     mutable std::mutex mutex_;
     std::map<Key, Account> accounts_;
     uint64_t bytes_ = 0, peak_ = 0;
+    uint64_t deviceBytes_ = 0, devicePeak_ = 0;
     uint64_t allocations_ = 0;
     std::optional<uint64_t> untilFailure_; // allocations up to the one that fails
 };

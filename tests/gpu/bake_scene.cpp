@@ -210,6 +210,7 @@ BakeSettings settingsOf(const BakeDesc& desc) {
     settings.solver.transport.rtrad = desc.rtrad;
     settings.solver.transport.deviceGather = desc.deviceGather;
     settings.solver.live = desc.live;
+    settings.solver.spill = desc.spill;
     settings.solver.layers = {.on = desc.layers, .bytes = desc.layerBytes, .error = desc.layerError};
     if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
     return settings;

@@ -91,6 +91,7 @@ struct BakeDesc {
     bool layers = false;
     double layerError = 0;              // of each layer by itself; 0: any
     uint64_t layerBytes = 0;            // at most; 0: as much as there is
+    Spill spill = Spill::None;          // at least
     const vk::Device* device = nullptr; // nullptr: testDevice()
 };
 

@@ -53,6 +53,9 @@ void drawBake(const BakeStatus& status) {
     if (status.deviceBytes > 0)
         ui::row("Device memory",
                 fmt::format("{:.1f} MiB", static_cast<double>(status.deviceBytes) / ui::kMebi));
+    if (status.hostBytes > 0)
+        ui::row("Host memory for the device",
+                fmt::format("{:.1f} MiB", static_cast<double>(status.hostBytes) / ui::kMebi));
     if (status.ballBytes > 0)
         ui::row("Ball and probes",
                 fmt::format("{:.1f} MiB", static_cast<double>(status.ballBytes) / ui::kMebi));

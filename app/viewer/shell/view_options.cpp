@@ -89,6 +89,7 @@ ViewerDesc resolveViewOptions(const ViewOptions& o) {
     ViewerDesc desc{.scene = o.bake.files.scene,
                     .request = resolveBakeOptions(o.bake),
                     .device = o.bakeDevice.empty() ? o.bake.machine.device : o.bakeDevice,
+                    .deviceMemory = o.bake.machine.memory,
                     .validation = o.bake.machine.validate,
                     .display = displayModeOf(o.display),
                     .budgetMs = o.budget,

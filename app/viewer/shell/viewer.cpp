@@ -77,6 +77,7 @@ LiveBake& Viewer::startBake() {
     const gl::GlSharing sharing = gl::querySharing();
     bake_ = std::make_unique<LiveBake>(
         LiveBake::Desc{.device = desc_.device,
+                       .deviceMemory = desc_.deviceMemory,
                        .validation = desc_.validation,
                        .display = desc_.display,
                        .host = {.memoryObjects = sharing.memoryObject, .deviceUuids = sharing.deviceUuids},

@@ -30,7 +30,8 @@ namespace relume {
 struct ViewerDesc {
     std::string scene; // "": none yet
     BakeRequest request;
-    std::string device; // the same as LiveBake::Desc::device
+    std::string device;        // the same as LiveBake::Desc::device
+    uint64_t deviceMemory = 0; // likewise
     bool validation = false;
     DisplayMode display = DisplayMode::Auto;
     double budgetMs = 8;            // how long a batch should take while the camera is still

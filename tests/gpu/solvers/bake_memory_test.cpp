@@ -1,6 +1,7 @@
 // This checks how much of the device's memory a bake takes.
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/baker/make_solver.h"
+#include "bake/baker/memory_plan.h"
 #include "bake/gather/coarse_patches.h"
 #include "bake/gather/link_cache.h"
 #include "bake/layers/layer_bounces.h"
@@ -196,8 +197,8 @@ TEST_P(BakeMemoryOf, WhatIsEstimatedIsWhatIsTaken) {
     unknown.senders.reset();
     unknown.receivers.reset();
     unknown.nodes.reset();
-    EXPECT_GE(solverBytes(unknown, settings.solver), needs.solver);
-    EXPECT_GE(Baker::deviceBytes(settings, extentOf(scene, patches.scene.mesh), extent.software),
+    EXPECT_GE(solverBytes(unknown, settings.solver).device, needs.solver);
+    EXPECT_GE(mostMemoryNeeds(settings, extentOf(scene, patches.scene.mesh), extent.software).total(),
               taken.all - taken.layers - (linksCounted ? 0 : taken.caches));
 }
 
@@ -250,22 +251,23 @@ TEST(BakeMemory, AVoxelMapTakesWhatItSays) {
 }
 
 TEST(BakeMemory, ASizeThatDoesNotFitIsRefusedWithOneThatDoes) {
-    const vk::Device& device = testDevice();
     BakeSettings settings;
     settings.size = 2048;
-    constexpr SceneExtent kExtent{.triangles = 1000};
-    constexpr uint64_t kLimit = uint64_t{512} << 20;
-    const std::string problem = Baker::sizeProblem(device, settings, kExtent, kLimit);
+    BakeRoom room = roomOn(testDevice());
+    room.device = uint64_t{512} << 20;
+    const auto problemNow = [&] { return planMemory(settings, {.triangles = 1000}, room).problem; };
+    const std::string problem = problemNow();
     ASSERT_TRUE(problem.ends_with(" fits")) << problem;
     const size_t end = problem.rfind(" fits"), begin = problem.rfind(' ', end - 1);
     const auto fits = static_cast<uint32_t>(std::stoul(problem.substr(begin, end - begin)));
     EXPECT_GE(fits, 64u);
     EXPECT_LT(fits, settings.size);
     settings.size = fits;
-    EXPECT_EQ(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
+    EXPECT_EQ(problemNow(), "");
     settings.size = fits + 64;
-    EXPECT_NE(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
-    EXPECT_NE(Baker::sizeProblem(device, settings, kExtent, 0).find("no size fits"), std::string::npos);
+    EXPECT_NE(problemNow(), "");
+    room.device = 0;
+    EXPECT_NE(problemNow().find("no size fits"), std::string::npos);
 }
 
 } // namespace relume

@@ -2,7 +2,7 @@
 #include "assets/atlas/world_mesh.h"
 #include "assets/images/metrics.h"
 #include "assets/images/paged_image.h"
-#include "bake/baker/memory_needs.h"
+#include "bake/baker/memory_plan.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
 
@@ -72,30 +72,37 @@ TEST(PagedBake, IsTheSameBytesWhateverTheBatches) {
 }
 
 TEST(PagedBake, SizesThatDoNotFitAreRefusedWithOneThatDoes) {
-    const vk::Device& device = testDevice();
     BakeSettings settings;
     settings.size = 2048;
     constexpr SceneExtent kExtent{.triangles = 1000, .pages = {4}};
-    constexpr uint64_t kLimit = uint64_t{1} << 30;
-    const std::string problem = Baker::sizeProblem(device, settings, kExtent, kLimit);
+    BakeRoom place = roomOn(testDevice());
+    place.device = uint64_t{1} << 30;
+    const auto problemOf = [&](const SceneExtent& scene) {
+        return planMemory(settings, scene, place).problem;
+    };
+    const std::string problem = problemOf(kExtent);
     ASSERT_TRUE(problem.ends_with(" of 4 pages fits")) << problem;
     const size_t begin = problem.rfind("--size ") + 7;
     const auto fits = static_cast<uint32_t>(std::stoul(problem.substr(begin)));
     EXPECT_LT(fits, settings.size);
     settings.size = fits;
-    EXPECT_EQ(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
+    EXPECT_EQ(problemOf(kExtent), "");
     settings.size = fits + 64;
-    EXPECT_NE(Baker::sizeProblem(device, settings, kExtent, kLimit), "");
+    EXPECT_NE(problemOf(kExtent), "");
     // However much memory there is, texels are numbered by 29 bits and a device's images have a largest size.
     settings.size = Baker::kMaxSize;
+    place.device = uint64_t{1} << 50;
+    place.host.reset();
     constexpr SceneExtent kMany{.triangles = 1000, .pages = {64}};
-    const std::string tooMany = Baker::sizeProblem(device, settings, kMany, ~uint64_t{0});
+    const std::string tooMany = problemOf(kMany);
     EXPECT_NE(tooMany.find("makes a map of 65536 texels a side"), std::string::npos) << tooMany;
     EXPECT_NE(tooMany.find("of 64 pages fits"), std::string::npos) << tooMany;
     // Fewer pages than the sheet has room for have fewer patches, and so need less.
     settings.size = 2048;
-    EXPECT_LT(Baker::deviceBytes(settings, {.triangles = 1000, .pages = {5}}, true),
-              Baker::deviceBytes(settings, {.triangles = 1000, .pages = {9}}, true));
+    const auto needed = [&](uint32_t pages) {
+        return mostMemoryNeeds(settings, {.triangles = 1000, .pages = {pages}}, true).total();
+    };
+    EXPECT_LT(needed(5), needed(9));
 }
 
 TEST(PagedBake, ASizeThatIsNoMultipleOfATileIsRefused) {

@@ -1,6 +1,5 @@
 #include "bake/baker/fitting_size.h"
 
-#include "bake/baker/baker.h"
 #include "bake/baker/host_room.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +29,8 @@ TEST(FittingSize, TakesHalfOfTheRoomAndNoMore) {
             const uint32_t size = fittingSize(settings, kLevel, room, kLeastEdge, kMostEdge);
             const auto needs = [&](uint32_t edge) {
                 settings.size = edge;
-                return std::max(Baker::deviceBytes(settings, kLevel, software), hostNeeds(settings, kLevel));
+                return std::max(mostMemoryNeeds(settings, kLevel, software).total(),
+                                hostNeeds(settings, kLevel));
             };
             EXPECT_TRUE(size == kLeastEdge || needs(size) <= room.device / 2) << gib << " GiB";
             EXPECT_TRUE(size == kMostEdge || needs(size + kSizeStride) > room.device / 2) << gib << " GiB";

@@ -5,23 +5,6 @@
 namespace relume {
 namespace {
 
-TEST(HostRoom, WhatDoesNotFitIsRefusedWithTheSizeThatDoes) {
-    BakeSettings settings;
-    settings.size = 8192;
-    const SceneExtent one{.triangles = 1000}, four{.triangles = 1000, .pages = {4}};
-    EXPECT_EQ(hostNeeds(settings, four), 4 * hostNeeds(settings, one));
-    constexpr uint64_t kFree = uint64_t{8} << 30;
-    EXPECT_EQ(hostProblem(settings, one, uint64_t{64} << 30), "");
-    const std::string problem = hostProblem(settings, four, kFree);
-    ASSERT_TRUE(problem.ends_with(" of 4 pages fits")) << problem;
-    settings.size = static_cast<uint32_t>(std::stoul(problem.substr(problem.rfind("--size ") + 7)));
-    EXPECT_GE(settings.size, 1024u);
-    EXPECT_EQ(hostProblem(settings, four, kFree), "");
-    settings.size += 64;
-    EXPECT_NE(hostProblem(settings, four, kFree), "");
-    EXPECT_NE(hostProblem(settings, four, 0).find("no size fits"), std::string::npos);
-}
-
 // On five pages' sheet there is room for nine.
 TEST(HostRoom, WhatIsLeftOverOnTheSheetHasNoPatches) {
     BakeSettings settings;

@@ -1,0 +1,160 @@
+// This checks bakes whose buffers are in part in the host's memory.
+#include "bake/baker/make_solver.h"
+#include "bake/baker/memory_plan.h"
+#include "tests/gpu/bake_comparison.h"
+#include "tests/gpu/bake_scene.h"
+#include "tests/gpu/gpu_environment.h"
+#include "tests/gpu/light_at.h"
+#include "tests/message_of.h"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+namespace relume {
+namespace {
+
+constexpr uint32_t kSpillEdge = 96;
+
+/// Makes a closed room with a mesh light and a panel, so that all kinds of light have their buffers. Each
+/// texel of a map of kSpillEdge becomes scale * scale of them.
+Scene spillRoom(uint32_t scale = 1) {
+    SceneMaker maker(scale * kSpillEdge);
+    const int wall = maker.material(0.6f);
+    const glm::uvec2 texels = scale * glm::uvec2(46, 27); // of a wall: eight tenths of the map are covered
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, {wall, wall, wall, wall, wall, wall},
+              {texels, texels, texels, texels, texels, texels});
+    maker.quad({0.4f, 0.8f, 1.9f}, 0.4f * kY, 0.3f * kX, maker.material(0.0f, 5.0f), glm::uvec2(8));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Rectangle, {1.5f, 0.5f, 1.7f}, 10.0f, "Panel"));
+    scene.lights.back().size = {0.2f, 0.2f};
+    return scene;
+}
+
+vk::Device::Desc withLimit(uint64_t bytes) {
+    return {.select = std::to_string(testDevice().info().index), .validation = true, .memoryLimit = bytes};
+}
+
+struct SpillCase {
+    const char* name;
+    BakeDesc desc;
+};
+
+void PrintTo(const SpillCase& one, std::ostream* stream) {
+    *stream << one.name;
+}
+
+class SpillOf : public testing::TestWithParam<SpillCase> {};
+
+/// Bakes to the end, as settings say, and returns what the host then holds for the device.
+uint64_t bakeToEnd(Baker& baker) {
+    while (!baker.solver().done())
+        baker.solver().step();
+    const vk::MemoryLedger& ledger = testDevice().ledger();
+    return ledger.bytes() - ledger.deviceBytes();
+}
+
+FloatImage lightingOf(const Baker& baker) {
+    return baker.lightmap({.quantity = Quantity::Lighting, .sew = false});
+}
+
+} // namespace
+
+TEST_P(SpillOf, TheBytesAreTheSameAndTheDeviceHoldsLess) {
+    const Scene scene = spillRoom();
+    BakeDesc desc = GetParam().desc;
+    desc.size = kSpillEdge;
+    desc.passes = 0;
+    desc.samples = 64;
+    std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+    const uint64_t unspilled = bakeToEnd(*baker);
+    const FloatImage plain = lightingOf(*baker);
+    uint64_t before = 0;
+    const Spill most = mostSpill(settingsOf(desc).solver);
+    for (int spill = 1; spill <= static_cast<int>(most); ++spill) {
+        SCOPED_TRACE(spill);
+        desc.spill = static_cast<Spill>(spill);
+        baker.reset();
+        baker = makeBaker(scene, desc);
+        const uint64_t held = bakeToEnd(*baker) - unspilled;
+        const SceneExtent extent = extentOf(scene, baker->patches().scene.mesh);
+        const MemoryNeeds needs = memoryNeeds(settingsOf(desc), extent,
+                                              {.chunkCount = baker->patches().chunkCount(),
+                                               .texels = uint64_t{kSpillEdge} * kSpillEdge,
+                                               .software = testDevice().info().software()});
+        EXPECT_EQ(held, needs.spilled);
+        EXPECT_EQ(held, baker->spilledBytes());
+        EXPECT_GE(held, before) << "each value spills what the former ones do, and more where there is more";
+        before = held;
+        EXPECT_TRUE(sameBytes(lightingOf(*baker), plain));
+    }
+    EXPECT_GT(before, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, SpillOf,
+    testing::Values(
+        SpillCase{"hybrid", {.method = Method::Hybrid, .smooth = true}},
+        SpillCase{"hybridOnDevice", {.method = Method::Hybrid, .smooth = true, .deviceGather = true}},
+        SpillCase{"hybridRoughLive", {.method = Method::Hybrid, .live = true}},
+        SpillCase{"hybridCoarse", {.method = Method::Hybrid, .smooth = true, .indirectScale = 2}},
+        SpillCase{"footprint", {.method = Method::Directional, .footprint = true}},
+        SpillCase{"layers", {.method = Method::Hybrid, .smooth = true, .layers = true}},
+        SpillCase{"layersOnDevice",
+                  {.method = Method::Hybrid, .smooth = true, .deviceGather = true, .layers = true}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+// Of a device with a limit no more is taken, whatever else there is; what has no room is spilled.
+TEST(Spill, ALimitIsKept) {
+    constexpr uint32_t kScale = 4; // more patches than a batch has: what the batches take is not spilled
+    const Scene scene = spillRoom(kScale);
+    BakeDesc desc{
+        .size = kScale * kSpillEdge, .passes = 0, .method = Method::Hybrid, .samples = 16, .smooth = true};
+    const Baked plain = bakeScene(scene, desc);
+    const SceneExtent extent = extentOf(scene, plain.patches.scene.mesh);
+    const auto planWith = [&](uint64_t limit) {
+        BakeRoom room = roomOn(testDevice());
+        room.device = limit;
+        return planMemory(settingsOf(desc), extent, room);
+    };
+    // This is the least that everything spilled does with, to the nearest 64 KiB.
+    constexpr uint64_t kLimitStep = uint64_t{1} << 16;
+    uint64_t least = kLimitStep;
+    while (!planWith(least).problem.empty())
+        least += kLimitStep;
+    EXPECT_EQ(planWith(least).spill, kMostSpill);
+
+    const vk::Device limited(withLimit(least));
+    desc.device = &limited;
+    limited.ledger().resetPeak();
+    const std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+    (void)bakeToEnd(*baker);
+    EXPECT_TRUE(sameBytes(lightingOf(*baker), plain.lighting));
+    EXPECT_LE(limited.ledger().devicePeak(), least);
+    // A GPU's batches are larger than this map.
+    const uint64_t atLeast = testDevice().info().software() ? uint64_t{1} << 20 : 0;
+    EXPECT_GE(baker->spilledBytes(), atLeast);
+    const uint64_t spilled = limited.ledger().peak() - limited.ledger().devicePeak();
+    EXPECT_GE(spilled, baker->spilledBytes());
+
+    const vk::Device less(withLimit(least / 2));
+    desc.device = &less;
+    const std::string problem = messageOf([&] { bakeScene(scene, desc); });
+    EXPECT_NE(problem.find("MiB to give: --size"), std::string::npos) << problem;
+}
+
+TEST(Spill, MemoryBeyondALimitIsRefused) {
+    constexpr uint64_t kLimit = uint64_t{1} << 20;
+    const vk::Device limited(withLimit(kLimit));
+    EXPECT_EQ(limited.freeMemory(), kLimit - limited.ledger().deviceBytes());
+    const vk::Buffer half(limited, {.size = kLimit / 2, .name = "half"});
+    EXPECT_LE(limited.freeMemory(), kLimit / 2);
+    const std::string problem =
+        messageOf([&] { vk::Buffer(limited, {.size = kLimit * 3 / 4, .name = "too much"}); });
+    EXPECT_NE(problem.find("out of memory for buffer 'too much'"), std::string::npos) << problem;
+    const vk::Buffer host(limited, {.size = kLimit * 4, .memory = vk::Memory::Host, .name = "on the host"});
+    EXPECT_TRUE(host.mapped());
+}
+
+} // namespace relume
