@@ -61,8 +61,10 @@ void addPairOptions(CLI::App& command, PairOptions& o) {
             "none or auto")
         ->capture_default_str()
         ->check(oneOf({"auto", "none", "bits", "links"}));
-    command.add_option("--cache-memory", o.cacheMemory,
-                       "At most so much, as 512M or 2G (default: a third of the free device memory)");
+    command.add_option(
+        "--cache-memory", o.cacheMemory,
+        "At most so much, as 512M or 2G (default: a third of the free device memory, for links beside a "
+        "GPU a quarter of the machine's, too)");
 }
 
 void resolvePairOptions(const PairOptions& o, SolverSettings& settings) {

@@ -4,51 +4,69 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <string>
 
 namespace relume {
 namespace {
 
-// Texels as the CIT pass leaves them (TextureGroup), of which each image is read back through a copy.
-constexpr uint64_t kTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t);
-constexpr uint64_t kReadBackBytes = sizeof(glm::vec4);
-// Whose patch a texel is, and the patches with all that belongs to them (PatchSet).
-constexpr uint64_t kTableBytes = sizeof(uint32_t);
-constexpr uint64_t kPatchBytes = sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
-                                 sizeof(shader::PatchCover) + 4 * sizeof(glm::vec4) + 4 * sizeof(uint32_t);
-// The light that is read back, and the lightmap and the map of errors that are made of it.
-constexpr uint64_t kResultBytes = 3 * sizeof(glm::vec4);
+// Returns the number that a text begins with; nothing where it does not begin with one.
+std::optional<uint64_t> numberAtStart(std::string_view text) {
+    uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc()) return std::nullopt;
+    return number;
+}
+
+// Returns the text behind a name at the start of a line, without the spaces between them.
+std::optional<std::string_view> valueOf(std::string_view text, std::string_view name) {
+    for (size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+        if (at > 0 && text[at - 1] != '\n') continue;
+        at = text.find_first_not_of(' ', at + name.size());
+        return at == std::string_view::npos ? std::string_view() : text.substr(at);
+    }
+    return std::nullopt;
+}
+
+// Returns the text of a file, "" where it cannot be read.
+std::string textOf(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Returns what the kernel says of this process' group, in the second version of control groups or the first.
+GroupMemory groupOfProcess() {
+    const std::string second = "/sys/fs/cgroup/", first = "/sys/fs/cgroup/memory/";
+    GroupMemory group{textOf(second + "memory.max"), textOf(second + "memory.current"),
+                      textOf(second + "memory.stat")};
+    if (!group.most.empty()) return group;
+    return {textOf(first + "memory.limit_in_bytes"), textOf(first + "memory.usage_in_bytes"),
+            textOf(first + "memory.stat")};
+}
 
 } // namespace
 
-uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint64_t spilled) {
-    const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
-    const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size;
-    const uint64_t read = texels * (kTexelBytes + kReadBackBytes);
-    const uint64_t made = texels * (kTexelBytes + kTableBytes) + patches * kPatchBytes;
-    const uint64_t baked =
-        spilled > 0 ? texels * (kTableBytes + kResultBytes) + patches * kPatchBytes + spilled : 0;
-    return std::max({read, made, baked});
+std::optional<uint64_t> availableIn(std::string_view memInfo) {
+    const std::optional<std::string_view> value = valueOf(memInfo, "MemAvailable:");
+    const std::optional<uint64_t> kibibytes = value ? numberAtStart(*value) : std::nullopt;
+    if (!kibibytes) return std::nullopt;
+    const size_t unit = std::min(value->size(), value->find_first_not_of("0123456789"));
+    if (!value->substr(unit).starts_with(" kB")) return std::nullopt;
+    return *kibibytes << 10;
 }
 
-std::optional<uint64_t> availableIn(std::string_view memInfo) {
-    constexpr std::string_view kName = "MemAvailable:";
-    size_t at = memInfo.find(kName);
-    if (at == std::string_view::npos) return std::nullopt;
-    at = memInfo.find_first_not_of(' ', at + kName.size());
-    if (at == std::string_view::npos) return std::nullopt;
-    uint64_t kibibytes = 0;
-    const auto [end, error] =
-        std::from_chars(memInfo.data() + at, memInfo.data() + memInfo.size(), kibibytes);
-    const auto rest = static_cast<size_t>(end - memInfo.data());
-    if (error != std::errc() || !memInfo.substr(rest).starts_with(" kB")) return std::nullopt;
-    return kibibytes << 10;
+std::optional<uint64_t> availableIn(const GroupMemory& group) {
+    const std::optional<uint64_t> most = numberAtStart(group.most), used = numberAtStart(group.used);
+    if (!most || !used) return std::nullopt;
+    const std::optional<std::string_view> kept = valueOf(group.statistics, "inactive_file ");
+    const uint64_t files = kept ? numberAtStart(*kept).value_or(0) : 0;
+    const uint64_t taken = *used - std::min(*used, files);
+    return *most - std::min(*most, taken);
 }
 
 std::optional<uint64_t> freeHostMemory() {
-    std::ifstream file("/proc/meminfo");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    return availableIn(text);
+    const std::optional<uint64_t> machine = availableIn(textOf("/proc/meminfo"));
+    const std::optional<uint64_t> group = availableIn(groupOfProcess());
+    if (machine && group) return std::min(*machine, *group);
+    return machine ? machine : group;
 }
 
 } // namespace relume

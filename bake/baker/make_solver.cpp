@@ -1,6 +1,7 @@
 #include "bake/baker/make_solver.h"
 
 #include "assets/base/log.h"
+#include "bake/baker/host_room.h"
 #include "bake/layers/layer_memory.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/links/link_memory.h"
@@ -21,19 +22,19 @@ constexpr double kLayerShare = 1.0 / 3.0;
 // All of a solver's memory, its caches included, may take this share: the driver needs some of its own.
 constexpr double kMostShare = 0.9;
 
-// Says how much memory caches may take where the settings do not: their share, but no more than the solver's
-// own buffers leave.
-void shareMemory(const SolverInput& input, SolverSettings& settings) {
+// Beside a GPU links may take this share of the host's free memory, too, and layers as much: the rest is for
+// other programs.
+constexpr double kHostShare = 1.0 / 4.0;
+
+SolverRoom roomFor(const SolverInput& input, const SolverSettings& settings) {
     SolverSettings bare = settings;
     bare.cache.kind = CacheSettings::Kind::None;
-    const SolverExtent extent = extentOf(input.patches, input.scene.sky, input.device.info().software());
-    const auto free = static_cast<double>(input.device.freeMemory());
-    const auto own = static_cast<double>(solverBytes(extent, bare).device);
-    const double left = std::max(0.0, kMostShare * free - own) / (settings.layers.on ? 2 : 1);
-    if (settings.cache.bytes == 0)
-        settings.cache.bytes = static_cast<uint64_t>(std::min(kLinkMemoryShare * free, left));
-    if (settings.layers.bytes == 0)
-        settings.layers.bytes = static_cast<uint64_t>(std::min(kLayerShare * free, left));
+    const bool software = input.device.info().software();
+    return {.device = input.device.freeMemory(),
+            .host = freeHostMemory().value_or(0),
+            .own = solverBytes(extentOf(input.patches, input.scene.sky, software), bare),
+            .software = software,
+            .ranks = input.ranks.count()};
 }
 
 } // namespace
@@ -52,10 +53,29 @@ SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software) {
             .skyRows = sky.height};
 }
 
+void shareMemory(const SolverRoom& room, SolverSettings& settings) {
+    // Ranks may be on one machine.
+    const double host = kHostShare / room.ranks *
+                        std::max(0.0, static_cast<double>(room.host) - static_cast<double>(room.own.host));
+    const auto free = static_cast<double>(room.device);
+    const double unused = kMostShare * free - static_cast<double>(room.own.device);
+    const double left = std::max(0.0, unused) / (settings.layers.on ? 2 : 1);
+    const auto share = [&](uint64_t& bytes, uint64_t& deviceBytes, double shareOfDevice, bool spills) {
+        spills = spills && !room.software;
+        const bool given = bytes > 0;
+        const auto onDevice = static_cast<uint64_t>(given ? left : std::min(shareOfDevice * free, left));
+        if (!given) bytes = onDevice + (spills ? static_cast<uint64_t>(host) : 0);
+        if (deviceBytes == 0) deviceBytes = spills ? std::min(bytes, onDevice) : bytes;
+    };
+    CacheSettings& cache = settings.cache;
+    share(cache.bytes, cache.deviceBytes, kLinkMemoryShare, !isPairMethod(settings.method));
+    share(settings.layers.bytes, settings.layers.deviceBytes, kLayerShare, true);
+}
+
 MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry) {
     ASSERT(input.ranks.alone() || (!isPairMethod(settings.method) && !settings.layers.on));
     SolverSettings complete = settings;
-    shareMemory(input, complete);
+    shareMemory(roomFor(input, settings), complete);
     if (isPairMethod(settings.method)) {
         const vk::MemoryOwner owner(kPairsOwner);
         return {.solver = std::make_unique<PairSolver>(input, complete)};

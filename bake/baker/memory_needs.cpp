@@ -21,6 +21,15 @@ constexpr uint64_t kTriangleBytes = 400;
 // The host's copies of a patch and of its light.
 constexpr uint64_t kHostBytes = 216;
 constexpr uint64_t kPictureTexelBytes = 4;
+// Texels as the CIT pass leaves them (TextureGroup), of which each image is read back through a copy.
+constexpr uint64_t kTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t);
+constexpr uint64_t kReadBackBytes = sizeof(glm::vec4);
+// Whose patch a texel is, and the patches with all that belongs to them (PatchSet).
+constexpr uint64_t kTableBytes = sizeof(uint32_t);
+constexpr uint64_t kPatchBytes = sizeof(shader::Patch) + sizeof(shader::PatchEdges) +
+                                 sizeof(shader::PatchCover) + 4 * sizeof(glm::vec4) + 4 * sizeof(uint32_t);
+// The light that is read back, and the lightmap and the map of errors that are made of it.
+constexpr uint64_t kResultBytes = 3 * sizeof(glm::vec4);
 
 // Embree's tables are the host's own.
 bool tracesOnHost(const BakeSettings& settings, bool software) {
@@ -114,6 +123,16 @@ MemoryNeeds mostMemoryNeeds(const BakeSettings& settings, const SceneExtent& sce
                         .software = software,
                         .skyPixels = scene.skyPixels,
                         .skyRows = scene.skyRows});
+}
+
+uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint64_t spilled) {
+    const uint64_t sheet = scene.pages.sheetOf(settings.size), texels = sheet * sheet;
+    const uint64_t patches = uint64_t{scene.pages.count} * settings.size * settings.size;
+    const uint64_t read = texels * (kTexelBytes + kReadBackBytes);
+    const uint64_t made = texels * (kTexelBytes + kTableBytes) + patches * kPatchBytes;
+    const uint64_t baked =
+        spilled > 0 ? texels * (kTableBytes + kResultBytes) + patches * kPatchBytes + spilled : 0;
+    return std::max({read, made, baked});
 }
 
 } // namespace relume

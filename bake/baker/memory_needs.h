@@ -40,6 +40,11 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
 /// as it can get. `software` says that the device is the CPU.
 MemoryNeeds mostMemoryNeeds(const BakeSettings& settings, const SceneExtent& scene, bool software);
 
+/// Returns the most bytes of the host's memory that a bake's surfaces take at a time: what the CIT pass
+/// leaves, and the patches that are made of it, when every texel is covered. A device's own memory is not
+/// counted, but so many bytes that it spills to the host once the patches are made.
+uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint64_t spilled = 0);
+
 /// Tells whether rays march through voxels, all or some of them.
 bool usesVoxels(const BakeSettings& settings);
 

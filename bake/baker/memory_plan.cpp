@@ -39,9 +39,9 @@ Needs needsOf(const BakeSettings& settings, const SceneExtent& scene, const Bake
             .spilled = needs.spilled};
 }
 
-// Returns the settings without links that are kept only where there is room for them.
+// Returns the settings without bits and links that are kept, which take what is left.
 BakeSettings withoutCache(BakeSettings settings) {
-    if (settings.solver.cache.bytes == 0) settings.solver.cache.kind = CacheSettings::Kind::None;
+    settings.solver.cache.kind = CacheSettings::Kind::None;
     return settings;
 }
 

@@ -25,8 +25,12 @@ LinkCache::LinkCache(const vk::Device& device, const Desc& desc)
       asked_(askedChunks(desc)),
       samplePassChunks_(desc.oneSamplePass
                             ? static_cast<uint32_t>(std::min<uint64_t>(asked_, desc.bytes / chunkBytes_))
-                            : asked_) {
-    if (desc.oneSamplePass) keepIfRoom(0);
+                            : asked_),
+      deviceChunks_(
+          static_cast<uint32_t>(std::min<uint64_t>(samplePassChunks_, desc.deviceBytes / chunkBytes_))) {
+    if (!desc.oneSamplePass) return;
+    if (deviceChunks_ > 0) keep(deviceChunks_, vk::Memory::Device);
+    if (samplePassChunks_ > deviceChunks_) keep(samplePassChunks_ - deviceChunks_, vk::Memory::Host);
 }
 
 uint64_t LinkCache::mostBytes(const Desc& desc) {
@@ -39,16 +43,20 @@ uint64_t LinkCache::mostBytes(const Desc& desc) {
 
 // Takes the memory for the links of a sample pass, where they come next and there is room.
 void LinkCache::keepIfRoom(uint32_t samplePass) {
-    if (samplePass != kept_.size() || samplePassChunks_ == 0) return;
-    const uint64_t bytes = samplePassChunks_ * chunkBytes_;
-    if ((uint64_t{samplePass} + 1) * bytes > desc_.bytes) return;
-    const vk::MemoryOwner owner(kOwner);
-    kept_.push_back(
-        {vk::Buffer(device_, {.size = bytes, .name = "links"}), std::vector<uint8_t>(samplePassChunks_, 0)});
+    if (desc_.oneSamplePass || samplePass != kept_.size() || samplePassChunks_ == 0) return;
+    const uint64_t bytes = (uint64_t{samplePass} + 1) * samplePassChunks_ * chunkBytes_;
+    if (bytes <= desc_.bytes)
+        keep(samplePassChunks_, bytes <= desc_.deviceBytes ? vk::Memory::Device : vk::Memory::Host);
 }
 
-// Returns the place of a chunk among those that will be asked for.
-uint32_t LinkCache::slotOf(uint32_t chunk) const {
+void LinkCache::keep(uint32_t chunks, vk::Memory memory) {
+    const vk::MemoryOwner owner(kOwner);
+    kept_.push_back({vk::Buffer(device_, {.size = chunks * chunkBytes_, .memory = memory, .name = "links"}),
+                     std::vector<uint8_t>(chunks, 0)});
+}
+
+// Returns the number of a chunk among those that will be asked for.
+uint32_t LinkCache::numberOf(uint32_t chunk) const {
     if (desc_.chunks.empty()) return chunk;
     uint32_t before = 0;
     for (const ChunkRange& run : desc_.chunks) {
@@ -58,42 +66,55 @@ uint32_t LinkCache::slotOf(uint32_t chunk) const {
     return before;
 }
 
-LinkCache::Place LinkCache::find(uint32_t samplePass, uint32_t first, uint32_t most) {
-    const uint32_t slot = desc_.oneSamplePass ? 0 : samplePass;
-    keepIfRoom(slot);
-    const uint32_t at = slotOf(first);
-    if (slot >= kept_.size() || at >= samplePassChunks_) {
-        if (!staging_)
-            staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
-        return {&staging_, 0, false, std::min(most, desc_.batch)};
+// Returns nothing where a chunk's links are not kept.
+std::optional<LinkCache::Slot> LinkCache::slotOf(uint32_t samplePass, uint32_t chunk) const {
+    Slot slot{.kept = samplePass, .at = numberOf(chunk)};
+    if (desc_.oneSamplePass) {
+        const bool beyond = deviceChunks_ > 0 && slot.at >= deviceChunks_;
+        slot.kept = beyond ? 1 : 0;
+        if (beyond) slot.at -= deviceChunks_;
     }
-    const SamplePass& kept = kept_[slot];
-    const auto from = kept.known.begin() + at;
-    const auto end = from + std::min(most, samplePassChunks_ - at);
+    if (slot.kept >= kept_.size() || slot.at >= kept_[slot.kept].known.size()) return std::nullopt;
+    return slot;
+}
+
+LinkCache::Place LinkCache::inStaging(uint32_t most) {
+    if (!staging_)
+        staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
+    return {&staging_, 0, false, std::min(most, desc_.batch)};
+}
+
+LinkCache::Place LinkCache::find(uint32_t samplePass, uint32_t first, uint32_t most) {
+    keepIfRoom(samplePass);
+    const std::optional<Slot> slot = slotOf(samplePass, first);
+    if (!slot) return inStaging(most);
+    const SamplePass& kept = kept_[slot->kept];
+    const auto from = kept.known.begin() + slot->at;
+    const auto end = from + std::min(most, static_cast<uint32_t>(kept.known.end() - from));
     const bool known = *from != 0;
     const auto count = static_cast<uint32_t>(std::find(from, end, known ? 0 : 1) - from);
-    return {&kept.links, uint64_t{at} * desc_.links * kChunk, known, count};
+    return {&kept.links, uint64_t{slot->at} * desc_.links * kChunk, known, count};
 }
 
 LinkCache::Place LinkCache::passing(uint32_t samplePasses, uint32_t most) {
     forget();
-    const vk::Buffer* links = desc_.oneSamplePass && !kept_.empty() ? &kept_.front().links : nullptr;
-    if (!links || links->size() < desc_.batch * chunkBytes_) {
-        if (!staging_)
-            staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
-        links = &staging_;
-    }
+    // Links that are read once go through the device's memory.
+    const bool keeps = desc_.oneSamplePass && deviceChunks_ >= desc_.batch;
+    const vk::Buffer* links = keeps ? &kept_.front().links : inStaging(most).links;
     const auto room = static_cast<uint32_t>(links->size() / (samplePasses * chunkBytes_));
     ASSERT(room > 0);
     return {links, 0, false, std::min({most, room, desc_.batch})};
 }
 
 void LinkCache::note(uint32_t samplePass, ChunkRange range) {
-    const uint32_t slot = desc_.oneSamplePass ? 0 : samplePass;
-    const uint32_t at = slotOf(range.first);
-    if (slot >= kept_.size() || at >= samplePassChunks_) return;
-    const uint32_t count = std::min(range.count, samplePassChunks_ - at);
-    std::fill_n(kept_[slot].known.begin() + at, count, uint8_t{1});
+    while (range.count > 0) {
+        const std::optional<Slot> slot = slotOf(samplePass, range.first);
+        if (!slot) return;
+        std::vector<uint8_t>& known = kept_[slot->kept].known;
+        const uint32_t count = std::min(range.count, static_cast<uint32_t>(known.size()) - slot->at);
+        std::fill_n(known.begin() + slot->at, count, uint8_t{1});
+        range = {range.first + count, range.count - count};
+    }
 }
 
 void LinkCache::forget() {
@@ -112,7 +133,8 @@ void LinkCache::takeOver(std::deque<SamplePass> samplePasses) {
 }
 
 uint64_t LinkCache::bytes() const {
-    return kept_.size() * samplePassChunks_ * chunkBytes_;
+    return std::accumulate(kept_.begin(), kept_.end(), uint64_t{0},
+                           [](uint64_t sum, const SamplePass& kept) { return sum + kept.links.size(); });
 }
 
 } // namespace relume

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,8 @@ public:
         uint32_t links = 16; // per patch and sample pass
         uint32_t batch = 1;  // chunks of a batch of links that are not kept, at most
         uint64_t bytes = 0;  // at most
+        uint64_t deviceBytes =
+            0; // of them on the device, the first ones; the others are in the host's memory
         // The chunks that will be asked for: ascending runs, which no question reaches beyond. Empty: all.
         std::vector<ChunkRange> chunks = {};
         // Whole sample passes are kept, the first ones, and memory is taken as they come. Or those of one
@@ -49,7 +52,7 @@ public:
     /// Forgets all links, but keeps the memory.
     void forget();
 
-    /// The links of a sample pass.
+    /// The links of a sample pass, or of some chunks where one sample pass is kept at a time.
     struct SamplePass {
         vk::Buffer links;           // uint[chunk][links][64]
         std::vector<uint8_t> known; // per chunk that is kept
@@ -65,14 +68,23 @@ public:
     double share() const { return static_cast<double>(samplePassChunks_) / asked_; }
 
 private:
+    /// A chunk's place: in which of kept_, and where in it.
+    struct Slot {
+        size_t kept = 0;
+        uint32_t at = 0;
+    };
     void keepIfRoom(uint32_t samplePass);
-    uint32_t slotOf(uint32_t chunk) const;
+    void keep(uint32_t chunks, vk::Memory memory);
+    uint32_t numberOf(uint32_t chunk) const;
+    std::optional<Slot> slotOf(uint32_t samplePass, uint32_t chunk) const;
+    Place inStaging(uint32_t most);
 
     const vk::Device& device_;
     Desc desc_;
     uint64_t chunkBytes_;
     uint32_t asked_;              // chunks that will be asked for
     uint32_t samplePassChunks_;   // kept of a sample pass
+    uint32_t deviceChunks_;       // of these on the device, where one is kept at a time
     std::deque<SamplePass> kept_; // a Place points into it while more are added
     vk::Buffer staging_;          // of a batch beyond the kept ones
 };

@@ -28,7 +28,7 @@ bool SharedStage::grow(VkDeviceSize bytes) {
             buffer_ = vk::Buffer(device_, {.size = block_.bytes.size(),
                                            .memory = vk::Memory::Host,
                                            .name = "what ranks share",
-                                           .imported = block_.bytes.data()});
+                                           .imported = block_.bytes});
     } catch (const Error&) { // a driver may refuse any memory; then what is sent goes by messages
         has = false;
     }

@@ -19,7 +19,12 @@ bool LayerStore::holds(const Layer* layer) const {
 
 // Takes a spare buffer where there is one: a driver takes longer to find memory than a GPU to fill it.
 vk::Buffer LayerStore::takeBuffer(const char* name) {
-    if (spare_.empty()) return {device_, {.size = lightBytes_, .name = name}};
+    if (spare_.empty()) {
+        const vk::MemoryOwner owner(kLayerLightOwner);
+        const bool fits = device_.ledger().deviceBytesOf(kLayerLightOwner) + lightBytes_ <= deviceBytes_;
+        return {device_,
+                {.size = lightBytes_, .memory = fits ? vk::Memory::Device : vk::Memory::Host, .name = name}};
+    }
     vk::Buffer buffer = std::move(spare_.back());
     spare_.pop_back();
     return buffer;
@@ -101,7 +106,9 @@ void LayerStore::archive(std::unique_ptr<Layer> layer) {
     if (!layer->has()) return recycle(*layer);
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * lightBytes_;
-    while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > bytes_) { // and the spare
+    // Where layers are on the host, too, as many former ones are kept as there are others.
+    const uint64_t most = std::max(deviceBytes_, std::min(bytes_, (2 * layers_.size() + 1) * each));
+    while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > most) { // and the spare
         remember(*former_.front());
         recycle(*former_.front());
         former_.erase(former_.begin());

@@ -9,13 +9,17 @@
 
 namespace relume {
 
+/// The ledger counts the light of layers as that of this owner (vk::MemoryOwner).
+constexpr const char* kLayerLightOwner = "light of layers";
+
 /// Keeps the layers that are shown, former ones for an undo as long as there is memory, and of those beyond
 /// it what makes their bytes again.
 class LayerStore {
 public:
-    /// Takes at most so many bytes for all layers; each light buffer of a layer has `lightBytes`.
-    LayerStore(const vk::Device& device, VkDeviceSize lightBytes, uint64_t bytes)
-        : device_(device), lightBytes_(lightBytes), bytes_(bytes) {}
+    /// Takes at most so many bytes for all layers, and so many of them on the device: those beyond are in the
+    /// host's memory. Each light buffer of a layer has `lightBytes`.
+    LayerStore(const vk::Device& device, VkDeviceSize lightBytes, uint64_t bytes, uint64_t deviceBytes)
+        : device_(device), lightBytes_(lightBytes), bytes_(bytes), deviceBytes_(deviceBytes) {}
 
     /// Returns the layers in the order in which they were wanted.
     const std::vector<std::unique_ptr<Layer>>& layers() const { return layers_; }
@@ -53,7 +57,7 @@ private:
 
     const vk::Device& device_;
     VkDeviceSize lightBytes_;
-    uint64_t bytes_;
+    uint64_t bytes_, deviceBytes_;
     std::vector<std::unique_ptr<Layer>> layers_;
     std::vector<std::unique_ptr<Layer>> former_; // kept for an undo, the newest last
     std::vector<Record> records_;                // of those that are no longer kept, the newest last

@@ -89,6 +89,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .links = kit_.linksOfSamplePass,
                       .batch = kit_.buffers.batchChunks,
                       .bytes = settings.cache.keepsLinks() ? settings.cache.bytes : 0,
+                      .deviceBytes = settings.cache.deviceBytes,
                       .chunks = kit_.rankChunks.linked(),
                       .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),

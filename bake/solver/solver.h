@@ -70,7 +70,9 @@ struct LinkSettings {
 struct CacheSettings {
     enum class Kind { Auto, None, Bits, Links };
     Kind kind = Kind::Auto; // Auto: bits or links, as the method has them
-    uint64_t bytes = 0;     // at most; 0: a third of the free device memory
+    // At most; 0: a third of the device's free memory and, for links beside a GPU, a quarter of the host's.
+    uint64_t bytes = 0;
+    uint64_t deviceBytes = 0; // of links on the device, the others are the host's; 0: what is there for them
 
     bool keepsBits() const { return kind == Kind::Auto || kind == Kind::Bits; }
     bool keepsLinks() const { return kind == Kind::Auto || kind == Kind::Links; }
@@ -79,9 +81,11 @@ struct CacheSettings {
 /// The settings of hybrid with one layer per light (bake/layers/layer_solver.h).
 struct LayerSettings {
     bool on = false;
-    uint64_t bytes = 0;    // for layers, at most; 0: a third of the free device memory
-    bool optional = false; // where they do not fit, all lights are baked as one; else that is an error
-    double error = 0;      // that each layer is to have by itself (relRMSE); 0: none is asked for
+    // For layers, at most; 0: a third of the device's free memory and, beside a GPU, a quarter of the host's.
+    uint64_t bytes = 0;
+    uint64_t deviceBytes = 0; // of them on the device, the others are the host's; 0: what is there for them
+    bool optional = false;    // where they do not fit, all lights are baked as one; else that is an error
+    double error = 0;         // that each layer is to have by itself (relRMSE); 0: none is asked for
     // The names of the lights whose layers are made (LightSource::name), each of them by itself; empty: all.
     std::vector<std::string> lights = {};
 };

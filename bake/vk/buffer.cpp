@@ -18,6 +18,10 @@ uint32_t memoryTypeFor(const Device& device, Memory memory, uint32_t typeBits) {
     return cached != ~0u ? cached : device.memoryType(typeBits, coherent);
 }
 
+// Drivers get memory of the host on one thread, 2 GB in a second. From this size on [bytes] all cores get it,
+// and the driver takes it over.
+constexpr VkDeviceSize kManyPages = VkDeviceSize{64} << 20;
+
 constexpr VkExternalMemoryHandleTypeFlagBits kImported =
     VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
 
@@ -40,18 +44,40 @@ bool Buffer::importable(const Device& device, std::span<const std::byte> bytes) 
 Buffer::Buffer(const Device& device, const Desc& desc) : device_(&device) {
     ASSERT(desc.size > 0);
     try {
-        create(desc);
+        if (!createOfPages(desc)) create(desc);
     } catch (...) {
         release();
         throw;
     }
 }
 
+// Makes a large buffer of the host of pages that all cores have got; false where that cannot be. A driver may
+// refuse any memory.
+bool Buffer::createOfPages(const Desc& desc) {
+    if (desc.memory != Memory::Host || !desc.imported.empty() || desc.size < kManyPages) return false;
+    if (device_->info().importAlignment == 0) return false;
+    const VkDeviceSize bytes = (desc.size + HostPages::kGrain - 1) / HostPages::kGrain * HostPages::kGrain;
+    HostPages pages(device_->workers(), bytes);
+    if (!pages || !importable(*device_, pages.bytes())) return false;
+    Desc imported = desc;
+    imported.imported = pages.bytes();
+    try {
+        create(imported);
+    } catch (const Error&) {
+        release();
+        mapped_ = nullptr;
+        return false;
+    }
+    pages_ = std::move(pages);
+    return true;
+}
+
 void Buffer::create(const Desc& desc) {
-    ASSERT(!desc.imported || desc.memory == Memory::Host);
+    const bool imports = !desc.imported.empty();
+    ASSERT(!imports || (desc.memory == Memory::Host && desc.imported.size() >= desc.size));
     VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO};
     external.handleTypes = kImported;
-    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, desc.imported ? &external : nullptr};
+    VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, imports ? &external : nullptr};
     info.size = desc.size;
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
@@ -62,15 +88,15 @@ void Buffer::create(const Desc& desc) {
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device_->handle(), buffer_, &needs);
 
-    if (desc.imported) needs.memoryTypeBits &= importedTypes(*device_, desc.imported);
+    if (imports) needs.memoryTypeBits &= importedTypes(*device_, desc.imported.data());
     const uint32_t type = memoryTypeFor(*device_, desc.memory, needs.memoryTypeBits);
     VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT};
     import.handleType = kImported;
-    import.pHostPointer = desc.imported;
+    import.pHostPointer = desc.imported.data();
     VkMemoryAllocateFlagsInfo byAddress{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
     byAddress.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    if (desc.imported) byAddress.pNext = &import;
-    memory_ = allocateMemory(*device_, {.size = desc.imported ? desc.size : needs.size,
+    if (imports) byAddress.pNext = &import;
+    memory_ = allocateMemory(*device_, {.size = imports ? desc.imported.size() : needs.size,
                                         .type = type,
                                         .ofHost = desc.memory == Memory::Host,
                                         .chain = &byAddress,
@@ -96,8 +122,9 @@ Buffer::~Buffer() {
 
 Buffer::Buffer(Buffer&& other) noexcept
     : device_(std::exchange(other.device_, nullptr)), buffer_(std::exchange(other.buffer_, VK_NULL_HANDLE)),
-      memory_(std::move(other.memory_)), size_(std::exchange(other.size_, 0)),
-      address_(std::exchange(other.address_, 0)), mapped_(std::exchange(other.mapped_, nullptr)) {}
+      pages_(std::move(other.pages_)), memory_(std::move(other.memory_)),
+      size_(std::exchange(other.size_, 0)), address_(std::exchange(other.address_, 0)),
+      mapped_(std::exchange(other.mapped_, nullptr)) {}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
     if (this == &other) return *this;
@@ -105,6 +132,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     device_ = std::exchange(other.device_, nullptr);
     buffer_ = std::exchange(other.buffer_, VK_NULL_HANDLE);
     memory_ = std::move(other.memory_);
+    pages_ = std::move(other.pages_);
     size_ = std::exchange(other.size_, 0);
     address_ = std::exchange(other.address_, 0);
     mapped_ = std::exchange(other.mapped_, nullptr);
@@ -115,6 +143,7 @@ void Buffer::release() {
     if (device_ == nullptr) return;
     vkDestroyBuffer(device_->handle(), buffer_, nullptr);
     memory_.release();
+    pages_.release(); // which the memory was made of
     buffer_ = VK_NULL_HANDLE;
 }
 

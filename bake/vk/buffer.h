@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "assets/base/host_pages.h"
 #include "bake/vk/memory_block.h"
 
 namespace relume::vk {
@@ -21,8 +22,8 @@ public:
         Memory memory = Memory::Device;
         VkBufferUsageFlags extraUsage = 0; // acceleration structure input, storage, shader binding table
         const char* name = "";             // for validation messages and captures
-        std::byte* imported =
-            nullptr; // `size` bytes of the caller's, with Memory::Host alone: see importable()
+        // Memory of the caller's for it, `size` bytes or more, with Memory::Host alone: see importable().
+        std::span<std::byte> imported = {};
     };
     /// Tells whether a buffer can be made of this memory of the caller's, as far as place and size go.
     static bool importable(const Device& device, std::span<const std::byte> bytes);
@@ -45,10 +46,12 @@ public:
     explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
 private:
+    bool createOfPages(const Desc& desc);
     void create(const Desc& desc);
     void release();
     const Device* device_ = nullptr;
     VkBuffer buffer_ = VK_NULL_HANDLE;
+    HostPages pages_; // that memory_ is made of, where it is large and the host's
     MemoryBlock memory_;
     VkDeviceSize size_ = 0;
     VkDeviceAddress address_ = 0;

@@ -55,6 +55,14 @@ uint64_t MemoryLedger::bytesOf(const std::string& owner) const {
     return sum;
 }
 
+uint64_t MemoryLedger::deviceBytesOf(const std::string& owner) const {
+    const std::lock_guard lock(mutex_);
+    uint64_t sum = 0;
+    for (const auto& [key, account] : accounts_)
+        if (key.owner == owner && !key.ofHost) sum += account.bytes;
+    return sum;
+}
+
 uint64_t MemoryLedger::peak() const {
     const std::lock_guard lock(mutex_);
     return peak_;

@@ -35,6 +35,8 @@ public:
     uint64_t deviceBytes() const;
     /// Returns the bytes of one owner now.
     uint64_t bytesOf(const std::string& owner) const;
+    /// Returns those of them that are not Memory::Host.
+    uint64_t deviceBytesOf(const std::string& owner) const;
     /// Returns the most bytes that were allocated at a time since resetPeak(), or since the beginning.
     uint64_t peak() const;
     /// Returns the same of deviceBytes().

@@ -211,7 +211,10 @@ BakeSettings settingsOf(const BakeDesc& desc) {
     settings.solver.transport.deviceGather = desc.deviceGather;
     settings.solver.live = desc.live;
     settings.solver.spill = desc.spill;
-    settings.solver.layers = {.on = desc.layers, .bytes = desc.layerBytes, .error = desc.layerError};
+    settings.solver.layers = {.on = desc.layers,
+                              .bytes = desc.layerBytes,
+                              .deviceBytes = desc.layerDeviceBytes,
+                              .error = desc.layerError};
     if (desc.rtrad) settings.solver.transport.reflectivity = 0.9f;
     return settings;
 }

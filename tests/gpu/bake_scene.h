@@ -82,7 +82,7 @@ struct BakeDesc {
     Rotation rotation = Rotation::Patch;
     uint32_t indirectScale = 1;
     bool footprint = false;
-    CacheSettings cache = {};
+    CacheSettings cache = {}; // deviceBytes as well
     VoxelSettings voxels = {};
     PairSettings pairs = {};
     bool rtrad = false; // the preset
@@ -91,6 +91,7 @@ struct BakeDesc {
     bool layers = false;
     double layerError = 0;              // of each layer by itself; 0: any
     uint64_t layerBytes = 0;            // at most; 0: as much as there is
+    uint64_t layerDeviceBytes = 0;      // of them on the device; 0: as much as there is
     Spill spill = Spill::None;          // at least
     const vk::Device* device = nullptr; // nullptr: testDevice()
 };

@@ -9,8 +9,11 @@ namespace relume {
 class StoreWithoutDevice {
 public:
     /// Takes for how many layers there is memory: those that are shown, former ones and a spare one.
-    explicit StoreWithoutDevice(uint64_t room)
-        : store_(place_.device, kLightBytes, room * kBuffersOfLayer * kLightBytes) {}
+    /// onDevice of them are the device's.
+    explicit StoreWithoutDevice(uint64_t room) : StoreWithoutDevice(room, room) {}
+    StoreWithoutDevice(uint64_t room, uint64_t onDevice)
+        : store_(place_.device, kLightBytes, room * kBuffersOfLayer * kLightBytes,
+                 onDevice * kBuffersOfLayer * kLightBytes) {}
 
     LayerStore* operator->() { return &store_; }
     const LayerStore* operator->() const { return &store_; }

@@ -79,7 +79,7 @@ void BakePanel::drawMethod(bool& done) {
         solver.cache.bytes = static_cast<uint64_t>(std::clamp(mebibytes, 0.0, kMost) * ui::kMebi);
         done = true;
     }
-    ui::tip("0: a third of the free device memory");
+    ui::tip("0: a third of the free device memory; for links a quarter of the machine's, too");
 }
 
 void BakePanel::drawPairs(bool& done) {

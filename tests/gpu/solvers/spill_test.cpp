@@ -1,6 +1,9 @@
 // This checks bakes whose buffers are in part in the host's memory.
 #include "bake/baker/make_solver.h"
 #include "bake/baker/memory_plan.h"
+#include "bake/gather/link_cache.h"
+#include "bake/layers/layer_store.h"
+#include "bake/vk/commands.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
@@ -9,8 +12,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+#include <numeric>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -105,6 +112,88 @@ INSTANTIATE_TEST_SUITE_P(
                   {.method = Method::Hybrid, .smooth = true, .deviceGather = true, .layers = true}}),
     [](const auto& test) { return std::string(test.param.name); });
 
+// Layers that the device has no room for are no worse, nor are there fewer of them.
+TEST(Spill, LayersBeyondTheDeviceAreOnTheHost) {
+    const Scene scene = spillRoom();
+    BakeDesc desc{.size = kSpillEdge, .passes = 0, .method = Method::Hybrid, .samples = 64, .layers = true};
+    const vk::MemoryLedger& ledger = testDevice().ledger();
+    std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+    (void)bakeToEnd(*baker);
+    const FloatImage plain = lightingOf(*baker);
+    const uint64_t all = ledger.bytesOf(kLayerLightOwner);
+    EXPECT_EQ(ledger.deviceBytesOf(kLayerLightOwner), all);
+    ASSERT_EQ(baker->layers()->layers().size(), 2u);
+    baker.reset();
+
+    desc.layerDeviceBytes = all / 2;
+    baker = makeBaker(scene, desc);
+    (void)bakeToEnd(*baker);
+    EXPECT_TRUE(sameBytes(lightingOf(*baker), plain));
+    EXPECT_EQ(ledger.bytesOf(kLayerLightOwner), all);
+    EXPECT_LE(ledger.deviceBytesOf(kLayerLightOwner), all / 2);
+    EXPECT_GT(ledger.deviceBytesOf(kLayerLightOwner), 0u);
+}
+
+// Links that the device has no room for are kept in the host's memory: no ray more is traced.
+TEST(Spill, LinksBeyondTheDeviceAreKeptOnTheHost) {
+    const Scene scene = spillRoom();
+    const vk::MemoryLedger& ledger = testDevice().ledger();
+    for (const bool layers : {false, true}) {
+        SCOPED_TRACE(layers);
+        BakeDesc desc{.size = kSpillEdge,
+                      .passes = 0,
+                      .method = Method::Hybrid,
+                      .samples = 64,
+                      .deviceGather = true,
+                      .layers = layers};
+        std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+        (void)bakeToEnd(*baker);
+        const FloatImage plain = lightingOf(*baker);
+        const uint64_t rays = baker->solver().progress().rays, all = ledger.bytesOf(LinkCache::kOwner);
+        EXPECT_EQ(ledger.deviceBytesOf(LinkCache::kOwner), all);
+        EXPECT_EQ(baker->solver().progress().cacheBytes, all);
+        baker.reset();
+
+        desc.cache = {.bytes = all, .deviceBytes = all / 2};
+        baker = makeBaker(scene, desc);
+        (void)bakeToEnd(*baker);
+        EXPECT_TRUE(sameBytes(lightingOf(*baker), plain));
+        EXPECT_EQ(baker->solver().progress().rays, rays);
+        EXPECT_EQ(ledger.bytesOf(LinkCache::kOwner), all);
+        EXPECT_LE(ledger.deviceBytesOf(LinkCache::kOwner), all / 2);
+        EXPECT_GT(ledger.deviceBytesOf(LinkCache::kOwner), 0u);
+        baker.reset();
+
+        desc.cache = {.kind = CacheSettings::Kind::None};
+        EXPECT_GT(bakeScene(scene, desc).progress.rays, rays) << "without a cache there are more";
+    }
+}
+
+TEST(Spill, ACacheKnowsItsChunksOnBothSides) {
+    LinkCache cache(testDevice(), {.chunkCount = 10,
+                                   .links = 16,
+                                   .batch = 4,
+                                   .bytes = 8 * 16 * 64 * 4,
+                                   .deviceBytes = 5 * 16 * 64 * 4,
+                                   .oneSamplePass = true});
+    EXPECT_EQ(cache.share(), 0.8);
+    cache.note(0, {3, 6}); // beyond what is kept, too
+    const auto at = [&](uint32_t first) { return cache.find(0, first, 10 - first); };
+    EXPECT_FALSE(at(0).known);
+    EXPECT_EQ(at(0).count, 3u);
+    EXPECT_TRUE(at(3).known);
+    EXPECT_EQ(at(3).count, 2u) << "the device's end there";
+    EXPECT_EQ(at(3).offset, 3u * 16 * 64);
+    EXPECT_NE(at(5).links, at(3).links);
+    EXPECT_TRUE(at(5).known);
+    EXPECT_EQ(at(5).count, 3u);
+    EXPECT_EQ(at(5).offset, 0u);
+    EXPECT_FALSE(at(8).known);
+    EXPECT_EQ(at(8).count, 2u);
+    EXPECT_EQ(cache.passing(2, 10).count, 2u);
+    EXPECT_FALSE(at(5).known) << "what goes through forgets";
+}
+
 // Of a device with a limit no more is taken, whatever else there is; what has no room is spilled.
 TEST(Spill, ALimitIsKept) {
     constexpr uint32_t kScale = 4; // more patches than a batch has: what the batches take is not spilled
@@ -142,6 +231,34 @@ TEST(Spill, ALimitIsKept) {
     desc.device = &less;
     const std::string problem = messageOf([&] { bakeScene(scene, desc); });
     EXPECT_NE(problem.find("MiB to give: --size"), std::string::npos) << problem;
+}
+
+// All cores get the memory of a large buffer of the host; it is used like any other.
+TEST(Spill, LargeBuffersOfTheHostHoldWhatIsWritten) {
+    const vk::Device& device = testDevice();
+    const uint64_t before = device.ledger().bytes();
+    constexpr size_t kWords = (size_t{65} << 18) + 3; // 65 MiB and no whole page
+    {
+        const vk::Buffer buffer(
+            device, {.size = kWords * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "large"});
+        EXPECT_GE(device.ledger().bytes() - before, kWords * sizeof(uint32_t));
+        EXPECT_EQ(device.ledger().deviceBytes(), before);
+        std::vector<uint32_t> words(kWords);
+        std::iota(words.begin(), words.end(), 1u);
+        const vk::Buffer source = vk::makeBuffer(device, words, "numbers");
+        vk::Commands commands(device);
+        VkCommandBuffer cmd = commands.begin();
+        const VkBufferCopy all{0, 0, buffer.size()};
+        vkCmdCopyBuffer(cmd, source.handle(), buffer.handle(), 1, &all);
+        vk::hostBarrier(cmd);
+        commands.run();
+        EXPECT_TRUE(std::equal(words.begin(), words.end(), buffer.as<uint32_t>()));
+        vk::Buffer moved;
+        moved = vk::Buffer(device, {.size = buffer.size(), .memory = vk::Memory::Host, .name = "other"});
+        std::memcpy(moved.mapped(), buffer.mapped(), buffer.size());
+        EXPECT_EQ(vk::readBuffer<uint32_t>(device, moved, 1, kWords - 1).front(), kWords);
+    }
+    EXPECT_EQ(device.ledger().bytes(), before);
 }
 
 TEST(Spill, MemoryBeyondALimitIsRefused) {

@@ -113,6 +113,45 @@ TEST(MemoryPlan, ASpilledBakeNeedsTheHostsMemory) {
     EXPECT_NE(planMemory(large, scene, cpu).problem, "");
 }
 
+TEST(MemoryPlan, LinksAndLayersGetAThirdOfTheDeviceAndAQuarterOfTheHost) {
+    SolverSettings layered = hybridOf(512).solver;
+    layered.layers.on = true;
+    SolverSettings shared = layered;
+    const SolverRoom gpu{.device = 30'000, .host = 60'000, .own = {.device = 1000}};
+    shareMemory(gpu, shared);
+    EXPECT_EQ(shared.layers.bytes, 25'000u);
+    EXPECT_EQ(shared.layers.deviceBytes, 10'000u);
+    EXPECT_EQ(shared.cache.bytes, 25'000u);
+    EXPECT_EQ(shared.cache.deviceBytes, 10'000u);
+    // What the solver itself takes leaves less of the device, and spilled buffers less of the host.
+    shared = layered;
+    shareMemory({.device = 30'000, .host = 60'000, .own = {.device = 21'000, .host = 40'000}}, shared);
+    EXPECT_EQ(shared.layers.deviceBytes, 3'000u);
+    EXPECT_EQ(shared.layers.bytes, 8'000u);
+    shared = layered;
+    shareMemory({.device = 30'000, .host = 60'000, .own = {}, .ranks = 5}, shared);
+    EXPECT_EQ(shared.cache.bytes, 13'000u) << "each of several processes takes its part of the host";
+    // What the user says is the most, and as much of it as there is room for is on the device.
+    shared = layered;
+    shared.layers.bytes = shared.cache.bytes = 12'000;
+    shareMemory(gpu, shared);
+    EXPECT_EQ(shared.layers.bytes, 12'000u);
+    EXPECT_EQ(shared.layers.deviceBytes, 12'000u);
+    EXPECT_EQ(shared.cache.deviceBytes, 12'000u);
+    shared.layers.bytes = 50'000;
+    shared.layers.deviceBytes = 0;
+    shareMemory(gpu, shared);
+    EXPECT_EQ(shared.layers.deviceBytes, 13'000u);
+    // A CPU has but one memory, and pairs' bits are read on the device alone.
+    shared = layered;
+    shareMemory({.device = 30'000, .host = 60'000, .own = {}, .software = true}, shared);
+    EXPECT_EQ(shared.layers.bytes, 10'000u);
+    EXPECT_EQ(shared.layers.deviceBytes, 10'000u);
+    shared = SolverSettings();
+    shareMemory(gpu, shared);
+    EXPECT_EQ(shared.cache.bytes, 10'000u);
+}
+
 TEST(MemoryPlan, MethodsThatReadAnywhereAreNotSpilled) {
     BakeSettings settings = hybridOf(512);
     settings.solver.method = Method::Pure;

@@ -186,6 +186,16 @@ TEST(LayerStore, BeyondTheMemoryTheOldestIsForgotten) {
     }
 }
 
+// Where the device has room for one alone, the host holds as many former ones as are shown, and no more.
+TEST(LayerStore, BeyondTheDeviceFewerFormerOnesAreKept) {
+    for (const float place : {1.0f, 2.0f}) {
+        StoreWithoutDevice store(9, 1);
+        visit(store, {1, 2, 3});
+        replaceBy(store, {lampAt(place)});
+        EXPECT_EQ(layerIn(store).has(), place > 1.0f) << place;
+    }
+}
+
 TEST(LayerStore, OfWhatIsForgottenLevelAndStepsAreKnown) {
     StoreWithoutDevice store(3);
     replaceBy(store, {lampAt(1)});
