@@ -44,7 +44,7 @@ FloatImage lightmapOf(const Baker& baker, const LightmapDesc& desc,
                       const std::vector<LayeredImage::Layer>& layers) {
     if (layers.empty() || !baker.sumsLayers(desc)) return baker.lightmap(desc);
     FloatImage composite = layers.front().image;
-    LayerSum sum(composite.width, composite.height);
+    LayerSum sum(baker.workers(), composite.width, composite.height);
     for (const LayeredImage::Layer& layer : layers)
         sum.add(layer.weight, layer.image);
     sum.writeTo(composite);
@@ -82,10 +82,12 @@ LayeredImage layeredImage(const Baker& baker, const Scene& scene, const Lightmap
     LayeredImage image;
     LightmapDesc each = desc;
     each.pool = &baker.workers();
+    std::vector<glm::vec4> light; // of one layer after the other
     for (const std::unique_ptr<Layer>& layer : solver.layers()) {
         LayeredImage::Layer part = layerWithoutImage(scene, *layer);
         const Layer* shown = layer->shown();
-        part.image = makeLightmap(baker.patches(), solver.layerLight(shown ? *shown : *layer), each);
+        light = solver.layerLight(shown ? *shown : *layer, std::move(light));
+        part.image = makeLightmap(baker.patches(), light, each);
         image.layers.push_back(std::move(part));
     }
     image.composite = lightmapOf(baker, desc, image.layers);

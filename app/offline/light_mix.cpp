@@ -82,7 +82,8 @@ void keepSummedChannels(FloatImage& image) {
 }
 
 void sum(LayeredImage& image) {
-    LayerSum sum(image.composite.width, image.composite.height);
+    WorkerPool pool(0);
+    LayerSum sum(pool, image.composite.width, image.composite.height);
     for (const LayeredImage::Layer& layer : image.layers)
         sum.add(layer.weight, layer.image);
     keepSummedChannels(image.composite);

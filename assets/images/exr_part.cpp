@@ -3,13 +3,14 @@
 #include "assets/base/error.h"
 #include "assets/base/file_read.h"
 #include "assets/base/log.h"
-#include "assets/base/worker_pool.h"
+#include "assets/base/portions.h"
 
 #include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -31,8 +32,10 @@ void MemoryInput::seekg(uint64_t position) {
 }
 
 void MemoryOutput::write(const char c[], int n) {
-    if (at_ + uint64_t(n) > bytes.size()) bytes.resize(at_ + uint64_t(n));
-    std::memcpy(bytes.data() + at_, c, size_t(n));
+    const size_t inside = std::min(size_t(n), bytes.size() - std::min(size_t(at_), bytes.size()));
+    if (at_ > bytes.size()) bytes.resize(at_);
+    std::memcpy(bytes.data() + at_, c, inside);
+    bytes.append(c + inside, size_t(n) - inside);
     at_ += uint64_t(n);
 }
 
@@ -99,6 +102,25 @@ Imf::Compression codecOf(ExrCompression compression) {
     return Imf::ZIP_COMPRESSION;
 }
 
+constexpr size_t kRoundedAtATime = size_t{1} << 16; // numbers, by a thread
+
+// Rounds so many numbers to half and cuts what is beyond its range. Returns how many were cut.
+template<typename Get, typename Set>
+size_t roundEach(WorkerPool& pool, size_t count, const Get& get, const Set& set) {
+    std::atomic<size_t> cut{0};
+    runPortions(pool, count, kRoundedAtATime, [&](size_t begin, size_t end) {
+        size_t own = 0;
+        for (size_t i = begin; i < end; ++i) {
+            const float value = get(i);
+            const bool tooLarge = std::isfinite(value) && std::abs(value) > float(HALF_MAX);
+            own += tooLarge;
+            set(i, half(tooLarge ? std::copysign(float(HALF_MAX), value) : value));
+        }
+        cut += own;
+    });
+    return cut;
+}
+
 } // namespace
 
 ExrThreads::ExrThreads() {
@@ -126,14 +148,27 @@ Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compr
     return header;
 }
 
-std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut) {
-    std::vector<half> halves(plane.size());
-    for (size_t i = 0; i < plane.size(); ++i) {
-        const bool tooLarge = std::isfinite(plane[i]) && std::abs(plane[i]) > float(HALF_MAX);
-        cut += tooLarge;
-        halves[i] = half(tooLarge ? std::copysign(float(HALF_MAX), plane[i]) : plane[i]);
-    }
-    return halves;
+uint64_t expectedBytes(const FloatImage& image, ExrType type, ExrCompression compression) {
+    const uint64_t each = type == ExrType::Half ? sizeof(half) : sizeof(float);
+    constexpr uint64_t kHeader = 1 << 16, kLine = 32; // with its place in the tables
+    const uint64_t pixels = uint64_t{image.width} * image.height * image.channels.size() * each;
+    return (compression == ExrCompression::Off ? pixels : pixels / 2) + image.height * kLine + kHeader;
+}
+
+size_t toHalf(WorkerPool& pool, std::span<const float> plane, half* halves) {
+    return roundEach(
+        pool, plane.size(), [&](size_t i) { return plane[i]; },
+        [&](size_t i, half value) { halves[i] = value; });
+}
+
+size_t roundToHalf(WorkerPool& pool, std::span<float> plane) {
+    return roundEach(
+        pool, plane.size(), [&](size_t i) { return plane[i]; },
+        [&](size_t i, half value) { plane[i] = value; });
+}
+
+void PartWriter::warnAboutCut(const std::string& path) const {
+    exr::warnAboutCut(path, cut_);
 }
 
 void warnAboutCut(const std::string& path, size_t cut) {

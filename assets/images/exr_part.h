@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <ImfIO.h>
 
 #include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 #include "assets/images/float_image.h"
 
 // Here is what readers and writers of OpenEXR files of one part and of several parts have in common. Whatever
@@ -30,7 +32,8 @@ private:
 
 class MemoryOutput : public Imf::OStream {
 public:
-    explicit MemoryOutput(const char* name) : OStream(name) {}
+    /// Expects about so many bytes.
+    MemoryOutput(const char* name, uint64_t expected) : OStream(name) { bytes.reserve(expected); }
     void write(const char c[], int n) override;
     uint64_t tellp() override { return at_; }
     void seekp(uint64_t position) override { at_ = position; }
@@ -53,6 +56,10 @@ FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t 
 
 /// Returns the header that an image is written with.
 Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compression);
+
+/// Returns how many bytes an image takes in a file at the most; where its pixels are packed they count half,
+/// which is mostly too many, too.
+uint64_t expectedBytes(const FloatImage& image, ExrType type, ExrCompression compression);
 
 /// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
 /// claims and the file does not have costs none.
@@ -78,8 +85,11 @@ FloatImage readPart(Part& part, const std::string& path, uint64_t mostPixels) {
     return image;
 }
 
-/// Rounds to half and cuts what is beyond its range; `cut` counts that.
-std::vector<half> toHalf(const std::vector<float>& plane, size_t& cut);
+/// Rounds to half on all threads of the pool and cuts what is beyond its range; `halves` has room for as many
+/// numbers as the plane has. Returns how many were cut.
+size_t toHalf(WorkerPool& pool, std::span<const float> plane, half* halves);
+/// Does the same in place.
+size_t roundToHalf(WorkerPool& pool, std::span<float> plane);
 
 /// As long as it lives, OpenEXR files that are made compress on as many threads as a WorkerPool has. There
 /// are no threads afterwards: they would rest all the time, and a process that forks would wait for them. The
@@ -94,26 +104,49 @@ public:
     static int rows();
 };
 
-/// Writes the pixels of an Imf::OutputFile or Imf::OutputPart.
-template<class Part>
-void writePart(Part& part, const FloatImage& image, ExrType type, size_t& cut) {
-    const Imf::PixelType pixelType = type == ExrType::Half ? Imf::HALF : Imf::FLOAT;
-    Imf::FrameBuffer frame;
-    std::vector<std::vector<half>> halves;
-    for (size_t c = 0; c < image.channels.size(); ++c) {
-        const void* data = image.planes[c].data();
-        if (type == ExrType::Half) data = halves.emplace_back(toHalf(image.planes[c], cut)).data();
-        frame.insert(image.channels[c], Imf::Slice::Make(pixelType, data, part.header().dataWindow()));
+/// Writes the pixels of images as values of one type, and counts those that it had to cut for it.
+class PartWriter {
+public:
+    explicit PartWriter(ExrType type) : type_(type) {}
+
+    /// Writes them to an Imf::OutputFile or Imf::OutputPart.
+    template<class Part>
+    void write(Part& part, const FloatImage& image) {
+        const Imf::PixelType pixelType = type_ == ExrType::Half ? Imf::HALF : Imf::FLOAT;
+        Imf::FrameBuffer frame;
+        if (type_ == ExrType::Half) halves_.resize(std::max(halves_.size(), image.channels.size()));
+        for (size_t c = 0; c < image.channels.size(); ++c) {
+            const void* const data = type_ == ExrType::Half
+                                         ? halvesOf(image.planes[c], halves_[c])
+                                         : static_cast<const void*>(image.planes[c].data());
+            frame.insert(image.channels[c], Imf::Slice::Make(pixelType, static_cast<const char*>(data),
+                                                             part.header().dataWindow()));
+        }
+        part.setFrameBuffer(frame);
+        // The rows are written in portions, between which the watch can be told how far the job is, and can
+        // end it.
+        const int rows = ExrThreads::rows();
+        for (int left = int(image.height); left > 0; left -= rows) {
+            tellWatch("writing", 1.0 - double(left) / image.height);
+            part.writePixels(std::min(left, rows));
+        }
     }
-    part.setFrameBuffer(frame);
-    // The rows are written in portions, between which the watch can be told how far the job is, and can end
-    // it.
-    const int rows = ExrThreads::rows();
-    for (int left = int(image.height); left > 0; left -= rows) {
-        tellWatch("writing", 1.0 - double(left) / image.height);
-        part.writePixels(std::min(left, rows));
+    /// Warns where values were cut for the file of this name.
+    void warnAboutCut(const std::string& path) const;
+
+private:
+    const void* halvesOf(const std::vector<float>& plane, std::vector<half>& halves) {
+        halves.resize(plane.size());
+        cut_ += toHalf(pool_, plane, halves.data());
+        return halves.data();
     }
-}
+
+    ExrType type_;
+    ExrThreads threads_;
+    WorkerPool pool_{0};
+    std::vector<std::vector<half>> halves_; // of the image before, whose memory serves the next one
+    size_t cut_ = 0;
+};
 
 void warnAboutCut(const std::string& path, size_t cut);
 

@@ -62,14 +62,13 @@ FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t m
 
 std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type,
                       ExrCompression compression) {
-    exr::MemoryOutput stream(path.c_str());
-    size_t cut = 0;
+    exr::MemoryOutput stream(path.c_str(), exr::expectedBytes(image, type, compression));
+    exr::PartWriter writer(type);
     {
-        const exr::ExrThreads threads;
         Imf::OutputFile file(stream, exr::headerOf(image, type, compression));
-        exr::writePart(file, image, type, cut);
+        writer.write(file, image);
     } // its destructor writes the table of lines
-    exr::warnAboutCut(path, cut);
+    writer.warnAboutCut(path);
     return std::move(stream.bytes);
 }
 

@@ -122,8 +122,11 @@ std::string texelsOf(const FloatImage& image, Ktx2Format format, const std::stri
     size_t cut = 0;
     if (format == Ktx2Format::Half) {
         std::array<std::vector<half>, 3> halves;
-        for (size_t c = 0; c < 3; ++c)
-            halves[c] = exr::toHalf(*planes[c], cut);
+        WorkerPool pool(0);
+        for (size_t c = 0; c < 3; ++c) {
+            halves[c].resize(count);
+            cut += exr::toHalf(pool, *planes[c], halves[c].data());
+        }
         const half one(1.0f);
         for (size_t i = 0; i < count; ++i)
             for (size_t c = 0; c < 4; ++c) {

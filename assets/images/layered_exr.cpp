@@ -61,17 +61,19 @@ std::vector<Imf::Header> headersOf(const LayeredImage& image, ExrType type, ExrC
 std::string encode(const std::string& path, const LayeredImage& image, ExrType type,
                    ExrCompression compression) {
     const std::vector<Imf::Header> headers = headersOf(image, type, compression);
-    exr::MemoryOutput stream(path.c_str());
-    size_t cut = 0;
+    uint64_t expected = 0;
+    for (const LayeredImage::Layer& layer : image.layers)
+        expected += exr::expectedBytes(layer.image, type, compression);
+    exr::MemoryOutput stream(path.c_str(), expected + exr::expectedBytes(image.composite, type, compression));
+    exr::PartWriter writer(type);
     {
-        const exr::ExrThreads threads;
         Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()));
         for (size_t p = 0; p < headers.size(); ++p) {
             Imf::OutputPart part(file, int(p));
-            exr::writePart(part, p == 0 ? image.composite : image.layers[p - 1].image, type, cut);
+            writer.write(part, p == 0 ? image.composite : image.layers[p - 1].image);
         }
     } // its destructor writes the tables of lines
-    exr::warnAboutCut(path, cut);
+    writer.warnAboutCut(path);
     return std::move(stream.bytes);
 }
 
@@ -174,12 +176,10 @@ void writeLayeredExr(const std::string& path, const LayeredImage& image, ExrType
 void roundLayers(const std::string& path, LayeredImage& image, ExrType type) {
     if (type == ExrType::Float) return;
     size_t cut = 0;
-    for (LayeredImage::Layer& layer : image.layers) {
-        for (std::vector<float>& plane : layer.image.planes) {
-            const std::vector<half> halves = exr::toHalf(plane, cut);
-            std::copy(halves.begin(), halves.end(), plane.begin());
-        }
-    }
+    WorkerPool pool(0);
+    for (LayeredImage::Layer& layer : image.layers)
+        for (std::vector<float>& plane : layer.image.planes)
+            cut += exr::roundToHalf(pool, plane);
     exr::warnAboutCut(path, cut);
 }
 

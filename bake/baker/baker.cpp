@@ -437,7 +437,7 @@ FloatImage Baker::lightmap(LightmapDesc desc) const {
     desc.pool = &workers();
     FloatImage lightmap = makeLightmap(patches_, solver_.solver->light(), desc);
     if (!sumsLayers(desc)) return lightmap;
-    LayerSum sum(lightmap.width, lightmap.height);
+    LayerSum sum(workers(), lightmap.width, lightmap.height);
     for (const std::unique_ptr<Layer>& layer : solver_.layers->layers())
         if (layer->shines() && layer->shown())
             sum.add(layer->source.weight,

@@ -357,10 +357,13 @@ double LayerSolver::shareOf(const Layer& layer) const {
     return all > 0 ? weighed(layer) / all : 0.0;
 }
 
-std::vector<glm::vec4> LayerSolver::layerLight(const Layer& layer) const {
-    const size_t patches = kit_.input.patches.scene.patches.size();
-    if (!layer.has()) return std::vector<glm::vec4>(patches, glm::vec4(0.0f));
-    return vk::readBuffer<glm::vec4>(kit_.input.device, layer.result, patches);
+std::vector<glm::vec4> LayerSolver::layerLight(const Layer& layer, std::vector<glm::vec4> light) const {
+    light.resize(kit_.input.patches.scene.patches.size());
+    if (layer.has())
+        vk::download(kit_.input.device, layer.result, light.data(), light.size() * sizeof(glm::vec4));
+    else
+        std::fill(light.begin(), light.end(), glm::vec4(0.0f));
+    return light;
 }
 
 // A level under way is begun anew after a restore: it is a pure function of what it began with.

@@ -49,8 +49,8 @@ public:
     const std::vector<std::unique_ptr<Layer>>& layers() const { return store_.layers(); }
     /// Returns the layer's share of the composite's light, as it is weighed now.
     double shareOf(const Layer& layer) const;
-    /// Returns a layer's result for a unit of its weight, vec4 per patch.
-    std::vector<glm::vec4> layerLight(const Layer& layer) const;
+    /// Returns a layer's result for a unit of its weight, vec4 per patch, in the memory of `light`.
+    std::vector<glm::vec4> layerLight(const Layer& layer, std::vector<glm::vec4> light = {}) const;
 
     /// Takes up that the scene which the solver was made with has been changed: its lights, its sky, the
     /// colours of its materials (with the patches', as Baker::apply has it) or the switches. Weights count at

@@ -1,13 +1,20 @@
 #include "bake/output/layer_sum.h"
 
 #include "assets/base/error.h"
+#include "assets/base/portions.h"
 
 #include <algorithm>
 #include <string>
 
 namespace relume {
 
-LayerSum::LayerSum(uint32_t width, uint32_t height) {
+namespace {
+
+constexpr size_t kTexelsAtATime = size_t{1} << 16; // of a plane, by a thread
+
+} // namespace
+
+LayerSum::LayerSum(WorkerPool& pool, uint32_t width, uint32_t height) : pool_(pool) {
     totals_.fill(std::vector<double>(size_t{width} * height));
 }
 
@@ -18,8 +25,10 @@ void LayerSum::add(const glm::vec3& weight, const FloatImage& layer) {
         std::vector<double>& total = totals_[static_cast<size_t>(c)];
         const std::vector<float>* plane = layer.find(std::string(1, "RGB"[c]));
         ASSERT(plane && plane->size() == total.size());
-        for (size_t i = 0; i < total.size(); ++i)
-            total[i] += factor * (*plane)[i];
+        runPortions(pool_, total.size(), kTexelsAtATime, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                total[i] += factor * (*plane)[i];
+        });
     }
 }
 
@@ -30,8 +39,10 @@ void LayerSum::writeTo(FloatImage& composite) const {
         ASSERT(at != composite.channels.end());
         std::vector<float>& plane = composite.planes[static_cast<size_t>(at - composite.channels.begin())];
         ASSERT(plane.size() == totals_[c].size());
-        std::transform(totals_[c].begin(), totals_[c].end(), plane.begin(),
-                       [](double v) { return static_cast<float>(v); });
+        runPortions(pool_, plane.size(), kTexelsAtATime, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i)
+                plane[i] = static_cast<float>(totals_[c][i]);
+        });
     }
 }
 
