@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 
 namespace relume::exr {
@@ -29,6 +30,13 @@ bool MemoryInput::read(char c[], int n) {
 void MemoryInput::seekg(uint64_t position) {
     if (position > bytes_.size()) throw std::runtime_error("the file ends too early");
     at_ = position;
+}
+
+MemoryOutput::MemoryOutput(const char* name, uint64_t most) : OStream(name) {
+    try {
+        bytes.reserve(most);
+    } catch (const std::bad_alloc&) { // it may be packed to less
+    }
 }
 
 void MemoryOutput::write(const char c[], int n) {
@@ -148,11 +156,11 @@ Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compr
     return header;
 }
 
-uint64_t expectedBytes(const FloatImage& image, ExrType type, ExrCompression compression) {
+uint64_t mostBytes(const FloatImage& image, ExrType type) {
     const uint64_t each = type == ExrType::Half ? sizeof(half) : sizeof(float);
     constexpr uint64_t kHeader = 1 << 16, kLine = 32; // with its place in the tables
     const uint64_t pixels = uint64_t{image.width} * image.height * image.channels.size() * each;
-    return (compression == ExrCompression::Off ? pixels : pixels / 2) + image.height * kLine + kHeader;
+    return pixels + image.height * kLine + kHeader;
 }
 
 size_t toHalf(WorkerPool& pool, std::span<const float> plane, half* halves) {

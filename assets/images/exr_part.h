@@ -32,8 +32,8 @@ private:
 
 class MemoryOutput : public Imf::OStream {
 public:
-    /// Expects about so many bytes.
-    MemoryOutput(const char* name, uint64_t expected) : OStream(name) { bytes.reserve(expected); }
+    /// Has addresses for so many bytes, where there are as many; memory comes as they are written.
+    MemoryOutput(const char* name, uint64_t most);
     void write(const char c[], int n) override;
     uint64_t tellp() override { return at_; }
     void seekp(uint64_t position) override { at_ = position; }
@@ -57,9 +57,8 @@ FloatImage imageOf(const Imf::Header& header, const std::string& path, uint64_t 
 /// Returns the header that an image is written with.
 Imf::Header headerOf(const FloatImage& image, ExrType type, ExrCompression compression);
 
-/// Returns how many bytes an image takes in a file at the most; where its pixels are packed they count half,
-/// which is mostly too many, too.
-uint64_t expectedBytes(const FloatImage& image, ExrType type, ExrCompression compression);
+/// Returns how many bytes an image takes in a file at the most, but for what its attributes take.
+uint64_t mostBytes(const FloatImage& image, ExrType type);
 
 /// Reads the pixels of an Imf::InputFile or Imf::InputPart. They take memory as they come: what a header
 /// claims and the file does not have costs none.

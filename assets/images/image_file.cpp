@@ -62,7 +62,7 @@ FloatImage readExr(const std::string& path, const std::string& bytes, uint64_t m
 
 std::string encodeExr(const std::string& path, const FloatImage& image, ExrType type,
                       ExrCompression compression) {
-    exr::MemoryOutput stream(path.c_str(), exr::expectedBytes(image, type, compression));
+    exr::MemoryOutput stream(path.c_str(), exr::mostBytes(image, type));
     exr::PartWriter writer(type);
     {
         Imf::OutputFile file(stream, exr::headerOf(image, type, compression));

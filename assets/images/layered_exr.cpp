@@ -61,10 +61,10 @@ std::vector<Imf::Header> headersOf(const LayeredImage& image, ExrType type, ExrC
 std::string encode(const std::string& path, const LayeredImage& image, ExrType type,
                    ExrCompression compression) {
     const std::vector<Imf::Header> headers = headersOf(image, type, compression);
-    uint64_t expected = 0;
+    uint64_t most = exr::mostBytes(image.composite, type);
     for (const LayeredImage::Layer& layer : image.layers)
-        expected += exr::expectedBytes(layer.image, type, compression);
-    exr::MemoryOutput stream(path.c_str(), expected + exr::expectedBytes(image.composite, type, compression));
+        most += exr::mostBytes(layer.image, type);
+    exr::MemoryOutput stream(path.c_str(), most);
     exr::PartWriter writer(type);
     {
         Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()));

@@ -1,7 +1,6 @@
 #include "bake/layers/layer_mixer.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace relume {
@@ -89,7 +88,7 @@ uint32_t LayerMixer::writeWeights(const Weights& list) {
     if (!weights_ || weights_.size() < bytes)
         weights_ =
             vk::Buffer(kit_.input.device, {.size = bytes, .memory = vk::Memory::Host, .name = "weights"});
-    std::memcpy(weights_.mapped(), list.data(), list.size() * sizeof(shader::LayerWeight));
+    std::copy(list.begin(), list.end(), weights_.as<shader::LayerWeight>());
     return static_cast<uint32_t>(list.size());
 }
 
