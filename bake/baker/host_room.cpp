@@ -5,6 +5,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "bake/ranks/launch.h"
+
 namespace relume {
 namespace {
 
@@ -63,10 +65,11 @@ std::optional<uint64_t> availableIn(const GroupMemory& group) {
 }
 
 std::optional<uint64_t> freeHostMemory() {
-    const std::optional<uint64_t> machine = availableIn(textOf("/proc/meminfo"));
-    const std::optional<uint64_t> group = availableIn(groupOfProcess());
-    if (machine && group) return std::min(*machine, *group);
-    return machine ? machine : group;
+    std::optional<uint64_t> free = availableIn(textOf("/proc/meminfo"));
+    if (const std::optional<uint64_t> group = availableIn(groupOfProcess()))
+        free = std::min(free.value_or(*group), *group);
+    if (free) *free /= std::max(1u, launchOfProcess().localCount);
+    return free;
 }
 
 } // namespace relume

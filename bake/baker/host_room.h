@@ -18,7 +18,8 @@ struct GroupMemory {
 /// Returns what such a group may still take [bytes], files that are only kept in memory counted as free;
 /// nothing where it has no limit.
 std::optional<uint64_t> availableIn(const GroupMemory& group);
-/// Returns what this process may still take on this machine as it is now.
+/// Returns what this process may still take on this machine as it is now: its share, where a launcher has
+/// started several on it.
 std::optional<uint64_t> freeHostMemory();
 
 } // namespace relume

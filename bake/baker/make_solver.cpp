@@ -33,8 +33,7 @@ SolverRoom roomFor(const SolverInput& input, const SolverSettings& settings) {
     return {.device = input.device.freeMemory(),
             .host = freeHostMemory().value_or(0),
             .own = solverBytes(extentOf(input.patches, input.scene.sky, software), bare),
-            .software = software,
-            .ranks = input.ranks.count()};
+            .shared = input.device.info().sharesMemory()};
 }
 
 } // namespace
@@ -54,14 +53,13 @@ SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software) {
 }
 
 void shareMemory(const SolverRoom& room, SolverSettings& settings) {
-    // Ranks may be on one machine.
-    const double host = kHostShare / room.ranks *
-                        std::max(0.0, static_cast<double>(room.host) - static_cast<double>(room.own.host));
+    const double host =
+        kHostShare * std::max(0.0, static_cast<double>(room.host) - static_cast<double>(room.own.host));
     const auto free = static_cast<double>(room.device);
     const double unused = kMostShare * free - static_cast<double>(room.own.device);
     const double left = std::max(0.0, unused) / (settings.layers.on ? 2 : 1);
     const auto share = [&](uint64_t& bytes, uint64_t& deviceBytes, double shareOfDevice, bool spills) {
-        spills = spills && !room.software;
+        spills = spills && !room.shared;
         const bool given = bytes > 0;
         const auto onDevice = static_cast<uint64_t>(given ? left : std::min(shareOfDevice * free, left));
         if (!given) bytes = onDevice + (spills ? static_cast<uint64_t>(host) : 0);

@@ -26,10 +26,9 @@ SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software);
 /// What is free where a solver is made [bytes].
 struct SolverRoom {
     uint64_t device = 0;
-    uint64_t host = 0;     // 0: unknown
-    SpilledBytes own;      // that the solver takes of it without caches and layers
-    bool software = false; // both are the same
-    uint32_t ranks = 1;    // processes that bake together
+    uint64_t host = 0;   // 0: unknown
+    SpilledBytes own;    // that the solver takes of it without caches and layers
+    bool shared = false; // both are the same
 };
 /// Says how much memory caches and layers may take where the settings do not: their share, but no more than
 /// the solver's own buffers leave. Links and layers that the device has no room for are in the host's memory.

@@ -31,8 +31,8 @@ struct Needs {
 
 Needs needsOf(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room) {
     const MemoryNeeds needs = mostMemoryNeeds(settings, scene, room.software);
-    // What a CPU spills takes as much of its memory as before.
-    const uint64_t alike = room.software && needs.spilled > 0 ? needs.total() + needs.spilled : 0;
+    // Where both are one memory, what is spilled takes as much of it as before.
+    const uint64_t alike = room.shared && needs.spilled > 0 ? needs.total() + needs.spilled : 0;
     return {.spill = settings.solver.spill,
             .device = needs.total(),
             .host = std::max(hostNeeds(settings, scene, needs.spilled), alike),
@@ -79,6 +79,8 @@ BakeRoom roomOn(const vk::Device& device) {
             .host = freeHostMemory(),
             .imageEdge = device.limits().maxImageDimension2D,
             .software = device.info().software(),
+            .shared = device.info().sharesMemory(),
+            .limited = device.limited(),
             .name = device.info().name};
 }
 
@@ -111,8 +113,9 @@ MemoryPlan planMemory(const BakeSettings& settings, const SceneExtent& scene, co
                                        scene.pages.sheetOf(imageLimit), mend)};
     if (!needs.fitsDevice(room))
         return {.problem =
-                    fmt::format("--size {}{} needs {} MiB on '{}', which has {} MiB to give: {}", size, pages,
-                                needs.device >> kMiBShift, room.name, limitOf(room) >> kMiBShift, mend)};
+                    fmt::format("--size {}{} needs {} MiB on '{}', which has {} MiB to give{}: {}", size,
+                                pages, needs.device >> kMiBShift, room.name, limitOf(room) >> kMiBShift,
+                                room.limited ? " by --device-memory" : "", mend)};
     return {.problem =
                 fmt::format("--size {}{} needs {} MiB of this machine's memory, which has {} MiB free: {}",
                             size, pages, needs.host >> kMiBShift, *room.host >> kMiBShift, mend)};

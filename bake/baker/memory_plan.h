@@ -14,7 +14,9 @@ struct BakeRoom {
     uint64_t device = 0;          // free memory of the device [bytes]
     std::optional<uint64_t> host; // and of the host, where it tells
     uint32_t imageEdge = 0;       // the largest image that the device takes [texels]
-    bool software = false;        // its memory is the host's, and what it needs counts the host's copies
+    bool software = false;        // what it needs counts the host's copies
+    bool shared = false;          // its memory is the host's
+    bool limited = false;         // the user allows no more of the device's
     std::string name = {};        // of the device, for messages
 };
 /// Returns the room of a device and of this machine as they are now.

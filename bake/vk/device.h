@@ -48,6 +48,8 @@ struct DeviceInfo {
     /// Drivers emulate the pipeline on GPUs without RT cores but offer ray queries only where there are some.
     bool rayTracingCores() const { return !software() && rayTracingPipeline && rayQuery; }
     bool integrated() const { return type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU; }
+    /// Tells whether its memory is the host's.
+    bool sharesMemory() const { return software() || integrated(); }
 };
 
 /// Returns "discrete", "integrated", "virtual", "software" or "other".
@@ -111,6 +113,7 @@ public:
     uint64_t freeMemory() const;
     /// Returns the device-local memory that is in use now, whoever uses it [bytes].
     uint64_t usedMemory() const;
+    bool limited() const { return memoryLimit_ > 0; } // its user wants no more of its memory taken
     /// Returns what the limit leaves now [bytes], the most there is where there is none.
     uint64_t freeOfLimit() const;
     /// Returns the index of a memory type with these properties among `typeBits`; ~0u if there is none.

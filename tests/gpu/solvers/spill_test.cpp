@@ -230,7 +230,7 @@ TEST(Spill, ALimitIsKept) {
     const vk::Device less(withLimit(least / 2));
     desc.device = &less;
     const std::string problem = messageOf([&] { bakeScene(scene, desc); });
-    EXPECT_NE(problem.find("MiB to give: --size"), std::string::npos) << problem;
+    EXPECT_NE(problem.find("MiB to give by --device-memory: --size"), std::string::npos) << problem;
 }
 
 // All cores get the memory of a large buffer of the host; it is used like any other.

@@ -107,9 +107,14 @@ TEST(MemoryPlan, ASpilledBakeNeedsTheHostsMemory) {
     EXPECT_EQ(planMemory(large, scene, roomOf(8 * kGiBOfPlan, host)).problem, "");
     const std::string problem = planMemory(large, scene, roomOf(8 * kGiBOfPlan, host / 2)).problem;
     EXPECT_LT(proposedIn(problem), 6144u) << problem;
+    BakeRoom limited = roomOf(kGiBOfPlan, 64 * kGiBOfPlan);
+    EXPECT_NE(planMemory(large, scene, limited).problem.find(" MiB to give: "), std::string::npos);
+    limited.limited = true;
+    EXPECT_NE(planMemory(large, scene, limited).problem.find(" MiB to give by --device-memory: "),
+              std::string::npos);
     // On a CPU there is nothing to gain: it is the same memory.
     BakeRoom cpu = roomOf(8 * kGiBOfPlan, 8 * kGiBOfPlan);
-    cpu.software = true;
+    cpu.software = cpu.shared = true;
     EXPECT_NE(planMemory(large, scene, cpu).problem, "");
 }
 
@@ -128,9 +133,6 @@ TEST(MemoryPlan, LinksAndLayersGetAThirdOfTheDeviceAndAQuarterOfTheHost) {
     shareMemory({.device = 30'000, .host = 60'000, .own = {.device = 21'000, .host = 40'000}}, shared);
     EXPECT_EQ(shared.layers.deviceBytes, 3'000u);
     EXPECT_EQ(shared.layers.bytes, 8'000u);
-    shared = layered;
-    shareMemory({.device = 30'000, .host = 60'000, .own = {}, .ranks = 5}, shared);
-    EXPECT_EQ(shared.cache.bytes, 13'000u) << "each of several processes takes its part of the host";
     // What the user says is the most, and as much of it as there is room for is on the device.
     shared = layered;
     shared.layers.bytes = shared.cache.bytes = 12'000;
@@ -142,9 +144,9 @@ TEST(MemoryPlan, LinksAndLayersGetAThirdOfTheDeviceAndAQuarterOfTheHost) {
     shared.layers.deviceBytes = 0;
     shareMemory(gpu, shared);
     EXPECT_EQ(shared.layers.deviceBytes, 13'000u);
-    // A CPU has but one memory, and pairs' bits are read on the device alone.
+    // With a CPU and an integrated GPU there is but one memory, and pairs' bits are read on the device alone.
     shared = layered;
-    shareMemory({.device = 30'000, .host = 60'000, .own = {}, .software = true}, shared);
+    shareMemory({.device = 30'000, .host = 60'000, .own = {}, .shared = true}, shared);
     EXPECT_EQ(shared.layers.bytes, 10'000u);
     EXPECT_EQ(shared.layers.deviceBytes, 10'000u);
     shared = SolverSettings();
