@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/numbering.h"
+#include "assets/base/portions.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -39,10 +40,22 @@ bool exists(const std::string& path) {
     return std::filesystem::exists(path, code);
 }
 
+// Portions are hashed by themselves, by all cores, and then their hashes in turn.
 uint64_t hashOf(const FloatImage& image, uint64_t hash) {
-    for (const std::vector<float>& plane : image.planes)
-        for (const float value : plane)
-            hash = (hash ^ std::bit_cast<uint32_t>(value)) * 0x9e3779b97f4a7c15u;
+    constexpr size_t kHashedAtATime = size_t{1} << 18; // texels
+    constexpr uint64_t kFactor = 0x9e3779b97f4a7c15u;
+    WorkerPool pool(0);
+    for (const std::vector<float>& plane : image.planes) {
+        std::vector<uint64_t> portions((plane.size() + kHashedAtATime - 1) / kHashedAtATime, 0);
+        runPortions(pool, plane.size(), kHashedAtATime, [&](size_t begin, size_t end) {
+            uint64_t own = 0;
+            for (size_t i = begin; i < end; ++i)
+                own = (own ^ std::bit_cast<uint32_t>(plane[i])) * kFactor;
+            portions[begin / kHashedAtATime] = own;
+        });
+        for (const uint64_t portion : portions)
+            hash = (hash ^ portion) * kFactor;
+    }
     return mixBits(hash ^ image.width);
 }
 
@@ -69,12 +82,19 @@ FloatImage cutOut(const FloatImage& sheet, const LightmapPages& pages, uint32_t 
     FloatImage own;
     own.width = own.height = pages.edgeOf(sheet.width);
     own.attributes = sheet.attributes;
-    for (size_t c = 0; c < sheet.channels.size(); ++c) {
-        std::vector<float>& plane = own.add(sheet.channels[c]);
-        overRows(own.width, pages, page, [&](size_t there, size_t here) {
-            std::copy_n(sheet.planes[c].data() + there, own.width, plane.data() + here);
+    // The planes are got and filled side by side.
+    for (const std::string& channel : sheet.channels)
+        own.channels.push_back(channel);
+    own.planes.resize(sheet.channels.size());
+    WorkerPool pool(0);
+    pool.run(static_cast<uint32_t>(own.planes.size()), [&](uint32_t c) {
+        std::vector<float>& plane = own.planes[c];
+        plane.reserve(size_t{own.width} * own.width);
+        overRows(own.width, pages, page, [&](size_t there, size_t) {
+            const auto row = sheet.planes[c].begin() + static_cast<ptrdiff_t>(there);
+            plane.insert(plane.end(), row, row + own.width);
         });
-    }
+    });
     return own;
 }
 
