@@ -109,6 +109,30 @@ TEST_F(RankBake, FootprintsPassesAndOtherDirectionsHaveTheBytesOfOneProcess) {
     expectSameBytes({"--size", "48", "--samples", "32", "--cache", "none"}, {3});
 }
 
+// Each process has buffers in the host's memory, as with the least memory of the device that does.
+TEST_F(RankBake, WhatTheDeviceHasNoRoomForHasTheBytesOfOneProcess) {
+    scene_ = "gallery.glb";
+    RankWords options = {"--size", "384", "--samples",       "16", "--local-error", "0",
+                         "--json", "-",   "--device-memory", ""};
+    constexpr uint32_t kMost = 1024, kStep = 10; // [MiB]
+    ProcessResult plain;
+    for (uint32_t limit = kStep; limit < kMost; limit += kStep) {
+        options.back() = std::to_string(limit) + "M";
+        plain = runRelume(bake("plain.exr", options));
+        if (plain.status == 0) break;
+        ASSERT_NE(plain.err.find(" MiB to give by --device-memory: "), std::string::npos) << plain.err;
+    }
+    ASSERT_EQ(plain.status, 0) << plain.err;
+    EXPECT_NE(plain.err.find("are read from this machine's memory"), std::string::npos) << plain.err;
+    const ProcessResult shared = mpirun(3, bake("shared.exr", options));
+    ASSERT_EQ(shared.status, 0) << shared.err;
+    const std::string bytes = bytesOf(folder_.path("plain.exr"));
+    EXPECT_TRUE(bytes == bytesOf(folder_.path("shared.exr")));
+    options.resize(options.size() - 2);
+    ASSERT_EQ(runRelume(bake("all.exr", options)).status, 0);
+    EXPECT_TRUE(bytes == bytesOf(folder_.path("all.exr"))) << "and those of a bake with all the memory";
+}
+
 // What the shaders gather, as on a GPU, is packed.
 TEST_F(RankBake, WhatADeviceGathersHasTheBytesOfOneProcess) {
     expectSameBytes({"--size", "48", "--samples", "32", "--tracer", "bvh", "--device-gather"}, {3});
