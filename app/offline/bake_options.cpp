@@ -243,10 +243,10 @@ void addSizeOption(CLI::App& command, const std::string& name, BakeOptions& o) {
 }
 
 CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
-    return command.add_option(
-        "--layer-memory", o.layers.memory,
-        "Layers take at most so much, as 512M or 2G (default: a third of the free device memory, and of the "
-        "machine's, too, where that is another); lights beyond share layers");
+    return command.add_option("--layer-memory", o.layers.memory,
+                              "Layers take at most so much, as 512M or 2G (default: a third of the free "
+                              "device memory, beside a GPU "
+                              "a quarter of the machine's, too); lights beyond share layers");
 }
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -106,18 +107,19 @@ public:
 /// Writes the pixels of images as values of one type, and counts those that it had to cut for it.
 class PartWriter {
 public:
-    explicit PartWriter(ExrType type) : type_(type) {}
+    explicit PartWriter(ExrType type) {
+        if (type == ExrType::Half) pool_.emplace(0);
+    }
 
     /// Writes them to an Imf::OutputFile or Imf::OutputPart.
     template<class Part>
     void write(Part& part, const FloatImage& image) {
-        const Imf::PixelType pixelType = type_ == ExrType::Half ? Imf::HALF : Imf::FLOAT;
+        const Imf::PixelType pixelType = pool_ ? Imf::HALF : Imf::FLOAT;
         Imf::FrameBuffer frame;
-        if (type_ == ExrType::Half) halves_.resize(std::max(halves_.size(), image.channels.size()));
+        if (pool_) halves_.resize(std::max(halves_.size(), image.channels.size()));
         for (size_t c = 0; c < image.channels.size(); ++c) {
-            const void* const data = type_ == ExrType::Half
-                                         ? halvesOf(image.planes[c], halves_[c])
-                                         : static_cast<const void*>(image.planes[c].data());
+            const void* const data = pool_ ? halvesOf(image.planes[c], halves_[c])
+                                           : static_cast<const void*>(image.planes[c].data());
             frame.insert(image.channels[c], Imf::Slice::Make(pixelType, static_cast<const char*>(data),
                                                              part.header().dataWindow()));
         }
@@ -136,13 +138,12 @@ public:
 private:
     const void* halvesOf(const std::vector<float>& plane, std::vector<half>& halves) {
         halves.resize(plane.size());
-        cut_ += toHalf(pool_, plane, halves.data());
+        cut_ += toHalf(*pool_, plane, halves.data());
         return halves.data();
     }
 
-    ExrType type_;
     ExrThreads threads_;
-    WorkerPool pool_{0};
+    std::optional<WorkerPool> pool_;        // rounds to half; none where values stay as they are
     std::vector<std::vector<half>> halves_; // of the image before, whose memory serves the next one
     size_t cut_ = 0;
 };

@@ -23,7 +23,7 @@ Spill mostSpill(const SolverSettings& settings);
 /// Returns the extent of these patches; their lights are not counted.
 SolverExtent extentOf(const PatchSet& patches, const Sky& sky, bool software);
 
-/// What is free where a solver is made [bytes].
+/// Holds what is free where a solver is made [bytes].
 struct SolverRoom {
     uint64_t device = 0;
     uint64_t host = 0;   // 0: unknown

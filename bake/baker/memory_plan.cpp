@@ -14,13 +14,13 @@ namespace {
 constexpr double kMemoryShare = 0.9;
 // Sizes that are proposed are multiples of this.
 constexpr uint32_t kProposedStep = 64;
-constexpr int kMiBShift = 20; // as a shift
+constexpr int kMiBShift = 20;
 
 uint64_t limitOf(const BakeRoom& room) {
     return static_cast<uint64_t>(kMemoryShare * static_cast<double>(room.device));
 }
 
-/// What a bake takes when so much of it is spilled.
+/// Holds what a bake takes when so much of it is spilled.
 struct Needs {
     Spill spill = Spill::None;
     uint64_t device = 0, host = 0, spilled = 0;
@@ -31,7 +31,7 @@ struct Needs {
 
 Needs needsOf(const BakeSettings& settings, const SceneExtent& scene, const BakeRoom& room) {
     const MemoryNeeds needs = mostMemoryNeeds(settings, scene, room.software);
-    // Where both are one memory, what is spilled takes as much of it as before.
+    // Spilled buffers take as much as before of a memory that both share.
     const uint64_t alike = room.shared && needs.spilled > 0 ? needs.total() + needs.spilled : 0;
     return {.spill = settings.solver.spill,
             .device = needs.total(),

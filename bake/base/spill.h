@@ -30,11 +30,6 @@ struct SpilledBytes {
 
     /// Adds those of a buffer that goes to the host from `first` on.
     void add(uint64_t bytes, Spill first, Spill spill) { (spill >= first ? host : device) += bytes; }
-    SpilledBytes& operator+=(const SpilledBytes& other) {
-        device += other.device;
-        host += other.host;
-        return *this;
-    }
 };
 
 } // namespace relume

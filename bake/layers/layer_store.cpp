@@ -106,7 +106,7 @@ void LayerStore::archive(std::unique_ptr<Layer> layer) {
     if (!layer->has()) return recycle(*layer);
     former_.push_back(std::move(layer));
     const uint64_t each = 2 * lightBytes_;
-    // Where layers are on the host, too, as many former ones are kept as there are others.
+    // As many former layers are kept as there are others where the host holds some.
     const uint64_t most = std::max(deviceBytes_, std::min(bytes_, (2 * layers_.size() + 1) * each));
     while (!former_.empty() && (layers_.size() + former_.size() + 1) * each > most) { // and the spare
         remember(*former_.front());

@@ -57,19 +57,19 @@ bool Buffer::createOfPages(const Desc& desc) {
     if (desc.memory != Memory::Host || !desc.imported.empty() || desc.size < kManyPages) return false;
     if (device_->info().importAlignment == 0) return false;
     const VkDeviceSize bytes = (desc.size + HostPages::kGrain - 1) / HostPages::kGrain * HostPages::kGrain;
-    HostPages pages(device_->workers(), bytes);
-    if (!pages || !importable(*device_, pages.bytes())) return false;
+    pages_ = HostPages(device_->workers(), bytes);
     Desc imported = desc;
-    imported.imported = pages.bytes();
+    imported.imported = pages_.bytes();
     try {
-        create(imported);
-    } catch (const Error&) {
-        release();
-        mapped_ = nullptr;
-        return false;
+        if (pages_ && importable(*device_, pages_.bytes())) {
+            create(imported);
+            return true;
+        }
+    } catch (const Error&) { // then it is made as others are
     }
-    pages_ = std::move(pages);
-    return true;
+    release();
+    mapped_ = nullptr;
+    return false;
 }
 
 void Buffer::create(const Desc& desc) {

@@ -194,7 +194,7 @@ TEST(Spill, ACacheKnowsItsChunksOnBothSides) {
     EXPECT_FALSE(at(5).known) << "what goes through forgets";
 }
 
-// Of a device with a limit no more is taken, whatever else there is; what has no room is spilled.
+// A bake takes no more of a device than its limit, and spills what has no room.
 TEST(Spill, ALimitIsKept) {
     constexpr uint32_t kScale = 4; // more patches than a batch has: what the batches take is not spilled
     const Scene scene = spillRoom(kScale);

@@ -118,6 +118,14 @@ TEST(MemoryPlan, ASpilledBakeNeedsTheHostsMemory) {
     EXPECT_NE(planMemory(large, scene, cpu).problem, "");
 }
 
+// On five pages' sheet there is room for nine.
+TEST(MemoryPlan, WhatIsLeftOverOnTheSheetHasNoPatches) {
+    BakeSettings settings;
+    settings.size = 1024;
+    EXPECT_LT(hostNeeds(settings, {.pages = {5}}), hostNeeds(settings, {.pages = {9}}));
+    EXPECT_GT(hostNeeds(settings, {.pages = {5}}), hostNeeds(settings, {.pages = {4}}));
+}
+
 TEST(MemoryPlan, LinksAndLayersGetAThirdOfTheDeviceAndAQuarterOfTheHost) {
     SolverSettings layered = hybridOf(512).solver;
     layered.layers.on = true;
@@ -128,7 +136,7 @@ TEST(MemoryPlan, LinksAndLayersGetAThirdOfTheDeviceAndAQuarterOfTheHost) {
     EXPECT_EQ(shared.layers.deviceBytes, 10'000u);
     EXPECT_EQ(shared.cache.bytes, 25'000u);
     EXPECT_EQ(shared.cache.deviceBytes, 10'000u);
-    // What the solver itself takes leaves less of the device, and spilled buffers less of the host.
+    // The solver's own buffers leave less of the device, and spilled ones less of the host.
     shared = layered;
     shareMemory({.device = 30'000, .host = 60'000, .own = {.device = 21'000, .host = 40'000}}, shared);
     EXPECT_EQ(shared.layers.deviceBytes, 3'000u);
