@@ -135,6 +135,19 @@ struct EmitterPolygon {
     uint triangle; // the WorldMesh triangle it was made from, or the first one of two
 };
 
+// An edge of one polygon, and of its neighbour where there is one, which walks it the other way. A point sees
+// a polygon's front where dot(normal, point) > height.
+struct EmitterEdge {
+    vec3 from;          // [m]
+    float height;       // of the polygon's plane along its normal [m]
+    vec3 along;         // to where it ends [m]
+    float heightBeyond; // of the neighbour's
+    vec3 normal;        // of the polygon
+    uint polygon;
+    vec3 normalBeyond;  // of the neighbour, zero where there is none
+    uint polygonBeyond; // itself where there is none
+};
+
 // EmitterNode::link is the first of two children that lie side by side, or the polygon of a leaf with this
 // bit.
 CONST uint kEmitterLeaf = 0x80000000u;

@@ -5,16 +5,23 @@ struct EmitterSamplesPush {
     ADDRESS polygons; // EmitterPolygon[]
     ADDRESS nodes;    // EmitterNode[]
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
-    ADDRESS picks; // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's chance, form factor
-    ADDRESS parts; // lib/light/penumbra.glsl, as penumbra
+    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's chance, form factor; with wholes
+    // radiance over the pick's chance
+    ADDRESS picks;
+    ADDRESS parts;    // lib/light/penumbra.glsl, as penumbra
     ADDRESS penumbra; // 0: every patch takes every sample pass
     ADDRESS covers;   // as of ClosestPush
+    ADDRESS edges;    // EmitterEdge[]
+    // vec4[patchCount]: lighting by all polygons without shadows, 0; or 1 where the light is so near that
+    // each point has its own, behind the picks of `firstNear` chunks; 0: it is not asked for
+    ADDRESS wholes;
     uint firstChunk;
     uint samplePass; // where several are taken together, the first one over their number
-    uint together;   // sample passes; with picks that are drawn 1
-    uint pickCount;
-    uint pointCount; // per pick, of all these sample passes; each has a multiple of kReplicates
+    uint together;   // sample passes; with picks that are drawn, and no wholes, 1
+    uint pickCount;  // with wholes of all these sample passes, and a multiple of kReplicates in each
+    uint pointCount; // per pick, of all these sample passes; a multiple of kReplicates in each, with wholes 1
     uint all;        // 1: pick i is mesh light i; 0: picks are drawn
+    uint polygonCount, edgeCount, firstNear;
 };
 struct DirectPush {
     ADDRESS targets;
@@ -23,9 +30,9 @@ struct DirectPush {
     ADDRESS sums;   // vec4[kReplicates][patchCount]
     ADDRESS direct; // vec4[patchCount]: the mean so far
     ADDRESS parts;
-    ADDRESS penumbra; // as of EmitterSamplesPush
+    ADDRESS penumbra, wholes; // as of EmitterSamplesPush
     uint firstChunk;
-    uint samplePass, together, pickCount, pointCount, all; // as of EmitterSamplesPush
+    uint samplePass, together, pickCount, pointCount, all, firstNear; // as of EmitterSamplesPush
     uint patchCount;
     float scale; // from the sum of all sums to the mean
 };

@@ -36,6 +36,7 @@ static_assert(sizeof(SuperBlock) == 56 && sizeof(Sender) == 12);
 static_assert(sizeof(OcclusionPush) <= 128 && sizeof(GatherPush) <= 128); // what every device takes
 static_assert(sizeof(HitTriangle) == 48 && sizeof(AlphaTriangle) == 40 && sizeof(AlphaMaterial) == 28);
 static_assert(sizeof(EmitterPolygon) == 80 && sizeof(EmitterNode) == 48);
+static_assert(sizeof(EmitterEdge) == 64 && sizeof(EmitterSamplesPush) <= 128);
 static_assert(sizeof(Lamp) == 92 && sizeof(LampPush) <= 128);
 static_assert(sizeof(CoarseTaps) == 32 && sizeof(CoarseNeighbours) == 28);
 static_assert(sizeof(PyramidNode) == 52);

@@ -1,6 +1,8 @@
 #include "bake/direct/emitter_light.h"
 
 #include "bake/direct/host_emitters.h"
+#include "bake/direct/host_wholes.h"
+#include "bake/lights/emitter_edges.h"
 
 #include <algorithm>
 
@@ -14,18 +16,24 @@ constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told fr
 // A batch has so many chunks: their targets are 16 KiB each for 16 points.
 constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
 
+// There is room for one chunk at least of sample passes that are taken together.
 uint32_t mostChunks(uint32_t chunkCount, bool software) {
-    return std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks);
+    return std::max(shader::kSamplePassesTogether,
+                    std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks));
 }
 
 uint32_t wordsOfPoints(uint32_t targets) {
     return (targets + kTargetsPerWord - 1) / kTargetsPerWord;
 }
 
+uint64_t wholeBytes(uint32_t chunkCount) {
+    return uint64_t{chunkCount} * kChunk * sizeof(glm::vec4);
+}
+
 } // namespace
 
-EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links, bool allOver)
-    : device_(device), links_(links), allOver_(allOver),
+EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, const Desc& desc)
+    : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
       batchChunks_(mostChunks(patches.chunkCount(), device.info().software())),
       samples_(vk::ComputeProgram::builtAtFirstUse(device, "emitter_samples")),
       gather_(vk::ComputeProgram::builtAtFirstUse(device, "direct")) {}
@@ -33,13 +41,16 @@ EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, ui
 void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     groups_.clear();
     uint32_t picks = 0, targets = 0;
+    bool whole = false;
     for (const EmitterSet& set : groups) {
-        groups_.push_back({samplingOf(static_cast<uint32_t>(set.polygons.size()), links_),
-                           vk::makeBuffer(device_, set.polygons, "emitters"),
-                           vk::makeBuffer(device_, set.nodes, "light tree")});
-        picks = std::max(picks, groups_.back().picks);
+        groups_.push_back(makeGroup(set));
+        whole = whole || groups_.back().whole;
+        picks = std::max(picks, groups_.back().picksRoom());
         targets = std::max(targets, groups_.back().targets());
     }
+    wholes_.group.reset();
+    if (whole && !wholes_.light)
+        wholes_.light = vk::Buffer(device_, {.size = wholeBytes(chunkCount_), .name = "whole mesh lights"});
     const uint64_t places = uint64_t{batchChunks_} * kChunk;
     if (picks > picksRoom_) {
         picksRoom_ = picks;
@@ -53,24 +64,79 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     bits_ = vk::Buffer(device_, {.size = places * words * sizeof(uint32_t), .name = "seen points"});
 }
 
-EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, uint32_t links) {
-    if (polygons <= kAllEmitters) return {.picks = polygons, .points = links, .all = true};
-    return {.picks = std::max(links / kPointsPerPick, kReplicates), .points = kPointsPerPick, .all = false};
+EmitterLight::Group EmitterLight::makeGroup(const EmitterSet& set) const {
+    Group group;
+    group.polygonCount = static_cast<uint32_t>(set.polygons.size());
+    static_cast<Sampling&>(group) = samplingOf(group.polygonCount, desc_);
+    group.polygons = vk::makeBuffer(device_, set.polygons, "emitters");
+    group.nodes = vk::makeBuffer(device_, set.nodes, "light tree");
+    if (!group.whole) return group;
+    const std::vector<shader::EmitterEdge> edges = emitterEdges(set.polygons);
+    group.edgeCount = static_cast<uint32_t>(edges.size());
+    group.edges = vk::makeBuffer(device_, edges, "edges of emitters");
+    return group;
 }
 
-uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, uint32_t links, uint32_t polygons) {
-    const Sampling sampling = samplingOf(polygons, links);
+EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& desc) {
+    if (polygons <= kAllEmitters) return {.picks = polygons, .points = desc.links, .all = true};
+    if (desc.lightByLight && polygons <= kMostOfWhole)
+        return {.picks = std::max(desc.links, kReplicates), .points = 1, .all = false, .whole = true};
+    return {
+        .picks = std::max(desc.links / kPointsPerPick, kReplicates), .points = kPointsPerPick, .all = false};
+}
+
+uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons) {
+    const Sampling sampling = samplingOf(polygons, desc);
     const uint64_t places = uint64_t{mostChunks(chunkCount, software)} * kChunk;
     // A binary tree has fewer than two nodes per polygon.
     const uint64_t tables = polygons * (sizeof(shader::EmitterPolygon) + 2 * sizeof(shader::EmitterNode)) +
                             sizeof(shader::EmitterNode);
-    return tables + places * ((sampling.picks + sampling.targets()) * sizeof(glm::vec4) +
-                              wordsOfPoints(sampling.targets()) * sizeof(uint32_t));
+    // A polygon has four edges at most.
+    const uint64_t edges = uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
+    // Of lights with more polygons than have their whole light found others may have fewer.
+    const bool whole = desc.lightByLight && polygons > kAllEmitters;
+    const uint64_t wholes = whole ? wholeBytes(chunkCount) + edges : 0;
+    const uint32_t picks =
+        std::max(sampling.picksRoom(), whole ? samplingOf(kMostOfWhole, desc).picksRoom() : 0u);
+    return tables + wholes +
+           places * ((picks + sampling.targets()) * sizeof(glm::vec4) +
+                     wordsOfPoints(sampling.targets()) * sizeof(uint32_t));
 }
 
-void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const {
+// Tells whether any of the chunks is not known yet; they are from then on.
+bool EmitterLight::learnWholes(const Work& work) {
+    if (!groups_[work.group].whole) return false;
+    if (wholes_.group != work.group) {
+        wholes_.group = work.group;
+        wholes_.knownChunks.assign(chunkCount_, 0);
+    }
+    const auto first = wholes_.knownChunks.begin() + work.range.first;
+    const bool all = std::find(first, first + work.range.count, 0) == first + work.range.count;
+    std::fill_n(first, work.range.count, uint8_t{1});
+    return !all;
+}
+
+void EmitterLight::findWholesOnCpu(const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
-    const vk::Buffer* covers = light.coversIf(allOver_);
+    const size_t patches = size_t{chunkCount_} * kChunk;
+    findWholes(device_.workers(),
+               {.polygons = {group.polygons.as<shader::EmitterPolygon>(), group.polygonCount},
+                .edges = {group.edges.as<shader::EmitterEdge>(), group.edgeCount},
+                .root = *group.nodes.as<shader::EmitterNode>(),
+                .patches = {light.patches.as<shader::Patch>(), patches},
+                .wholes = {wholes_.light.as<glm::vec4>(), patches},
+                .allOver = light.coversIf(desc_.allOver) != nullptr,
+                .range = work.range});
+}
+
+void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) {
+    const Group& group = groups_[work.group];
+    const vk::Buffer* covers = light.coversIf(desc_.allOver);
+    bool learns = learnWholes(work);
+    if (learns && device_.info().software()) {
+        findWholesOnCpu(light, work);
+        learns = false;
+    }
     const shader::EmitterSamplesPush push{.patches = light.patches.address(),
                                           .polygons = group.polygons.address(),
                                           .nodes = group.nodes.address(),
@@ -79,13 +145,18 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .parts = work.penumbra ? work.penumbra->parts.address() : 0,
                                           .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
                                           .covers = covers ? covers->address() : 0,
+                                          .edges = group.whole ? group.edges.address() : 0,
+                                          .wholes = wholesOf(group),
                                           .firstChunk = work.range.first,
                                           .samplePass = work.samplePass,
                                           .together = work.together,
-                                          .pickCount = group.picks,
-                                          .pointCount = group.points * work.together,
-                                          .all = group.all ? 1u : 0u};
-    samples_.dispatch(cmd, push, work.range.count, group.picks);
+                                          .pickCount = group.picksOf(work.together),
+                                          .pointCount = group.pointsOf(work.together),
+                                          .all = group.all ? 1u : 0u,
+                                          .polygonCount = group.polygonCount,
+                                          .edgeCount = group.edgeCount,
+                                          .firstNear = batchChunks_ / work.together};
+    samples_.dispatch(cmd, push, work.range.count, push.pickCount + (learns ? 1 : 0));
 }
 
 PointTimes EmitterLight::traceOnCpu(const LightBuffers& light, const Work& work,
@@ -110,9 +181,9 @@ SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
             .targets = &targets_,
             .bits = &bits_,
             .rays = &rays,
-            .covers = light.coversIf(allOver_),
+            .covers = light.coversIf(desc_.allOver),
             .samplePass = work.samplePass,
-            .turn = group.all ? group.points * work.together : group.targets(),
+            .turn = group.all ? group.points * work.together : group.targets() * work.together,
             .run = group.all ? 1 : group.points};
 }
 
@@ -127,12 +198,14 @@ void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, 
         .direct = direct.address(),
         .parts = work.penumbra ? work.penumbra->parts.address() : 0,
         .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
+        .wholes = wholesOf(group),
         .firstChunk = work.range.first,
         .samplePass = work.samplePass,
         .together = work.together,
-        .pickCount = group.picks,
-        .pointCount = group.points * work.together,
+        .pickCount = group.picksOf(work.together),
+        .pointCount = group.pointsOf(work.together),
         .all = group.all ? 1u : 0u,
+        .firstNear = batchChunks_ / work.together,
         .patchCount = light.chunkCount * kChunk,
         .scale = 1.0f / static_cast<float>(kReplicates * work.together * (work.samplePass + 1))};
     gather_.dispatch(cmd, push, work.range.count);

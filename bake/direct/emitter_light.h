@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bake/base/chunk_order.h"
@@ -17,8 +18,14 @@ namespace relume {
 class EmitterLight {
 public:
     /// Takes the directions per sample pass: mesh lights get about as many points, but at least those of one
-    /// pick for each replicate. With allOver samples start all over their texels (LightBuffers::covers).
-    EmitterLight(const vk::Device& device, const PatchSet& patches, uint32_t links, bool allOver);
+    /// pick for each replicate.
+    struct Desc {
+        uint32_t links = 0;
+        bool allOver = false; // samples start all over their texels (LightBuffers::covers)
+        // Each group is one light: where its polygons are picked, picks tell the share of it that is seen.
+        bool lightByLight = false;
+    };
+    EmitterLight(const vk::Device& device, const PatchSet& patches, const Desc& desc);
 
     /// Sets the groups in place of those before. No batch may be under way.
     void setGroups(const std::vector<EmitterSet>& groups);
@@ -28,7 +35,7 @@ public:
     uint32_t batchChunks() const { return batchChunks_; } // at most in one batch of one sample pass
     /// Tells whether several sample passes may be one Work, where replicates tell each other the share that
     /// is seen by the points of all. The points of a pick are of one sample pass, in which it is drawn.
-    bool goTogether(uint32_t group) const { return groups_[group].all; }
+    bool goTogether(uint32_t group) const { return groups_[group].all || groups_[group].whole; }
     struct Work {
         uint32_t group = 0;
         uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
@@ -38,7 +45,7 @@ public:
         const Penumbra* penumbra = nullptr;
     };
     /// Records the samples. The caller writes the barriers, here and below.
-    void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work) const;
+    void recordSamples(VkCommandBuffer cmd, const LightBuffers& light, const Work& work);
     /// Tells whether the CPU can do without the device, where it traces: this holds where all polygons are
     /// sampled.
     bool onCpu(uint32_t group) const { return groups_[group].all; }
@@ -54,9 +61,10 @@ public:
     /// Every patch samples all of so few polygons; of more, each patch picks some in every sample pass. No
     /// number of polygons takes more memory.
     static constexpr uint32_t kAllEmitters = 4;
-    /// Returns the bytes of its buffers for groups of at most so many polygons, and so many directions per
-    /// sample pass.
-    static uint64_t bytes(uint32_t chunkCount, bool software, uint32_t links, uint32_t polygons);
+    /// Of a light of at most so many polygons each patch finds what all of them bring without shadows.
+    static constexpr uint32_t kMostOfWhole = 1024;
+    /// Returns the bytes of its buffers for groups of at most so many polygons.
+    static uint64_t bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons);
 
 private:
     /// The points that a patch takes of a group in a sample pass.
@@ -64,18 +72,34 @@ private:
         uint32_t picks = 0;  // of mesh lights; all of them where there are few
         uint32_t points = 0; // on each picked mesh light
         bool all = true;     // pick i is mesh light i
+        bool whole = false;  // Wholes serves it
         uint32_t targets() const { return picks * points; }
+        uint32_t picksRoom() const { return whole ? 2 * picks : picks; } // with those of near points
+        uint32_t picksOf(uint32_t together) const { return whole ? picks * together : picks; }
+        uint32_t pointsOf(uint32_t together) const { return whole ? points : points * together; }
     };
-    static Sampling samplingOf(uint32_t polygons, uint32_t links);
+    static Sampling samplingOf(uint32_t polygons, const Desc& desc);
     struct Group : Sampling {
         vk::Buffer polygons, nodes; // EmitterPolygon, EmitterNode
+        vk::Buffer edges;           // EmitterEdge, where Wholes serves it
+        uint32_t polygonCount = 0, edgeCount = 0;
     };
+    Group makeGroup(const EmitterSet& set) const;
+    /// The light of one group without shadows, as far as it was asked for.
+    struct Wholes {
+        vk::Buffer light;                 // as of EmitterSamplesPush; none where no group wants it
+        std::optional<uint32_t> group;    // whose it is
+        std::vector<uint8_t> knownChunks; // marks
+    };
+    bool learnWholes(const Work& work);
+    void findWholesOnCpu(const LightBuffers& light, const Work& work) const;
+    VkDeviceAddress wholesOf(const Group& group) const { return group.whole ? wholes_.light.address() : 0; }
 
     const vk::Device& device_;
-    uint32_t links_;
-    bool allOver_;
-    uint32_t batchChunks_;
+    Desc desc_;
+    uint32_t chunkCount_, batchChunks_;
     std::vector<Group> groups_;
+    Wholes wholes_;
     uint32_t picksRoom_ = 0, targetsRoom_ = 0; // per patch, what there is memory for
     vk::Buffer targets_, picks_, bits_;        // of one batch
     vk::ComputeProgram samples_, gather_;

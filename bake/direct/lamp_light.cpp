@@ -29,7 +29,9 @@ uint32_t wordsOf(uint32_t targets) {
 
 uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
     const uint32_t smaller = kGroupRays / std::clamp(rays, 1u, kGroupRays);
-    return std::min({chunkCount, kMostChunks, (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller});
+    return std::max(
+        shader::kSamplePassesTogether,
+        std::min({chunkCount, kMostChunks, (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller}));
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "bake/gather/sample_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -28,8 +29,8 @@ uint32_t limited(const SampledPart& part, double samplePasses, uint32_t growth =
                     onLadder(std::clamp(samplePasses, double(part.samplePasses), most), part.doubles));
 }
 
-double varianceOfSamplePass(const SampledPart& part) {
-    return part.variance * std::max(1u, part.samplePasses);
+double varianceAt(const SampledPart& part, double samplePasses) {
+    return part.variance * std::pow(std::max(1u, part.samplePasses) / std::max(1.0, samplePasses), part.fall);
 }
 
 double within(const SampledPart& part, double samplePasses) {
@@ -37,12 +38,34 @@ double within(const SampledPart& part, double samplePasses) {
                       double(std::max(part.samplePasses, part.most)));
 }
 
-// Returns the sample passes by which the part comes to what the other one leaves of `allowed` with so many.
-double samplePassesBeside(const SampledPart& part, const SampledPart& other, double otherSamplePasses,
-                          double allowed) {
+// Returns the sample passes at which one more takes away cost / multiplier of the variance.
+double samplePassesAt(const SampledPart& part, double multiplier) {
     if (part.variance <= 0.0) return part.samplePasses;
-    const double left = allowed - varianceOfSamplePass(other) / std::max(1.0, otherSamplePasses);
-    return left > 0.0 ? varianceOfSamplePass(part) / left : double(part.most);
+    const double ofOne = part.variance * std::pow(std::max(1u, part.samplePasses), part.fall);
+    return within(part,
+                  std::pow(multiplier * part.fall * ofOne / part.costOfSamplePass, 1.0 / (part.fall + 1.0)));
+}
+
+// Returns the sample passes that cost least of those that leave no more than `allowed`, or the most where
+// none do. The multiplier is found by halving: all numbers grow with it.
+std::vector<double> cheapestSamplePasses(std::span<const SampledPart> parts, double allowed) {
+    constexpr double kLeastExponent = -512, kMostExponent = 512; // of two
+    constexpr uint32_t kHalvings = 64;                           // to the last bit
+    const auto left = [&](double exponent) {
+        double sum = 0;
+        for (const SampledPart& part : parts)
+            sum += varianceAt(part, samplePassesAt(part, std::exp2(exponent)));
+        return sum;
+    };
+    double low = kLeastExponent, high = kMostExponent;
+    for (uint32_t i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        (left(middle) > allowed ? low : high) = middle;
+    }
+    std::vector<double> samplePasses;
+    for (const SampledPart& part : parts)
+        samplePasses.push_back(samplePassesAt(part, std::exp2(high)));
+    return samplePasses;
 }
 
 // Doubles what takes away more of the variance for its cost.
@@ -73,64 +96,45 @@ std::vector<uint32_t> onSteps(std::span<const SampledPart> parts, std::span<cons
     std::vector<uint32_t> samplePasses;
     std::vector<size_t> open; // parts that have a step to go
     double variance = 0;
-    const auto varianceAt = [&](size_t i, uint32_t now) {
-        return varianceOfSamplePass(parts[i]) / std::max(1u, now);
-    };
     for (size_t i = 0; i < parts.size(); ++i) {
         const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
         samplePasses.push_back(above > wanted[i] ? stepBelow(parts[i], above) : above);
-        variance += varianceAt(i, samplePasses[i]);
+        variance += varianceAt(parts[i], samplePasses[i]);
         if (samplePasses[i] < above) open.push_back(i);
     }
     while (variance > allowed && !open.empty()) {
         const auto worth = [&](size_t i) {
             const uint32_t above = limited(parts[i], wanted[i], kMostGrowthOfMany);
-            return (varianceAt(i, samplePasses[i]) - varianceAt(i, above)) /
+            return (varianceAt(parts[i], samplePasses[i]) - varianceAt(parts[i], above)) /
                    ((above - samplePasses[i]) * parts[i].costOfSamplePass);
         };
         const auto best = std::max_element(open.begin(), open.end(),
                                            [&](size_t a, size_t b) { return worth(a) < worth(b); });
         const size_t i = *best;
         open.erase(best);
-        variance -= varianceAt(i, samplePasses[i]);
+        variance -= varianceAt(parts[i], samplePasses[i]);
         samplePasses[i] = limited(parts[i], wanted[i], kMostGrowthOfMany);
-        variance += varianceAt(i, samplePasses[i]);
+        variance += varianceAt(parts[i], samplePasses[i]);
     }
     return samplePasses;
 }
 
 } // namespace
 
-// Parts that have more than the others would leave them keep what they have, and the others share what is
-// left; so on, until none is added to those.
+double fallOfVariance(uint32_t fewer, double varianceOfFewer, uint32_t more, double varianceOfMore,
+                      double known) {
+    constexpr double kIndependent = 1.0, kStratified = 1.5;
+    if (fewer == 0 || more <= fewer || varianceOfFewer <= 0.0 || varianceOfMore <= 0.0) return known;
+    const double fall = std::log(varianceOfFewer / varianceOfMore) / std::log(double(more) / fewer);
+    return std::clamp(fall, kIndependent, kStratified);
+}
+
 std::vector<uint32_t> samplePassesFor(std::span<const SampledPart> parts, double allowed) {
+    if (allowed > 0.0) return onSteps(parts, cheapestSamplePasses(parts, allowed), allowed);
     std::vector<uint32_t> samplePasses;
     for (const SampledPart& part : parts)
         samplePasses.push_back(part.samplePasses);
-    if (!(allowed > 0.0)) return samplePasses;
-    std::vector<bool> settled(parts.size());
-    std::vector<double> wanted(parts.size());
-    for (bool more = true; more;) {
-        double roots = 0, left = allowed;
-        for (size_t i = 0; i < parts.size(); ++i) {
-            if (settled[i])
-                left -= varianceOfSamplePass(parts[i]) / std::max(1.0, wanted[i]);
-            else
-                roots += std::sqrt(varianceOfSamplePass(parts[i]) * parts[i].costOfSamplePass);
-        }
-        more = false;
-        for (size_t i = 0; i < parts.size(); ++i) {
-            if (settled[i]) continue;
-            const SampledPart& part = parts[i];
-            const double free =
-                left > 0.0 ? std::sqrt(varianceOfSamplePass(part) / part.costOfSamplePass) * roots / left
-                           : double(part.most);
-            wanted[i] = within(part, part.variance > 0.0 ? free : 0.0);
-            settled[i] = wanted[i] != free;
-            more = more || settled[i];
-        }
-    }
-    return onSteps(parts, wanted, allowed);
+    return samplePasses;
 }
 
 double gainOfSamplePass(const SampledPart& part, uint32_t now) {
@@ -139,13 +143,8 @@ double gainOfSamplePass(const SampledPart& part, uint32_t now) {
 
 SamplePasses samplePassesFor(const SampledPart& first, const SampledPart& second, double allowed) {
     if (!(allowed > 0.0)) return doubled(first, second);
-    const double roots = std::sqrt(varianceOfSamplePass(first) * first.costOfSamplePass) +
-                         std::sqrt(varianceOfSamplePass(second) * second.costOfSamplePass);
-    double a =
-        within(first, std::sqrt(varianceOfSamplePass(first) / first.costOfSamplePass) * roots / allowed);
-    const double wanted = samplePassesBeside(second, first, a, allowed), b = within(second, wanted);
-    if (b != wanted) a = within(first, samplePassesBeside(first, second, b, allowed));
-    const SamplePasses samplePasses{limited(first, a), limited(second, b)};
+    const std::vector<double> wanted = cheapestSamplePasses(std::array{first, second}, allowed);
+    const SamplePasses samplePasses{limited(first, wanted[0]), limited(second, wanted[1])};
     return samplePasses == SamplePasses{first.samplePasses, second.samplePasses} ? doubled(first, second)
                                                                                  : samplePasses;
 }

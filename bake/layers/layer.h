@@ -55,6 +55,7 @@ struct DirectPart {
 struct LayerPlan {
     LayerLevel wanted;      // the level to be made next, where it has one and goes on
     bool converged = false; // it needs no further level
+    double directFall = 1;  // how direct light's variance falls, by its last levels: SampledPart::fall
 };
 
 /// One light's share of the lightmap for a unit of its weight, or a group's share: direct light and all

@@ -13,7 +13,7 @@ using Kind = LightKey::Kind;
 } // namespace
 
 LayerLights::LayerLights(LinkKit& kit)
-    : kit_(kit), emitters_(kit.input.device, kit.input.patches, kPoints, kit.settings.links.allOver),
+    : kit_(kit), emitters_(kit.input.device, kit.input.patches, {kPoints, kit.settings.links.allOver, true}),
       lamps_(kit.input.device, kit.input.scene, kit.input.patches,
              {.samples = kPoints, .chosen = true, .allOver = kit.settings.links.allOver}) {}
 
@@ -127,7 +127,7 @@ void LayerLights::trace(VkCommandBuffer cmd, const Portion& portion,
 }
 
 template<typename Lights>
-void LayerLights::traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
+void LayerLights::traceWith(Lights& lights, VkCommandBuffer cmd, const Portion& portion,
                             const std::function<void(VkCommandBuffer)>& before) {
     const typename Lights::Work work = workOf<Lights>(portion);
     const LightBuffers& light = kit_.input.light;

@@ -73,7 +73,7 @@ private:
     void traceOnCpuWith(const Lights& lights, const Portion& portion);
     void note(const PointTimes& times);
     template<typename Lights>
-    void traceWith(const Lights& lights, VkCommandBuffer cmd, const Portion& portion,
+    void traceWith(Lights& lights, VkCommandBuffer cmd, const Portion& portion,
                    const std::function<void(VkCommandBuffer)>& before);
 
     LinkKit& kit_;

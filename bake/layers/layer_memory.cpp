@@ -29,7 +29,8 @@ SpilledBytes layerSolverBytes(const SolverExtent& extent, const SolverSettings& 
                              : std::min(lights.points, 1u);
     const uint32_t rays = extent.lights ? one : LampLight::kMostGroupRays;
     const uint64_t direct =
-        EmitterLight::bytes(extent.chunkCount, extent.software, kPoints, polygons) +
+        EmitterLight::bytes(extent.chunkCount, extent.software, {.links = kPoints, .lightByLight = true},
+                            polygons) +
         LampLight::bytes(extent.chunkCount, extent.software, rays) +
         LampLight::tableBytes({lights.extended, lights.points}, extent.skyPixels, extent.skyRows);
     const uint32_t links =

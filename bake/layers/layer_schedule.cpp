@@ -68,7 +68,8 @@ SampledPart LayerSchedule::directPart(const Layer& layer, double variance) const
             .most = lastLevel().directSamplePasses,
             .variance = variance,
             .costOfSamplePass = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare(),
-            .doubles = true};
+            .doubles = true,
+            .fall = layer.plan.directFall};
 }
 
 // So many layers share what it costs to trace links.

@@ -238,6 +238,8 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
     const glm::dvec4 total = sums.result;
     requireFiniteLight(total.x, total.y + sums.indirect.indirect + sums.indirect.raw);
     Layer& layer = *lane.layer;
+    layer.plan.directFall = fallOfVariance(layer.level.directSamplePasses, layer.directVariance,
+                                           lane.target.directSamplePasses, total.y, layer.plan.directFall);
     layer.level = lane.target;
     layer.light = total.x;
     layer.count = total.z;

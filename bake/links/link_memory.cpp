@@ -28,7 +28,7 @@ DirectNeeds directNeeds(const SolverExtent& extent, bool meshLights, uint32_t li
         extent.lights ? LampLight::groupRays({extent.lights->extended, extent.lights->points}, links, allOver)
                       : LampLight::kMostGroupRays;
     const uint64_t emitters =
-        EmitterLight::bytes(extent.chunkCount, extent.software, links, meshLights ? polygons : 0);
+        EmitterLight::bytes(extent.chunkCount, extent.software, {.links = links}, meshLights ? polygons : 0);
     const uint64_t lamps = LampLight::bytes(extent.chunkCount, extent.software, rays);
     const bool any = rays > 0 || (meshLights && polygons > 0);
     return {.any = any, .lamps = rays > 0, .bytes = emitters + lamps + lampTableBytes(extent)};

@@ -32,7 +32,7 @@ uint32_t linksOf(const SolverInput& input, const SolverSettings& settings) {
 
 EmitterLight makeEmitters(const SolverInput& input, const SolverSettings& settings) {
     const PatchSet& patches = input.patches;
-    EmitterLight light(input.device, patches, linksOf(input, settings), settings.links.allOver);
+    EmitterLight light(input.device, patches, {linksOf(input, settings), settings.links.allOver});
     const bool hybrid = settings.method == Method::Hybrid;
     light.setGroups({hybrid ? buildEmitters(input.scene, patches.scene.mesh, {.size = patches.scene.size})
                             : EmitterSet{}});
@@ -264,7 +264,7 @@ uint32_t LinkSolver::chunksOfStage() const {
 }
 
 template<typename Lights>
-void LinkSolver::traceDirect(const Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit) {
+void LinkSolver::traceDirect(Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
     typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};

@@ -70,7 +70,7 @@ private:
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
     void directBatch();
     template<typename Lights>
-    void traceDirect(const Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit);
+    void traceDirect(Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit);
     void linkBatch();
     void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
     bool wantsDistances() const {

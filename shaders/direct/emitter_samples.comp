@@ -1,5 +1,6 @@
 // Makes points on mesh lights for the patches of some chunks: which polygon, where on it, and what it would
-// send unshadowed. There is one workgroup per chunk (x) and pick (y), and one invocation per patch.
+// send unshadowed. There is one workgroup per chunk (x) and pick (y), and one invocation per patch. One more row of
+// workgroups finds what all polygons send unshadowed, where that is not known yet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -9,7 +10,10 @@
 #include "lib/light/emitters.glsl"
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
+EmitterPolygon emitterPolygon(uint index) { return loadEmitterPolygon(push.polygons, index); }
+EmitterEdge emitterEdge(uint index) { return loadEmitterEdge(push.edges, index); }
 #include "lib/light/pick_emitter.glsl"
+#include "lib/light/whole_emitter.glsl"
 #include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/rays/starts.glsl"
 
@@ -18,37 +22,63 @@ layout(local_size_x = 64) in;
 // The salt keeps the numbers of picks apart from those of directions, which start from the same seeds.
 const uint kPickSalt = 0x5bd1e995u;
 
+bool isNearAll(Patch p) { return push.covers != 0ul && isNearNode(p.position, p.area, emitterNode(0u)); }
+
+// Nearby, the light differs over the texel: then each point knows that of where it starts.
+void findWhole(Patch p, uint index) {
+    bool sends = (p.flags & kPatchSends) != 0u, near = isNearAll(p);
+    vec3 light = vec3(0.0);
+    if (sends && !near) light = wholeEmitterLight(p.position, p.shading, push.polygonCount, push.edgeCount);
+    VEC4_AT(push.wholes, index) = vec4(light, sends && near ? 1.0 : 0.0);
+}
+
 void main() {
     uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
+    if (pick == push.pickCount) {
+        findWhole(p, index);
+        return;
+    }
     uint base = (chunk * push.pickCount + pick) * push.pointCount;
+    // Together, sample passes have more points on each polygon, or more picks of one point.
+    bool onePoint = push.wholes != 0ul;
+    uint taken = takenSamplePasses(index), points = onePoint ? 1u : push.pointCount / push.together * taken;
+    if (taken == 0u || (onePoint && pick >= push.pickCount / push.together * taken)) { // it is not asked for
+        for (uint s = 0u; s < push.pointCount; ++s) VEC4_AT(push.targets, (base + s) * kChunk + lane) = vec4(0.0);
+        return;
+    }
     uint key = seedKey(p);
     bool all = push.all != 0u;
 
+    PatchCover cover = coverOf(index);
+    Patch start = p; // a pick of one point is drawn for where that starts
+    if (onePoint) start = startingPatch(p, cover, startNumber(pick, push.samplePass, push.pickCount, 1u));
     uint emitter = pick, sequence = 0u; // of the pick's points, where it has one of its own
     float probability = 1.0;
     if (!all) {
         uint number = push.samplePass * push.pickCount + pick;
         uint seed = hash32(replicateSeed(key, number) ^ kPickSalt);
-        emitter = pickEmitter(p.position, p.shading, sobolPoint(replicateIndex(number), seed).x, probability);
+        emitter = pickEmitter(start.position, start.shading, sobolPoint(replicateIndex(number), seed).x, probability);
         sequence = replicateIndex(number) * push.pointCount;
     }
-    uint taken = takenSamplePasses(index), points = push.pointCount / push.together * taken;
     vec3 light = vec3(0.0);
     float whole = 0.0; // form factor, without shadows
     EmitterPolygon e;
-    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u && taken > 0u) {
-        e = loadEmitterPolygon(push.polygons, emitter);
-        whole = emitterFormFactor(p.position, p.shading, e);
+    if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u) {
+        e = emitterPolygon(emitter);
+        whole = onePoint ? 1.0 : emitterFormFactor(p.position, p.shading, e); // or the point's own
         light = e.radiance * (whole / probability);
     }
     // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
-    bool near = push.covers != 0ul && light != vec3(0.0) && isNear(p.position, p.area, e);
+    bool near = push.covers != 0ul && !onePoint && light != vec3(0.0) && isNear(p.position, p.area, e);
     // A near light is seen as unevenly over a texel as in a penumbra.
     if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
     float factors = 0.0;
-    PatchCover cover = coverOf(index);
+    if (onePoint && isNearAll(p)) {
+        vec3 ofAll = wholeEmitterLight(start.position, start.shading, push.polygonCount, push.edgeCount);
+        VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane) = vec4(ofAll, 0.0);
+    }
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
     vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
     for (uint s = 0u; s < push.pointCount; ++s) {
@@ -60,9 +90,9 @@ void main() {
             uint turn = all ? replicateIndex(number) : sequence + s;
             uint seed = emitterPointSeed(key, number, all ? emitter : 0u);
             uint target = pick * push.pointCount + s;
-            uint start = startNumber(target, push.samplePass, all ? push.pointCount : push.pickCount * push.pointCount,
+            uint startOf = startNumber(target, push.samplePass, all ? push.pointCount : push.pickCount * push.pointCount,
                                      all ? 1u : push.pointCount);
-            Patch from = startingPatch(p, cover, start);
+            Patch from = startingPatch(p, cover, startOf);
             if (near) factors += emitterFormFactor(from.position, from.shading, e);
             EmitterSample y = emitterSample(from.position, from.shading, e, sobolPoint(turn, seed));
             // Below the geometric horizon the point is hidden, and not asked for.

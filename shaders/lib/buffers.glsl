@@ -69,6 +69,22 @@ EmitterPolygon loadEmitterPolygon(ADDRESS polygons, uint index) {
     return e;
 }
 
+EmitterEdge loadEmitterEdge(ADDRESS edges, uint index) {
+    Rows rows = Rows(edges);
+    uvec4 a = rows.items[index * 4u], b = rows.items[index * 4u + 1u], c = rows.items[index * 4u + 2u];
+    uvec4 d = rows.items[index * 4u + 3u];
+    EmitterEdge e;
+    e.from = uintBitsToFloat(a.xyz);
+    e.height = uintBitsToFloat(a.w);
+    e.along = uintBitsToFloat(b.xyz);
+    e.heightBeyond = uintBitsToFloat(b.w);
+    e.normal = uintBitsToFloat(c.xyz);
+    e.polygon = c.w;
+    e.normalBeyond = uintBitsToFloat(d.xyz);
+    e.polygonBeyond = d.w;
+    return e;
+}
+
 EmitterNode loadEmitterNode(ADDRESS nodes, uint index) {
     Rows rows = Rows(nodes);
     uvec4 a = rows.items[index * 3u], b = rows.items[index * 3u + 1u], c = rows.items[index * 3u + 2u];

@@ -43,6 +43,21 @@ FUNCTION float polygonDistance(vec3 p, EmitterPolygon e) {
 // Tells whether the light of the polygon differs over a patch at p [m], whose area is this [m^2].
 FUNCTION bool isNear(vec3 p, float area, EmitterPolygon e) { return polygonDistance(p, e) < kNearSizes * sqrt(area); }
 
+// Tells whether the node's box is above the horizon of a receiver at p [m] of unit normal n: 1, or below it: -1; 0 where
+// it may lie across it.
+FUNCTION int sideOfHorizon(EmitterNode e, vec3 p, vec3 n) {
+    vec3 extent = 0.5f * (e.hi - e.lo), d = e.lo + extent - p;
+    float slack = 1e-5f * (length(d) + length(extent)); // of rounding
+    float height = dot(n, d), reach = dot(abs(n), extent) + slack;
+    return height > reach ? 1 : (height < -reach ? -1 : 0);
+}
+
+// Tells whether the light of any polygon of the node may differ over the patch.
+FUNCTION bool isNearNode(vec3 p, float area, EmitterNode e) {
+    vec3 gap = max(abs(p - 0.5f * (e.lo + e.hi)) - 0.5f * (e.hi - e.lo), vec3(0.0f, 0.0f, 0.0f));
+    return length(gap) < kNearSizes * sqrt(area);
+}
+
 FUNCTION PolygonPart emitterPart(EmitterPolygon e) {
     PolygonPart q;
     q.a = e.c0;

@@ -13,3 +13,14 @@ FUNCTION float seenLight(float whole, float count, float part, float seen, float
     float share = rest > 0.0f ? (visible - seen) / rest : 0.0f;
     return whole * share + (seen - share * part) / count;
 }
+
+// Returns the same for a source whose points are drawn, from picks with the chance that each had: `whole` is the
+// lighting by all of it without shadows, `count` the replicate's picks, `part` and `seen` the sums over these of what each
+// pick would bring over its chance and of the part of that which is seen. The share is one number for all colours,
+// and right in the mean whichever it is.
+FUNCTION vec3 seenPicks(vec3 whole, float count, vec3 part, vec3 seen, vec3 all, vec3 visible) {
+    vec3 others = all - part, othersSeen = visible - seen;
+    float rest = others.r + others.g + others.b;
+    float share = rest > 0.0f ? (othersSeen.r + othersSeen.g + othersSeen.b) / rest : 0.0f;
+    return whole * share + (seen - share * part) / count;
+}

@@ -84,6 +84,25 @@ TEST(Penumbra, FewPointsPerSamplePassAreNoNoisier) {
     }
 }
 
+// A lamp of many polygons, of which each sample pass picks some: what all of them bring without shadows is
+// known, so that rays go to its penumbra, and the mean is right.
+TEST(Penumbra, IsFoundOfALightWithManyPolygons) {
+    SceneMaker maker(64);
+    maker.quad({0, 0, 0}, 2.0f * kX, 2.0f * kY, maker.material(0.5f), glm::uvec2(40));
+    maker.quad({0.75f, 0.75f, 0.4f}, 0.5f * kX, 0.5f * kY, maker.material(0.5f), glm::uvec2(8));
+    maker.disc({1.0f, 1.0f, 1.5f}, 0.2f * kX, -0.2f * kY, maker.material(0.0f, 20.0f), 6);
+    const Scene scene = maker.scene();
+    Layered bake(scene, kDirect);
+    bake.finish();
+    ASSERT_EQ(bake.solver().layers().size(), 1u);
+    EXPECT_LT(bake.solver().layers()[0]->directShare(), 0.7);
+    BakeDesc desc = kDirect;
+    desc.layers = false;
+    desc.samples = 16 * kPoints;
+    const FloatImage every = bakeScene(scene, desc).lighting;
+    EXPECT_LE(relativeError(bake.image(), every), 5e-3);
+}
+
 // Where no share is known each sample counts, and nothing may be left out.
 TEST(Penumbra, IsEverywhereWhereTheWholeLightIsUnknown) {
     const Scene scene = shaded(LightType::Disc);

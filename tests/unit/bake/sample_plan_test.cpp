@@ -116,5 +116,33 @@ TEST(LevelGrowth, CostsLittleMoreThanTheLeast) {
     }
 }
 
+// What falls faster needs fewer for as much; of plans that leave as much none costs less.
+TEST(LevelGrowth, HowVariancesFallCounts) {
+    std::vector<SampledPart> parts(2,
+                                   {.samplePasses = 32, .most = 4096, .variance = 1, .costOfSamplePass = 1});
+    parts[1].fall = 1.5;
+    const double allowed = 0.5;
+    const std::vector<uint32_t> planned = samplePassesFor(parts, allowed);
+    const auto left = [&](double first, double second) {
+        return 32.0 / first + std::pow(32.0 / second, 1.5);
+    };
+    EXPECT_LT(planned[1], planned[0]);
+    EXPECT_LE(left(planned[0], planned[1]), allowed);
+    double least = 1e9;
+    for (double first = 32; first < 4096; first += 1)
+        for (double second = 32; second < 512; second += 1)
+            if (left(first, second) <= allowed) least = std::min(least, first + second);
+    EXPECT_LT(planned[0] + planned[1], 1.34 * least) << "a step of the ladder is a third at most";
+}
+
+TEST(LevelGrowth, ThePowerThatAVarianceFallsWithIsToldByTwoLevels) {
+    EXPECT_NEAR(fallOfVariance(8, 4.0, 32, 4.0 / std::pow(4.0, 1.25), 1.0), 1.25, 1e-12);
+    EXPECT_EQ(fallOfVariance(8, 4.0, 32, 3.9, 1.0), 1.0) << "no slower than of independent samples";
+    EXPECT_EQ(fallOfVariance(8, 4.0, 32, 1e-9, 1.0), 1.5) << "nor faster than is known of edges";
+    EXPECT_EQ(fallOfVariance(32, 4.0, 32, 3.0, 1.2), 1.2) << "of as many nothing is told";
+    EXPECT_EQ(fallOfVariance(0, 0.0, 32, 3.0, 1.2), 1.2);
+    EXPECT_EQ(fallOfVariance(8, 4.0, 32, 0.0, 1.2), 1.2);
+}
+
 } // namespace
 } // namespace relume

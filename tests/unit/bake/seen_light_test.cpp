@@ -90,5 +90,47 @@ TEST(SeenLight, IsFiniteWithoutOtherPoints) {
     EXPECT_EQ(one.light(0, 0.5f, 1.0f), 0.5f);
 }
 
+// Of a red source along x in [0, 1] and a green one beside it, of which the second is seen beyond x = 0.6, by
+// picks with chances that are not what each brings: whole (1, 0.5), seen (0.6, 0.5 * 0.4) of each.
+TEST(SeenLight, PicksAreExactInTheMean) {
+    const glm::vec3 whole(1.0f, 0.5f, 0.0f);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(0, 1);
+    constexpr uint32_t kPasses = 200000;
+    glm::dvec3 sum(0.0), squares(0.0);
+    for (uint32_t k = 0; k < kPasses; ++k) {
+        std::array<glm::vec3, kReplicates> part{}, seen{};
+        glm::vec3 all(0.0f), visible(0.0f);
+        for (uint32_t q = 0; q < kReplicates; ++q) {
+            const bool red = unit(random) < 0.3f;
+            const float x = unit(random);
+            const glm::vec3 light = red ? glm::vec3(1.0f / 0.3f, 0, 0) : glm::vec3(0, 0.5f / 0.7f, 0);
+            part[q] = light;
+            all += light;
+            if (red ? x < 0.4f : x < 0.6f) continue;
+            seen[q] = light;
+            visible += light;
+        }
+        glm::dvec3 mean(0.0);
+        for (uint32_t q = 0; q < kReplicates; ++q)
+            mean += glm::dvec3(shader::seenPicks(whole, 1.0f, part[q], seen[q], all, visible)) /
+                    double(kReplicates);
+        sum += mean;
+        squares += mean * mean;
+    }
+    const glm::dvec3 mean = sum / double(kPasses);
+    const glm::dvec3 error = glm::sqrt((squares / double(kPasses) - mean * mean) / double(kPasses));
+    EXPECT_NEAR(mean.r, 0.6, 3.0 * error.r);
+    EXPECT_NEAR(mean.g, 0.2, 3.0 * error.g);
+    EXPECT_EQ(mean.b, 0.0);
+}
+
+TEST(SeenLight, PicksOfASourceSeenAsAWholeOrNotAtAllAreExact) {
+    const glm::vec3 whole(0.3f, 0.7f, 0.2f), part(0.9f, 0.1f, 0.4f), all(3.1f, 1.2f, 0.7f), none(0.0f);
+    EXPECT_EQ(shader::seenPicks(whole, 2.0f, part, part, all, all), whole);
+    EXPECT_EQ(shader::seenPicks(whole, 2.0f, part, none, all, none), none);
+    EXPECT_EQ(shader::seenPicks(whole, 2.0f, part, part, part, part), 0.5f * part) << "its own picks alone";
+}
+
 } // namespace
 } // namespace relume
