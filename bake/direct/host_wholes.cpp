@@ -1,12 +1,12 @@
 #include "bake/direct/host_wholes.h"
 
 #include <array>
+#include <vector>
 
 namespace relume {
 namespace {
 
 using shader::EmitterEdge;
-using shader::EmitterNode;
 using shader::EmitterPolygon;
 using shader::kChunk;
 using shader::Patch;
@@ -27,7 +27,7 @@ struct SeenEdge {
 // The loops below have a form that compilers turn into vector code. They are always inlined, to be compiled
 // once for each instruction set.
 
-// Tells whether the edge counts for any patch: one of its polygons faces it, or they differ.
+// Tells whether the edge counts for any patch: of one that faces it, or of two alike one alone.
 [[gnu::always_inline]] inline bool countsFor(const Lanes& on, const EmitterEdge& edge, bool alike) {
     const EmitterEdge e = edge;
     uint32_t any = 0;
