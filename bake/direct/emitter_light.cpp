@@ -93,7 +93,7 @@ uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& des
                             sizeof(shader::EmitterNode);
     // A polygon has four edges at most.
     const uint64_t edges = uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
-    // Of lights with more polygons than have their whole light found others may have fewer.
+    // The largest light may be one that picks, while others have their whole light found.
     const bool whole = desc.lightByLight && polygons > kAllEmitters;
     const uint64_t wholes = whole ? wholeBytes(chunkCount) + edges : 0;
     const uint32_t picks =
@@ -183,7 +183,7 @@ SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
             .rays = &rays,
             .covers = light.coversIf(desc_.allOver),
             .samplePass = work.samplePass,
-            .turn = group.all ? group.points * work.together : group.targets() * work.together,
+            .turn = (group.all ? group.points : group.targets()) * work.together,
             .run = group.all ? 1 : group.points};
 }
 

@@ -61,7 +61,7 @@ public:
     /// Every patch samples all of so few polygons; of more, each patch picks some in every sample pass. No
     /// number of polygons takes more memory.
     static constexpr uint32_t kAllEmitters = 4;
-    /// Of a light of at most so many polygons each patch finds what all of them bring without shadows.
+    /// Each patch finds what all polygons of a light bring without shadows, where these are no more.
     static constexpr uint32_t kMostOfWhole = 1024;
     /// Returns the bytes of its buffers for groups of at most so many polygons.
     static uint64_t bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons);

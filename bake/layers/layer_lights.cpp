@@ -13,7 +13,8 @@ using Kind = LightKey::Kind;
 } // namespace
 
 LayerLights::LayerLights(LinkKit& kit)
-    : kit_(kit), emitters_(kit.input.device, kit.input.patches, {kPoints, kit.settings.links.allOver, true}),
+    : kit_(kit), emitters_(kit.input.device, kit.input.patches,
+                           {.links = kPoints, .allOver = kit.settings.links.allOver, .lightByLight = true}),
       lamps_(kit.input.device, kit.input.scene, kit.input.patches,
              {.samples = kPoints, .chosen = true, .allOver = kit.settings.links.allOver}) {}
 

@@ -116,7 +116,7 @@ TEST(LevelGrowth, CostsLittleMoreThanTheLeast) {
     }
 }
 
-// What falls faster needs fewer for as much; of plans that leave as much none costs less.
+// A part whose variance falls faster needs fewer for as much; no plan that leaves as much costs less.
 TEST(LevelGrowth, HowVariancesFallCounts) {
     std::vector<SampledPart> parts(2,
                                    {.samplePasses = 32, .most = 4096, .variance = 1, .costOfSamplePass = 1});

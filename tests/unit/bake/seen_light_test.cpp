@@ -90,8 +90,8 @@ TEST(SeenLight, IsFiniteWithoutOtherPoints) {
     EXPECT_EQ(one.light(0, 0.5f, 1.0f), 0.5f);
 }
 
-// Of a red source along x in [0, 1] and a green one beside it, of which the second is seen beyond x = 0.6, by
-// picks with chances that are not what each brings: whole (1, 0.5), seen (0.6, 0.5 * 0.4) of each.
+// A red source lies along x in [0, 1] and brings (1, 0), of which 0.6 is seen; a green one beside it brings
+// (0, 0.5), of which 0.4 is seen. Picks take them with chances that are not what each brings.
 TEST(SeenLight, PicksAreExactInTheMean) {
     const glm::vec3 whole(1.0f, 0.5f, 0.0f);
     std::mt19937 random(4);

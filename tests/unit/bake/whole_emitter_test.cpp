@@ -1,4 +1,5 @@
-// What all polygons of a mesh light bring without shadows: sums over edges against sums of form factors.
+// This compares what all polygons of a mesh light bring without shadows as sums over edges and as sums of
+// form factors.
 #include "bake/direct/host_wholes.h"
 #include "bake/lights/emitter_edges.h"
 #include "tests/unit/emitter_scene.h"
