@@ -41,6 +41,8 @@ CONST uint kRotateTile = 2u;
 
 // `closest` stores for a ray a patch index below kLinkFirstSpecial, or one of these.
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
+CONST int kHitReach =
+    2; // texels: so far from a hit lies the patch that it ends at, where the hit texel's does not do
 CONST uint kLinkSky = 0xffffffffu;  // hit nothing
 CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
 CONST uint kLinkDark =

@@ -6,11 +6,14 @@ struct TraceBox {
     vec3 lo;
     vec3 hi;
 };
-// Lists links whose rays meet a box, and all links of patches that have changed.
+// Lists links whose rays meet a box, all links of patches that have changed, and those that end at certain
+// patches.
 struct RetraceMarkPush {
     ADDRESS patches; // Patch[]
     ADDRESS boxes;   // TraceBox[boxCount]
     ADDRESS changed; // uvec2[] per chunk, a bit for each patch
+    ADDRESS links;   // uint[], counted as in the list
+    ADDRESS ends;    // as `changed`: what ends there is listed; 0: nothing for that
     ADDRESS list;    // uint[]: how many, then which, as (chunk * sampleCount + sample) * 64 + patch, counted
                      // from firstChunk and firstSample on
     ADDRESS rays;    // uint[kRayCounters], to which the listed ones are added

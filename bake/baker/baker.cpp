@@ -334,6 +334,7 @@ void Baker::searchInside() {
         patches_.scene.patches[patch].flags &= ~shader::kPatchSends;
     vk::upload(device_, light_->patches, patches_.scene.patches.data(),
                patches_.scene.patches.size() * sizeof(shader::Patch));
+    tracer_->updateSenders(inside);
 }
 
 void Baker::onPhase(const char* phase, double done) const {

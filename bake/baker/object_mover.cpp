@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "bake/baker/cover_search.h"
 #include "bake/baker/inside_search.h"
+#include "bake/baker/link_ends.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/vk/commands.h"
 
@@ -422,13 +423,17 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     boxes = fewBoxes(std::move(boxes));
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     if (move.boxes.empty()) return move;
-    return searched(tracer, slots, move);
+    ObjectMove result = searched(tracer, slots, move);
+    addLinkEnds(patches.scene, slots, result);
+    return result;
 }
 
 // Looks anew which patches lie inside something and where samples start, near a move of these patches.
 ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
+    tracer.updateSenders(merged(slots, others));
+    addLinkEnds(on_.patches.scene, others, move);
     findCovers(tracer, slots, move);
     ObjectMove result;
     result.add(move); // many boxes become one

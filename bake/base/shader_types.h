@@ -19,6 +19,7 @@ using glm::uint;
 #include "shaders/lib/form_factor.glsl"
 #include "shaders/lib/sampling.glsl"
 #include "shaders/lib/rays/start_point.glsl"
+#include "shaders/lib/light/texel_mean.glsl"
 #include "shaders/lib/light/polygon_sample.glsl"
 #include "shaders/lib/light/emitters.glsl"
 #include "shaders/lib/light/lamps.glsl"

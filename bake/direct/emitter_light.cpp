@@ -118,14 +118,15 @@ bool EmitterLight::learnWholes(const Work& work) {
 
 void EmitterLight::findWholesOnCpu(const LightBuffers& light, const Work& work) const {
     const Group& group = groups_[work.group];
+    const vk::Buffer* covers = light.coversIf(desc_.allOver);
     const size_t patches = size_t{chunkCount_} * kChunk;
     findWholes(device_.workers(),
                {.polygons = {group.polygons.as<shader::EmitterPolygon>(), group.polygonCount},
                 .edges = {group.edges.as<shader::EmitterEdge>(), group.edgeCount},
                 .root = *group.nodes.as<shader::EmitterNode>(),
                 .patches = {light.patches.as<shader::Patch>(), patches},
+                .covers = covers ? covers->as<shader::PatchCover>() : nullptr,
                 .wholes = {wholes_.light.as<glm::vec4>(), patches},
-                .allOver = light.coversIf(desc_.allOver) != nullptr,
                 .range = work.range});
 }
 

@@ -13,7 +13,7 @@ using shader::kChunk;
 using shader::kReplicates;
 using shader::PolygonRest;
 using Lane = PatchLanes::Lane;
-using Flags = std::array<uint32_t, kChunk>; // 0 or 1
+using Flags = std::array<uint32_t, kChunk>; // mostly 0 or 1
 
 // Points on near polygons are found for so many neighbours at once: two vectors of AVX2.
 constexpr uint32_t kBlock = 16;
@@ -63,12 +63,14 @@ struct BlockLanes {
                                            {lanes.sx[i], lanes.sy[i], lanes.sz[i]}, e);
 }
 
-[[gnu::always_inline]] inline void nearLanes(const PatchLanes& lanes, const EmitterPolygon& polygon,
-                                             Flags& out) {
+[[gnu::always_inline]] inline void unevenLanes(const PatchLanes& lanes, const EmitterPolygon& polygon,
+                                               Flags& out) {
     const EmitterPolygon e = polygon;
 #pragma GCC ivdep
     for (uint32_t i = 0; i < kChunk; ++i)
-        out[i] = shader::isNear({lanes.own.x[i], lanes.own.y[i], lanes.own.z[i]}, lanes.area[i], e) ? 1 : 0;
+        out[i] = shader::unevenness(
+            lanes.size[i],
+            shader::polygonDistance({lanes.middle.x[i], lanes.middle.y[i], lanes.middle.z[i]}, e));
 }
 
 [[gnu::always_inline]] inline void sampleLane(const PatchLanes& lanes, const SampleDesc& desc,
@@ -203,7 +205,7 @@ struct Loops {
         Finish finish;
     };
     void (*formFactors)(const PatchLanes&, const ChunkStarts::Points&, const EmitterPolygon&, Lane&);
-    void (*near)(const PatchLanes&, const EmitterPolygon&, Flags&);
+    void (*uneven)(const PatchLanes&, const EmitterPolygon&, Flags&);
     Shape parallelogram, quad, triangle;
 
     const Shape& of(const EmitterPolygon& e) const {
@@ -217,8 +219,8 @@ void formFactorsPlain(const PatchLanes& lanes, const ChunkStarts::Points& at, co
                       Lane& out) {
     formFactorLanes(lanes, at, e, out);
 }
-void nearPlain(const PatchLanes& lanes, const EmitterPolygon& e, Flags& out) {
-    nearLanes(lanes, e, out);
+void unevenPlain(const PatchLanes& lanes, const EmitterPolygon& e, Flags& out) {
+    unevenLanes(lanes, e, out);
 }
 template<uint32_t kShape>
 void samplePlain(const PatchLanes& lanes, const SampleDesc& desc, SampleLanes& out) {
@@ -237,7 +239,7 @@ constexpr Loops::Shape kPlainShape{samplePlain<kShape>,
                                    halvePlain<kShape, 0>,
                                    {halvePlain<kRest, 0>, halvePlain<kRest, 1>},
                                    finishPlain<kRest>};
-constexpr Loops kPlain{formFactorsPlain, nearPlain,
+constexpr Loops kPlain{formFactorsPlain, unevenPlain,
                        kPlainShape<shader::kEmitterParallelogram, shader::kEmitterParallelogram>,
                        kPlainShape<shader::kEmitterQuad, shader::kEmitterTriangle>,
                        kPlainShape<shader::kEmitterTriangle, shader::kEmitterTriangle>};
@@ -248,8 +250,8 @@ RELUME_AVX2 void formFactorsAvx2(const PatchLanes& lanes, const ChunkStarts::Poi
                                  const EmitterPolygon& e, Lane& out) {
     formFactorLanes(lanes, at, e, out);
 }
-RELUME_AVX2 void nearAvx2(const PatchLanes& lanes, const EmitterPolygon& e, Flags& out) {
-    nearLanes(lanes, e, out);
+RELUME_AVX2 void unevenAvx2(const PatchLanes& lanes, const EmitterPolygon& e, Flags& out) {
+    unevenLanes(lanes, e, out);
 }
 template<uint32_t kShape>
 RELUME_AVX2 void sampleAvx2(const PatchLanes& lanes, const SampleDesc& desc, SampleLanes& out) {
@@ -266,7 +268,7 @@ RELUME_AVX2 void finishAvx2(const SampleDesc& desc, const RestLanes& r, BlockLan
 template<uint32_t kShape, uint32_t kRest>
 constexpr Loops::Shape kAvx2Shape{
     sampleAvx2<kShape>, halveAvx2<kShape, 0>, {halveAvx2<kRest, 0>, halveAvx2<kRest, 1>}, finishAvx2<kRest>};
-constexpr Loops kAvx2{formFactorsAvx2, nearAvx2,
+constexpr Loops kAvx2{formFactorsAvx2, unevenAvx2,
                       kAvx2Shape<shader::kEmitterParallelogram, shader::kEmitterParallelogram>,
                       kAvx2Shape<shader::kEmitterQuad, shader::kEmitterTriangle>,
                       kAvx2Shape<shader::kEmitterTriangle, shader::kEmitterTriangle>};
@@ -331,17 +333,38 @@ void halveBlock(const PatchLanes& lanes, const SampleDesc& desc, const Loops::Sh
 struct Pick {
     Lane whole; // form factor, without shadows
     SampleLanes sample;
-    Flags near;   // the light differs over the patch: it is the mean over where samples start
+    Flags near;   // the light is uneven over the patch: it is the mean over where samples start
     Lane factors; // sum of form factors from there
     bool shines = false, anyNear = false; // any patch
 
     glm::vec3 light(const EmitterPolygon& e, size_t lane) const { return e.radiance * whole[lane]; }
 };
 
+// Makes form factors the mean over the texels, by the points of their spread, where the light is not even.
+void spreadWhole(const PatchLanes& lanes, const Loops& loops, const EmitterPolygon& e, const Flags& uneven,
+                 Lane& whole) {
+    const auto isUneven = [](uint32_t u) { return u != shader::kLightEven; };
+    if (std::none_of(uneven.begin(), uneven.end(), isUneven)) return;
+    Lane sum{};
+    for (const ChunkStarts::Points& at : lanes.spread) {
+        Lane factors;
+        loops.formFactors(lanes, at, e, factors);
+        for (uint32_t i = 0; i < kChunk; ++i)
+            sum[i] += factors[i];
+    }
+    for (uint32_t i = 0; i < kChunk; ++i)
+        if (isUneven(uneven[i])) whole[i] = sum[i] / static_cast<float>(shader::kSpreadPoints);
+}
+
 // Begins the pick of a polygon.
 void begin(const HostPoints& on, const PatchLanes& lanes, const Loops& loops, const EmitterPolygon& e,
            Pick& pick) {
-    loops.formFactors(lanes, lanes.own, e, pick.whole);
+    loops.formFactors(lanes, lanes.middle, e, pick.whole);
+    Flags uneven{};
+    if (on.covers) {
+        loops.uneven(lanes, e, uneven);
+        spreadWhole(lanes, loops, e, uneven, pick.whole);
+    }
     for (uint32_t i = 0; i < kChunk; ++i) {
         if (lanes.sends[i] == 0) pick.whole[i] = 0.0f;
         const glm::vec3 light = pick.light(e, i);
@@ -351,9 +374,8 @@ void begin(const HostPoints& on, const PatchLanes& lanes, const Loops& loops, co
     }
     if (!on.covers || !pick.shines) return;
     pick.factors.fill(0.0f);
-    loops.near(lanes, e, pick.near);
     for (uint32_t i = 0; i < kChunk; ++i) {
-        pick.near[i] &= pick.sample.shines[i];
+        pick.near[i] = uneven[i] == shader::kLightUneven ? pick.sample.shines[i] : 0;
         pick.anyNear = pick.anyNear || pick.near[i] != 0;
     }
 }

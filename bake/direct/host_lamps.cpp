@@ -34,9 +34,9 @@ template<uint32_t kType>
         p.normal = {lanes.nx[i], lanes.ny[i], lanes.nz[i]};
         p.shading = {lanes.sx[i], lanes.sy[i], lanes.sz[i]};
         const uint32_t seed = shader::lampSeed(lamp, lanes.key[i], desc.number);
-        const glm::vec3 own(lanes.own.x[i], lanes.own.y[i], lanes.own.z[i]);
+        const glm::vec3 middle(lanes.middle.x[i], lanes.middle.y[i], lanes.middle.z[i]);
         const shader::LampSample s =
-            shader::lampSample(lamp, p, own, shader::sobolPoint(index, seed), desc.reach);
+            shader::lampSample(lamp, p, middle, lanes.size[i], shader::sobolPoint(index, seed), desc.reach);
         const float height = glm::dot(s.target - p.position, p.normal);
         const bool traced = (lanes.sends[i] & (height > lanes.offset[i] ? 1u : 0u)) != 0; // sends: 0 or 1
         out.x[i] = s.target.x, out.y[i] = s.target.y, out.z[i] = s.target.z;
@@ -113,7 +113,16 @@ struct Gathered {
     bool shareless = false; // no share of the whole light can be known
 };
 
-Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, uint32_t lane, uint32_t taken) {
+// What is known of a patch.
+struct Receiver {
+    uint32_t lane;    // in its chunk
+    uint32_t taken;   // sample passes
+    glm::vec3 normal; // for shading
+    shader::TexelSpread spread;
+};
+
+Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, const Receiver& receiver) {
+    const uint32_t lane = receiver.lane, taken = receiver.taken;
     const uint32_t samples = lamp.samples > 1 ? lamp.samples * taken : 1;
     Gathered result;
     std::array<float, kReplicates> part{}, seen{};
@@ -135,8 +144,11 @@ Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, uint
         result.light.fill(seen[0]);
         return result;
     }
-    const float whole = shader::lampWhole(lamp, on.patches[on.firstPatch(chunk) + lane]);
-    result.shareless = whole < 0.0f && all > 0.0f;
+    const float whole = shader::lampWhole(lamp, receiver.spread, receiver.normal);
+    // Of a light that is uneven a few samples may have missed all.
+    const bool uneven =
+        shader::lampUnevenness(lamp, receiver.spread.middle, receiver.spread.size) == shader::kLightUneven;
+    result.shareless = whole < 0.0f && (all > 0.0f || uneven);
     const float count = static_cast<float>(samples) / static_cast<float>(kReplicates);
     for (uint32_t q = 0; q < kReplicates; ++q)
         result.light[q] =
@@ -148,13 +160,14 @@ void gatherChunk(const HostLamps& work, uint32_t chunk) {
     for (uint32_t lane = 0; lane < kChunk; ++lane) {
         const size_t patch = work.points.firstPatch(chunk) + lane;
         if (!takesLight(work.points, patch)) continue;
-        const uint32_t taken = work.points.takenSamplePasses(patch);
+        const Receiver receiver{lane, work.points.takenSamplePasses(patch),
+                                work.points.patches[patch].shading, work.points.spreadOf(patch)};
         HostGathered gathered;
         for (size_t k = 0; k < work.lamps.size(); ++k) {
             const Lamp& lamp = work.lamps[k];
-            const Gathered one = gatherLamp(work.points, lamp, chunk, lane, taken);
+            const Gathered one = gatherLamp(work.points, lamp, chunk, receiver);
             for (uint32_t q = 0; q < kReplicates; ++q)
-                gathered.value[q] += lamp.color * (static_cast<float>(taken) * one.light[q]);
+                gathered.value[q] += lamp.color * (static_cast<float>(receiver.taken) * one.light[q]);
             gathered.note(k, one.reached, one.hidden);
             if (one.shareless) gathered.reached = gathered.hidden = ~0u;
         }

@@ -16,6 +16,10 @@ void addBits(uint32_t& to, uint32_t bits) {
     if ((bits & ~all.load(std::memory_order_relaxed)) != 0) all.fetch_or(bits, std::memory_order_relaxed);
 }
 
+void setPoint(ChunkStarts::Points& points, size_t i, const glm::vec3& at) {
+    points.x[i] = at.x, points.y[i] = at.y, points.z[i] = at.z;
+}
+
 } // namespace
 
 HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, uint32_t together,
@@ -50,6 +54,10 @@ uint32_t HostPoints::takenSamplePasses(size_t patch) const {
     return shader::allTakeSamplePass(samplePass * together) ? 1 : 0;
 }
 
+shader::TexelSpread HostPoints::spreadOf(size_t patch) const {
+    return shader::texelSpread(patches[patch], covers ? covers[patch] : shader::PatchCover{});
+}
+
 void HostPoints::noteLights(size_t patch, uint32_t reached, uint32_t hidden) const {
     if (!penumbra || samplePass != 0) return;
     glm::uvec2& lights = penumbra[parts[patch]];
@@ -62,10 +70,13 @@ bool PatchLanes::load(const HostPoints& work, size_t first) {
     unalike = false;
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
-        own.x[i] = p.position.x, own.y[i] = p.position.y, own.z[i] = p.position.z;
+        const shader::TexelSpread t = work.spreadOf(first + i);
+        setPoint(middle, i, t.middle);
+        for (uint32_t k = 0; k < shader::kSpreadPoints; ++k)
+            setPoint(spread[k], i, shader::spreadPoint(t, k));
         nx[i] = p.normal.x, ny[i] = p.normal.y, nz[i] = p.normal.z;
         sx[i] = p.shading.x, sy[i] = p.shading.y, sz[i] = p.shading.z;
-        offset[i] = p.offset, area[i] = p.area;
+        offset[i] = p.offset, size[i] = t.size;
         key[i] = shader::seedKey(p);
         taken[i] = work.takenSamplePasses(first + i);
         unalike = unalike || taken[i] != work.together;

@@ -40,6 +40,8 @@ struct HostPoints {
     /// Returns how many of these sample passes the patch takes, as
     /// shaders/lib/light/penumbra_sample_passes.glsl does.
     uint32_t takenSamplePasses(size_t patch) const;
+    /// Returns where the patch's samples start.
+    shader::TexelSpread spreadOf(size_t patch) const;
     /// Notes in the first sample pass which lights a patch's points have reached and not reached, a bit each.
     void noteLights(size_t patch, uint32_t reached, uint32_t hidden) const;
 };
@@ -49,9 +51,10 @@ HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, ui
 /// Holds a chunk by component.
 struct PatchLanes {
     using Lane = ChunkStarts::Lane;
-    ChunkStarts::Points own, at; // the patches' points; where the sample starts
-    Lane nx, ny, nz, sx, sy, sz; // normals and shading normals
-    Lane offset, area;
+    ChunkStarts::Points middle, at; // the middle of where samples start; where the sample does
+    std::array<ChunkStarts::Points, shader::kSpreadPoints> spread; // where light that is curved has its mean
+    Lane nx, ny, nz, sx, sy, sz;                                   // normals and shading normals
+    Lane offset, size;                                             // size: of shader::TexelSpread
     std::array<uint32_t, shader::kChunk> key, sends; // sends: 1 where the patch also takes part, else 0
     std::array<uint32_t, shader::kChunk> taken;      // sample passes
     bool unalike = false;                            // some take not all sample passes

@@ -1,5 +1,6 @@
 #include "bake/direct/host_wholes.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -115,18 +116,32 @@ std::array<glm::vec3, kChunk> lightOf(const HostWholes& work, std::span<const Se
 
 void findChunk(const HostWholes& work, std::span<const SeenEdge> edges, uint32_t chunk) {
     const size_t first = size_t{chunk} * kChunk;
-    Lanes on;
-    std::array<uint32_t, kChunk> asked, near;
+    std::array<shader::TexelSpread, kChunk> spreads;
+    std::array<uint32_t, kChunk> even{}, curved{}, uneven{}; // 1: the patch is asked for
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
-        setLane(on, i, p.position, p.shading);
-        const bool sends = (p.flags & shader::kPatchSends) != 0;
-        near[i] = sends && work.allOver && shader::isNearNode(p.position, p.area, work.root) ? 1 : 0;
-        asked[i] = sends && near[i] == 0 ? 1 : 0;
+        spreads[i] = shader::texelSpread(p, work.covers ? work.covers[first + i] : shader::PatchCover{});
+        if ((p.flags & shader::kPatchSends) == 0) continue;
+        const uint32_t kind =
+            shader::unevenness(spreads[i].size, shader::nodeDistance(spreads[i].middle, work.root));
+        (kind == shader::kLightEven ? even : kind == shader::kLightCurved ? curved : uneven)[i] = 1;
     }
-    const std::array<glm::vec3, kChunk> light = lightOf(work, edges, asked, on);
+    // Returns the light that the patches asked for get at a point of each.
+    const auto lightAt = [&](const std::array<uint32_t, kChunk>& asked, const auto& pointOf) {
+        Lanes on;
+        for (uint32_t i = 0; i < kChunk; ++i)
+            setLane(on, i, pointOf(spreads[i]), work.patches[first + i].shading);
+        return lightOf(work, edges, asked, on);
+    };
+    std::array<glm::vec3, kChunk> light = lightAt(even, [](const auto& t) { return t.middle; });
+    const bool anyCurved = std::find(curved.begin(), curved.end(), 1u) != curved.end();
+    for (uint32_t k = 0; anyCurved && k < shader::kSpreadPoints; ++k) {
+        const auto part = lightAt(curved, [&](const auto& t) { return shader::spreadPoint(t, k); });
+        for (uint32_t i = 0; i < kChunk; ++i)
+            light[i] += part[i] / static_cast<float>(shader::kSpreadPoints);
+    }
     for (uint32_t i = 0; i < kChunk; ++i)
-        work.wholes[first + i] = glm::vec4(light[i], near[i] != 0 ? 1.0f : 0.0f);
+        work.wholes[first + i] = glm::vec4(light[i], uneven[i] != 0 ? 1.0f : 0.0f);
 }
 
 } // namespace

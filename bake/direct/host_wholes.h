@@ -16,9 +16,10 @@ struct HostWholes {
     std::span<const shader::EmitterEdge> edges; // emitterEdges()
     const shader::EmitterNode& root;            // of the light tree
     std::span<const shader::Patch> patches;     // all, padding included
-    std::span<glm::vec4> wholes;                // of all patches, as of EmitterSamplesPush
-    bool allOver = false;                       // samples start all over their texels
-    ChunkRange range;                           // those to be found
+    const shader::PatchCover* covers =
+        nullptr;                 // of all, where samples start; nullptr: at patches' own points
+    std::span<glm::vec4> wholes; // of all patches, as of EmitterSamplesPush
+    ChunkRange range;            // those to be found
 };
 void findWholes(WorkerPool& pool, const HostWholes& work);
 

@@ -251,10 +251,15 @@ std::vector<uint8_t> carryKnown(const PatchCarry& carry, std::span<const uint8_t
 }
 
 ObjectMove carryMove(const PatchCarry& carry, const ObjectMove& move) {
-    ObjectMove now{.boxes = move.boxes, .changed = {}, .instances = {}, .texels = move.texels};
+    ObjectMove now;
+    now.boxes = move.boxes;
+    now.texels = move.texels;
     now.changed.assign(carry.former.size() / kChunk, glm::uvec2(0));
-    for (uint32_t i = 0; i < carry.former.size(); ++i)
-        if (carry.former[i] == kNoPatch || move.has(carry.former[i])) now.change(i);
+    for (uint32_t i = 0; i < carry.former.size(); ++i) {
+        const uint32_t then = carry.former[i];
+        if (then == kNoPatch || move.has(then)) now.change(i);
+        if (then != kNoPatch && move.hasEnd(then)) now.addEnd(i);
+    }
     return now;
 }
 
@@ -268,7 +273,7 @@ std::vector<glm::vec4> carryValues(const PatchCarry& carry, std::span<const glm:
 std::vector<glm::vec4> carryShown(const LayerCarry& carry, const PatchSet& patches) {
     std::vector<glm::vec4> light = carryValues(carry.patches, carry.former.shown);
     for (uint32_t i = 0; i < patches.count; ++i) {
-        const uint32_t texel = patches.scene.patches[i].flags >> 8;
+        const uint32_t texel = shader::patchTexel(patches.scene.patches[i].flags);
         if (carry.patches.former[i] != kNoPatch || texel >= carry.formerTexels.size()) continue;
         const uint32_t then = carry.formerTexels[texel];
         if (then != kNoPatch) light[i] = carry.former.shown[then];

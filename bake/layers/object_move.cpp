@@ -50,9 +50,13 @@ void ObjectMove::add(const ObjectMove& later) {
             all = {glm::min(all.lo, box.lo), glm::max(all.hi, box.hi)};
         boxes = {all};
     }
-    changed.resize(later.changed.size(), glm::uvec2(0));
-    for (size_t i = 0; i < changed.size(); ++i)
-        changed[i] |= later.changed[i];
+    const auto addBits = [](std::vector<glm::uvec2>& all, const std::vector<glm::uvec2>& more) {
+        all.resize(std::max(all.size(), more.size()), glm::uvec2(0));
+        for (size_t i = 0; i < more.size(); ++i)
+            all[i] |= more[i];
+    };
+    addBits(changed, later.changed);
+    addBits(ends, later.ends);
     instances.insert(instances.end(), later.instances.begin(), later.instances.end());
     texels = texels || later.texels;
 }

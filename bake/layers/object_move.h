@@ -12,19 +12,31 @@ namespace relume {
 struct ObjectMove {
     std::vector<shader::TraceBox> boxes; // where they were and are, grown by what floats round off
     std::vector<glm::uvec2> changed;     // per chunk, a bit for each patch that is another one than before
+    std::vector<glm::uvec2> ends;        // likewise: links that end there may end elsewhere now; empty: none
     std::vector<uint32_t> instances;     // that moved
     bool texels = false;                 // others show what is baked: patches got hidden or inside something
 
     /// Adds a later move, as if both had been one.
     void add(const ObjectMove& later);
-    void change(uint32_t patch) {
-        glm::uvec2& bits = changed[patch / shader::kChunk];
-        (patch % shader::kChunk < 32 ? bits.x : bits.y) |= 1u << patch % 32;
+    void change(uint32_t patch) { set(changed, patch); }
+    /// Has links that end at a patch traced again.
+    void addEnd(uint32_t patch) {
+        ends.resize(changed.size(), glm::uvec2(0));
+        set(ends, patch);
     }
     bool changes(uint32_t chunk) const { return (changed[chunk].x | changed[chunk].y) != 0; }
     bool has(uint32_t patch) const {
-        const glm::uvec2& bits = changed[patch / shader::kChunk];
-        return ((patch % shader::kChunk < 32 ? bits.x : bits.y) >> patch % 32 & 1) != 0;
+        return shader::hasPatch(changed[patch / shader::kChunk], patch % shader::kChunk);
+    }
+    /// Tells whether links that end at a patch are to be traced again.
+    bool hasEnd(uint32_t patch) const {
+        return !ends.empty() && shader::hasPatch(ends[patch / shader::kChunk], patch % shader::kChunk);
+    }
+
+private:
+    static void set(std::vector<glm::uvec2>& all, uint32_t patch) {
+        glm::uvec2& bits = all[patch / shader::kChunk];
+        (patch % shader::kChunk < 32 ? bits.x : bits.y) |= 1u << patch % 32;
     }
 };
 

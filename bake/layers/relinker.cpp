@@ -18,8 +18,12 @@ void Relinker::follow(const ObjectMove& move) {
     }
     const vk::Device& device = kit_.input.device;
     const auto path = [&](const ObjectMove& way) {
-        return Path{way, vk::makeBuffer(device, way.boxes, "boxes"),
-                    vk::makeBuffer(device, way.changed, "changed patches")};
+        Path made{way,
+                  vk::makeBuffer(device, way.boxes, "boxes"),
+                  vk::makeBuffer(device, way.changed, "changed patches"),
+                  {}};
+        if (!way.ends.empty()) made.ends = vk::makeBuffer(device, way.ends, "ends of links");
+        return made;
     };
     if (relink.earlySamplePasses > 0) relink.early = path(early);
     relink.late = path(late);
@@ -65,6 +69,7 @@ uint32_t Relinker::retrace(Relink& relink, uint32_t most) {
                            .boxes = &path.boxes,
                            .boxCount = static_cast<uint32_t>(path.move.boxes.size()),
                            .changed = &path.changed,
+                           .ends = path.ends ? &path.ends : nullptr,
                            .list = &relink.list,
                            .rays = &kit_.buffers.rays};
     const bool records = kit_.input.tracer.records();

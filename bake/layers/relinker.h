@@ -30,7 +30,7 @@ private:
     /// The places where objects were and are, for tracers.
     struct Path {
         ObjectMove move;
-        vk::Buffer boxes, changed;
+        vk::Buffer boxes, changed, ends; // ends may be left out
     };
     /// Kept links on their way to where objects are now.
     struct Relink {

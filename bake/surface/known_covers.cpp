@@ -41,7 +41,7 @@ uint32_t KnownCovers::of(const PatchSet& set, uint32_t patch) const {
     const uint32_t instance = set.instance[patch];
     if (instance >= objects.size() || objects[instance] == kNoPatch) return kNoPatch;
     const shader::Patch& now = set.scene.patches[patch];
-    const uint32_t then = former.scene.texelToPatch[now.flags >> 8];
+    const uint32_t then = former.scene.texelToPatch[shader::patchTexel(now.flags)];
     if (then == kNoPatch || former.instance[then] != objects[instance]) return kNoPatch;
     const shader::Patch& was = former.scene.patches[then];
     return was.position == now.position && was.normal == now.normal && was.area == now.area ? then : kNoPatch;

@@ -25,6 +25,10 @@ struct TraceScene {
     std::vector<uint8_t> alphaTexels; // 8-bit alpha of all masked textures
 
     uint32_t pageSize() const { return mesh.pages.edgeOf(size); } // [texels]
+    /// Returns the chart whose hits may end at this patch: kNoChart where it sends nothing.
+    uint32_t sendingChart(uint32_t patch) const {
+        return (patches[patch].flags & shader::kPatchSends) != 0 ? patchChart[patch] : kNoChart;
+    }
     uint32_t chunkCount() const { return static_cast<uint32_t>(patches.size() / shader::kChunk); }
 };
 

@@ -36,9 +36,9 @@ struct AlphaTables {
 
 struct HitTables {
     const uint32_t* map;
-    const uint32_t* charts;
+    const TraceScene& scene;
     uint texelPatch(uint texel) { return map[texel]; }
-    uint chartOfPatch(uint patch) { return charts[patch]; }
+    uint chartOfPatch(uint patch) { return scene.sendingChart(patch); }
 #include "shaders/lib/rays/hit.glsl"
 };
 
@@ -294,7 +294,7 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     if (glm::dot(direction, target.normal) > 0)
         return target.doubleSided ? shader::kLinkDark : shader::kLinkBack;
     if (target.representative == shader::kNoPatch) return shader::kLinkDark;
-    shader::HitTables tables{scene.texelToPatch.data(), scene.patchChart.data()};
+    shader::HitTables tables{scene.texelToPatch.data(), scene};
     return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
 }
 
@@ -345,15 +345,21 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
             above |= uint64_t(shader::boxAbove(patches[i].position, patches[i].normal, box)) << i;
     }
     above &= sends & ~changed;
-    if ((above | changed) == 0) return 0;
+    if ((above | changed) == 0 && !work.ends) return 0;
     const uint32_t first = piece * ChunkRays::kSamplesMax;
     ChunkRays rays;
     const PatchCover* covers = c.covers ? c.covers + size_t(c.firstChunk + chunk) * kChunk : nullptr;
     rays.setPatches(patches, covers, static_cast<uint32_t>(c.rotation), scene.size);
     rays.setSamples(c.firstSample + first, std::min(ChunkRays::kSamplesMax, c.sampleCount - first));
+    uint32_t* const links = c.links + (size_t(chunk) * c.sampleCount + first) * kChunk;
+    const auto endsElsewhere = [&](uint32_t link) {
+        return work.ends && link < shader::kLinkFirstSpecial &&
+               shader::hasPatch(work.ends[link / kChunk], link % kChunk);
+    };
     const auto again = [&](uint32_t number) {
         const uint32_t i = number % kChunk;
-        if ((above >> i & 1) == 0) return (changed >> i & 1) != 0;
+        if ((changed >> i & 1) != 0 || endsElsewhere(links[number])) return true;
+        if ((above >> i & 1) == 0) return false;
         const glm::vec3 origin = rays.origin(number);
         const glm::vec3 direction(rays.x[number], rays.y[number], rays.z[number]);
         return std::any_of(work.boxes.begin(), work.boxes.end(), [&](const shader::TraceBox& box) {
@@ -368,8 +374,7 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
         order[count++] = number;
         traced += uint32_t(sends >> number % kChunk & 1);
     }
-    links(patches, rays, {order.data(), count}, c.links + (size_t(chunk) * c.sampleCount + first) * kChunk,
-          work.silent);
+    this->links(patches, rays, {order.data(), count}, links, work.silent);
     return traced;
 }
 

@@ -48,6 +48,7 @@ struct RetraceArrays {
     ClosestArrays closest;
     std::span<const shader::TraceBox> boxes = {};
     const glm::uvec2* changed = nullptr; // per chunk of all
+    const glm::uvec2* ends = nullptr;    // likewise; nullptr: none
     uint32_t* rays = nullptr;            // may be left out
     bool silent = false;
 };

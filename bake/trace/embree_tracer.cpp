@@ -44,6 +44,7 @@ public:
         scene_.retrace({.closest = arrays(work.closest),
                         .boxes = {mappedAs<shader::TraceBox>(work.boxes, work.boxCount), work.boxCount},
                         .changed = mappedAs<glm::uvec2>(work.changed, chunkCount_),
+                        .ends = work.ends ? mappedAs<glm::uvec2>(work.ends, chunkCount_) : nullptr,
                         .rays = work.rays ? mappedAs<uint32_t>(work.rays, shader::kRayCounters) : nullptr,
                         .silent = work.silent});
     }

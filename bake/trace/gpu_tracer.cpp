@@ -29,7 +29,7 @@ public:
     SceneBuffers(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
         : hitTriangles_(vk::makeBuffer(device, scene.hitTriangles, "hit triangles")),
           texelToPatch_(vk::makeBuffer(device, scene.texelToPatch, "texel to patch")),
-          patchChart_(vk::makeBuffer(device, scene.patchChart, "chart of patch")),
+          patchChart_(vk::makeBuffer(device, sendingCharts(scene), "chart of patch")),
           alphaTriangles_(vk::makeBuffer(device, scene.alphaTriangles, "alpha triangles")),
           alphaMaterials_(vk::makeBuffer(device, scene.alphaMaterials, "alpha materials")),
           alphaTexels_(vk::makeBuffer(device, wholeWords(scene.alphaTexels), "alpha texels")),
@@ -46,6 +46,9 @@ public:
     void update(const vk::Device& device, const TraceScene& scene, const SceneChange& change) {
         vk::uploadElements(device, hitTriangles_, scene.hitTriangles, change.triangles);
         vk::uploadElements(device, texelToPatch_, scene.texelToPatch, change.texels);
+    }
+    void updateSenders(const vk::Device& device, const TraceScene& scene, std::span<const uint32_t> patches) {
+        vk::uploadElements(device, patchChart_, sendingCharts(scene), patches);
     }
     void setAccel(VkDeviceAddress accel, VkDeviceAddress triangles) {
         geometry_.accel = accel;
@@ -105,6 +108,8 @@ public:
         return {.patches = patches_,
                 .boxes = work.boxes->address(),
                 .changed = work.changed->address(),
+                .links = push(work.closest).links,
+                .ends = addressOf(work.ends),
                 .list = work.list->address(),
                 .rays = work.rays->address(),
                 .covers = addressOf(work.closest.covers),
@@ -135,6 +140,12 @@ public:
     }
 
 private:
+    static std::vector<uint32_t> sendingCharts(const TraceScene& scene) {
+        std::vector<uint32_t> charts(scene.patchChart.size());
+        for (uint32_t patch = 0; patch < charts.size(); ++patch)
+            charts[patch] = scene.sendingChart(patch);
+        return charts;
+    }
     static std::vector<uint8_t> wholeWords(std::vector<uint8_t> bytes) {
         bytes.resize((bytes.size() + 3) / 4 * 4);
         return bytes;
@@ -196,6 +207,9 @@ public:
         segments_.dispatch(cmd, buffers_.push(work), work.chunkCount, segmentWords(work));
     }
 
+    void updateSenders(std::span<const uint32_t> patches) override {
+        buffers_.updateSenders(device_, scene_, patches);
+    }
     void retrace(VkCommandBuffer cmd, const RetraceWork& work) override {
         if (!marks_) {
             marks_.emplace(device_);
@@ -326,6 +340,9 @@ public:
         segments_.trace(cmd, buffers_.push(work), kChunk, work.chunkCount * segmentWords(work));
     }
 
+    void updateSenders(std::span<const uint32_t> patches) override {
+        buffers_.updateSenders(device_, scene_, patches);
+    }
     bool follows() const override { return true; }
     void update(const SceneChange& change) override {
         buffers_.update(device_, scene_, change);

@@ -35,6 +35,10 @@ public:
         rest.rays = &marched_;
         voxels_->segments(cmd, rest);
     }
+    void updateSenders(std::span<const uint32_t> patches) override {
+        exact_->updateSenders(patches);
+        voxels_->updateSenders(patches);
+    }
 
 private:
     std::unique_ptr<Tracer> exact_, voxels_;

@@ -8,6 +8,8 @@ void Tracer::update(const SceneChange&) {
     ASSERT(follows());
 }
 
+void Tracer::updateSenders(std::span<const uint32_t>) {}
+
 void Tracer::retrace(VkCommandBuffer, const RetraceWork&) {
     ASSERT(follows());
 }

@@ -91,14 +91,16 @@ struct SegmentWork {
 
 constexpr uint32_t kTargetsPerWord = 32; // of a SegmentWork's bits; lib/rays/segments.glsl
 
-/// Links of `closest` that were traced before objects moved: those of patches that have changed, and those
-/// whose ray meets a box in which an object was or is, are traced again; all others stay as they are.
+/// Links of `closest` that were traced before objects moved: those of patches that have changed, those whose
+/// ray meets a box in which an object was or is, and those that end at certain patches, are traced again; all
+/// others stay as they are.
 struct RetraceWork {
     ClosestWork closest; // of the scene's patches and the Sobol sequence
     const vk::Buffer* boxes =
         nullptr; // shader::TraceBox[boxCount], mapped where the tracer runs on the CPU, as those below
     uint32_t boxCount = 0;
     const vk::Buffer* changed = nullptr; // glm::uvec2 per chunk of all, a bit for each patch
+    const vk::Buffer* ends = nullptr;    // likewise: to trace what ends there; nullptr: at none
     const vk::Buffer* list = nullptr;    // uint32_t[1 + chunkCount * sampleCount * 64], not on the CPU
     const vk::Buffer* rays = nullptr;    // as in SegmentWork
     bool silent = false;                 // also of patches that send nothing, which get kLinkDark else
@@ -127,6 +129,9 @@ public:
     /// is called.
     virtual void segments(VkCommandBuffer cmd, const SegmentWork& work) = 0;
 
+    /// Follows that patches, ascending, may send now or no more (kPatchSends): closest hits end at those that
+    /// do. Waits for the device.
+    virtual void updateSenders(std::span<const uint32_t> patches);
     /// Tells whether it follows objects that move: only then the calls below are for it.
     virtual bool follows() const { return false; }
     /// Follows the scene that it was made of, which has changed. Waits for the device.

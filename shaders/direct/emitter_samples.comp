@@ -7,29 +7,36 @@
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
 #include "lib/light/polygon_sample.glsl"
-#include "lib/light/emitters.glsl"
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
+#include "lib/rays/starts.glsl"
+#include "lib/light/texel_mean.glsl"
+#include "lib/light/emitters.glsl"
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
 EmitterPolygon emitterPolygon(uint index) { return loadEmitterPolygon(push.polygons, index); }
 EmitterEdge emitterEdge(uint index) { return loadEmitterEdge(push.edges, index); }
 #include "lib/light/pick_emitter.glsl"
 #include "lib/light/whole_emitter.glsl"
 #include "lib/light/penumbra_sample_passes.glsl"
-#include "lib/rays/starts.glsl"
 
 layout(local_size_x = 64) in;
 
 // The salt keeps the numbers of picks apart from those of directions, which start from the same seeds.
 const uint kPickSalt = 0x5bd1e995u;
 
-bool isNearAll(Patch p) { return push.covers != 0ul && isNearNode(p.position, p.area, emitterNode(0u)); }
+uint unevennessOfAll(TexelSpread t) { return unevenness(t.size, nodeDistance(t.middle, emitterNode(0u))); }
 
-// Nearby, the light differs over the texel: then each point knows that of where it starts.
+vec3 allLight(vec3 from, vec3 n) { return wholeEmitterLight(from, n, push.polygonCount, push.edgeCount); }
+
+// Where the light is uneven, each point knows that of where it starts.
 void findWhole(Patch p, uint index) {
-    bool sends = (p.flags & kPatchSends) != 0u, near = isNearAll(p);
+    bool sends = (p.flags & kPatchSends) != 0u;
+    TexelSpread t = texelSpread(p, coverOf(index));
+    uint uneven = unevennessOfAll(t);
     vec3 light = vec3(0.0);
-    if (sends && !near) light = wholeEmitterLight(p.position, p.shading, push.polygonCount, push.edgeCount);
-    VEC4_AT(push.wholes, index) = vec4(light, sends && near ? 1.0 : 0.0);
+    if (sends && uneven == kLightEven) light = allLight(t.middle, p.shading);
+    if (sends && uneven == kLightCurved)
+        for (uint i = 0u; i < kSpreadPoints; ++i) light += allLight(spreadPoint(t, i), p.shading) / float(kSpreadPoints);
+    VEC4_AT(push.wholes, index) = vec4(light, sends && uneven == kLightUneven ? 1.0 : 0.0);
 }
 
 void main() {
@@ -52,6 +59,7 @@ void main() {
     bool all = push.all != 0u;
 
     PatchCover cover = coverOf(index);
+    TexelSpread spread = texelSpread(p, cover);
     Patch start = p; // a pick of one point is drawn for where that starts
     if (onePoint) start = startingPatch(p, cover, startNumber(pick, push.samplePass, push.pickCount, 1u));
     uint emitter = pick, sequence = 0u; // of the pick's points, where it has one of its own
@@ -64,19 +72,21 @@ void main() {
     }
     vec3 light = vec3(0.0);
     float whole = 0.0; // form factor, without shadows
+    bool near = false; // it is the mean over the points that samples start from
     EmitterPolygon e;
     if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u) {
         e = emitterPolygon(emitter);
-        whole = onePoint ? 1.0 : emitterFormFactor(p.position, p.shading, e); // or the point's own
+        uint uneven = onePoint ? kLightEven : unevenness(spread.size, polygonDistance(spread.middle, e));
+        if (onePoint) whole = 1.0; // the point's own tells
+        else whole = uneven == kLightEven ? emitterFormFactor(spread.middle, p.shading, e) : spreadFormFactor(spread, p.shading, e);
         light = e.radiance * (whole / probability);
+        near = uneven == kLightUneven && light != vec3(0.0);
     }
-    // Nearby, the light differs over the texel: then it is the mean over the points that samples start from.
-    bool near = push.covers != 0ul && !onePoint && light != vec3(0.0) && isNear(p.position, p.area, e);
     // A near light is seen as unevenly over a texel as in a penumbra.
     if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
     float factors = 0.0;
-    if (onePoint && isNearAll(p)) {
-        vec3 ofAll = wholeEmitterLight(start.position, start.shading, push.polygonCount, push.edgeCount);
+    if (onePoint && unevennessOfAll(spread) == kLightUneven) {
+        vec3 ofAll = allLight(start.position, start.shading);
         VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane) = vec4(ofAll, 0.0);
     }
     bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;

@@ -13,11 +13,15 @@ const uint kTargetsPerWord = 32u; // lib/rays/segments.glsl
 uint chunk, lane;
 
 // Returns what was sampled; the sky's light, of three colours, is made again.
-LampRay sampled(Lamp l, Patch p, PatchCover cover, uint s) {
-    if (isLamp(l, kLampSky)) return lampRay(l, p, cover, s);
+LampRay sampled(Lamp l, Receiver r, uint s) {
+    if (isLamp(l, kLampSky)) return lampRay(l, r, s);
     float light = VEC4_AT(push.targets, (chunk * targetCount() + l.firstTarget + s) * kChunk + lane).w;
     return LampRay(vec3(0.0), vec3(abs(light)), light > 0.0);
 }
+
+// Returns the light that a patch is taken to have of one that all rays of its chunk have reached. Where only samples
+// tell, none of the patch's own have said anything, and it is taken to have none.
+vec3 notedLight(Lamp l, Receiver r) { return max(wholeLight(l, r), vec3(0.0)); }
 
 bool seen(uint target) {
     uint words = (targetCount() + kTargetsPerWord - 1u) / kTargetsPerWord;
@@ -31,18 +35,17 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + lane;
     uint taken = takenSamplePasses(index);
     if (taken == 0u) return;
-    Patch p = loadPatch(push.patches, index);
-    PatchCover cover = coverOf(index); // the sky's samples are made again
+    Receiver r = receiver(index);
     vec3 value[kReplicates];
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     uint reachedLamps = 0u, hiddenLamps = 0u;
     for (uint k = 0u; k < lampCount(); ++k) {
         Lamp l = loadLamp(k);
         uint bit = lampBit(k);
-        LightNote note = lampNote(l, p, index, k);
+        LightNote note = lampNote(l, r, index, k);
         if (!note.asked) {
             if (note.seen > 0.0)
-                for (uint q = 0u; q < kReplicates; ++q) value[q] += l.color * wholeLight(l, p);
+                for (uint q = 0u; q < kReplicates; ++q) value[q] += l.color * notedLight(l, r);
             continue;
         }
         vec3 part[kReplicates], partSeen[kReplicates]; // of each replicate's samples
@@ -50,7 +53,7 @@ void main() {
         float all = 0.0, visible = 0.0; // of any one component: but for the sky they are alike
         uint samples = takenSamples(l, taken);
         for (uint s = 0u; s < samples; ++s) {
-            LampRay ray = sampled(l, p, cover, s);
+            LampRay ray = sampled(l, r, s);
             bool reached = ray.traced && seen(l.firstTarget + s);
             part[s % kReplicates] += ray.light;
             all += ray.light.r;
@@ -60,11 +63,14 @@ void main() {
             partSeen[s % kReplicates] += ray.light;
             visible += ray.light.r;
         }
-        float whole = lampWhole(l, p);
-        // Where no share is known, what is reached is asked again.
-        if (l.samples > 1u && whole < 0.0 && all > 0.0) {
+        float whole = lampWhole(l, r.spread, r.p.shading);
+        // Where no share is known, what is reached is asked again, and so is a light of which a few samples may have
+        // missed all.
+        bool uneven = lampUnevenness(l, r.spread.middle, r.spread.size) == kLightUneven;
+        if (l.samples > 1u && whole < 0.0 && (all > 0.0 || uneven)) {
             if (!takesNotes()) reachedLamps = hiddenLamps = ~0u;
-            else if (visible > 0.0 && wholeLight(l, p).r < 0.0) hiddenLamps |= bit;
+            else if (uneven) reachedLamps |= bit, hiddenLamps |= bit;
+            else if (visible > 0.0 && wholeLight(l, r).r < 0.0) hiddenLamps |= bit;
         }
         for (uint q = 0u; q < kReplicates; ++q) {
             vec3 unit = partSeen[q] * (float(kReplicates) / float(samples));
@@ -75,13 +81,13 @@ void main() {
                 unit = vec3(seenLight(whole, count, part[q].r, partSeen[q].r, all, visible));
             }
             if (note.known) {
-                vec3 noted = note.seen > 0.0 ? wholeLight(l, p) : vec3(0.0);
+                vec3 noted = note.seen > 0.0 ? notedLight(l, r) : vec3(0.0);
                 unit = noted + float(kNoteSamplePasses) * (unit - noted);
             }
             value[q] += l.color * (float(taken) * unit);
         }
     }
-    if ((p.flags & kPatchSends) == 0u) return;
+    if ((r.p.flags & kPatchSends) == 0u) return;
     noteLights(index, reachedLamps, hiddenLamps);
     vec3 total = vec3(0.0);
     Vec4s sums = Vec4s(push.sums);

@@ -9,14 +9,13 @@ layout(local_size_x = 64) in;
 void main() {
     uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     uint index = (push.firstChunk + chunk) * kChunk + lane;
-    Patch p = loadPatch(push.patches, index);
+    Receiver r = receiver(index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
-    uint samples = lampNote(l, p, index, gl_WorkGroupID.y).asked ? takenSamples(l, takenSamplePasses(index)) : 0u;
-    PatchCover cover = coverOf(index);
+    uint samples = lampNote(l, r, index, gl_WorkGroupID.y).asked ? takenSamples(l, takenSamplePasses(index)) : 0u;
     for (uint s = 0u; s < targetsOf(l); ++s) {
         vec4 target = vec4(0.0);
         if (s < samples) {
-            LampRay ray = lampRay(l, p, cover, s);
+            LampRay ray = lampRay(l, r, s);
             float light = isLamp(l, kLampSky) ? (ray.traced ? 1.0 : 0.0) : ray.light.r;
             target = vec4(ray.target, ray.traced ? light : -light);
         }

@@ -15,6 +15,8 @@ layout(local_size_x = 64) in;
 
 const uint kSamplesPerInvocation = 8u;
 
+uvec2 patchBits(uint64_t all, uint chunk) { return uvec2(WORD_AT(all, chunk * 2u), WORD_AT(all, chunk * 2u + 1u)); }
+
 void list(uint marks, uint base) {
     if (marks == 0u) return;
     uint at = atomicAdd(WORD_AT(push.list, 0), uint(bitCount(marks)));
@@ -27,12 +29,15 @@ void main() {
     uint first = (push.firstChunk + chunk) * kChunk;
     Patch p = loadPatch(push.patches, first + lane);
     uint base = (chunk * push.sampleCount + firstLocal) * kChunk + lane;
-    uint changed = WORD_AT(push.changed, (push.firstChunk + chunk) * 2u + lane / 32u);
     bool asks = asksAgain(p, push.silent);
-    uint marks = (changed >> (lane % 32u)) & 1u;
-    if (marks != 0u) {
+    uint marks = 0u;
+    if (hasPatch(patchBits(push.changed, push.firstChunk + chunk), lane)) {
         marks = (1u << kSamplesPerInvocation) - 1u;
     } else if (asks) {
+        for (uint k = 0u; push.ends != 0ul && k < kSamplesPerInvocation; ++k) {
+            uint link = WORD_AT(push.links, base + k * kChunk);
+            if (link < kLinkFirstSpecial && hasPatch(patchBits(push.ends, link / kChunk), link % kChunk)) marks |= 1u << k;
+        }
         uint key = rotationKey(p, loadPatch(push.patches, first), push.rotation, push.size);
         PatchCover cover = coverOf(first + lane);
         bool above = false;

@@ -43,6 +43,13 @@ inline double pointToDisc(double r, double h) {
     return r * r / (r * r + h * h);
 }
 
+/// Returns the same for a disc whose axis passes the plate at this distance; it is parallel to the plate
+/// still.
+inline double pointToParallelDisc(double away, double r, double h) {
+    const double far2 = away * away + h * h, sum = far2 + r * r;
+    return 0.5 * (1 - (far2 - r * r) / std::sqrt(sum * sum - 4 * away * away * r * r));
+}
+
 /// Returns B-3: from a small plate to a parallel rectangle a by b at distance c, one corner of which is on
 /// the plate's normal.
 inline double pointToParallelRectangle(double a, double b, double c) {

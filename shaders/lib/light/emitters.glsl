@@ -1,11 +1,8 @@
 // Lights with an area, sampled as lights. It is legal as GLSL and as C++ (namespace relume::shader); it comes
-// after lib/light/polygon_sample.glsl and lib/sampling.glsl. Occlusion is left to the caller.
+// after lib/light/polygon_sample.glsl and lib/light/texel_mean.glsl. Occlusion is left to the caller.
 
 // The salt keeps the numbers of points apart from those of directions, which start from the same seeds.
 CONST uint kPointSalt = 0x1b873593u;
-
-// Nearer than this many patch sizes the form factor in the middle of a texel is off by some per cent of its mean.
-CONST float kNearSizes = 2.0f;
 
 // Returns the exact form factor from a point p [m] of unit normal n to the whole polygon, clipped to the
 // horizon of n. It is in [0, 1], and 0 behind the polygon.
@@ -40,8 +37,12 @@ FUNCTION float polygonDistance(vec3 p, EmitterPolygon e) {
                min(segmentDistance(p, e.c2, e.c3), segmentDistance(p, e.c3, e.c0)));
 }
 
-// Tells whether the light of the polygon differs over a patch at p [m], whose area is this [m^2].
-FUNCTION bool isNear(vec3 p, float area, EmitterPolygon e) { return polygonDistance(p, e) < kNearSizes * sqrt(area); }
+// Returns the mean of the form factor over a texel, by the points of its spread.
+FUNCTION float spreadFormFactor(TexelSpread t, vec3 n, EmitterPolygon e) {
+    float sum = 0.0f;
+    for (uint i = 0u; i < kSpreadPoints; ++i) sum += emitterFormFactor(spreadPoint(t, i), n, e);
+    return sum / float(kSpreadPoints);
+}
 
 // Tells whether the node's box is above the horizon of a receiver at p [m] of unit normal n: 1, or below it: -1; 0 where
 // it may lie across it.
@@ -52,10 +53,9 @@ FUNCTION int sideOfHorizon(EmitterNode e, vec3 p, vec3 n) {
     return height > reach ? 1 : (height < -reach ? -1 : 0);
 }
 
-// Tells whether the light of any polygon of the node may differ over the patch.
-FUNCTION bool isNearNode(vec3 p, float area, EmitterNode e) {
-    vec3 gap = max(abs(p - 0.5f * (e.lo + e.hi)) - 0.5f * (e.hi - e.lo), vec3(0.0f, 0.0f, 0.0f));
-    return length(gap) < kNearSizes * sqrt(area);
+// Returns how far a point is from the node's box [m].
+FUNCTION float nodeDistance(vec3 p, EmitterNode e) {
+    return length(max(abs(p - 0.5f * (e.lo + e.hi)) - 0.5f * (e.hi - e.lo), vec3(0.0f, 0.0f, 0.0f)));
 }
 
 FUNCTION PolygonPart emitterPart(EmitterPolygon e) {

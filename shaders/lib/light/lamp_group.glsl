@@ -5,10 +5,11 @@
 #include "lib/light/polygon_sample.glsl"
 layout(constant_id = 0) const uint kLampTypes = 0x3fu;
 #define LAMP_TYPES kLampTypes
-#include "lib/light/lamps.glsl"
 layout(push_constant, scalar) uniform Push { LampPush push; };
-#include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/rays/starts.glsl"
+#include "lib/light/texel_mean.glsl"
+#include "lib/light/lamps.glsl"
+#include "lib/light/penumbra_sample_passes.glsl"
 vec4 skyPixel(uint index) { return VEC4_AT(push.skyPixels, index); }
 float skyRow(uint index) { return uintBitsToFloat(WORD_AT(push.skyRows, index)); }
 #include "lib/light/sky.glsl"
@@ -35,12 +36,25 @@ struct LampRay {
     bool traced;
 };
 
-// Makes sample s of patch p, which starts at another point of its texel. skySize is that of the sky's picture, 0:
+// Holds a patch with the part of its texel that its samples start from.
+struct Receiver {
+    Patch p;
+    PatchCover cover;
+    TexelSpread spread;
+};
+Receiver receiver(uint patchIndex) {
+    Receiver r;
+    r.p = loadPatch(push.patches, patchIndex);
+    r.cover = coverOf(patchIndex);
+    r.spread = texelSpread(r.p, r.cover);
+    return r;
+}
+
+// Makes sample s of a receiver, which starts at another point of its texel. skySize is that of the sky's picture, 0:
 // none.
-LampRay lampRayUnder(uvec2 skySize, Lamp l, Patch p, PatchCover cover, uint s) {
+LampRay lampRayUnder(uvec2 skySize, Lamp l, Receiver r, uint s) {
     uint number = push.samplePass * l.samples + s, index = replicateIndex(number);
-    vec3 own = p.position;
-    p = startingPatch(p, cover, number);
+    Patch p = startingPatch(r.p, r.cover, number);
     uint seed = lampSeed(l, seedKey(p), number);
     LampRay ray;
     if (isLamp(l, kLampSky)) {
@@ -50,7 +64,7 @@ LampRay lampRayUnder(uvec2 skySize, Lamp l, Patch p, PatchCover cover, uint s) {
         ray.target = p.position + push.reach * sky.direction;
         ray.light = sky.light;
     } else {
-        LampSample point = lampSample(l, p, own, sobolPoint(index, seed), push.reach);
+        LampSample point = lampSample(l, p, r.spread.middle, r.spread.size, sobolPoint(index, seed), push.reach);
         ray.target = point.target;
         ray.light = vec3(point.factor);
     }
@@ -59,8 +73,8 @@ LampRay lampRayUnder(uvec2 skySize, Lamp l, Patch p, PatchCover cover, uint s) {
     return ray;
 }
 
-LampRay lampRay(Lamp l, Patch p, PatchCover cover, uint s) {
-    return lampRayUnder(uvec2(push.skySize & 0xffffu, push.skySize >> 16), l, p, cover, s);
+LampRay lampRay(Lamp l, Receiver r, uint s) {
+    return lampRayUnder(uvec2(push.skySize & 0xffffu, push.skySize >> 16), l, r, s);
 }
 
 // Returns the bit of a light in notes and penumbrae.
@@ -69,20 +83,20 @@ uint lampBit(uint indexInGroup) {
 }
 
 // Returns the light of a whole one, unshadowed, per unit of its colour; negative where only samples tell.
-vec3 wholeLight(Lamp l, Patch p) {
-    if (isLamp(l, kLampSky) && push.skySize == 0u) return lampRayUnder(uvec2(0u), l, p, PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), 0u).light;
-    return vec3(lampWhole(l, p));
+vec3 wholeLight(Lamp l, Receiver r) {
+    if (isLamp(l, kLampSky) && push.skySize == 0u) return lampRayUnder(uvec2(0u), l, r, 0u).light;
+    return vec3(lampWhole(l, r.spread, r.p.shading));
 }
 
 // A light that brings a patch no more than this share of its direct light is asked in one sample pass of
 // kNoteSamplePasses, too: its noise is small whatever is in its way.
 const float kMinorShare = 0.01;
 
-LightNote lampNote(Lamp l, Patch p, uint patchIndex, uint indexInGroup) {
+LightNote lampNote(Lamp l, Receiver r, uint patchIndex, uint indexInGroup) {
     uint light = push.firstLamp + indexInGroup;
     LightNote note = lightNote(patchIndex, lampBit(indexInGroup), light);
     if (!takesNotes() || push.samplePass == 0u || note.known || l.samples == 1u) return note;
-    vec3 whole = wholeLight(l, p) * l.color, soFar = VEC4_AT(push.direct, patchIndex).rgb;
+    vec3 whole = wholeLight(l, r) * l.color, soFar = VEC4_AT(push.direct, patchIndex).rgb;
     bool minor = whole.r >= 0.0 && whole.r + whole.g + whole.b <= kMinorShare * (soFar.r + soFar.g + soFar.b);
     return minor ? LightNote(true, isAsked(patchIndex, light), 0.0) : note;
 }

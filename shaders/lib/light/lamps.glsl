@@ -1,5 +1,5 @@
 // Analytic lights: points, spheres, suns, rectangles and discs. It is legal as GLSL and as C++ (namespace
-// relume::shader); it comes after lib/light/polygon_sample.glsl and lib/sampling.glsl. Factors are lighting
+// relume::shader); it comes after lib/light/polygon_sample.glsl and lib/light/texel_mean.glsl. Factors are lighting
 // (irradiance / pi) per unit of the light's colour; occlusion is left to the caller.
 
 // Rays end this share of their length before a light: one that is fixed to a surface must not be hidden by
@@ -60,24 +60,53 @@ FUNCTION PolygonPart rectanglePart(Lamp l) {
     return q;
 }
 
-// Returns the factor of the whole light, unshadowed; negative where only samples tell. A sphere or sun that
-// stands above the horizon as a whole lights like its centre.
-FUNCTION float lampWhole(Lamp l, Patch p) {
+// Returns how the light differs over a texel of this middle and size [m]: kLight...
+FUNCTION uint lampUnevenness(Lamp l, vec3 middle, float size) {
+    if (isLamp(l, kLampSun) || isLamp(l, kLampSky)) return kLightEven;
+    vec3 d = l.position - middle;
+    float away = length(d), reach = l.radius;
+    if (isLamp(l, kLampRectangle)) reach = 0.5f * (length(l.edgeU) + length(l.edgeV));
+    if (isLamp(l, kLampSpot)) {
+        // From edge to edge of the texel the spot's own edge rises by so much of its whole height.
+        float rise = l.coneScale * size / max(away, 1e-15f);
+        float cone = -dot(l.axis, d) / max(away, 1e-15f) * l.coneScale + l.coneOffset;
+        if (rise > 0.5f && abs(cone - 0.5f) < 0.5f + rise) return kLightUneven;
+    }
+    return unevenness(size, max(away - reach, 0.0f));
+}
+
+// Returns the factor of the whole light at a point p [m] of unit normal n, unshadowed; negative where only samples tell. A
+// sphere or sun that stands above the horizon as a whole lights like its centre.
+FUNCTION float lampWholeAt(Lamp l, vec3 p, vec3 n) {
     if (isLamp(l, kLampDisc) || isLamp(l, kLampSky)) return -1.0f;
     if (isLamp(l, kLampRectangle)) {
         PolygonPart q = rectanglePart(l);
-        return polygonFormFactor(p.position, p.shading, q.a, q.b, q.c, q.d);
+        return polygonFormFactor(p, n, q.a, q.b, q.c, q.d);
     }
     if (isLamp(l, kLampSun)) {
-        float c = -dot(p.shading, l.axis);
+        float c = -dot(n, l.axis);
         if (l.radius > 0.0f && abs(c) < l.radius) return -1.0f;
         return kInvPi * max(c, 0.0f);
     }
-    vec3 d = l.position - p.position;
-    float height = dot(p.shading, d), d2 = max(dot(d, d), kNearestLamp2);
+    vec3 d = l.position - p;
+    float height = dot(n, d), d2 = max(dot(d, d), kNearestLamp2);
     if (l.radius > 0.0f && abs(height) < l.radius) return -1.0f;
     if (!(height > 0.0f)) return 0.0f;
     return kInvPi * height / (d2 * sqrt(d2)) * lampFade(l, d);
+}
+
+// Returns its mean over a texel of unit normal n; negative where only samples tell.
+FUNCTION float lampWhole(Lamp l, TexelSpread t, vec3 n) {
+    uint uneven = lampUnevenness(l, t.middle, t.size);
+    if (uneven == kLightUneven) return -1.0f;
+    if (uneven == kLightEven) return lampWholeAt(l, t.middle, n);
+    float sum = 0.0f;
+    for (uint i = 0u; i < kSpreadPoints; ++i) {
+        float whole = lampWholeAt(l, spreadPoint(t, i), n);
+        if (whole < 0.0f) return -1.0f;
+        sum += whole;
+    }
+    return sum / float(kSpreadPoints);
 }
 
 struct LampSample {
@@ -85,10 +114,10 @@ struct LampSample {
     float factor; // its mean over u is the whole light's
 };
 
-// Samples a light other than the sky, for uniform u in [0, 1)^2. reach is far outside the scene [m]. The light
-// fades as it does at the patch's own point, which p may have been moved away from: so a share of the whole light
-// is one of what is seen alone.
-FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 own, vec2 u, float reach) {
+// Samples a light other than the sky from p, which lies in a texel of this middle and size [m], for uniform u in [0, 1)^2.
+// reach is far outside the scene [m]. Where the whole light is known in the middle alone it fades as it does there: so a
+// share of it is one of what is seen alone.
+FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 middle, float size, vec2 u, float reach) {
     LampSample s;
     s.target = l.position;
     s.factor = 0.0f;
@@ -122,7 +151,8 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 own, vec2 u, float reach) {
         float along = dot(w, d);
         float within = r2 - (d2 - along * along);
         s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
-        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - own);
+        vec3 from = lampUnevenness(l, middle, size) == kLightEven ? middle : p.position;
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - from);
     }
     s.target += kLampGap * (p.position - s.target);
     return s;

@@ -20,5 +20,8 @@ FUNCTION bool boxAbove(vec3 p, vec3 n, TraceBox box) {
     return dot(top - p, n) > 0.0f;
 }
 
+// Tells whether the bit of a patch is set, of those of its chunk.
+FUNCTION bool hasPatch(uvec2 bits, uint lane) { return (((lane < 32u ? bits.x : bits.y) >> (lane % 32u)) & 1u) != 0u; }
+
 // Tells whether a patch has links to be traced: one that sends, or any that is there.
 FUNCTION bool asksAgain(Patch p, uint silent) { return (p.flags & kPatchSends) != 0u || (silent != 0u && p.area > 0.0f); }

@@ -19,6 +19,8 @@ const char* const kKernel = R"(#version 460
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 #include "lib/form_factor.glsl"
+#include "lib/rays/start_point.glsl"
+#include "lib/light/texel_mean.glsl"
 #include "lib/light/polygon_sample.glsl"
 #include "lib/light/emitters.glsl"
 layout(push_constant, scalar) uniform Push { ADDRESS nodes, polygons, receivers, result; } push;

@@ -30,8 +30,13 @@ struct Floor {
         scene = maker.scene();
         if (light != nullptr) scene.lights.push_back(*light);
     }
+    /// Bakes the light in the middles of the texels, of which the closed forms are.
     FloatImage bake(Method method, uint32_t samples = 16) const {
-        return bakeScene(scene, {.size = maker.size(), .passes = 1, .method = method, .samples = samples})
+        return bakeScene(scene, {.size = maker.size(),
+                                 .passes = 1,
+                                 .allOver = false,
+                                 .method = method,
+                                 .samples = samples})
             .lighting;
     }
 };

