@@ -25,7 +25,7 @@ void addAround(const TraceScene& scene, uint32_t texel, uint32_t chart, ObjectMo
 } // namespace
 
 void addLinkEnds(const TraceScene& scene, std::span<const uint32_t> patches, ObjectMove& move) {
-    std::vector<uint32_t> charts; // in which a patch sends
+    std::vector<uint8_t> charts; // 1: a patch of it sends
     for (const uint32_t i : patches) {
         const uint32_t chart = scene.patchChart[i];
         if (chart == kNoChart) continue; // no hit ends there
@@ -33,14 +33,15 @@ void addLinkEnds(const TraceScene& scene, std::span<const uint32_t> patches, Obj
             move.addEnd(i);
             continue;
         }
-        charts.push_back(chart);
+        if (charts.size() <= chart) charts.resize(size_t{chart} + 1, 0);
+        charts[chart] = 1;
         addAround(scene, shader::patchTexel(scene.patches[i].flags), chart, move);
     }
     // Far from all patches that send, links have ended at a triangle's representative.
-    std::sort(charts.begin(), charts.end());
+    if (charts.empty()) return;
     for (const shader::HitTriangle& triangle : scene.hitTriangles)
-        if (triangle.representative != shader::kNoPatch &&
-            std::binary_search(charts.begin(), charts.end(), triangle.chart))
+        if (triangle.representative != shader::kNoPatch && triangle.chart < charts.size() &&
+            charts[triangle.chart] != 0)
             move.addEnd(triangle.representative);
 }
 

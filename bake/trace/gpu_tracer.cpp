@@ -48,7 +48,8 @@ public:
         vk::uploadElements(device, texelToPatch_, scene.texelToPatch, change.texels);
     }
     void updateSenders(const vk::Device& device, const TraceScene& scene, std::span<const uint32_t> patches) {
-        vk::uploadElements(device, patchChart_, sendingCharts(scene), patches);
+        vk::uploadMade<uint32_t>(device, patchChart_, patches,
+                                 [&](uint32_t patch) { return scene.sendingChart(patch); });
     }
     void setAccel(VkDeviceAddress accel, VkDeviceAddress triangles) {
         geometry_.accel = accel;

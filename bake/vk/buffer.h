@@ -80,6 +80,20 @@ void uploadElements(const Device& device, const Buffer& buffer, const std::vecto
     uploadParts(device, buffer, values.data(), partsOf(indices, sizeof(T)));
 }
 
+/// Does so with values that are made as they are needed: valueOf(index) returns a T. It is asked for elements
+/// between those of `indices`, too.
+template<typename T, typename ValueOf>
+void uploadMade(const Device& device, const Buffer& buffer, std::span<const uint32_t> indices,
+                const ValueOf& valueOf) {
+    if (indices.empty()) return;
+    std::vector<T> values(size_t{indices.back()} + 1);
+    const std::vector<BufferPart> parts = partsOf(indices, sizeof(T));
+    for (const BufferPart& part : parts)
+        for (size_t i = part.offset / sizeof(T); i < (part.offset + part.size) / sizeof(T); ++i)
+            values[i] = valueOf(static_cast<uint32_t>(i));
+    uploadParts(device, buffer, values.data(), parts);
+}
+
 /// Returns a buffer with a copy of `values`; it has at least 16 bytes, so that an empty list has an
 /// address too.
 template<typename T>
