@@ -41,8 +41,7 @@ CONST uint kRotateTile = 2u;
 
 // `closest` stores for a ray a patch index below kLinkFirstSpecial, or one of these.
 CONST uint kLinkFirstSpecial = 0xfffffff0u;
-CONST int kHitReach =
-    2; // texels: so far from a hit lies the patch that it ends at, where the hit texel's does not do
+CONST int kHitReach = 2;            // a hit whose own texel sends nothing ends at most so many texels away
 CONST uint kLinkSky = 0xffffffffu;  // hit nothing
 CONST uint kLinkBack = 0xfffffffeu; // hit the back of a single-sided surface
 CONST uint kLinkDark =
@@ -300,7 +299,7 @@ struct ClosestPush {
     ADDRESS links;        // uint[]
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
-    ADDRESS patchChart;   // uint[]
+    ADDRESS patchChart;   // uint[], kNoChart for patches that send nothing
     ADDRESS covers;       // PatchCover[]; 0: rays start at the patches' own points
     ADDRESS disc;         // vec2[discCount], even points of the unit disc
     uint firstChunk;
@@ -412,7 +411,7 @@ struct CvmPush {
     TraceGeometry geometry;
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
-    ADDRESS patchChart;   // uint[]
+    ADDRESS patchChart;   // uint[], kNoChart for patches that send nothing
     uint firstTriangle;
     uint size;    // lightmap edge [texels]
     uint patches; // 1: stores the voxels' patches, 0: sets their bits

@@ -32,7 +32,7 @@ struct RetracePush {
     ADDRESS links;        // uint[]
     ADDRESS hitTriangles; // HitTriangle[]
     ADDRESS texelToPatch; // uint[]
-    ADDRESS patchChart;   // uint[]
+    ADDRESS patchChart;   // uint[], kNoChart for patches that send nothing
     ADDRESS list;         // as above
     ADDRESS covers;       // as of ClosestPush
     uint firstChunk;

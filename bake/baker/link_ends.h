@@ -7,9 +7,9 @@
 
 namespace relume {
 
-/// Adds to a move where links end that would end elsewhere now: patches (ascending) have come, or send now or
-/// no more. Links that end at one that sends nothing end beside it now; those that end around one that sends
-/// may end there.
+/// Adds to a move where links end that may end elsewhere now, as these patches (ascending) send now or no
+/// more: a link that ends at one that sends nothing ends beside it now, and one that ends around one that
+/// sends may end there.
 void addLinkEnds(const TraceScene& scene, std::span<const uint32_t> patches, ObjectMove& move);
 
 } // namespace relume

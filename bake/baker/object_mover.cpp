@@ -423,9 +423,7 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     boxes = fewBoxes(std::move(boxes));
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     if (move.boxes.empty()) return move;
-    ObjectMove result = searched(tracer, slots, move);
-    addLinkEnds(patches.scene, slots, result);
-    return result;
+    return searched(tracer, slots, move);
 }
 
 // Looks anew which patches lie inside something and where samples start, near a move of these patches.

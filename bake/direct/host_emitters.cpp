@@ -367,8 +367,9 @@ void begin(const HostPoints& on, const PatchLanes& lanes, const Loops& loops, co
     }
     for (uint32_t i = 0; i < kChunk; ++i) {
         if (lanes.sends[i] == 0) pick.whole[i] = 0.0f;
-        const glm::vec3 light = pick.light(e, i);
-        const bool shines = light.r > 0.0f || light.g > 0.0f || light.b > 0.0f;
+        const bool may = uneven[i] == shader::kLightUneven && lanes.sends[i] != 0 &&
+                         shader::mayShineOn(lanes.spreadAt(i), {lanes.sx[i], lanes.sy[i], lanes.sz[i]}, e);
+        const bool shines = (pick.whole[i] > 0.0f || may) && e.radiance != glm::vec3(0.0f);
         pick.sample.shines[i] = shines ? 1 : 0;
         pick.shines = pick.shines || shines;
     }

@@ -15,7 +15,8 @@ using shader::Patch;
 // Says which of the samples is made, and of what.
 struct SampleDesc {
     Lamp lamp;
-    uint32_t number; // among those of all sample passes
+    const ChunkStarts::Points& fading; // where it fades as it does for each patch
+    uint32_t number;                   // among those of all sample passes
     float reach;
 };
 
@@ -34,9 +35,9 @@ template<uint32_t kType>
         p.normal = {lanes.nx[i], lanes.ny[i], lanes.nz[i]};
         p.shading = {lanes.sx[i], lanes.sy[i], lanes.sz[i]};
         const uint32_t seed = shader::lampSeed(lamp, lanes.key[i], desc.number);
-        const glm::vec3 middle(lanes.middle.x[i], lanes.middle.y[i], lanes.middle.z[i]);
+        const glm::vec3 fading(desc.fading.x[i], desc.fading.y[i], desc.fading.z[i]);
         const shader::LampSample s =
-            shader::lampSample(lamp, p, middle, lanes.size[i], shader::sobolPoint(index, seed), desc.reach);
+            shader::lampSample(lamp, p, fading, shader::sobolPoint(index, seed), desc.reach);
         const float height = glm::dot(s.target - p.position, p.normal);
         const bool traced = (lanes.sends[i] & (height > lanes.offset[i] ? 1u : 0u)) != 0; // sends: 0 or 1
         out.x[i] = s.target.x, out.y[i] = s.target.y, out.z[i] = s.target.z;
@@ -92,6 +93,13 @@ void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
     starts.setPatches(on.patches + firstPatch, on.covers ? on.covers + firstPatch : nullptr);
     TargetLanes out;
     for (const Lamp& lamp : work.lamps) {
+        std::array<uint32_t, kChunk> uneven;
+        bool even = true;
+        for (uint32_t i = 0; i < kChunk; ++i) {
+            uneven[i] = shader::lampUnevenness(lamp, lanes.middle.at(i), lanes.size[i]);
+            even = even && uneven[i] == shader::kLightEven;
+        }
+        ChunkStarts::Points fading = lanes.middle;
         const uint32_t samples = lamp.samples * on.together, first = lamp.firstTarget * on.together;
         for (uint32_t s = 0; s < samples; ++s) {
             if (lamp.samples == 1 && s > 0) { // it has the same sample in each sample pass
@@ -100,7 +108,9 @@ void sampleChunk(const HostLamps& work, uint32_t chunk, SampleLamp sample) {
             }
             const uint32_t number = on.samplePass * samples + s;
             starts.make(number, lanes.at);
-            sample(lanes, {lamp, number, work.reach}, out);
+            for (uint32_t i = 0; !even && i < kChunk; ++i)
+                fading.set(i, shader::fadingPlace(uneven[i], lanes.middle.at(i), lanes.at.at(i)));
+            sample(lanes, {lamp, fading, number, work.reach}, out);
             out.store(on.targetsOf(chunk, first + s), lanes, s / lamp.samples);
         }
     }

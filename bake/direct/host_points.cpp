@@ -16,10 +16,6 @@ void addBits(uint32_t& to, uint32_t bits) {
     if ((bits & ~all.load(std::memory_order_relaxed)) != 0) all.fetch_or(bits, std::memory_order_relaxed);
 }
 
-void setPoint(ChunkStarts::Points& points, size_t i, const glm::vec3& at) {
-    points.x[i] = at.x, points.y[i] = at.y, points.z[i] = at.z;
-}
-
 } // namespace
 
 HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, uint32_t together,
@@ -71,9 +67,9 @@ bool PatchLanes::load(const HostPoints& work, size_t first) {
     for (uint32_t i = 0; i < kChunk; ++i) {
         const Patch& p = work.patches[first + i];
         const shader::TexelSpread t = work.spreadOf(first + i);
-        setPoint(middle, i, t.middle);
+        middle.set(i, t.middle);
         for (uint32_t k = 0; k < shader::kSpreadPoints; ++k)
-            setPoint(spread[k], i, shader::spreadPoint(t, k));
+            spread[k].set(i, shader::spreadPoint(t, k));
         nx[i] = p.normal.x, ny[i] = p.normal.y, nz[i] = p.normal.z;
         sx[i] = p.shading.x, sy[i] = p.shading.y, sz[i] = p.shading.z;
         offset[i] = p.offset, size[i] = t.size;

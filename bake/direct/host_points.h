@@ -59,6 +59,11 @@ struct PatchLanes {
     std::array<uint32_t, shader::kChunk> taken;      // sample passes
     bool unalike = false;                            // some take not all sample passes
 
+    /// Returns where the samples of patch i start, but for its size.
+    shader::TexelSpread spreadAt(uint32_t i) const {
+        const glm::vec3 own = middle.at(i);
+        return {own, spread[0].at(i) - own, spread[2].at(i) - own, size[i]};
+    }
     /// Loads the chunk that begins with this patch. Returns whether any patch takes part.
     bool load(const HostPoints& work, size_t first);
 };

@@ -33,7 +33,7 @@ ProbeLampRay sampleProbeLamp(const shader::Lamp& lamp, const glm::vec3& point, u
     const glm::vec3 away = lamp.position - point;
     if (lamp.type != shader::kLampSun && glm::dot(away, away) > 0.0f)
         patch.normal = patch.shading = glm::normalize(away);
-    const shader::LampSample s = shader::lampSample(lamp, patch, point, 0.0f, u, reach);
+    const shader::LampSample s = shader::lampSample(lamp, patch, point, u, reach);
     ray.target = s.target;
     const glm::vec3 d = s.target - point;
     const float length = glm::length(d);

@@ -29,6 +29,12 @@ struct TraceScene {
     uint32_t sendingChart(uint32_t patch) const {
         return (patches[patch].flags & shader::kPatchSends) != 0 ? patchChart[patch] : kNoChart;
     }
+    std::vector<uint32_t> sendingCharts() const { // of all patches
+        std::vector<uint32_t> charts(patchChart.size());
+        for (uint32_t patch = 0; patch < charts.size(); ++patch)
+            charts[patch] = sendingChart(patch);
+        return charts;
+    }
     uint32_t chunkCount() const { return static_cast<uint32_t>(patches.size() / shader::kChunk); }
 };
 

@@ -15,6 +15,7 @@ public:
     struct alignas(64) Points {
         Lane x, y, z; // [m]
         glm::vec3 at(size_t i) const { return {x[i], y[i], z[i]}; }
+        void set(size_t i, const glm::vec3& p) { x[i] = p.x, y[i] = p.y, z[i] = p.z; }
     };
 
     /// Takes the chunk's 64 patches and their covers; without covers all samples start at the patches' own

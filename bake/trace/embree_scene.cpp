@@ -35,9 +35,8 @@ struct AlphaTables {
 };
 
 struct HitTables {
-    const uint32_t* map;
     const TraceScene& scene;
-    uint texelPatch(uint texel) { return map[texel]; }
+    uint texelPatch(uint texel) { return scene.texelToPatch[texel]; }
     uint chartOfPatch(uint patch) { return scene.sendingChart(patch); }
 #include "shaders/lib/rays/hit.glsl"
 };
@@ -294,7 +293,7 @@ uint32_t EmbreeScene::Impl::link(const RTCRayHit8& rays, uint32_t lane) const {
     if (glm::dot(direction, target.normal) > 0)
         return target.doubleSided ? shader::kLinkDark : shader::kLinkBack;
     if (target.representative == shader::kNoPatch) return shader::kLinkDark;
-    shader::HitTables tables{scene.texelToPatch.data(), scene};
+    shader::HitTables tables{scene};
     return tables.patchAtHit(target, hit.u[lane], hit.v[lane], scene.size);
 }
 
@@ -345,17 +344,20 @@ uint32_t EmbreeScene::Impl::linksAgain(const RetraceArrays& work, uint32_t chunk
             above |= uint64_t(shader::boxAbove(patches[i].position, patches[i].normal, box)) << i;
     }
     above &= sends & ~changed;
-    if ((above | changed) == 0 && !work.ends) return 0;
     const uint32_t first = piece * ChunkRays::kSamplesMax;
-    ChunkRays rays;
-    const PatchCover* covers = c.covers ? c.covers + size_t(c.firstChunk + chunk) * kChunk : nullptr;
-    rays.setPatches(patches, covers, static_cast<uint32_t>(c.rotation), scene.size);
-    rays.setSamples(c.firstSample + first, std::min(ChunkRays::kSamplesMax, c.sampleCount - first));
+    const uint32_t samples = std::min(ChunkRays::kSamplesMax, c.sampleCount - first);
     uint32_t* const links = c.links + (size_t(chunk) * c.sampleCount + first) * kChunk;
     const auto endsElsewhere = [&](uint32_t link) {
         return work.ends && link < shader::kLinkFirstSpecial &&
                shader::hasPatch(work.ends[link / kChunk], link % kChunk);
     };
+    if ((above | changed) == 0 &&
+        (!work.ends || std::none_of(links, links + size_t{samples} * kChunk, endsElsewhere)))
+        return 0;
+    ChunkRays rays;
+    const PatchCover* covers = c.covers ? c.covers + size_t(c.firstChunk + chunk) * kChunk : nullptr;
+    rays.setPatches(patches, covers, static_cast<uint32_t>(c.rotation), scene.size);
+    rays.setSamples(c.firstSample + first, samples);
     const auto again = [&](uint32_t number) {
         const uint32_t i = number % kChunk;
         if ((changed >> i & 1) != 0 || endsElsewhere(links[number])) return true;

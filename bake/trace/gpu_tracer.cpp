@@ -29,7 +29,7 @@ public:
     SceneBuffers(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
         : hitTriangles_(vk::makeBuffer(device, scene.hitTriangles, "hit triangles")),
           texelToPatch_(vk::makeBuffer(device, scene.texelToPatch, "texel to patch")),
-          patchChart_(vk::makeBuffer(device, sendingCharts(scene), "chart of patch")),
+          patchChart_(vk::makeBuffer(device, scene.sendingCharts(), "chart of patch")),
           alphaTriangles_(vk::makeBuffer(device, scene.alphaTriangles, "alpha triangles")),
           alphaMaterials_(vk::makeBuffer(device, scene.alphaMaterials, "alpha materials")),
           alphaTexels_(vk::makeBuffer(device, wholeWords(scene.alphaTexels), "alpha texels")),
@@ -141,12 +141,6 @@ public:
     }
 
 private:
-    static std::vector<uint32_t> sendingCharts(const TraceScene& scene) {
-        std::vector<uint32_t> charts(scene.patchChart.size());
-        for (uint32_t patch = 0; patch < charts.size(); ++patch)
-            charts[patch] = scene.sendingChart(patch);
-        return charts;
-    }
     static std::vector<uint8_t> wholeWords(std::vector<uint8_t> bytes) {
         bytes.resize((bytes.size() + 3) / 4 * 4);
         return bytes;

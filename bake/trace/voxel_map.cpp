@@ -69,7 +69,7 @@ public:
           commands_(device), positions_(vk::makeBuffer(device, scene.mesh.positions, "positions")),
           hitTriangles_(vk::makeBuffer(device, scene.hitTriangles, "hit triangles")),
           texelToPatch_(vk::makeBuffer(device, scene.texelToPatch, "texel to patch")),
-          patchChart_(vk::makeBuffer(device, scene.patchChart, "chart of patch")),
+          patchChart_(vk::makeBuffer(device, scene.sendingCharts(), "chart of patch")),
           alphaTriangles_(vk::makeBuffer(device, scene.alphaTriangles, "alpha triangles")),
           alphaMaterials_(vk::makeBuffer(device, scene.alphaMaterials, "alpha materials")),
           alphaTexels_(vk::makeBuffer(device, wholeWords(scene.alphaTexels), "alpha texels")) {

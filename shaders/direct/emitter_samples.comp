@@ -25,6 +25,9 @@ const uint kPickSalt = 0x5bd1e995u;
 
 uint unevennessOfAll(TexelSpread t) { return unevenness(t.size, nodeDistance(t.middle, emitterNode(0u))); }
 
+// Tells so a little farther than the light is uneven: others, who decide that, may round otherwise.
+bool mayBeUneven(TexelSpread t) { return nodeDistance(t.middle, emitterNode(0u)) < 1.01 * kNearSizes * t.size; }
+
 vec3 allLight(vec3 from, vec3 n) { return wholeEmitterLight(from, n, push.polygonCount, push.edgeCount); }
 
 // Where the light is uneven, each point knows that of where it starts.
@@ -72,7 +75,8 @@ void main() {
     }
     vec3 light = vec3(0.0);
     float whole = 0.0; // form factor, without shadows
-    bool near = false; // it is the mean over the points that samples start from
+    bool near = false; // the form factor is the mean over the points that samples start from
+    bool shines = false;
     EmitterPolygon e;
     if (emitter != kNoEmitter && (p.flags & kPatchSends) != 0u) {
         e = emitterPolygon(emitter);
@@ -80,16 +84,17 @@ void main() {
         if (onePoint) whole = 1.0; // the point's own tells
         else whole = uneven == kLightEven ? emitterFormFactor(spread.middle, p.shading, e) : spreadFormFactor(spread, p.shading, e);
         light = e.radiance * (whole / probability);
-        near = uneven == kLightUneven && light != vec3(0.0);
+        near = uneven == kLightUneven && (whole > 0.0 || mayShineOn(spread, p.shading, e));
+        shines = (whole > 0.0 || near) && e.radiance != vec3(0.0);
     }
+    near = near && shines;
     // A near light is seen as unevenly over a texel as in a penumbra.
     if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
     float factors = 0.0;
-    if (onePoint && unevennessOfAll(spread) == kLightUneven) {
+    if (onePoint && mayBeUneven(spread)) {
         vec3 ofAll = allLight(start.position, start.shading);
         VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane) = vec4(ofAll, 0.0);
     }
-    bool shines = light.r > 0.0 || light.g > 0.0 || light.b > 0.0;
     vec3 off = shines ? e.offset * emitterNormal(e) : vec3(0.0);
     for (uint s = 0u; s < push.pointCount; ++s) {
         vec4 point = vec4(0.0);

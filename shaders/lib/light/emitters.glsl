@@ -37,6 +37,16 @@ FUNCTION float polygonDistance(vec3 p, EmitterPolygon e) {
                min(segmentDistance(p, e.c2, e.c3), segmentDistance(p, e.c3, e.c0)));
 }
 
+// Tells whether the polygon may shine on some point of the texel that its spread leaves out: where light is uneven, that
+// of four points may be 0 and the mean not.
+FUNCTION bool mayShineOn(TexelSpread t, vec3 n, EmitterPolygon e) {
+    const float kEdge = 1.2247449f; // from the spread of a whole texel to its edge
+    vec3 front = emitterFront(e), from = t.middle - e.c0;
+    float reach = kEdge * (abs(dot(front, t.along)) + abs(dot(front, t.across)));
+    float highest = max(max(dot(n, e.c0 - t.middle), dot(n, e.c1 - t.middle)), max(dot(n, e.c2 - t.middle), dot(n, e.c3 - t.middle)));
+    return dot(front, from) + reach > 0.0f && highest > 0.0f;
+}
+
 // Returns the mean of the form factor over a texel, by the points of its spread.
 FUNCTION float spreadFormFactor(TexelSpread t, vec3 n, EmitterPolygon e) {
     float sum = 0.0f;

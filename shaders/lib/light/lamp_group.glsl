@@ -64,7 +64,8 @@ LampRay lampRayUnder(uvec2 skySize, Lamp l, Receiver r, uint s) {
         ray.target = p.position + push.reach * sky.direction;
         ray.light = sky.light;
     } else {
-        LampSample point = lampSample(l, p, r.spread.middle, r.spread.size, sobolPoint(index, seed), push.reach);
+        vec3 fading = fadingPlace(lampUnevenness(l, r.spread.middle, r.spread.size), r.spread.middle, p.position);
+        LampSample point = lampSample(l, p, fading, sobolPoint(index, seed), push.reach);
         ray.target = point.target;
         ray.light = vec3(point.factor);
     }

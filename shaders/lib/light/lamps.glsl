@@ -60,19 +60,31 @@ FUNCTION PolygonPart rectanglePart(Lamp l) {
     return q;
 }
 
-// Returns how the light differs over a texel of this middle and size [m]: kLight...
+// Returns the distance of a rectangle from the point that lies d behind its middle [m].
+FUNCTION float rectangleDistance(Lamp l, vec3 d) {
+    float u = clamp(-dot(d, l.edgeU) / max(dot(l.edgeU, l.edgeU), 1e-30f), -0.5f, 0.5f);
+    float v = clamp(-dot(d, l.edgeV) / max(dot(l.edgeV, l.edgeV), 1e-30f), -0.5f, 0.5f);
+    return length(d + u * l.edgeU + v * l.edgeV);
+}
+
+// Returns how the edge of a spot differs over a texel of this size [m], to whose middle d leads from it: by so much of
+// its height it rises from edge to edge of the texel.
+FUNCTION uint spotUnevenness(Lamp l, vec3 d, float size) {
+    float away = max(length(d), 1e-15f), wide = size / away, cosine = -dot(l.axis, d) / away;
+    float sine = sqrt(max(1.0f - cosine * cosine, 0.0f));
+    float rise = l.coneScale * wide * min(sine + 0.5f * wide, 1.0f);
+    if (abs(cosine * l.coneScale + l.coneOffset - 0.5f) > 0.5f + 0.75f * rise) return kLightEven; // it is elsewhere
+    return rise > 0.25f ? kLightUneven : (rise > 0.03f ? kLightCurved : kLightEven);
+}
+
+// Returns how the light differs over a texel of this middle and size [m]: kLight...; even where samples tell all.
 FUNCTION uint lampUnevenness(Lamp l, vec3 middle, float size) {
-    if (isLamp(l, kLampSun) || isLamp(l, kLampSky)) return kLightEven;
+    if (isLamp(l, kLampSun) || isLamp(l, kLampSky) || isLamp(l, kLampDisc)) return kLightEven;
     vec3 d = l.position - middle;
-    float away = length(d), reach = l.radius;
-    if (isLamp(l, kLampRectangle)) reach = 0.5f * (length(l.edgeU) + length(l.edgeV));
-    if (isLamp(l, kLampSpot)) {
-        // From edge to edge of the texel the spot's own edge rises by so much of its whole height.
-        float rise = l.coneScale * size / max(away, 1e-15f);
-        float cone = -dot(l.axis, d) / max(away, 1e-15f) * l.coneScale + l.coneOffset;
-        if (rise > 0.5f && abs(cone - 0.5f) < 0.5f + rise) return kLightUneven;
-    }
-    return unevenness(size, max(away - reach, 0.0f));
+    if (isLamp(l, kLampRectangle)) return unevenness(size, rectangleDistance(l, d));
+    uint uneven = unevenness(size, max(length(d) - l.radius, 0.0f));
+    if (isLamp(l, kLampSpot)) uneven = max(uneven, spotUnevenness(l, d, size));
+    return uneven;
 }
 
 // Returns the factor of the whole light at a point p [m] of unit normal n, unshadowed; negative where only samples tell. A
@@ -114,10 +126,13 @@ struct LampSample {
     float factor; // its mean over u is the whole light's
 };
 
-// Samples a light other than the sky from p, which lies in a texel of this middle and size [m], for uniform u in [0, 1)^2.
-// reach is far outside the scene [m]. Where the whole light is known in the middle alone it fades as it does there: so a
-// share of it is one of what is seen alone.
-FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 middle, float size, vec2 u, float reach) {
+// Returns where the light fades as it does for a sample from `start`: in the middle of the texel where that alone
+// tells the whole light, so that a share of it is one of what is seen alone.
+FUNCTION vec3 fadingPlace(uint uneven, vec3 middle, vec3 start) { return uneven == kLightEven ? middle : start; }
+
+// Samples a light other than the sky from p for uniform u in [0, 1)^2; it fades as at `fading`. reach is far outside the
+// scene [m].
+FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 fading, vec2 u, float reach) {
     LampSample s;
     s.target = l.position;
     s.factor = 0.0f;
@@ -151,8 +166,7 @@ FUNCTION LampSample lampSample(Lamp l, Patch p, vec3 middle, float size, vec2 u,
         float along = dot(w, d);
         float within = r2 - (d2 - along * along);
         s.target = p.position + max(0.0f, along - sqrt(max(within, 0.0f))) * w;
-        vec3 from = lampUnevenness(l, middle, size) == kLightEven ? middle : p.position;
-        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - from);
+        s.factor = kInvPi * max(dot(p.shading, w), 0.0f) * 2.0f / (max(max(d2, r2), kNearestLamp2) * (1.0f + sqrt(1.0f - sine2))) * lampFade(l, l.position - fading);
     }
     s.target += kLampGap * (p.position - s.target);
     return s;

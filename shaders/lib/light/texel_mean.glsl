@@ -18,12 +18,12 @@ struct TexelSpread {
     float size;         // of the patch [m], 0 where all samples start at its own point
 };
 
-// Returns the spread of the cells that are set, each as its middle, in units of the texel's edges: mean u, v, and
-// variances of u and v and their covariance.
 struct CellSpread {
-    vec2 mean;
-    vec3 spread;
+    vec2 mean;   // u, v, in units of the texel's edges
+    vec3 spread; // variances of u and v, and their covariance
 };
+
+// Returns the spread of the cells that are set, each standing for its middle.
 FUNCTION CellSpread cellSpread(uint cells) {
     vec2 sum = vec2(0.0f);
     vec3 squares = vec3(0.0f);

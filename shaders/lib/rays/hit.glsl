@@ -2,9 +2,9 @@
 //   uint texelPatch(uint texel)   the texel -> patch map, kNoPatch where empty
 //   uint chartOfPatch(uint patch)  kNoChart for a patch that sends nothing
 
-// Returns the nearest patch of the triangle's chart that sends: the hit texel's own, else the nearest within two
-// texels, else the triangle's representative. It is never nothing, which would lose energy at every chart edge; and
-// where the middle of a texel lies inside something, what is seen of the texel sends what the patch beside it does.
+// Returns the nearest patch of the triangle's chart that sends: the hit texel's own, else the nearest within
+// kHitReach, else the triangle's representative, which may send nothing. Without that energy would be lost at every
+// chart edge; and where the middle of a texel lies inside something, what is seen of the texel would be black.
 FUNCTION uint patchAtHit(HitTriangle t, float b1, float b2, uint size) {
     vec2 uv = t.uv0 * (1.0f - b1 - b2) + t.uv1 * b1 + t.uv2 * b2;
     float x = uv.x * float(size), y = uv.y * float(size);

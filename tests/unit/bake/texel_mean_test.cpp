@@ -130,7 +130,46 @@ TEST(TexelSpread, MeetsTheEdgeOfASpot) {
     EXPECT_EQ(shader::lampUnevenness(spot, {0, 0, 0}, 0.5f), shader::kLightEven);
     EXPECT_EQ(shader::lampUnevenness(spot, {3 * edge, 0, 0}, 0.5f), shader::kLightEven);
     setEdge(0.1f, 1.0f);
-    EXPECT_EQ(shader::lampUnevenness(spot, {edge, 0, 0}, 0.5f), shader::kLightEven);
+    EXPECT_EQ(shader::lampUnevenness(spot, {edge, 0, 0}, 0.5f), shader::kLightCurved);
+    EXPECT_EQ(shader::lampUnevenness(spot, {edge, 0, 0}, 0.2f), shader::kLightEven);
+    // Along the axis of a narrow beam the cosine hardly changes.
+    setEdge(0.0999f, 0.1f);
+    EXPECT_EQ(shader::lampUnevenness(spot, {0, 0, 0}, 0.07f), shader::kLightEven);
+    EXPECT_EQ(shader::lampUnevenness(spot, {1.0f, 0, 0}, 0.07f), shader::kLightUneven);
+}
+
+// A long panel is near where it is, not all around its middle.
+TEST(TexelSpread, IsNearARectangleAlongIt) {
+    shader::Lamp panel{};
+    panel.type = shader::kLampRectangle;
+    panel.position = {0, 0, 1};
+    panel.edgeU = {2, 0, 0};
+    panel.edgeV = {0, 0.1f, 0};
+    EXPECT_FLOAT_EQ(shader::rectangleDistance(panel, panel.position - glm::vec3(0.9f, 0, 0)), 1.0f);
+    EXPECT_FLOAT_EQ(shader::rectangleDistance(panel, panel.position - glm::vec3(4, 0, 5)), 5.0f);
+    EXPECT_FLOAT_EQ(shader::rectangleDistance(panel, panel.position - glm::vec3(0, 0.55f, 1)), 0.5f);
+    EXPECT_EQ(shader::lampUnevenness(panel, {0.9f, 0, 0.9f}, 0.1f), shader::kLightUneven);
+    EXPECT_EQ(shader::lampUnevenness(panel, {0, 0.5f, 1}, 0.1f), shader::kLightCurved);
+}
+
+// A polygon whose plane cuts a texel shines on the part before it, where four points may all lie behind.
+TEST(TexelSpread, IsShoneOnByAPolygonBeforeAPartOfIt) {
+    const PatchCover c{{1, 0, 0}, kWhole, {0, 1, 0}, kMiddle | kMiddle << 16};
+    Patch p = patchAt({0, 0, 0}, 5);
+    p.area = 1.0f;
+    const TexelSpread t = shader::texelSpread(p, c);
+    const glm::vec3 up(0, 0, 1), along(-1, 1, 0);
+    const auto wall = [&](float x) { // stands at this place of both axes and shines away from the origin
+        shader::EmitterPolygon e{};
+        const glm::vec3 foot(x, x, 0.1f);
+        e.c0 = foot - along, e.c1 = foot + along, e.c2 = e.c1 + up, e.c3 = e.c0 + up;
+        return e;
+    };
+    EXPECT_GT(shader::emitterFormFactor({0.49f, 0.49f, 0}, up, wall(0.45f)), 0.0f);
+    EXPECT_EQ(shader::spreadFormFactor(t, up, wall(0.45f)), 0.0f);
+    EXPECT_TRUE(shader::mayShineOn(t, up, wall(0.45f)));
+    EXPECT_FALSE(shader::mayShineOn(t, up, wall(0.55f)));
+    EXPECT_FALSE(shader::mayShineOn(t, -up, wall(0.45f)));
 }
 
 } // namespace
