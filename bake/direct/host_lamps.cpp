@@ -123,7 +123,7 @@ struct Gathered {
     bool shareless = false; // no share of the whole light can be known
 };
 
-// What is known of a patch.
+// Holds what is known of a patch.
 struct Receiver {
     uint32_t lane;    // in its chunk
     uint32_t taken;   // sample passes
@@ -155,7 +155,7 @@ Gathered gatherLamp(const HostPoints& on, const Lamp& lamp, uint32_t chunk, cons
         return result;
     }
     const float whole = shader::lampWhole(lamp, receiver.spread, receiver.normal);
-    // Of a light that is uneven a few samples may have missed all.
+    // A few samples may have missed all of a light that is uneven.
     const bool uneven =
         shader::lampUnevenness(lamp, receiver.spread.middle, receiver.spread.size) == shader::kLightUneven;
     result.shareless = whole < 0.0f && (all > 0.0f || uneven);

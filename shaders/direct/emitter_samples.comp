@@ -30,7 +30,7 @@ bool mayBeUneven(TexelSpread t) { return nodeDistance(t.middle, emitterNode(0u))
 
 vec3 allLight(vec3 from, vec3 n) { return wholeEmitterLight(from, n, push.polygonCount, push.edgeCount); }
 
-// Where the light is uneven, each point knows that of where it starts.
+// Finds the mean of the whole light; where it is uneven, each point knows that of where it starts.
 void findWhole(Patch p, uint index) {
     bool sends = (p.flags & kPatchSends) != 0u;
     TexelSpread t = texelSpread(p, coverOf(index));

@@ -64,8 +64,7 @@ void main() {
             visible += ray.light.r;
         }
         float whole = lampWhole(l, r.spread, r.p.shading);
-        // Where no share is known, what is reached is asked again, and so is a light of which a few samples may have
-        // missed all.
+        // A light is asked again where no share is known of what is reached, and where a few samples may have missed all.
         bool uneven = lampUnevenness(l, r.spread.middle, r.spread.size) == kLightUneven;
         if (l.samples > 1u && whole < 0.0 && (all > 0.0 || uneven)) {
             if (!takesNotes()) reachedLamps = hiddenLamps = ~0u;

@@ -11,7 +11,7 @@ CONST uint kLightEven = 0u;   // the middle's is the mean
 CONST uint kLightCurved = 1u; // four points have the mean
 CONST uint kLightUneven = 2u; // the samples have it
 
-// Where a patch's samples start, by mean and spread.
+// This tells where a patch's samples start, by mean and spread.
 struct TexelSpread {
     vec3 middle;        // [m]
     vec3 along, across; // [m], middle +- along and middle +- across have the mean and the covariance of all

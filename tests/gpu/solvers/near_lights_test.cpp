@@ -132,7 +132,7 @@ TEST_P(NearLights, APolygonLightsTexelsByItsMean) {
         GetParam(), [](glm::dvec2 p) { return panelLighting(p, 7); }, 0.02);
 }
 
-// Of these polygons some are picked in every sample pass.
+// Every sample pass picks some of these polygons.
 TEST_P(NearLights, ManyPolygonsLightTexelsByTheirMean) {
     if (GetParam() == std::string("directional")) GTEST_SKIP() << "it finds mesh lights by chance";
     NearLight near;
