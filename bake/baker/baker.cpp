@@ -4,10 +4,11 @@
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
-#include "bake/baker/cover_search.h"
-#include "bake/baker/inside_search.h"
+#include "bake/validity/cover_search.h"
+#include "bake/validity/inside_search.h"
 #include "bake/baker/memory_plan.h"
 #include "bake/baker/object_mover.h"
+#include "bake/validity/step_aside.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/output/layer_sum.h"
 #include "bake/surface/cit_pass.h"
@@ -212,6 +213,7 @@ std::optional<FormerBake> Baker::release() {
     solver_ = {};
     mover_.reset();
     tracer_.reset(); // it borrows the patches
+    former.aside = relume::stepBack(patches_);
     former.patches = std::move(patches_);
     return former;
 }
@@ -251,6 +253,11 @@ void Baker::findValidity(Carry* carry) {
     if (!settings_.solver.transport.rtrad) findInvalid(carry);
     makeCovers();
     clock.end("validity");
+    if (inside_ > 0)
+        spdlog::info(
+            "{} of {} patches lie inside something: {} of them step aside in their texels, the others "
+            "send nothing and are filled from their neighbours",
+            inside_, patches_.count, patches_.aside.size());
 }
 
 void Baker::makeVoxels() {
@@ -264,21 +271,30 @@ void Baker::makeVoxels() {
     clock.end("voxels");
 }
 
-// Finds where samples may start that start all over their texels, once.
+// Finds where samples may start that start all over their texels, once, and lets patches step aside. Other
+// methods know no parts of texels: for them patches step back, and covers would be found again.
 void Baker::makeCovers() {
-    if (!startsAllOver(settings_.solver) || patches_.covers.empty() || light_->covers) return;
+    const bool wanted = startsAllOver(settings_.solver) && !patches_.covers.empty();
+    if (wanted == static_cast<bool>(light_->covers)) return;
+    vk::Buffer covers = wanted ? makeDeviceCovers() : std::move(light_->covers);
+    const CoverSearch search{.device = device_,
+                             .tracer = *tracer_,
+                             .patches = patches_,
+                             .devicePatches = &light_->patches,
+                             .deviceCovers = &covers,
+                             .onBatch = [this](double) { onPhase("validity", 1.0); }};
+    if (!wanted) {
+        std::vector<uint32_t> back;
+        for (const OwnPoint& point : stepBack(search))
+            back.push_back(point.patch);
+        return tracer_->updateSenders(back);
+    }
     const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
-    const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());
-    vk::Buffer covers = makeDeviceCovers();
-    searchCovers({.device = device_,
-                  .tracer = *tracer_,
-                  .patches = patches_,
-                  .devicePatches = &light_->patches,
-                  .deviceCovers = &covers,
-                  .onBatch = [this](double) { onPhase("validity", 1.0); }},
-                 patchesIn(own, coveredPatches(patches_, device_.workers())));
+    searchCovers(search,
+                 patchesIn(dealt.runsOf(ranks().rank()), coveredPatches(patches_, device_.workers())));
     shareChunks(ranks(), dealt, patches_.covers);
     vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
+    tracer_->updateSenders(stepAside(search, ranks(), dealt));
     light_->covers = std::move(covers);
 }
 
@@ -293,17 +309,13 @@ void Baker::findInvalid(Carry* carry) {
         if (startsAllOver(settings_.solver) && !patches_.covers.empty()) light_->covers = makeDeviceCovers();
         onPhase("validity");
         const FormerBake& former = carry->former;
-        carry->move = mover_->takeOver(
-            {.patches = former.patches, .instances = former.scene.instances.size(), .inside = former.inside},
-            carry->patches, *tracer_);
-        invalid_ = mover_->invalidPatches();
+        carry->move =
+            mover_->takeOver({former.patches, former.scene.instances.size(), former.inside, former.aside},
+                             carry->patches, *tracer_);
+        inside_ = mover_->insidePatches();
     } else {
         searchInside();
     }
-    if (invalid_ > 0)
-        spdlog::info(
-            "{} of {} patches lie inside something: they send nothing and are filled from their neighbours",
-            invalid_, patches_.count);
 }
 
 void Baker::searchInside() {
@@ -327,9 +339,9 @@ void Baker::searchInside() {
         for (uint32_t patch = 0; patch < marks.size(); ++patch)
             if (marks[patch] != 0) inside.push_back(patch);
     }
-    invalid_ = static_cast<uint32_t>(inside.size());
-    if (mover_) mover_->noteInside(std::move(met), invalid_);
-    if (invalid_ == 0) return;
+    inside_ = static_cast<uint32_t>(inside.size());
+    if (mover_) mover_->noteInside(std::move(met), inside_);
+    if (inside_ == 0) return;
     for (const uint32_t patch : inside)
         patches_.scene.patches[patch].flags &= ~shader::kPatchSends;
     vk::upload(device_, light_->patches, patches_.scene.patches.data(),
@@ -424,7 +436,7 @@ std::optional<ObjectMove> Baker::moveObjects(const LightmapAtlas* atlas) {
     const Clock::time_point start = Clock::now();
     std::optional<ObjectMove> move = mover_->follow(*atlas, *tracer_);
     if (move) {
-        invalid_ = mover_->invalidPatches();
+        inside_ = mover_->insidePatches();
         if (mover_->repainted()) colours_->updateAll(device_, scene_.materials, patches_, *light_);
         if (move->texels) ++moves_.texels;
     }

@@ -91,7 +91,8 @@ public:
     const PatchSet& patches() const { return patches_; }
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }
-    uint32_t invalidPatches() const { return invalid_; }
+    /// Returns how many patches lie inside something and have not stepped aside.
+    uint32_t invalidPatches() const { return inside_ - static_cast<uint32_t>(patches_.aside.size()); }
     /// Returns the lightmap of the last finished pass. Where sumsLayers(), it is the sum of weight times
     /// layer (LayerSum), seams filled layer by layer: the solver's own light but for the last bits.
     FloatImage lightmap(LightmapDesc desc) const;
@@ -149,7 +150,7 @@ private:
     std::string tracerChoice_;
     std::vector<PhaseTime> phases_;
     bool whole_ = true;
-    uint32_t invalid_ = 0;
+    uint32_t inside_ = 0; // patches whose texel's own point lies inside something
     MoveCounters moves_;
 };
 

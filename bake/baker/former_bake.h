@@ -4,7 +4,7 @@
 
 #include "assets/atlas/world_mesh.h"
 #include "assets/model/scene.h"
-#include "bake/baker/met_bits.h"
+#include "bake/validity/met_bits.h"
 #include "bake/layers/layer_carry.h"
 #include "bake/surface/patch_set.h"
 
@@ -16,6 +16,7 @@ struct FormerBake {
     Scene scene; // as it was baked; Baker::release() leaves that to its caller, whose scene it is
     PatchSet patches;
     std::vector<MetBits> inside; // per patch, as ObjectMover has them
+    std::vector<OwnPoint> aside; // where patches had stepped aside to; they have stepped back
     FormerLayers layers;
 };
 

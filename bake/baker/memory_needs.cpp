@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bake/baker/cover_search.h"
-#include "bake/baker/inside_search.h"
+#include "bake/validity/cover_search.h"
+#include "bake/validity/inside_search.h"
 #include "bake/baker/make_solver.h"
 #include "bake/baker/object_mover.h"
 #include "bake/pairs/pair_memory.h"

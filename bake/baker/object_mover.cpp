@@ -1,10 +1,12 @@
 #include "bake/baker/object_mover.h"
 
 #include "assets/base/error.h"
-#include "bake/baker/cover_search.h"
-#include "bake/baker/inside_search.h"
 #include "bake/baker/link_ends.h"
+#include "bake/baker/move_boxes.h"
 #include "bake/surface/patch_cover.h"
+#include "bake/validity/cover_search.h"
+#include "bake/validity/inside_search.h"
+#include "bake/validity/step_aside.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -18,8 +20,6 @@ namespace {
 using shader::kChunk;
 using shader::kNoPatch;
 
-// So many boxes tell where objects were, or are: each is a test per ray. An object of many parts is one.
-constexpr size_t kMostMoveBoxes = 4;
 // This marks a link that was not traced again, where none are listed.
 constexpr uint32_t kKept = 0xfffffff0u;
 static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
@@ -35,20 +35,6 @@ bool liesInside(const shader::Patch& patch) {
 void sortUnique(std::vector<uint32_t>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-void addBox(const WorldMesh& mesh, std::span<const uint32_t> triangles,
-            std::vector<shader::TraceBox>& boxes) {
-    if (const std::optional<shader::TraceBox> box = boxAround(mesh, triangles)) boxes.push_back(*box);
-}
-
-// Returns one box around all where they are many.
-std::vector<shader::TraceBox> fewBoxes(std::vector<shader::TraceBox> boxes) {
-    if (boxes.size() <= kMostMoveBoxes) return boxes;
-    shader::TraceBox around = boxes.front();
-    for (const shader::TraceBox& box : boxes)
-        around = {glm::min(around.lo, box.lo), glm::max(around.hi, box.hi)};
-    return {around};
 }
 
 std::vector<uint32_t> merged(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b) {
@@ -106,9 +92,9 @@ ObjectMover::ObjectMover(const On& on, bool conservative)
 
 ObjectMover::~ObjectMover() = default;
 
-void ObjectMover::noteInside(std::vector<MetBits> met, uint32_t invalid) {
+void ObjectMover::noteInside(std::vector<MetBits> met, uint32_t patches) {
     inside_ = std::move(met);
-    invalid_ = invalid;
+    insidePatches_ = patches;
 }
 
 // Returns the objects that have moved, or nothing where some of them were hidden from the beginning.
@@ -243,7 +229,7 @@ std::vector<uint32_t> ObjectMover::putPatches(const Part& part, ObjectMove& move
     PatchSet& all = on_.patches;
     std::vector<uint32_t> texels;
     const auto put = [&](uint32_t slot, const shader::Patch& patch, uint32_t owner) {
-        invalid_ -= liesInside(all.scene.patches[slot]);
+        insidePatches_ -= liesInside(all.scene.patches[slot]);
         all.scene.patches[slot] = patch;
         move.change(slot);
         const uint32_t texel = texels_[slot] & ~kHome;
@@ -362,7 +348,7 @@ std::vector<uint32_t> ObjectMover::findInside(Tracer& tracer, const std::vector<
         const bool before = liesInside(patch), now = insideBy(inside_[i]) == Inside::Yes;
         if (before == now) continue;
         patch.flags ^= shader::kPatchSends;
-        now ? ++invalid_ : --invalid_;
+        now ? ++insidePatches_ : --insidePatches_;
         move.texels = true;
         move.change(i);
         others.push_back(i);
@@ -370,28 +356,33 @@ std::vector<uint32_t> ObjectMover::findInside(Tracer& tracer, const std::vector<
     return others;
 }
 
+CoverSearch ObjectMover::coverSearch(Tracer& tracer) const {
+    return {.device = on_.device,
+            .tracer = tracer,
+            .patches = on_.patches,
+            .devicePatches = &on_.light.patches,
+            .deviceCovers = &on_.light.covers};
+}
+
+// Tells whether what has moved stands in the patch's texel, or stood there.
+bool ObjectMover::isNear(uint32_t patch, const ObjectMove& move) const {
+    const shader::Patch& p = on_.patches.scene.patches[patch];
+    const shader::PatchCover& cover = on_.patches.covers[patch];
+    const glm::vec3 reach = glm::abs(cover.du) + glm::abs(cover.dv) + 2.0f * p.offset;
+    return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
+        return glm::all(glm::lessThanEqual(p.position - reach, box.hi)) &&
+               glm::all(glm::greaterThanEqual(p.position + reach, box.lo));
+    });
+}
+
 // Finds again where samples may start in texels that what has moved stands in, or stood in.
 void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
     PatchSet& patches = on_.patches;
     if (!on_.light.covers) return;
-    const auto near = [&](uint32_t i) {
-        const shader::Patch& p = patches.scene.patches[i];
-        const shader::PatchCover& cover = patches.covers[i];
-        const glm::vec3 reach = glm::abs(cover.du) + glm::abs(cover.dv) + 2.0f * p.offset;
-        return std::any_of(move.boxes.begin(), move.boxes.end(), [&](const shader::TraceBox& box) {
-            return glm::all(glm::lessThanEqual(p.position - reach, box.hi)) &&
-                   glm::all(glm::greaterThanEqual(p.position + reach, box.lo));
-        });
-    };
     std::vector<uint32_t> which;
     for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
-        if (patches.coverCells[i] != 0 && (move.has(i) || near(i))) which.push_back(i);
-    const std::vector<uint32_t> others = searchCovers({.device = on_.device,
-                                                       .tracer = tracer,
-                                                       .patches = patches,
-                                                       .devicePatches = &on_.light.patches,
-                                                       .deviceCovers = &on_.light.covers},
-                                                      which);
+        if (patches.coverCells[i] != 0 && (move.has(i) || isNear(i, move))) which.push_back(i);
+    const std::vector<uint32_t> others = searchCovers(coverSearch(tracer), which);
     for (const uint32_t i : others)
         move.change(i);
     vk::uploadElements(on_.device, on_.light.covers, patches.covers, merged(slots, others));
@@ -407,7 +398,7 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     for (uint32_t i = 0; i < patches.count; ++i) {
         if (carry.former[i] != kNoPatch) {
             inside_[i] = former.inside[carry.former[i]];
-            invalid_ += liesInside(patches.scene.patches[i]);
+            insidePatches_ += liesInside(patches.scene.patches[i]);
             continue;
         }
         move.change(i);
@@ -422,17 +413,38 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
         addBox(former.patches.scene.mesh, gone.of(instance), boxes);
     boxes = fewBoxes(std::move(boxes));
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
-    if (move.boxes.empty()) return move;
-    return searched(tracer, slots, move);
+    const std::vector<OwnPoint> aside = carryAside(former.aside, carry.now);
+    if (!move.boxes.empty()) return searched(tracer, slots, aside, move);
+    tracer.updateSenders(stepAside(tracer, aside, move));
+    return move;
 }
 
-// Looks anew which patches lie inside something and where samples start, near a move of these patches.
-ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
+// Lets patches step aside anew: what they meet there may come from far away. Returns those that did before or
+// do now, but not both.
+std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<OwnPoint>& before,
+                                             ObjectMove& move) {
+    if (!on_.light.covers) return {};
+    std::vector<OwnPoint> known;
+    for (const OwnPoint& point : before)
+        if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
+    relume::stepAside(coverSearch(tracer), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known);
+    OtherPoints others = otherPoints(before, pointsAside(on_.patches));
+    for (const uint32_t patch : others.points)
+        move.change(patch);
+    move.texels = move.texels || !others.senders.empty();
+    return std::move(others.senders);
+}
+
+// Looks anew which patches lie inside something and where samples start, near a move of these patches, all of
+// which have stepped back from where they were before.
+ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& slots,
+                                 const std::vector<OwnPoint>& before, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
-    tracer.updateSenders(merged(slots, others));
-    addLinkEnds(on_.patches.scene, others, move);
     findCovers(tracer, slots, move);
+    const std::vector<uint32_t> senders = merged(others, stepAside(tracer, before, move));
+    tracer.updateSenders(merged(slots, senders));
+    addLinkEnds(on_.patches.scene, senders, move);
     ObjectMove result;
     result.add(move); // many boxes become one
     return result;
@@ -463,6 +475,7 @@ std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer
     move.boxes = boxesOf(*instances);
     for (const std::vector<uint32_t>* list : {&instances->shown, &instances->gone})
         move.instances.insert(move.instances.end(), list->begin(), list->end());
+    const std::vector<OwnPoint> aside = stepBack(coverSearch(tracer));
     putTriangles(*part);
     const std::vector<uint32_t> texels = putPatches(*part, move);
     move.texels = !texels.empty();
@@ -473,7 +486,7 @@ std::optional<ObjectMove> ObjectMover::follow(const LightmapAtlas& atlas, Tracer
     const std::vector<uint32_t> slots = merged(part->slots, part->goneSlots);
     upload(slots, move);
     tracer.update({.triangles = merged(part->triangles, part->goneTriangles), .texels = texels});
-    return searched(tracer, slots, move);
+    return searched(tracer, slots, aside, move);
 }
 
 } // namespace relume

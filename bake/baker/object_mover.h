@@ -7,7 +7,7 @@
 
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/model/scene_edits.h"
-#include "bake/baker/met_bits.h"
+#include "bake/validity/met_bits.h"
 #include "bake/layers/object_move.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/light_buffers.h"
@@ -16,6 +16,8 @@
 #include "bake/trace/tracer.h"
 
 namespace relume {
+
+struct CoverSearch;
 
 /// Keeps patches, triangles and tracer with objects that are moved, hidden and shown again, without making
 /// all of them anew: patches keep their indices. What it leaves is what a fresh bake would have made, but
@@ -34,12 +36,13 @@ public:
 
     /// Takes over what directions of patches meet, as findInside tells it, and how many patches lie inside
     /// something.
-    void noteInside(std::vector<MetBits> met, uint32_t invalid);
+    void noteInside(std::vector<MetBits> met, uint32_t patches);
     /// Holds what a mover leaves for one of the same level, whose objects were edited.
     struct FormerSurfaces {
         const PatchSet& patches;
         size_t instances = 0;               // of its scene
         const std::vector<MetBits>& inside; // as giveInside() has it
+        const std::vector<OwnPoint>& aside; // where patches had stepped aside to
     };
     std::vector<MetBits> giveInside() { return std::move(inside_); }
     /// Goes on from a former mover in place of noteInside(): patches that were there have what it knew of
@@ -55,8 +58,8 @@ public:
     bool repaint(const LightmapAtlas& atlas, std::span<const uint32_t> instances);
     /// Tells whether albedo or emission patterns of patches have changed in the last move.
     bool repainted() const { return repainted_; }
-    /// Returns how many patches lie inside something.
-    uint32_t invalidPatches() const { return invalid_; }
+    /// Returns how many patches lie inside something, those that step aside, too.
+    uint32_t insidePatches() const { return insidePatches_; }
 
 private:
     struct Moved {
@@ -75,14 +78,18 @@ private:
     std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
     void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
     std::vector<uint32_t> findInside(Tracer& tracer, const std::vector<uint32_t>& patches, ObjectMove& move);
+    CoverSearch coverSearch(Tracer& tracer) const;
+    bool isNear(uint32_t patch, const ObjectMove& move) const;
     void findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
-    ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
+    std::vector<uint32_t> stepAside(Tracer& tracer, const std::vector<OwnPoint>& before, ObjectMove& move);
+    ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots,
+                        const std::vector<OwnPoint>& before, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;
 
     On on_;
     bool conservative_;
     bool repainted_ = false;
-    uint32_t invalid_ = 0;
+    uint32_t insidePatches_ = 0;
     std::vector<Placement> placed_;    // where the patches' instances stand
     std::vector<uint8_t> known_;       // per instance: it was there from the beginning
     ObjectMembers triangles_, slots_;  // slots: places among patches

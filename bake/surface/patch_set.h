@@ -13,6 +13,14 @@ constexpr uint32_t kMaxSheetSize = 23168;
 static_assert(uint64_t{kMaxSheetSize} * kMaxSheetSize <= uint64_t{1} << (32 - shader::kTexelShift));
 static_assert(kMaxSheetSize % kPageStep == 0 && kPageStep % kTileTexels == 0);
 
+/// A patch's own point, from which it looks.
+struct OwnPoint {
+    uint32_t patch;
+    glm::vec3 position;    // [m]
+    uint32_t place, cells; // PatchCover's: where in the texel it lies, what it sees of that
+    bool operator==(const OwnPoint&) const = default;
+};
+
 /// All patches of a scene in 8x8-texel tile order: geometry and hit tables in `scene`, the rest beside it,
 /// one entry per patch, padding included. Patches of objects that were hidden later look like padding.
 /// Besides one patch per covered texel there is one for each chart that covers no texel centre (flag
@@ -22,9 +30,12 @@ struct PatchSet {
     TraceScene scene;
     std::vector<shader::PatchEdges> edges;
     // They tell where samples may start; there are none with rtrad. Cells in front of which something stands
-    // are taken away later (bake/baker/cover_search.h); coverCells has them as the surface has them.
+    // are taken away later (bake/validity/cover_search.h); coverCells has them as the surface has them.
     std::vector<shader::PatchCover> covers;
     std::vector<uint32_t> coverCells;
+    // Where patches had their own points before they stepped aside, as they lay inside something
+    // (bake/validity/step_aside.h); ascending by patch.
+    std::vector<OwnPoint> aside;
     std::vector<float> reach; // per chunk: how far samples may start from their patch's own point [m]
     std::vector<shader::ChunkBounds> bounds;               // per chunk
     std::vector<glm::vec4> albedo;                         // a unused

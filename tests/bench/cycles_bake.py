@@ -6,9 +6,10 @@ Writes OUT_PREFIX-SAMPLES.exr (lighting = irradiance / pi, as relume's; row 0 is
 output: "cycles SAMPLES CPU_SECONDS WALL_SECONDS". CPU seconds are this process's user and system time during the bake
 itself, its scene synchronisation and BVH included, Blender's start and the import of the scene excluded.
 
-OUT_PREFIX-mask.exr is 1 in texels that the last bake lit and that have no dark one beside them: at the edge of a chart or
-of something that stands on it Cycles takes the mean over the texel, relume the light at the nearest place it can see, and
-no number of samples makes these equal.
+OUT_PREFIX-mask.exr is 1 in texels that are covered as a whole and in which nothing stands. Of others Cycles takes the mean
+over the texel, black parts inside something and beyond the chart included, relume that over the part that can be seen, and no
+number of samples makes these equal. A texel counts where all of PARTS x PARTS texels in its place see the fronts of
+surfaces, or the sky, in three of five directions or more: relume takes what sees fewer to lie inside something.
 """
 
 import json
@@ -20,6 +21,9 @@ import time
 import bpy
 import numpy
 from mathutils import Matrix
+
+PARTS = 4  # along a texel's edge, to tell what is covered as a whole
+FRONTS = 0.6  # of the directions of each
 
 if not hasattr(numpy, "bool"):
     numpy.bool = bool  # Debian 12's Blender imports glTF by a name that its numpy no longer has
@@ -176,15 +180,49 @@ def save(image, path):
     image.save_render(path, scene=scene)
 
 
-def save_mask(image, path):
-    width, height = image.size
-    lit = numpy.array(image.pixels[:]).reshape(height, width, 4)[:, :, :3].sum(axis=2) > 0
-    for axis in (0, 1):  # a square of 3 x 3; what is beyond the image counts as dark
-        padded = numpy.pad(lit, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])
-        count = lit.shape[axis]
-        lit = numpy.logical_and.reduce([padded.take(range(k, k + count), axis) for k in range(3)])
-    mask = bpy.data.images.new("mask", width, height, float_buffer=True, is_data=True)
-    mask.pixels = numpy.repeat(lit.astype(float).ravel(), 4).tolist()
+def shine_all():
+    """Makes every front and the sky of radiance 1, and paints all with the returned image node's image."""
+    material = bpy.data.materials.new("fronts shine")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.remove(next(n for n in nodes if n.type == "BSDF_PRINCIPLED"))
+    output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
+    geometry, front = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeMath")
+    front.operation = "SUBTRACT"
+    front.inputs[0].default_value = 1.0
+    links.new(geometry.outputs["Backfacing"], front.inputs[1])
+    light, both = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeAddShader")
+    links.new(front.outputs["Value"], light.inputs["Strength"])
+    black = nodes.new("ShaderNodeBsdfDiffuse")
+    links.new(black.outputs["BSDF"], both.inputs[0])
+    links.new(light.outputs["Emission"], both.inputs[1])
+    links.new(both.outputs["Shader"], output.inputs["Surface"])
+    for slot in bpy.context.object.material_slots:
+        slot.material = material
+    for lamp in [o for o in bpy.data.objects if o.type == "LIGHT"]:
+        bpy.data.objects.remove(lamp)
+    world = bpy.data.worlds.new("bright")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
+    world.node_tree.nodes["Background"].inputs["Strength"].default_value = 1.0
+    bpy.context.scene.world = world
+    node = nodes.new("ShaderNodeTexImage")
+    nodes.active = node
+    return node
+
+
+def save_mask(size, path):
+    """Bakes which parts of texels see fronts; what stands in the scene is lost."""
+    edge = PARTS * size
+    image = bpy.data.images.new("parts", edge, edge, float_buffer=True, is_data=True)
+    shine_all().image = image
+    cycles = bpy.context.scene.cycles
+    cycles.samples, cycles.max_bounces, cycles.diffuse_bounces = 64, 1, 1
+    bpy.ops.object.bake(type="DIFFUSE", use_clear=True)
+    seen = numpy.array(image.pixels[:]).reshape(size, PARTS, size, PARTS, 4)[..., 0] > FRONTS
+    whole = seen.all(axis=(1, 3))
+    mask = bpy.data.images.new("mask", size, size, float_buffer=True, is_data=True)
+    mask.pixels = numpy.repeat(whole.astype(float).ravel(), 4).tolist()
     save(mask, path)
 
 
@@ -200,7 +238,7 @@ def main(path, size, bounces, counts, seed, prefix):
         cpu = (after.user - before.user) + (after.system - before.system)
         save(image, "%s-%d.exr" % (prefix, samples))
         print("cycles %d %.3f %.3f" % (samples, cpu, wall), flush=True)
-    save_mask(image, prefix + "-mask.exr")
+    save_mask(size, prefix + "-mask.exr")
 
 
 arguments = sys.argv[sys.argv.index("--") + 1 :]

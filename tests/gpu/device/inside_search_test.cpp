@@ -1,6 +1,7 @@
 // The search finds the same patches inside something whether all directions are followed or as many as it
 // takes.
-#include "bake/baker/inside_search.h"
+#include "bake/validity/inside_search.h"
+#include "bake/validity/step_aside.h"
 
 #include "assets/base/watch.h"
 #include "tests/gpu/bake_scene.h"
@@ -15,23 +16,24 @@
 namespace relume {
 namespace {
 
-/// Makes a floor, in a room or below the sky, on which a box stands that covers part of it.
-Scene coveredFloor(bool closed) {
+/// Makes a floor of texels of 0.1 m, in a room or below the sky, on which a box stands that covers part of
+/// it. It is shifted by so many metres against the texels' edges.
+Scene coveredFloor(bool closed, float shift = 0) {
     SceneMaker maker(128);
     const int grey = maker.material(0.5f, 1.0f);
     if (closed) maker.box({-2, -2, -2}, {glm::vec3(8, 0, 0), {0, 8, 0}, {0, 0, 8}}, grey, 20);
     maker.quad({-1, 0, -1}, {0, 0, 4}, {4, 0, 0}, grey, {40, 40});
-    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(0, -0.5f, 0);
+    const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(shift, -0.5f, shift);
     for (const auto& [corner, u, v] :
          {std::tuple(o, z, y), {o, x, z}, {o, y, x}, {o + x, y, z}, {o + y, z, x}, {o + z, x, y}})
         maker.quad(corner, u, v, grey, {8, 8});
     return maker.scene();
 }
 
-std::vector<uint32_t> hiddenPatches(const Baker& baker) {
+std::vector<uint32_t> hiddenPatches(const PatchSet& patches) {
     std::vector<uint32_t> hidden;
-    for (uint32_t i = 0; i < baker.patches().count; ++i)
-        if ((baker.patches().scene.patches[i].flags & shader::kPatchSends) == 0) hidden.push_back(i);
+    for (uint32_t i = 0; i < patches.count; ++i)
+        if ((patches.scene.patches[i].flags & shader::kPatchSends) == 0) hidden.push_back(i);
     return hidden;
 }
 
@@ -58,7 +60,8 @@ TEST(InsideSearch, AsManyDirectionsAsItTakesFindWhatAllFind) {
             BakeDesc desc{.size = 128, .method = Method::Hybrid, .samples = 16};
             desc.tracer = kind;
             const auto baker = makeBaker(coveredFloor(closed), desc);
-            const PatchSet& patches = baker->patches();
+            PatchSet patches = baker->patches();
+            stepBack(patches); // from where the middles of texels are seen
             const vk::Buffer onDevice = vk::makeBuffer(testDevice(), patches.scene.patches, "patches");
             const auto tracer = makeTracer(kind, testDevice(), patches.scene, onDevice);
             std::vector<uint32_t> all(patches.count);
@@ -71,9 +74,38 @@ TEST(InsideSearch, AsManyDirectionsAsItTakesFindWhatAllFind) {
                 if (insideBy(met[i]) == Inside::Yes) inside.push_back(i);
             }
             EXPECT_GT(inside.size(), 20u);
-            EXPECT_EQ(hiddenPatches(*baker), inside);
-            EXPECT_EQ(baker->invalidPatches(), inside.size());
+            EXPECT_EQ(hiddenPatches(patches), inside);
+            EXPECT_EQ(baker->invalidPatches() + baker->patches().aside.size(), inside.size());
         }
+}
+
+// Beside a box the floor's texels are seen, though their middles lie in it; below it none is. Whoever traces,
+// the same patches step aside, to where nothing is around them, and see no more of their texels than what
+// lies outside.
+TEST(InsideSearch, PatchesBesideTheBoxStepAside) {
+    for (const bool closed : {true, false}) {
+        std::vector<OwnPoint> first;
+        for (const TracerKind kind : tracersOfTestDevice()) {
+            BakeDesc desc{.size = 128, .method = Method::Hybrid, .samples = 16};
+            desc.tracer = kind;
+            const float shift = 0.04f;
+            const auto baker = makeBaker(coveredFloor(closed, shift), desc);
+            const PatchSet& patches = baker->patches();
+            const std::vector<OwnPoint> aside = pointsAside(patches);
+            EXPECT_GT(aside.size(), 10u);
+            for (const OwnPoint& point : aside) {
+                const glm::vec3 p = point.position;
+                const glm::vec3 local = p - glm::vec3(shift, 0, shift);
+                EXPECT_TRUE(local.x < 0 || local.x > 1 || local.z < 0 || local.z > 1 ||
+                            std::abs(local.y) >= 0.5f)
+                    << p.x << ", " << p.y << ", " << p.z;
+                EXPECT_NE(point.cells, 0u);
+                EXPECT_NE(patches.scene.patches[point.patch].flags & shader::kPatchSends, 0u);
+            }
+            if (first.empty()) first = aside;
+            EXPECT_EQ(aside, first) << int(kind);
+        }
+    }
 }
 
 TEST(InsideSearch, ABakersPhasesAreTold) {

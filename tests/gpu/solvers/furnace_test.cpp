@@ -94,37 +94,44 @@ TEST(Furnace, SphereInteriorIsLitEvenly) {
 }
 
 // A wall stands on the middles of large texels, which lie inside it. What is seen of these beside the wall
-// sends light as the patch next to it does: whatever rays meet is of one radiance.
+// sends light by itself, where patches step aside, else as the patch next to it does: whatever rays meet is
+// of one radiance.
 TEST(Furnace, SeesTexelsWhoseMiddlesAreInsideAWall) {
-    for (const TracerKind tracer : tracersOfTestDevice()) {
-        SceneMaker maker(64);
-        const int grey = maker.material(0.5f, 1.0f);
-        const auto walls = maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, grey, 8);
-        // It is thinner than a texel, and sunk into the floor.
-        const glm::vec3 lo(0.32f, 0.3f, -0.1f), hi(0.44f, 1.7f, 1.2f), size = hi - lo;
-        maker.quad(lo, size.z * kZ, size.y * kY, grey, glm::uvec2(6));
-        maker.quad({hi.x, lo.y, lo.z}, size.y * kY, size.z * kZ, grey, glm::uvec2(6));
-        maker.quad(lo, size.x * kX, size.z * kZ, grey, glm::uvec2(6));
-        maker.quad({lo.x, hi.y, lo.z}, size.z * kZ, size.x * kX, grey, glm::uvec2(6));
-        maker.quad({lo.x, lo.y, hi.z}, size.x * kX, size.y * kY, grey, glm::uvec2(6));
-        const Baked baked = bakeScene(maker.scene(), {.size = maker.size(),
-                                                      .tracer = tracer,
-                                                      .passes = 40,
-                                                      .method = Method::Directional,
-                                                      .samples = 128});
-        EXPECT_GE(baked.invalid, 5u);
-        uint32_t count = 0;
-        for (uint32_t i = 0; i < baked.patches.count; ++i) {
-            const shader::Patch& p = baked.patches.scene.patches[i];
-            if (!shader::patchIsShown(p.flags) || p.position.z < 0) continue;
-            const uint32_t texel = shader::patchTexel(p.flags);
-            EXPECT_NEAR(baked.radiance.planes[0][texel], 2.0f, 2e-3f)
-                << p.position.x << ", " << p.position.y << ", " << p.position.z;
-            ++count;
+    for (const TracerKind tracer : tracersOfTestDevice())
+        for (const bool allOver : {true, false}) {
+            SceneMaker maker(64);
+            const int grey = maker.material(0.5f, 1.0f);
+            const auto walls = maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, grey, 8);
+            // It is thinner than a texel, and sunk into the floor.
+            const glm::vec3 lo(0.32f, 0.3f, -0.1f), hi(0.44f, 1.7f, 1.2f), size = hi - lo;
+            maker.quad(lo, size.z * kZ, size.y * kY, grey, glm::uvec2(6));
+            maker.quad({hi.x, lo.y, lo.z}, size.y * kY, size.z * kZ, grey, glm::uvec2(6));
+            maker.quad(lo, size.x * kX, size.z * kZ, grey, glm::uvec2(6));
+            maker.quad({lo.x, hi.y, lo.z}, size.z * kZ, size.x * kX, grey, glm::uvec2(6));
+            maker.quad({lo.x, lo.y, hi.z}, size.x * kX, size.y * kY, grey, glm::uvec2(6));
+            BakeDesc desc{.size = maker.size(),
+                          .tracer = tracer,
+                          .passes = 40,
+                          .method = Method::Directional,
+                          .samples = 128};
+            desc.allOver = allOver;
+            const Baked baked = bakeScene(maker.scene(), desc);
+            if (allOver)
+                EXPECT_GE(baked.patches.aside.size(), 5u);
+            else
+                EXPECT_GE(baked.invalid, 5u);
+            uint32_t count = 0;
+            for (uint32_t i = 0; i < baked.patches.count; ++i) {
+                const shader::Patch& p = baked.patches.scene.patches[i];
+                if (!shader::patchIsShown(p.flags) || p.position.z < 0) continue;
+                const uint32_t texel = shader::patchTexel(p.flags);
+                EXPECT_NEAR(baked.radiance.planes[0][texel], 2.0f, 2e-3f)
+                    << p.position.x << ", " << p.position.y << ", " << p.position.z;
+                ++count;
+            }
+            EXPECT_GT(count, 500u);
+            EXPECT_GT(statistics(baked.radiance, walls[2]).count, 50u);
         }
-        EXPECT_GT(count, 500u);
-        EXPECT_GT(statistics(baked.radiance, walls[2]).count, 50u);
-    }
 }
 
 } // namespace relume

@@ -1,4 +1,4 @@
-#include "bake/baker/cover_search.h"
+#include "bake/validity/cover_search.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "bake/baker/met_bits.h"
+#include "bake/validity/met_bits.h"
 
 #include "bake/base/shader_types.h"
 

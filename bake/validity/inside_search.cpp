@@ -1,6 +1,7 @@
-#include "bake/baker/inside_search.h"
+#include "bake/validity/inside_search.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "assets/base/clock.h"
 #include "assets/base/portions.h"
@@ -16,6 +17,8 @@ using shader::kChunk;
 constexpr double kInsideBatchMs = 20.0;
 // A batch has at most so many chunks: on a GPU, which fewer would not fill, the links of one step are 16 MiB.
 constexpr uint32_t kMostInsideChunks = 8192, kMostInsideChunksOfSoftware = 1024;
+// Likewise of places that stand in for patches. What they take is less than what a search for covers does.
+constexpr uint32_t kMostChunksOfPlaces = 1024;
 // So many directions are followed in a step: tracers that record take eight at a time.
 constexpr uint32_t kStep = kFirstDirections;
 static_assert(kInsideDirections % kStep == 0);
@@ -26,6 +29,10 @@ constexpr uint32_t kChunksAtATime = 16; // that a thread looks through
 
 uint32_t mostInsideChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostInsideChunksOfSoftware : kMostInsideChunks);
+}
+
+uint32_t chunksFor(size_t patches) {
+    return static_cast<uint32_t>((patches + kChunk - 1) / kChunk);
 }
 
 uint64_t stepBytes(uint32_t chunks) {
@@ -86,19 +93,29 @@ public:
     /// Follows a step's directions of these patches, whose bits are met[patch - first].
     void followPatches(const PatchSet& patches, std::span<const uint32_t> which, uint32_t firstDirection,
                        MetBits* met, uint32_t first) {
-        const auto chunks = static_cast<uint32_t>((which.size() + kChunk - 1) / kChunk);
-        std::vector<shader::Patch> receivers(size_t{chunks} * kChunk);
-        for (size_t i = 0; i < which.size(); ++i) {
-            receivers[i] = patches.scene.patches[which[i]];
-            receivers[i].flags |= shader::kPatchSends; // no ray leaves a patch that was found to lie inside
-        }
+        std::vector<shader::Patch> receivers;
+        for (const uint32_t patch : which)
+            receivers.push_back(patches.scene.patches[patch]);
+        followPlaces(std::move(receivers), firstDirection,
+                     [&](size_t i) -> MetBits& { return met[which[i] - first]; });
+    }
+
+    /// Follows a step's directions of places that stand in for patches; metOf(number) returns the bits of a
+    /// place.
+    template<typename MetOf>
+    void followPlaces(std::vector<shader::Patch> receivers, uint32_t firstDirection, const MetOf& metOf) {
+        const size_t count = receivers.size();
+        const uint32_t chunks = chunksFor(count);
+        for (shader::Patch& receiver : receivers)
+            receiver.flags |= shader::kPatchSends; // no ray leaves a patch that was found to lie inside
+        receivers.resize(size_t{chunks} * kChunk);
         vk::Buffer onDevice;
         if (tracer_.records()) onDevice = vk::makeBuffer(device_, receivers, "patches that are asked");
         const auto hear = [&](uint32_t chunk, const uint32_t* links) {
-            const size_t begin = size_t{chunk} * kChunk, end = std::min(which.size(), begin + kChunk);
+            const size_t begin = size_t{chunk} * kChunk, end = std::min(count, begin + kChunk);
             for (size_t i = begin; i < end; ++i)
                 for (uint32_t k = 0; k < kStep; ++k)
-                    met[which[i] - first].note(firstDirection + k, links[size_t{k} * kChunk + i - begin]);
+                    metOf(i).note(firstDirection + k, links[size_t{k} * kChunk + i - begin]);
         };
         follow({{0, chunks}}, firstDirection, hear, receivers.data(), onDevice ? &onDevice : nullptr);
     }
@@ -240,14 +257,39 @@ std::vector<uint32_t> findInside(const InsideSearch& search) {
 void followAll(const vk::Device& device, Tracer& tracer, const PatchSet& patches,
                std::span<const uint32_t> which, std::vector<MetBits>& met) {
     if (which.empty()) return;
-    const auto chunks = static_cast<uint32_t>((which.size() + kChunk - 1) / kChunk);
-    const uint32_t most = mostInsideChunks(chunks, device.info().software());
+    const uint32_t most = mostInsideChunks(chunksFor(which.size()), device.info().software());
     DirectionSteps steps(device, tracer, most);
     for (size_t at = 0; at < which.size(); at += size_t{most} * kChunk)
         for (uint32_t direction = 0; direction < kInsideDirections; direction += kStep)
             steps.followPatches(patches,
                                 which.subspan(at, std::min(which.size() - at, size_t{most} * kChunk)),
                                 direction, met.data(), 0);
+}
+
+std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
+                               std::span<const shader::Patch> places,
+                               const std::function<void(double done)>& onBatch) {
+    std::vector<MetBits> met(places.size());
+    std::vector<uint32_t> open(places.size());
+    std::iota(open.begin(), open.end(), 0u);
+    const uint32_t most = std::min(chunksFor(places.size()), kMostChunksOfPlaces);
+    DirectionSteps steps(device, tracer, most);
+    for (uint32_t direction = 0; direction < kInsideDirections && !open.empty(); direction += kStep) {
+        for (size_t at = 0; at < open.size(); at += size_t{most} * kChunk) {
+            if (onBatch) onBatch(static_cast<double>(direction) / kInsideDirections);
+            const auto some = std::span(open).subspan(at, std::min(open.size() - at, size_t{most} * kChunk));
+            std::vector<shader::Patch> receivers;
+            for (const uint32_t place : some)
+                receivers.push_back(places[place]);
+            steps.followPlaces(std::move(receivers), direction,
+                               [&](size_t i) -> MetBits& { return met[some[i]]; });
+        }
+        std::erase_if(open, [&](uint32_t place) { return insideBy(met[place]) != Inside::Unknown; });
+    }
+    std::vector<uint8_t> inside;
+    for (const MetBits& bits : met)
+        inside.push_back(insideBy(bits) == Inside::Yes);
+    return inside;
 }
 
 } // namespace relume

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/baker/met_bits.h"
+#include "bake/validity/met_bits.h"
 #include "bake/base/chunk_order.h"
 #include "bake/surface/patches.h"
 #include "bake/trace/tracer.h"
@@ -27,6 +27,12 @@ struct InsideSearch {
 std::vector<uint32_t> findInside(const InsideSearch& search);
 /// Returns the device bytes that it takes, on a software device or a GPU.
 uint64_t insideBytes(uint32_t chunks, bool software);
+
+/// Returns a 1 for each of these places that lies inside something. They stand in for patches, whose
+/// directions they follow, no more than it takes. onBatch is called before each batch, where there is one.
+std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
+                               std::span<const shader::Patch> places,
+                               const std::function<void(double done)>& onBatch = {});
 
 /// Follows all directions of these patches; `met` is as above. It takes as much memory as their number asks
 /// for.

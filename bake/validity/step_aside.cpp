@@ -1,0 +1,218 @@
+#include "bake/validity/step_aside.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "assets/base/portions.h"
+#include "bake/validity/inside_search.h"
+
+namespace relume {
+namespace {
+
+using shader::kCoverCells;
+
+constexpr uint8_t kStays = 0xff; // in place of a cell
+
+// A patch that seeks another own point, and the cells that it tries.
+struct Seeker {
+    uint32_t patch;
+    CellsToTry cells;
+};
+
+bool isSilent(const shader::Patch& patch) {
+    return patch.area > 0.0f && (patch.flags & shader::kPatchSends) == 0;
+}
+
+// Returns the patches of these chunks that may step aside. Cells that a patch inside something sees lie in
+// it, too.
+std::vector<Seeker> seekersIn(const CoverSearch& search, std::span<const ChunkRange> chunks) {
+    const PatchSet& patches = search.patches;
+    const auto hidden = [&](size_t i) {
+        return patches.coverCells[i] & ~patches.covers[i].cells & kCoverCells;
+    };
+    std::vector<Seeker> seekers;
+    for (const ChunkRange& range : chunks) {
+        const size_t first = size_t{range.first} * shader::kChunk;
+        const size_t end = std::min<size_t>(patches.count, first + size_t{range.count} * shader::kChunk);
+        const std::vector<uint32_t> found = numbersWhere(search.device.workers(), end - first, [&](size_t i) {
+            return isSilent(patches.scene.patches[first + i]) && hidden(first + i) != 0;
+        });
+        for (const uint32_t number : found) {
+            const auto i = static_cast<uint32_t>(first + number);
+            seekers.push_back({i, cellsToTry(patches.covers[i], hidden(i))});
+        }
+    }
+    return seekers;
+}
+
+// Writes the cell that each of these patches steps to.
+void seekCells(const CoverSearch& search, std::vector<Seeker> seekers, std::vector<uint8_t>& cells) {
+    const PatchSet& patches = search.patches;
+    for (size_t round = 0; !seekers.empty(); ++round) {
+        std::vector<shader::Patch> places;
+        for (const Seeker& seeker : seekers) {
+            shader::Patch place = patches.scene.patches[seeker.patch];
+            place.position +=
+                shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[round]));
+            places.push_back(place);
+        }
+        const std::vector<uint8_t> inside = lieInside(search.device, search.tracer, places, search.onBatch);
+        std::vector<Seeker> left;
+        for (size_t i = 0; i < seekers.size(); ++i) {
+            const Seeker& seeker = seekers[i];
+            if (inside[i] == 0)
+                cells[seeker.patch] = static_cast<uint8_t>(seeker.cells.cells[round]);
+            else if (round + 1 < seeker.cells.count)
+                left.push_back(seeker);
+        }
+        seekers = std::move(left);
+    }
+}
+
+// Returns PatchCover::place of a cell's middle.
+uint32_t placeOf(uint32_t cell) {
+    const glm::uvec2 place(shader::cellPlace(cell) * static_cast<float>(shader::kCoverPlaces) + 0.5f);
+    return place.x | place.y << 16;
+}
+
+OwnPoint pointOf(const PatchSet& patches, uint32_t patch) {
+    const shader::PatchCover& cover = patches.covers[patch];
+    return {patch, patches.scene.patches[patch].position, cover.place, cover.cells};
+}
+
+void setPoint(PatchSet& patches, const OwnPoint& point) {
+    patches.scene.patches[point.patch].position = point.position;
+    shader::PatchCover& cover = patches.covers[point.patch];
+    cover.place = point.place;
+    cover.cells = point.cells;
+}
+
+void upload(const CoverSearch& search, const std::vector<uint32_t>& patches) {
+    vk::uploadElements(search.device, *search.devicePatches, search.patches.scene.patches, patches);
+    vk::uploadElements(search.device, *search.deviceCovers, search.patches.covers, patches);
+}
+
+std::vector<uint32_t> inChunks(std::span<const uint32_t> patches, std::span<const ChunkRange> chunks) {
+    std::vector<uint32_t> in;
+    for (const uint32_t patch : patches)
+        if (std::any_of(chunks.begin(), chunks.end(), [&](const ChunkRange& range) {
+                return patch / shader::kChunk - range.first < range.count;
+            }))
+            in.push_back(patch);
+    return in;
+}
+
+} // namespace
+
+CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells) {
+    const auto wayTo = [&](uint32_t cell) { return shader::coverWay(cover, shader::cellPlace(cell)); };
+    // Returns the cell whose square distance from there [m^2], times a sign, is the least.
+    const auto least = [&](const glm::vec3& from, float sign) {
+        std::pair<float, uint32_t> found{std::numeric_limits<float>::max(), 0};
+        for (uint32_t rest = cells & kCoverCells; rest != 0; rest &= rest - 1) {
+            const auto cell = static_cast<uint32_t>(std::countr_zero(rest));
+            const glm::vec3 way = wayTo(cell) - from;
+            found = std::min(found, {sign * glm::dot(way, way), cell});
+        }
+        return found.second;
+    };
+    if ((cells & kCoverCells) == 0) return {};
+    const uint32_t nearest = least(glm::vec3(0.0f), 1.0f), farthest = least(wayTo(nearest), -1.0f);
+    return {{nearest, farthest}, farthest == nearest ? 1u : 2u};
+}
+
+std::vector<uint32_t> stepAside(const CoverSearch& search, Ranks& ranks, const ChunkDeal& dealt,
+                                std::span<const OwnPoint> known) {
+    PatchSet& patches = search.patches;
+    ASSERT(patches.aside.empty());
+    const std::span<const ChunkRange> own = dealt.runsOf(ranks.rank());
+    std::vector<uint8_t> cells(patches.scene.patches.size(), kStays);
+    seekCells(search, seekersIn(search, own), cells);
+    shareChunks(ranks, dealt, cells);
+    std::vector<uint32_t> aside, looking;
+    auto before = known.begin();
+    for (uint32_t i = 0; i < patches.count; ++i) {
+        if (cells[i] == kStays) continue;
+        patches.aside.push_back(pointOf(patches, i));
+        shader::Patch& patch = patches.scene.patches[i];
+        shader::PatchCover& cover = patches.covers[i];
+        patch.position += shader::coverWay(cover, shader::cellPlace(cells[i]));
+        patch.flags |= shader::kPatchSends;
+        cover.place = placeOf(cells[i]);
+        aside.push_back(i);
+        while (before != known.end() && before->patch < i)
+            ++before;
+        if (before != known.end() && before->patch == i && before->position == patch.position)
+            cover.cells = before->cells;
+        else
+            looking.push_back(i);
+    }
+    if (!looking.empty()) {
+        upload(search, looking);
+        searchCovers(search, inChunks(looking, own));
+        shareChunks(ranks, dealt, patches.covers);
+    }
+    upload(search, aside);
+    return aside;
+}
+
+std::vector<OwnPoint> stepBack(PatchSet& patches) {
+    std::vector<OwnPoint> aside = pointsAside(patches);
+    for (const OwnPoint& home : std::exchange(patches.aside, {})) {
+        setPoint(patches, home);
+        patches.scene.patches[home.patch].flags &= ~shader::kPatchSends;
+    }
+    return aside;
+}
+
+std::vector<OwnPoint> stepBack(const CoverSearch& search) {
+    std::vector<OwnPoint> aside = stepBack(search.patches);
+    std::vector<uint32_t> back;
+    for (const OwnPoint& point : aside)
+        back.push_back(point.patch);
+    if (!back.empty()) upload(search, back);
+    return aside;
+}
+
+std::vector<OwnPoint> carryAside(std::span<const OwnPoint> former, std::span<const uint32_t> now) {
+    std::vector<OwnPoint> aside;
+    for (OwnPoint point : former) {
+        point.patch = now[point.patch];
+        if (point.patch != shader::kNoPatch) aside.push_back(point);
+    }
+    std::sort(aside.begin(), aside.end(),
+              [](const OwnPoint& a, const OwnPoint& b) { return a.patch < b.patch; });
+    return aside;
+}
+
+std::vector<OwnPoint> pointsAside(const PatchSet& patches) {
+    std::vector<OwnPoint> points;
+    for (const OwnPoint& home : patches.aside)
+        points.push_back(pointOf(patches, home.patch));
+    return points;
+}
+
+OtherPoints otherPoints(std::span<const OwnPoint> before, std::span<const OwnPoint> now) {
+    OtherPoints others;
+    const auto note = [&](uint32_t patch, bool sender) {
+        others.points.push_back(patch);
+        if (sender) others.senders.push_back(patch);
+    };
+    auto a = before.begin(), b = now.begin();
+    while (a != before.end() || b != now.end()) {
+        if (b == now.end() || (a != before.end() && a->patch < b->patch)) {
+            note((a++)->patch, true);
+        } else if (a == before.end() || b->patch < a->patch) {
+            note((b++)->patch, true);
+        } else {
+            if (*a != *b) note(a->patch, false);
+            ++a;
+            ++b;
+        }
+    }
+    return others;
+}
+
+} // namespace relume
