@@ -277,24 +277,23 @@ void Baker::makeCovers() {
     const bool wanted = startsAllOver(settings_.solver) && !patches_.covers.empty();
     if (wanted == static_cast<bool>(light_->covers)) return;
     vk::Buffer covers = wanted ? makeDeviceCovers() : std::move(light_->covers);
-    const CoverSearch search{.device = device_,
-                             .tracer = *tracer_,
-                             .patches = patches_,
-                             .devicePatches = &light_->patches,
-                             .deviceCovers = &covers,
-                             .onBatch = [this](double) { onPhase("validity", 1.0); }};
+    CoverSearcher searcher({.device = device_,
+                            .tracer = *tracer_,
+                            .patches = patches_,
+                            .devicePatches = &light_->patches,
+                            .deviceCovers = &covers,
+                            .onBatch = [this](double) { onPhase("validity", 1.0); }});
     if (!wanted) {
         std::vector<uint32_t> back;
-        for (const OwnPoint& point : stepBack(search))
+        for (const OwnPoint& point : stepBack(searcher.on()))
             back.push_back(point.patch);
         return tracer_->updateSenders(back);
     }
     const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
-    searchCovers(search,
-                 patchesIn(dealt.runsOf(ranks().rank()), coveredPatches(patches_, device_.workers())));
+    searcher.search(patchesIn(dealt.runsOf(ranks().rank()), coveredPatches(patches_, device_.workers())));
     shareChunks(ranks(), dealt, patches_.covers);
     vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
-    tracer_->updateSenders(stepAside(search, ranks(), dealt));
+    tracer_->updateSenders(stepAside(searcher, ranks(), dealt));
     light_->covers = std::move(covers);
 }
 

@@ -376,13 +376,13 @@ bool ObjectMover::isNear(uint32_t patch, const ObjectMove& move) const {
 }
 
 // Finds again where samples may start in texels that what has moved stands in, or stood in.
-void ObjectMover::findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move) {
+void ObjectMover::findCovers(CoverSearcher& covers, const std::vector<uint32_t>& slots, ObjectMove& move) {
     PatchSet& patches = on_.patches;
     if (!on_.light.covers) return;
     std::vector<uint32_t> which;
     for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
         if (patches.coverCells[i] != 0 && (move.has(i) || isNear(i, move))) which.push_back(i);
-    const std::vector<uint32_t> others = searchCovers(coverSearch(tracer), which);
+    const std::vector<uint32_t> others = covers.search(which);
     for (const uint32_t i : others)
         move.change(i);
     vk::uploadElements(on_.device, on_.light.covers, patches.covers, merged(slots, others));
@@ -415,19 +415,20 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     const std::vector<OwnPoint> aside = carryAside(former.aside, carry.now);
     if (!move.boxes.empty()) return searched(tracer, slots, aside, move);
-    tracer.updateSenders(stepAside(tracer, aside, move));
+    CoverSearcher covers(coverSearch(tracer));
+    tracer.updateSenders(stepAside(covers, aside, move));
     return move;
 }
 
 // Lets patches step aside anew: what they meet there may come from far away. Returns those that did before or
 // do now, but not both.
-std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<OwnPoint>& before,
+std::vector<uint32_t> ObjectMover::stepAside(CoverSearcher& covers, const std::vector<OwnPoint>& before,
                                              ObjectMove& move) {
     if (!on_.light.covers) return {};
     std::vector<OwnPoint> known;
     for (const OwnPoint& point : before)
         if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
-    relume::stepAside(coverSearch(tracer), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known);
+    relume::stepAside(covers, oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known);
     OtherPoints others = otherPoints(before, pointsAside(on_.patches));
     for (const uint32_t patch : others.points)
         move.change(patch);
@@ -441,8 +442,9 @@ ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& sl
                                  const std::vector<OwnPoint>& before, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
-    findCovers(tracer, slots, move);
-    const std::vector<uint32_t> senders = merged(others, stepAside(tracer, before, move));
+    CoverSearcher covers(coverSearch(tracer));
+    findCovers(covers, slots, move);
+    const std::vector<uint32_t> senders = merged(others, stepAside(covers, before, move));
     tracer.updateSenders(merged(slots, senders));
     addLinkEnds(on_.patches.scene, senders, move);
     ObjectMove result;

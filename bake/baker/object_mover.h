@@ -18,6 +18,7 @@
 namespace relume {
 
 struct CoverSearch;
+class CoverSearcher;
 
 /// Keeps patches, triangles and tracer with objects that are moved, hidden and shown again, without making
 /// all of them anew: patches keep their indices. What it leaves is what a fresh bake would have made, but
@@ -80,8 +81,9 @@ private:
     std::vector<uint32_t> findInside(Tracer& tracer, const std::vector<uint32_t>& patches, ObjectMove& move);
     CoverSearch coverSearch(Tracer& tracer) const;
     bool isNear(uint32_t patch, const ObjectMove& move) const;
-    void findCovers(Tracer& tracer, const std::vector<uint32_t>& slots, ObjectMove& move);
-    std::vector<uint32_t> stepAside(Tracer& tracer, const std::vector<OwnPoint>& before, ObjectMove& move);
+    void findCovers(CoverSearcher& covers, const std::vector<uint32_t>& slots, ObjectMove& move);
+    std::vector<uint32_t> stepAside(CoverSearcher& covers, const std::vector<OwnPoint>& before,
+                                    ObjectMove& move);
     ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots,
                         const std::vector<OwnPoint>& before, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;

@@ -40,10 +40,12 @@ uint32_t mostCoverChunks(uint32_t chunks, bool software) {
     return std::min(chunks, software ? kMostCoverChunksOfSoftware : kMostCoverChunks);
 }
 
+} // namespace
+
 // Asks which places of texels the patches' own points see. Segments to them are made where they are traced.
-class CoverBatches {
+class CoverSearcher::Batches {
 public:
-    explicit CoverBatches(const CoverSearch& search)
+    explicit Batches(const CoverSearch& search)
         : search_(search), records_(search.tracer.records()),
           most_(mostCoverChunks(search.patches.chunkCount(), search.device.info().software())),
           commands_(search.device),
@@ -170,17 +172,19 @@ private:
     BatchRate rate_;
 };
 
-} // namespace
-
 std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool) {
     return numbersWhere(pool, patches.coverCells.size(),
                         [&](size_t patch) { return patches.coverCells[patch] != 0; });
 }
 
-std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which) {
+CoverSearcher::CoverSearcher(const CoverSearch& on) : on_(on) {}
+
+CoverSearcher::~CoverSearcher() = default;
+
+std::vector<uint32_t> CoverSearcher::search(std::span<const uint32_t> which) {
     if (which.empty()) return {};
-    WorkerPool& pool = search.device.workers();
-    std::vector<shader::PatchCover>& covers = search.patches.covers;
+    WorkerPool& pool = on_.device.workers();
+    std::vector<shader::PatchCover>& covers = on_.patches.covers;
     // Numbers count in `which` here.
     const auto patchesAt = [&](const std::vector<uint32_t>& numbers) {
         std::vector<uint32_t> patches(numbers.size());
@@ -196,21 +200,21 @@ std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const ui
         for (size_t i = begin; i < end; ++i) {
             uint32_t& cells = covers[which[i]].cells;
             before[i] = cells;
-            cells = search.patches.coverCells[which[i]];
+            cells = on_.patches.coverCells[which[i]];
             asks[i] = (cells & kCoverWhole) == 0;
         }
     });
-    CoverBatches batches(search);
+    if (!batches_) batches_ = std::make_unique<Batches>(on_);
     // As a rule nothing stands in a texel whose whole rim is seen.
     const std::vector<uint32_t> whole = numbersWhere(pool, which.size(), [&](size_t i) { return !asks[i]; });
-    const std::vector<uint32_t> rims = batches.seen(patchesAt(whole), Places::Rim);
+    const std::vector<uint32_t> rims = batches_->seen(patchesAt(whole), Places::Rim);
     runPortions(pool, whole.size(), kLongPortion, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             asks[whole[i]] = std::popcount(rims[i] & ((1u << kRimPlaces) - 1)) < int{kRimPlaces};
     });
     const std::vector<uint32_t> parts =
         patchesAt(numbersWhere(pool, which.size(), [&](size_t i) { return asks[i]; }));
-    const std::vector<uint32_t> cells = batches.seen(parts, Places::Cells);
+    const std::vector<uint32_t> cells = batches_->seen(parts, Places::Cells);
     runPortions(pool, parts.size(), kLongPortion, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             covers[parts[i]].cells &= cells[i] & kCoverCells;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,25 @@ struct CoverSearch {
 /// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.
 std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool);
 
-/// Takes those cells away from the covers of these patches (ascending) that their own point does not see: a
-/// wall stands in front of them, or they lie inside something. The covers begin with what the surface has.
-/// Returns the patches whose cover is another one than before, ascending.
-std::vector<uint32_t> searchCovers(const CoverSearch& search, std::span<const uint32_t> which);
+/// Searches for what stands in texels. It keeps its buffers, and what it learns of the device's speed, from
+/// one search to the next.
+class CoverSearcher {
+public:
+    explicit CoverSearcher(const CoverSearch& on);
+    ~CoverSearcher();
+
+    const CoverSearch& on() const { return on_; }
+    /// Takes those cells away from the covers of these patches (ascending) that their own point does not see:
+    /// a wall stands in front of them, or they lie inside something. The covers begin with what the surface
+    /// has. Returns the patches whose cover is another one than before, ascending.
+    std::vector<uint32_t> search(std::span<const uint32_t> which);
+
+private:
+    class Batches;
+    CoverSearch on_;
+    std::unique_ptr<Batches> batches_; // once there is something to search for
+};
+
 /// Returns the device bytes that it takes, on a software device or a GPU.
 uint64_t coverSearchBytes(uint32_t chunks, bool software);
 

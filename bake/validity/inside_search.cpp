@@ -1,6 +1,7 @@
 #include "bake/validity/inside_search.h"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 #include "assets/base/clock.h"
@@ -109,15 +110,20 @@ public:
         for (shader::Patch& receiver : receivers)
             receiver.flags |= shader::kPatchSends; // no ray leaves a patch that was found to lie inside
         receivers.resize(size_t{chunks} * kChunk);
-        vk::Buffer onDevice;
-        if (tracer_.records()) onDevice = vk::makeBuffer(device_, receivers, "patches that are asked");
+        if (tracer_.records()) {
+            const VkDeviceSize bytes = receivers.size() * sizeof(shader::Patch);
+            if (!receivers_ || receivers_.size() < bytes)
+                receivers_ = vk::Buffer(
+                    device_, {.size = bytes, .memory = vk::Memory::Host, .name = "patches that are asked"});
+            std::memcpy(receivers_.mapped(), receivers.data(), bytes);
+        }
         const auto hear = [&](uint32_t chunk, const uint32_t* links) {
             const size_t begin = size_t{chunk} * kChunk, end = std::min(count, begin + kChunk);
             for (size_t i = begin; i < end; ++i)
                 for (uint32_t k = 0; k < kStep; ++k)
                     metOf(i).note(firstDirection + k, links[size_t{k} * kChunk + i - begin]);
         };
-        follow({{0, chunks}}, firstDirection, hear, receivers.data(), onDevice ? &onDevice : nullptr);
+        follow({{0, chunks}}, firstDirection, hear, receivers.data(), receivers_ ? &receivers_ : nullptr);
     }
 
 private:
@@ -125,6 +131,7 @@ private:
     Tracer& tracer_;
     vk::Commands commands_;
     vk::Buffer links_, back_; // back_ where the host does not see links_
+    vk::Buffer receivers_;    // places that stand in for patches, for a tracer that records
 };
 
 /// One batch of chunks.

@@ -13,7 +13,10 @@ namespace {
 
 using shader::kCoverCells;
 
-constexpr uint8_t kStays = 0xff; // in place of a cell
+constexpr uint8_t kStays = 0xff;  // in place of a cell
+constexpr size_t kPortion = 1024; // seekers that a thread takes at a time
+// From so many on, of all patches, it is faster to upload all.
+constexpr size_t kUploadsAll = 64;
 
 // A patch that seeks another own point, and the cells that it tries.
 struct Seeker {
@@ -32,42 +35,51 @@ std::vector<Seeker> seekersIn(const CoverSearch& search, std::span<const ChunkRa
     const auto hidden = [&](size_t i) {
         return patches.coverCells[i] & ~patches.covers[i].cells & kCoverCells;
     };
+    WorkerPool& pool = search.device.workers();
     std::vector<Seeker> seekers;
     for (const ChunkRange& range : chunks) {
         const size_t first = size_t{range.first} * shader::kChunk;
         const size_t end = std::min<size_t>(patches.count, first + size_t{range.count} * shader::kChunk);
-        const std::vector<uint32_t> found = numbersWhere(search.device.workers(), end - first, [&](size_t i) {
+        if (first >= end) continue;
+        const std::vector<uint32_t> found = numbersWhere(pool, end - first, [&](size_t i) {
             return isSilent(patches.scene.patches[first + i]) && hidden(first + i) != 0;
         });
-        for (const uint32_t number : found) {
-            const auto i = static_cast<uint32_t>(first + number);
-            seekers.push_back({i, cellsToTry(patches.covers[i], hidden(i))});
-        }
+        const size_t before = seekers.size();
+        seekers.resize(before + found.size());
+        runPortions(pool, found.size(), kPortion, [&](size_t from, size_t to) {
+            for (size_t k = from; k < to; ++k) {
+                const size_t i = first + found[k];
+                seekers[before + k] = {static_cast<uint32_t>(i), cellsToTry(patches.covers[i], hidden(i))};
+            }
+        });
     }
     return seekers;
 }
 
-// Writes the cell that each of these patches steps to.
+// Writes the cell that each of these patches steps to. A GPU asks for all of a patch's cells at once, a CPU
+// for the next one where the one before lies inside.
 void seekCells(const CoverSearch& search, std::vector<Seeker> seekers, std::vector<uint8_t>& cells) {
     const PatchSet& patches = search.patches;
-    for (size_t round = 0; !seekers.empty(); ++round) {
+    const uint32_t atOnce = search.tracer.records() ? kMostCellsToTry : 1;
+    for (uint32_t first = 0; !seekers.empty(); first += atOnce) {
         std::vector<shader::Patch> places;
-        for (const Seeker& seeker : seekers) {
-            shader::Patch place = patches.scene.patches[seeker.patch];
-            place.position +=
-                shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[round]));
-            places.push_back(place);
-        }
+        for (const Seeker& seeker : seekers)
+            for (uint32_t k = first; k < std::min(first + atOnce, seeker.cells.count); ++k) {
+                places.push_back(patches.scene.patches[seeker.patch]);
+                places.back().position +=
+                    shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[k]));
+            }
         const std::vector<uint8_t> inside = lieInside(search.device, search.tracer, places, search.onBatch);
-        std::vector<Seeker> left;
-        for (size_t i = 0; i < seekers.size(); ++i) {
-            const Seeker& seeker = seekers[i];
-            if (inside[i] == 0)
-                cells[seeker.patch] = static_cast<uint8_t>(seeker.cells.cells[round]);
-            else if (round + 1 < seeker.cells.count)
-                left.push_back(seeker);
-        }
-        seekers = std::move(left);
+        size_t place = 0;
+        std::erase_if(seekers, [&](const Seeker& seeker) {
+            const uint32_t end = std::min(first + atOnce, seeker.cells.count);
+            bool found = false;
+            for (uint32_t k = first; k < end; ++k) {
+                if (inside[place++] == 0 && !std::exchange(found, true))
+                    cells[seeker.patch] = static_cast<uint8_t>(seeker.cells.cells[k]);
+            }
+            return found || end == seeker.cells.count;
+        });
     }
 }
 
@@ -89,9 +101,17 @@ void setPoint(PatchSet& patches, const OwnPoint& point) {
     cover.cells = point.cells;
 }
 
+template<typename T>
+void uploadSome(const vk::Device& device, const vk::Buffer& buffer, const std::vector<T>& values,
+                const std::vector<uint32_t>& which) {
+    if (which.size() > values.size() / kUploadsAll)
+        return vk::upload(device, buffer, values.data(), values.size() * sizeof(T));
+    vk::uploadElements(device, buffer, values, which);
+}
+
 void upload(const CoverSearch& search, const std::vector<uint32_t>& patches) {
-    vk::uploadElements(search.device, *search.devicePatches, search.patches.scene.patches, patches);
-    vk::uploadElements(search.device, *search.deviceCovers, search.patches.covers, patches);
+    uploadSome(search.device, *search.devicePatches, search.patches.scene.patches, patches);
+    uploadSome(search.device, *search.deviceCovers, search.patches.covers, patches);
 }
 
 std::vector<uint32_t> inChunks(std::span<const uint32_t> patches, std::span<const ChunkRange> chunks) {
@@ -123,8 +143,9 @@ CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells) {
     return {{nearest, farthest}, farthest == nearest ? 1u : 2u};
 }
 
-std::vector<uint32_t> stepAside(const CoverSearch& search, Ranks& ranks, const ChunkDeal& dealt,
+std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
                                 std::span<const OwnPoint> known) {
+    const CoverSearch& search = covers.on();
     PatchSet& patches = search.patches;
     ASSERT(patches.aside.empty());
     const std::span<const ChunkRange> own = dealt.runsOf(ranks.rank());
@@ -151,7 +172,7 @@ std::vector<uint32_t> stepAside(const CoverSearch& search, Ranks& ranks, const C
     }
     if (!looking.empty()) {
         upload(search, looking);
-        searchCovers(search, inChunks(looking, own));
+        covers.search(inChunks(looking, own));
         shareChunks(ranks, dealt, patches.covers);
     }
     upload(search, aside);

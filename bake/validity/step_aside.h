@@ -10,8 +10,9 @@
 namespace relume {
 
 /// The cells of its texel that a patch tries for its own point, in this order.
+constexpr uint32_t kMostCellsToTry = 2;
 struct CellsToTry {
-    std::array<uint32_t, 2> cells;
+    std::array<uint32_t, kMostCellsToTry> cells;
     uint32_t count;
 };
 /// Returns those of these cells (PatchCover) that a patch tries: the nearest to its own point, then the
@@ -20,11 +21,11 @@ CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells);
 
 /// Lets patches that lie inside something step aside, where part of their texel lies outside: their own point
 /// becomes the middle of a cell that it did not see and that lies outside (cellsToTry), and they send from
-/// now on. Covers are those that searchCovers() has found, and no patch has stepped aside yet. Patches that
+/// now on. Covers are those that have been searched, and no patch has stepped aside yet. Patches that
 /// have are in PatchSet::aside, their covers are as their new point sees them, and the device's patches and
 /// covers follow; senders of a tracer are the caller's. Each rank seeks for its own chunks. What patches saw
 /// before from known points (ascending by patch) they see from there again. Returns them, ascending.
-std::vector<uint32_t> stepAside(const CoverSearch& search, Ranks& ranks, const ChunkDeal& dealt,
+std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
                                 std::span<const OwnPoint> known = {});
 
 /// Takes all patches back to their own points, where they lie inside something and send nothing. Returns
