@@ -15,7 +15,7 @@ using shader::kCoverCells;
 
 constexpr uint8_t kStays = 0xff;  // in place of a cell
 constexpr size_t kPortion = 1024; // seekers that a thread takes at a time
-// From so many on, of all patches, it is faster to upload all.
+// Where more than one patch in so many is written, all are uploaded: that is faster than many small regions.
 constexpr size_t kUploadsAll = 64;
 
 // A patch that seeks another own point, and the cells that it tries.
@@ -70,16 +70,17 @@ void seekCells(const CoverSearch& search, std::vector<Seeker> seekers, std::vect
                     shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[k]));
             }
         const std::vector<uint8_t> inside = lieInside(search.device, search.tracer, places, search.onBatch);
+        std::vector<Seeker> left;
         size_t place = 0;
-        std::erase_if(seekers, [&](const Seeker& seeker) {
+        for (const Seeker& seeker : seekers) {
             const uint32_t end = std::min(first + atOnce, seeker.cells.count);
             bool found = false;
-            for (uint32_t k = first; k < end; ++k) {
+            for (uint32_t k = first; k < end; ++k)
                 if (inside[place++] == 0 && !std::exchange(found, true))
                     cells[seeker.patch] = static_cast<uint8_t>(seeker.cells.cells[k]);
-            }
-            return found || end == seeker.cells.count;
-        });
+            if (!found && end < seeker.cells.count) left.push_back(seeker);
+        }
+        seekers = std::move(left);
     }
 }
 
