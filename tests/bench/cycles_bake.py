@@ -80,6 +80,7 @@ def diffuse(material):
         shader = cut.outputs["Shader"]
     nodes.remove(principled)
     links.new(shader, output.inputs["Surface"])
+    material["pane"] = pane
     return max(emission[:3]) * strength
 
 
@@ -180,8 +181,13 @@ def save(image, path):
     image.save_render(path, scene=scene)
 
 
-def shine_all():
-    """Makes every front and the sky of radiance 1, and paints all with the returned image node's image."""
+def shine_all(image):
+    """Makes every front and the sky of radiance 1, but for panes, which light passes; all of them bake into the image."""
+    pane = bpy.data.materials.new("pane")
+    pane.use_nodes = True
+    nodes, links = pane.node_tree.nodes, pane.node_tree.links
+    nothing = nodes.new("ShaderNodeBsdfTransparent")
+    links.new(nothing.outputs["BSDF"], next(n for n in nodes if n.type == "OUTPUT_MATERIAL").inputs["Surface"])
     material = bpy.data.materials.new("fronts shine")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
@@ -198,7 +204,11 @@ def shine_all():
     links.new(light.outputs["Emission"], both.inputs[1])
     links.new(both.outputs["Shader"], output.inputs["Surface"])
     for slot in bpy.context.object.material_slots:
-        slot.material = material
+        slot.material = pane if slot.material["pane"] else material
+    for each in (material, pane):
+        node = each.node_tree.nodes.new("ShaderNodeTexImage")
+        node.image = image
+        each.node_tree.nodes.active = node
     for lamp in [o for o in bpy.data.objects if o.type == "LIGHT"]:
         bpy.data.objects.remove(lamp)
     world = bpy.data.worlds.new("bright")
@@ -206,16 +216,13 @@ def shine_all():
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = 1.0
     bpy.context.scene.world = world
-    node = nodes.new("ShaderNodeTexImage")
-    nodes.active = node
-    return node
 
 
 def save_mask(size, path):
     """Bakes which parts of texels see fronts; what stands in the scene is lost."""
     edge = PARTS * size
     image = bpy.data.images.new("parts", edge, edge, float_buffer=True, is_data=True)
-    shine_all().image = image
+    shine_all(image)
     cycles = bpy.context.scene.cycles
     cycles.samples, cycles.max_bounces, cycles.diffuse_bounces = 64, 1, 1
     bpy.ops.object.bake(type="DIFFUSE", use_clear=True)
