@@ -338,6 +338,32 @@ TEST(CarriedBakes, TexelsInsideSomethingAreFoundAnew) {
     EXPECT_LE(bake.baker().invalidPatches(), before);
 }
 
+// A wall that is thinner than a texel stands on the middles of the floor's.
+TEST(CarriedBakes, PatchesStepAsideAnew) {
+    SceneMaker maker(kRoomSize);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
+    maker.box({0.36f, 0.3f, -0.1f}, {1.4f * kY, 0.12f * kX, 1.3f * kZ}, maker.material(0.5f), 6);
+    maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.5f}, 3.0f, "Bulb"));
+    CarriedBake bake(scene);
+    bake.finish();
+    const size_t first = bake.baker().patches().aside.size();
+    EXPECT_GE(first, 5u);
+    shapeOf(bake.scene, 12).positions.front().z += 0.05f; // far from those that have stepped aside
+    carried(bake);
+    EXPECT_EQ(bake.baker().patches().aside.size(), first);
+    for (size_t k = 6; k < 12; ++k)
+        for (glm::vec3& position : shapeOf(bake.scene, k).positions)
+            position.x += 0.03f;
+    carried(bake);
+    bake.scene.materials.front().baseColor *= 0.5f; // nothing moves
+    carried(bake);
+    removeObjects(bake.scene, 6, 12);
+    carried(bake);
+    EXPECT_LT(bake.baker().patches().aside.size(), first);
+}
+
 TEST(CarriedBakes, WhatMemoryIsShortForIsMadeAgain) {
     CarriedBake bake(carriedRoom());
     for (const uint64_t bytes : {uint64_t{0}, uint64_t{600'000}}) {

@@ -269,6 +269,38 @@ TEST_P(ObjectEdits, AnObjectBehindAWallIsAFreshBake) {
         << "its own rays, and what looks towards it through the wall";
 }
 
+/// Makes a room with a bulb, a block, and a wall that is thinner than a texel and stands on the middles of
+/// the floor's.
+Scene walledRoom() {
+    SceneMaker maker(kRoomSize);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
+    maker.box({0.36f, 0.3f, -0.1f}, {1.4f * kY, 0.12f * kX, 1.3f * kZ}, maker.material(0.5f), 6);
+    maker.box({1.3f, 1.2f, 0.4f}, {0.3f * kY, 0.3f * kX, 0.3f * kZ}, maker.material(0.5f), 4);
+    Scene scene = maker.scene();
+    scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.5f}, 3.0f, "Bulb"));
+    return scene;
+}
+
+TEST_P(ObjectEdits, PatchesThatStepAsideAreAFreshBake) {
+    constexpr size_t kWall = 6, kFarBlock = 12, kEnd = 18;
+    Moving bake(walledRoom(), desc());
+    const auto aside = [&] { return bake.baker().patches().aside.size(); };
+    const size_t first = aside();
+    EXPECT_GE(first, 5u);
+    bake.put(kFarBlock, kEnd, by({-0.3f, 0.1f, 0.0f})); // far from those that have stepped aside
+    followed(bake, desc());
+    EXPECT_EQ(aside(), first);
+    bake.put(kWall, kFarBlock, by({0.03f, 0.0f, 0.0f})); // they step elsewhere, or less far is seen
+    followed(bake, desc());
+    bake.hide(kWall, kFarBlock, true);
+    followed(bake, desc());
+    EXPECT_LT(aside(), first);
+    bake.hide(kWall, kFarBlock, false);
+    bake.put(kWall, kFarBlock, by({0.5f, 0.1f, 0.0f}));
+    followed(bake, desc());
+    EXPECT_GE(aside(), 3u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
 
 // The object is half in the floor and half out of it, and texels of both change whether they lie inside
