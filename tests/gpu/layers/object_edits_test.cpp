@@ -3,6 +3,7 @@
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/trace/make_tracer.h"
+#include "bake/validity/step_aside.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/edited_bake.h"
 #include "tests/gpu/gpu_environment.h"
@@ -290,6 +291,13 @@ TEST_P(ObjectEdits, PatchesThatStepAsideAreAFreshBake) {
     bake.put(kFarBlock, kEnd, by({-0.3f, 0.1f, 0.0f})); // far from those that have stepped aside
     followed(bake, desc());
     EXPECT_EQ(aside(), first);
+    // It stands where some have stepped to; they step to the other side of the wall now, and back.
+    const std::vector<OwnPoint> points = pointsAside(bake.baker().patches());
+    bake.put(kFarBlock, kEnd, by({-0.945f, -0.7f, -0.45f}));
+    followed(bake, desc());
+    EXPECT_NE(pointsAside(bake.baker().patches()), points);
+    bake.put(kFarBlock, kEnd, by({0.945f, 0.7f, 0.45f}));
+    followed(bake, desc());
     bake.put(kWall, kFarBlock, by({0.03f, 0.0f, 0.0f})); // they step elsewhere, or less far is seen
     followed(bake, desc());
     bake.hide(kWall, kFarBlock, true);
