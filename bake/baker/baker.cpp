@@ -4,17 +4,17 @@
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/watch.h"
-#include "bake/validity/cover_search.h"
-#include "bake/validity/inside_search.h"
 #include "bake/baker/memory_plan.h"
 #include "bake/baker/object_mover.h"
-#include "bake/validity/step_aside.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/output/layer_sum.h"
 #include "bake/surface/cit_pass.h"
 #include "bake/surface/known_covers.h"
 #include "bake/surface/repaint.h"
 #include "bake/surface/texture_group.h"
+#include "bake/validity/cover_search.h"
+#include "bake/validity/inside_search.h"
+#include "bake/validity/step_aside.h"
 #include "bake/vk/commands.h"
 
 #include <algorithm>
@@ -293,6 +293,7 @@ void Baker::makeCovers() {
     searcher.search(patchesIn(dealt.runsOf(ranks().rank()), coveredPatches(patches_, device_.workers())));
     shareChunks(ranks(), dealt, patches_.covers);
     vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
+    searcher.release(); // memory is planned for one search at a time
     tracer_->updateSenders(stepAside(searcher, ranks(), dealt));
     light_->covers = std::move(covers);
 }

@@ -4,9 +4,9 @@
 
 #include "assets/atlas/world_mesh.h"
 #include "assets/model/scene.h"
-#include "bake/validity/met_bits.h"
 #include "bake/layers/layer_carry.h"
 #include "bake/surface/patch_set.h"
+#include "bake/validity/met_bits.h"
 
 namespace relume {
 

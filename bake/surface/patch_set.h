@@ -33,7 +33,7 @@ struct PatchSet {
     // are taken away later (bake/validity/cover_search.h); coverCells has them as the surface has them.
     std::vector<shader::PatchCover> covers;
     std::vector<uint32_t> coverCells;
-    // Where patches had their own points before they stepped aside, as they lay inside something
+    // These are the points that patches had before they stepped aside, as they lay inside something
     // (bake/validity/step_aside.h); ascending by patch.
     std::vector<OwnPoint> aside;
     std::vector<float> reach; // per chunk: how far samples may start from their patch's own point [m]

@@ -181,6 +181,10 @@ CoverSearcher::CoverSearcher(const CoverSearch& on) : on_(on) {}
 
 CoverSearcher::~CoverSearcher() = default;
 
+void CoverSearcher::release() {
+    batches_.reset();
+}
+
 std::vector<uint32_t> CoverSearcher::search(std::span<const uint32_t> which) {
     if (which.empty()) return {};
     WorkerPool& pool = on_.device.workers();

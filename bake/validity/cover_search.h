@@ -36,6 +36,8 @@ public:
     /// a wall stands in front of them, or they lie inside something. The covers begin with what the surface
     /// has. Returns the patches whose cover is another one than before, ascending.
     std::vector<uint32_t> search(std::span<const uint32_t> which);
+    /// Gives its buffers up, until the next search.
+    void release();
 
 private:
     class Batches;

@@ -15,7 +15,7 @@ using shader::kCoverCells;
 
 constexpr uint8_t kStays = 0xff;  // in place of a cell
 constexpr size_t kPortion = 1024; // seekers that a thread takes at a time
-// Where more than one patch in so many is written, all are uploaded: that is faster than many small regions.
+// All patches are uploaded where more than one in so many is written: that is faster than many small regions.
 constexpr size_t kUploadsAll = 64;
 
 // A patch that seeks another own point, and the cells that it tries.
