@@ -58,6 +58,7 @@ struct BounceLane {
     ADDRESS lightA; // vec4[patchCount]: what bounces and what comes of it, in turns
     ADDRESS lightB;
     ADDRESS sums; // vec4[kReplicates][patchCount]
+    vec3 sky;     // radiance that kLinkSky brings [cd/m^2]
 };
 // Says what becomes of sums over links.
 const uint kNoSums = 0u, kNewSums = 1u, kMoreSums = 2u;
@@ -80,6 +81,19 @@ struct BouncePush {
     uint sums;
     float scale; // from the sum of all sums to the mean
     float reflectivity;
+};
+// A layer's variance where it makes the composite's local error.
+struct LayerWorthPush {
+    ADDRESS patches;
+    ADDRESS composite; // vec4[patchCount]: light, what is proportional to its standard error
+    ADDRESS direct;    // as of LayerResultPush
+    ADDRESS result;    // likewise
+    ADDRESS
+    chunkSums;       // vec4[chunkCount]: variance of direct and of indirect light by its worth, and as it is
+    float deviation; // standard error over the composite's
+    float least;     // what is darker is off relative to this [cd/m^2]
+    float aim;       // that 95 % of all texels are to come within
+    uint chunkCount;
 };
 struct ChunkSumPush {
     ADDRESS values; // float[groups][chunkCount][width]

@@ -58,6 +58,9 @@ public:
     void recordGather(VkCommandBuffer cmd, const LightBuffers& light, const Work& work,
                       const vk::Buffer& sums, const vk::Buffer& direct) const;
 
+    /// Tells whether patches pick some of a group's polygons, as there are many.
+    bool picks(uint32_t group) const { return !groups_[group].all; }
+
     /// Every patch samples all of so few polygons; of more, each patch picks some in every sample pass. No
     /// number of polygons takes more memory.
     static constexpr uint32_t kAllEmitters = 4;

@@ -23,12 +23,12 @@ constexpr uint32_t kMostPasses = Solver::kMaxPasses;
 // Hybrid's first pass is the direct light: with a number of passes the others are gathered over all links.
 // Else bounces converge over the links of the first sample pass.
 BounceJob::BounceJob(Tools& tools, Desc desc) : tools_(&tools), desc_(std::move(desc)) {
-    std::vector<const vk::Buffer*> direct;
+    std::vector<LayerGather::LaneLight> light;
     for (Lane& lane : desc_.lanes) {
         lane.look = kFirstLook;
-        direct.push_back(lane.layer->direct.get());
+        light.push_back({lane.layer->direct.get(), lane.sky});
     }
-    tools.gather.begin(direct);
+    tools.gather.begin(light);
     beginPass(tools.kit.settings.passes > 0 ? Stage::Gather : Stage::Bounces);
 }
 

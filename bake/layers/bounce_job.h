@@ -26,6 +26,7 @@ public:
     struct Lane {
         Layer* layer = nullptr;
         LayerLevel target;
+        glm::vec3 sky{0.0f};   // radiance that links to the sky bring it (LayerLights::skyOfLinks)
         bool live = true;      // goes on in this stage
         uint32_t look = 0;     // after so many bounces the CPU looks whether they have converged
         uint32_t looked = 0;   // after so many it last did

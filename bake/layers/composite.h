@@ -24,6 +24,16 @@ struct Composite {
     std::vector<Share> shares;
 };
 
+/// How far the composite is off locally, and what each layer's variance has to do with it.
+struct CompositeLocal {
+    /// The mean over a layer's variance of what that is worth where it is, in any one unit.
+    struct Worth {
+        double direct = 1, indirect = 1;
+    };
+    double error = 1;          // 95th percentile
+    std::vector<Worth> worths; // of each layer; empty: all are worth the same
+};
+
 /// Direct light's errors are independent from layer to layer. Indirect light's go together as their sketches
 /// tell, for layers see through the same links; those of a layer without a sketch count as if they had the
 /// others' sign everywhere. What later bounces bring is light, and adds up.

@@ -137,10 +137,12 @@ std::vector<double> biasOf(std::span<Layer* const> layers, double alike) {
 
 void CompositeReport::tell(const Layers& layers, SolverProgress& progress, bool weighedAnew) {
     local_.reset();
+    worths_.clear();
     if (!weighedAnew && wantsLocalError() && schedule_.areTogether(layers)) measure(layers);
-    const std::optional<double> local = local_ ? std::optional(local_->p95) : std::nullopt;
-    schedule_.apportion(layers, weighedAnew, local);
-    const LayerSchedule::Told told = schedule_.told(layers, local);
+    const CompositeLocal local{.error = local_ ? local_->p95 : 1.0, .worths = worths_};
+    schedule_.apportion(layers, weighedAnew, local_ ? &local : nullptr);
+    const LayerSchedule::Told told =
+        schedule_.told(layers, local_ ? std::optional(local_->p95) : std::nullopt);
     progress.error = told.error;
     progress.converged = told.converged;
     progress.localError95 = local_ ? local_->p95 : 1.0;
@@ -167,6 +169,41 @@ void CompositeReport::measure(const Layers& layers) {
     const double error = std::sqrt(std::max(0.0, square));
     local_ = bias.empty() ? localErrorOf(pool, light, patches, error)
                           : localErrorOf(pool, light, patches, error, bias);
+    const double asked = kit_.settings.localError;
+    if (asked > 0 && local_->p95 > asked) worths_ = worthsOf(layers, error);
+}
+
+// Asks the device what the variances of each layer are worth where they are. The mixer has mixed the
+// composite.
+std::vector<CompositeLocal::Worth> CompositeReport::worthsOf(const Layers& layers, double error) const {
+    const vk::Device& device = kit_.input.device;
+    const LocalScale scale =
+        scaleOf(device.workers(), mixer_.light(layers), kit_.input.patches.scene.patches, error);
+    const LayerPass::WorthWork work{.composite = mixer_.composite(),
+                                    .deviation = static_cast<float>(scale.deviation),
+                                    .least = scale.least,
+                                    .aim = static_cast<float>(local_->p95)};
+    const vk::Buffer sums(
+        device,
+        {.size = layers.size() * sizeof(glm::vec4), .memory = vk::Memory::Host, .name = "worths of layers"});
+    VkCommandBuffer cmd = kit_.commands.begin();
+    for (size_t i = 0; i < layers.size(); ++i) {
+        sums.as<glm::vec4>()[i] = glm::vec4(0.0f);
+        if (!layers[i]->shines() || !layers[i]->has()) continue;
+        pass_.recordWorth(cmd, kit_.input.light, *layers[i], work, kit_.buffers.chunkSums);
+        vk::barrier(cmd);
+        chunkSums_.record(cmd, {.values = kit_.buffers.chunkSums.address(),
+                                .sums = sums.address() + i * sizeof(glm::vec4),
+                                .chunkCount = kit_.chunkCount(),
+                                .width = 4});
+        vk::barrier(cmd);
+    }
+    kit_.run(cmd);
+    const auto mean = [](double worth, double variance) { return variance > 0 ? worth / variance : 0.0; };
+    std::vector<CompositeLocal::Worth> worths;
+    for (const glm::vec4& sum : std::span(sums.as<glm::vec4>(), layers.size()))
+        worths.push_back({mean(sum.x, sum.z), mean(sum.y, sum.w)});
+    return worths;
 }
 
 } // namespace relume

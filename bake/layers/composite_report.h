@@ -4,7 +4,9 @@
 #include <span>
 
 #include "assets/base/worker_pool.h"
+#include "bake/base/chunk_sums.h"
 #include "bake/base/local_error.h"
+#include "bake/layers/composite.h"
 #include "bake/layers/layer_mixer.h"
 #include "bake/layers/layer_schedule.h"
 
@@ -29,8 +31,8 @@ class CompositeReport {
 public:
     using Layers = LayerSchedule::Layers;
 
-    CompositeReport(LinkKit& kit, const LayerSchedule& schedule, LayerMixer& mixer)
-        : kit_(kit), schedule_(schedule), mixer_(mixer) {}
+    CompositeReport(LinkKit& kit, const LayerSchedule& schedule, const LayerPass& pass, LayerMixer& mixer)
+        : kit_(kit), schedule_(schedule), pass_(pass), mixer_(mixer), chunkSums_(kit.input.device) {}
 
     /// Decides anew. It is to be called whenever a level has changed and, as `weighedAnew`, when weights
     /// have, or which layers there are.
@@ -42,11 +44,15 @@ public:
 private:
     bool wantsLocalError() const { return !kit_.settings.live || kit_.settings.localError > 0; }
     void measure(const Layers& layers);
+    std::vector<CompositeLocal::Worth> worthsOf(const Layers& layers, double error) const;
 
     LinkKit& kit_;
     const LayerSchedule& schedule_;
+    const LayerPass& pass_;
     LayerMixer& mixer_;
-    std::optional<LocalError> local_; // of the composite as it is now; none: not measured
+    ChunkSumPass chunkSums_;
+    std::optional<LocalError> local_;           // of the composite as it is now; none: not measured
+    std::vector<CompositeLocal::Worth> worths_; // where it is off too far; else empty
 };
 
 } // namespace relume

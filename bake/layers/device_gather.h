@@ -13,7 +13,7 @@ public:
 
     bool onCpu() const override { return false; }
     uint32_t room(uint32_t layers) override { return bounces_.room(layers); }
-    void begin(std::span<const vk::Buffer* const> direct) override { bounces_.begin(direct); }
+    void begin(std::span<const LaneLight> light) override { bounces_.begin(light); }
     void setLive(uint32_t lanes) override { bounces_.setLive(lanes); }
     void recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) override;
     void recordSend(VkCommandBuffer cmd) override;

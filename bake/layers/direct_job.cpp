@@ -230,7 +230,7 @@ DirectJob::End DirectJob::endStep(VkCommandBuffer cmd) {
     layer_->directSteps.push_back(end);
     if (end == target_.directSamplePasses) return End::Made;
     begun_ = false;
-    return seekSamplePass() ? End::NotYet : endStep(kit.commands.begin());
+    return layer_->rays() > 0 && seekSamplePass() ? End::NotYet : endStep(kit.commands.begin());
 }
 
 DirectJob::End DirectJob::endRepairStep(bool pauses) {

@@ -41,7 +41,8 @@ void HostGather::recordNewSums(VkCommandBuffer cmd) {
 
 void HostGather::recordGather(VkCommandBuffer cmd, const Work& work) {
     LinkGatherPass::Work links = work.links;
-    links.direct = direct_;
+    links.direct = light_.direct;
+    links.sky = light_.sky;
     kit_.gatherPass.record(cmd, kit_.input.light, kit_.buffers, links);
 }
 
@@ -57,7 +58,7 @@ void HostGather::recordPassEnd(VkCommandBuffer cmd, const PassEnd& end) {
     }
     light.turn();
     vk::barrier(cmd);
-    kit_.gatherPass.recordCompose(cmd, light, kit_.buffers, direct_, end.samples);
+    kit_.gatherPass.recordCompose(cmd, light, kit_.buffers, light_.direct, end.samples);
     if (end.changes) {
         vk::barrier(cmd);
         resolvePass_.recordChange(cmd, light, kit_.buffers);

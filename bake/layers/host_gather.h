@@ -13,7 +13,7 @@ public:
 
     bool onCpu() const override { return true; }
     uint32_t room(uint32_t) override { return 1; }
-    void begin(std::span<const vk::Buffer* const> direct) override { direct_ = direct.front(); }
+    void begin(std::span<const LaneLight> light) override { light_ = light.front(); }
     void setLive(uint32_t) override {} // a lane alone goes on until it ends
     void recordStart(VkCommandBuffer cmd, std::span<const vk::Buffer* const> light) override;
     void recordSend(VkCommandBuffer cmd) override;
@@ -30,7 +30,7 @@ private:
     const ChunkSenders& senders_;
     RadiancePass radiancePass_;
     ResolvePass resolvePass_;
-    const vk::Buffer* direct_ = nullptr; // of the lane
+    LaneLight light_; // of the lane
 };
 
 } // namespace relume

@@ -94,6 +94,13 @@ uint32_t Layer::rays() const {
     return rays;
 }
 
+double Layer::raysWeighed(double picked) const {
+    double rays = 0;
+    for (const DirectPart& part : parts)
+        rays += (part.picks ? picked : 1.0) * part.rays;
+    return rays;
+}
+
 bool allLit(const std::vector<std::unique_ptr<Layer>>& layers) {
     return std::all_of(layers.begin(), layers.end(), [](const std::unique_ptr<Layer>& layer) {
         return !layer->shines() || layer->directSamplePasses > 0;

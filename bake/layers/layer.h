@@ -47,7 +47,8 @@ uint32_t nextDirectStep(uint32_t samplePasses);
 struct DirectPart {
     bool emitters = false;
     uint32_t group = 0;
-    uint32_t rays = 0; // per patch and sample pass; 0: nothing in it shines
+    uint32_t rays = 0;  // per patch and sample pass; 0: nothing in it shines
+    bool picks = false; // each ray goes to one of many polygons, which is picked
 };
 
 /// Tells how far a layer is to go. It follows from all layers and their weights as they are now
@@ -101,6 +102,8 @@ struct Layer {
     double directShare() const;
     /// Returns the rays per patch and sample pass of its direct light; 0: nothing in it shines.
     uint32_t rays() const;
+    /// Returns the same where each ray to a polygon that is picked counts as so many.
+    double raysWeighed(double picked) const;
     /// Tells whether it adds to the picture: its weight is not 0.
     bool shines() const { return source.weight != glm::vec3(0.0f); }
     bool isGroup() const { return source.key.kind == LightKey::Kind::Group; }

@@ -30,8 +30,10 @@ LayerBounces::LayerBounces(const vk::Device& device, const LightBuffers& light, 
       sum_(device) {
     const uint32_t invocations =
         std::min(device.limits().maxComputeWorkGroupInvocations, device.limits().maxComputeWorkGroupSize[0]);
-    for (size_t i = 0; i < kPrograms.size() && (kChunk << i) <= invocations; ++i)
-        programs_.emplace_back(device, kPrograms[i]);
+    for (size_t i = 0; i < kPrograms.size() && (kChunk << i) <= invocations; ++i) {
+        programs_.emplace_back(device, kPrograms[i], vk::Constants{0u});
+        skyPrograms_.push_back(vk::ComputeProgram::builtAtFirstUse(device, kPrograms[i], {1u}));
+    }
     makeSent(1);
 }
 
@@ -64,19 +66,22 @@ uint32_t LayerBounces::room(uint32_t layers) {
     return std::min(layers, room_);
 }
 
-void LayerBounces::begin(std::span<const vk::Buffer* const> direct) {
-    count_ = static_cast<uint32_t>(direct.size());
+void LayerBounces::begin(std::span<const LayerGather::LaneLight> light) {
+    count_ = static_cast<uint32_t>(light.size());
     lanesOf_ = std::bit_ceil(count_);
     live_ = (1u << count_) - 1u;
     from_ = now_ = 0;
+    seesSky_ = std::any_of(light.begin(), light.end(),
+                           [](const LayerGather::LaneLight& lane) { return lane.sky != glm::vec3(0.0f); });
     auto* lanes = lanes_.as<shader::BounceLane>();
     for (uint32_t i = 0; i < kMostLanes; ++i) {
         const uint32_t lane = i < count_ ? i : 0; // those that nobody needs only read
         const bool first = lane == 0;
-        lanes[i] = {.direct = direct[lane]->address(),
+        lanes[i] = {.direct = light[lane].direct->address(),
                     .lightA = first ? light_.ligIn.address() : beside_[lane - 1].lightA.address(),
                     .lightB = first ? light_.ligOut.address() : beside_[lane - 1].lightB.address(),
-                    .sums = first ? sums_.address() : beside_[lane - 1].sums.address()};
+                    .sums = first ? sums_.address() : beside_[lane - 1].sums.address(),
+                    .sky = light[lane].sky};
     }
 }
 
@@ -102,7 +107,8 @@ shader::BouncePush LayerBounces::push(float reflectivity) const {
 }
 
 void LayerBounces::dispatch(VkCommandBuffer cmd, const shader::BouncePush& push, uint32_t chunks) const {
-    dispatchChunks(programs_[std::countr_zero(lanesOf_)], cmd, push, chunks);
+    const std::vector<vk::ComputeProgram>& programs = seesSky_ ? skyPrograms_ : programs_;
+    dispatchChunks(programs[std::countr_zero(lanesOf_)], cmd, push, chunks);
 }
 
 void LayerBounces::recordSend(VkCommandBuffer cmd, float reflectivity) const {

@@ -9,6 +9,7 @@
 #include "bake/base/chunk_order.h"
 #include "bake/base/chunk_sums.h"
 #include "bake/base/shader_types.h"
+#include "bake/layers/layer_gather.h"
 #include "bake/surface/light_buffers.h"
 #include "bake/vk/program.h"
 
@@ -32,8 +33,8 @@ public:
     /// Returns for how many of so many layers there is room; memory for more than one is taken when it is
     /// asked for.
     uint32_t room(uint32_t layers);
-    /// Begins with a layer for each of these buffers of direct light, vec4 per patch. None may be under way.
-    void begin(std::span<const vk::Buffer* const> direct);
+    /// Begins with a layer for each of these. None may be under way.
+    void begin(std::span<const LayerGather::LaneLight> light);
     /// Sets which of the layers go on, a bit each; the others keep their light and sums.
     void setLive(uint32_t lanes) { live_ = lanes; }
     /// Makes their light that of these buffers, vec4 per patch each.
@@ -77,10 +78,13 @@ private:
     vk::Buffer lanes_;               // BounceLane[kMostLanes]
     std::array<vk::Buffer, 2> sent_; // uvec2[patches][lanesOf_], one is read while the other one is made
     vk::Buffer changes_, totals_;
-    std::vector<Beside> beside_;               // lanes beside the first one
-    std::vector<vk::ComputeProgram> programs_; // for 1, 2, 4 and 8 layers, as far as the device runs them
+    std::vector<Beside> beside_; // lanes beside the first one
+    // For 1, 2, 4 and 8 layers, as far as the device runs them; skyPrograms_ where links bring any the sky's
+    // light.
+    std::vector<vk::ComputeProgram> programs_, skyPrograms_;
     ChunkSumPass sum_;
     uint32_t lanesOf_ = 1; // of the program that runs
+    bool seesSky_ = false; // likewise
     uint32_t room_ = 1;    // lanes that there is memory for
     uint32_t count_ = 1;   // layers
     uint32_t live_ = 1, from_ = 0, now_ = 0;

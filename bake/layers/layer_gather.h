@@ -28,8 +28,14 @@ public:
     virtual bool onCpu() const = 0;
     /// Returns for how many of so many layers there is room; takes the memory for more than one.
     virtual uint32_t room(uint32_t layers) = 0;
-    /// Begins with a lane for each of these buffers of direct light, vec4 per patch.
-    virtual void begin(std::span<const vk::Buffer* const> direct) = 0;
+    /// What comes to a lane at each bounce from outside: direct light, vec4 per patch, and the radiance of
+    /// the sky that links bring.
+    struct LaneLight {
+        const vk::Buffer* direct = nullptr;
+        glm::vec3 sky{0.0f};
+    };
+    /// Begins with a lane for each of these.
+    virtual void begin(std::span<const LaneLight> light) = 0;
     /// Sets which of the lanes go on, a bit each.
     virtual void setLive(uint32_t lanes) = 0;
 

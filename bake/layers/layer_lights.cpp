@@ -1,6 +1,7 @@
 #include "bake/layers/layer_lights.h"
 
 #include "assets/base/clock.h"
+#include "bake/gather/sky_links.h"
 
 #include <algorithm>
 #include <utility>
@@ -36,7 +37,7 @@ void LayerLights::assign(const std::vector<std::unique_ptr<Layer>>& layers) {
     std::vector<LampChoice> lamps;
     const auto choose = [&](const LightKey& key, const glm::vec3& color, uint32_t layer) {
         if (key.kind == Kind::Lamp) lamps.push_back({key.index, color, layer});
-        if (key.kind == Kind::Sky)
+        if (key.kind == Kind::Sky && !linksMaySeeSky(scene.sky, kit_.settings))
             lamps.push_back({static_cast<uint32_t>(scene.lights.size()), color, layer});
     };
     uint32_t emitters = 0; // groups of layers before
@@ -51,13 +52,25 @@ void LayerLights::assign(const std::vector<std::unique_ptr<Layer>>& layers) {
             shines = shines || member.key.kind == Kind::Emitter;
         }
         if (!shines) continue;
-        layer.parts.push_back({.emitters = true, .group = emitters, .rays = emitters_.rays(emitters)});
+        layer.parts.push_back({.emitters = true,
+                               .group = emitters,
+                               .rays = emitters_.rays(emitters),
+                               .picks = emitters_.picks(emitters)});
         ++emitters;
     }
     lamps_.update(scene, lamps);
     for (uint32_t i = 0; i < layers.size(); ++i)
         for (const uint32_t group : lamps_.groupsOf(i))
             layers[i]->parts.push_back({.emitters = false, .group = group, .rays = lamps_.rays(group)});
+}
+
+glm::vec3 LayerLights::skyOfLinks(const Layer& layer) const {
+    glm::vec3 sky(0.0f);
+    if (!linksMaySeeSky(kit_.input.scene.sky, kit_.settings)) return sky;
+    if (layer.source.key.kind == Kind::Sky) sky = glm::vec3(1.0f);
+    for (const LightSource& member : layer.members)
+        if (member.key.kind == Kind::Sky) sky += member.weight;
+    return sky;
 }
 
 // Makes one group for each layer with mesh lights, in the layers' order.

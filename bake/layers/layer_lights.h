@@ -25,6 +25,9 @@ public:
     /// with
     /// 1. No batch may be under way.
     void assign(const std::vector<std::unique_ptr<Layer>>& layers);
+    /// Returns the radiance of the sky that links bring a layer, for a unit of its weight; 0: none of it is
+    /// the sky's, or rays are sent to that.
+    glm::vec3 skyOfLinks(const Layer& layer) const;
     /// Follows triangles that stand elsewhere now. Returns whether rays to suns and the sky end elsewhere,
     /// too.
     bool follow();

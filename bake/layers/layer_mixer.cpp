@@ -7,7 +7,7 @@ namespace relume {
 namespace {
 
 bool addsDirect(const std::unique_ptr<Layer>& layer) {
-    return layer->shines() && layer->direct && layer->directSamplePasses > 0;
+    return layer->shines() && layer->direct && layer->directSamplePasses > 0 && layer->rays() > 0;
 }
 
 } // namespace

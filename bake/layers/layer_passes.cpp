@@ -75,6 +75,20 @@ void LayerPass::recordSketch(VkCommandBuffer cmd, const LightBuffers& light, con
     sketch_.dispatch(cmd, push, shader::kSketchStride, 1);
 }
 
+void LayerPass::recordWorth(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
+                            const WorthWork& work, const vk::Buffer& chunkSums) const {
+    const shader::LayerWorthPush push{.patches = light.patches.address(),
+                                      .composite = work.composite.address(),
+                                      .direct = layer.direct->address(),
+                                      .result = layer.result.address(),
+                                      .chunkSums = chunkSums.address(),
+                                      .deviation = work.deviation,
+                                      .least = work.least,
+                                      .aim = work.aim,
+                                      .chunkCount = light.chunkCount};
+    dispatchChunks(worth_, cmd, push, light.chunkCount);
+}
+
 void LayerPass::recordMix(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count,
                           const vk::Buffer* base, const vk::Buffer& light) const {
     const auto patches = static_cast<uint32_t>(light.size() / sizeof(glm::vec4));

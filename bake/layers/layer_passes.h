@@ -27,7 +27,8 @@ class LayerPass {
 public:
     explicit LayerPass(const vk::Device& device)
         : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix"),
-          mixDirect_(device, "layer_mix_direct"), sketch_(device, "layer_sketch") {}
+          mixDirect_(device, "layer_mix_direct"), sketch_(device, "layer_sketch"),
+          worth_(vk::ComputeProgram::builtAtFirstUse(device, "layer_worth")) {}
 
     /// Direct light of a layer, and what is new of it.
     struct DirectWork {
@@ -45,6 +46,17 @@ public:
     /// Makes a sketch (SketchPush) of sums over links, vec4[kReplicates][patches].
     void recordSketch(VkCommandBuffer cmd, const LightBuffers& light, const vk::Buffer& sums,
                       const vk::Buffer& sketch) const;
+    /// Says how far off the composite is, patch by patch, and what is asked of it.
+    struct WorthWork {
+        const vk::Buffer& composite; // vec4 per patch, as recordMix makes it
+        float deviation = 0;         // standard error over the composite's w
+        float least = 0;             // what is darker is off relative to this [cd/m^2]
+        float aim = 0;               // local error that 95 % of all texels are to come within
+    };
+    /// Makes in chunkSums a vec4 per chunk: variance of the layer's direct and of its indirect light, each
+    /// patch by what it is worth for the local error (lib/local_error.glsl), and both as they are.
+    void recordWorth(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
+                     const WorthWork& work, const vk::Buffer& chunkSums) const;
     /// Makes light = base + the sum of weights (LayerWeight[count]) times layers. base is nullptr for
     /// nothing.
     void recordMix(VkCommandBuffer cmd, const vk::Buffer& weights, uint32_t count, const vk::Buffer* base,
@@ -54,7 +66,7 @@ public:
                          const vk::Buffer& direct) const;
 
 private:
-    vk::ComputeProgram direct_, result_, mix_, mixDirect_, sketch_;
+    vk::ComputeProgram direct_, result_, mix_, mixDirect_, sketch_, worth_;
 };
 
 } // namespace relume

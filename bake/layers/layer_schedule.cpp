@@ -9,11 +9,6 @@
 namespace relume {
 namespace {
 
-// A segment towards a light counts as so many links.
-constexpr double kSegmentLinks = 1.0;
-// Links are traced once for all layers, as far as there is memory; what a layer pays for itself is to gather
-// them, in all its bounces, which is this share of tracing them (two CPU cores, three bounces).
-constexpr double kGatherShare = 0.15;
 // A level aims at this share of the variance that is allowed: a little too much costs bounces of another
 // level.
 constexpr double kAimed = 0.95;
@@ -67,14 +62,14 @@ SampledPart LayerSchedule::directPart(const Layer& layer, double variance) const
     return {.samplePasses = layer.level.directSamplePasses,
             .most = lastLevel().directSamplePasses,
             .variance = variance,
-            .costOfSamplePass = kSegmentLinks * std::max(1u, layer.rays()) * layer.directShare(),
+            .costOfSamplePass = std::max(1.0, layer.raysWeighed(rules_.costs.picked)) * layer.directShare(),
             .doubles = true,
             .fall = layer.plan.directFall};
 }
 
 // So many layers share what it costs to trace links.
 SampledPart LayerSchedule::linkPart(const Layer& layer, double variance, size_t sharers) const {
-    const double cost = kGatherShare + (1.0 - kGatherShare) / static_cast<double>(sharers);
+    const double own = rules_.costs.gather, cost = own + (1.0 - own) / static_cast<double>(sharers);
     return {.samplePasses = layer.level.linkSamplePasses,
             .most = lastLevel().linkSamplePasses,
             .variance = variance,
@@ -98,38 +93,63 @@ LayerLevel LayerSchedule::levelByItself(const Layer& layer) const {
     return {samplePasses.first, samplePasses.second};
 }
 
-// Returns the relRMSE that the composite is to have; 0: any. All local errors fall with it.
-double LayerSchedule::aimOf(double error, std::optional<double> localError) const {
-    if (rules_.localError <= 0 || !localError || *localError <= rules_.localError) return rules_.error;
-    const double aim = error * rules_.localError / *localError;
-    return rules_.error > 0 ? std::min(rules_.error, aim) : aim;
+// Holds the layers that play a part, their numbers, and what they make together.
+struct LayerSchedule::Standing {
+    std::vector<Layer*> layers;
+    std::vector<size_t> numbers; // among all
+    Composite composite;
+};
+
+// Returns the levels by which all variances together come to this share of what they are, at the least cost:
+// the composite's, or what of it makes the local error.
+std::vector<LayerLevel> LayerSchedule::levelsFor(const Standing& standing, const CompositeLocal* local,
+                                                 double share) const {
+    const std::vector<Layer*>& layers = standing.layers;
+    std::vector<SampledPart> parts;
+    double sum = 0;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const CompositeLocal::Worth worth =
+            local && !local->worths.empty() ? local->worths[standing.numbers[i]] : CompositeLocal::Worth();
+        const Composite::Share& own = standing.composite.shares[i];
+        parts.push_back(directPart(*layers[i], own.direct * worth.direct));
+        parts.push_back(linkPart(*layers[i], own.indirect * worth.indirect, layers.size()));
+        sum += own.direct * worth.direct + own.indirect * worth.indirect;
+    }
+    const std::vector<uint32_t> samplePasses = samplePassesFor(parts, kAimed * share * sum);
+    std::vector<LayerLevel> levels;
+    for (size_t i = 0; i < layers.size(); ++i)
+        levels.push_back({samplePasses[2 * i], samplePasses[2 * i + 1]});
+    return levels;
 }
 
-// Returns the levels by which the composite has its error at the least cost. Where it is later bounces that
-// it lacks, the layer that lacks most goes on: the next level's bounces converge anew.
-std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>& layers,
-                                                      std::optional<double> localError) const {
-    const Composite composite = compositeOf(layers);
+// Returns the levels by which the composite has its error and its local error at the least cost. Where it is
+// later bounces that it lacks, the layer that lacks most goes on: the next level's bounces converge anew.
+std::vector<LayerLevel> LayerSchedule::levelsTogether(const Standing& standing,
+                                                      const CompositeLocal* local) const {
+    const std::vector<Layer*>& layers = standing.layers;
+    const Composite& composite = standing.composite;
     std::vector<LayerLevel> levels;
     for (const Layer* layer : layers)
         levels.push_back(layer->level);
-    const double aim = aimOf(composite.error, localError);
-    if (aim <= 0 || composite.error <= aim) return levels;
-    std::vector<SampledPart> parts;
-    for (size_t i = 0; i < layers.size(); ++i) {
-        parts.push_back(directPart(*layers[i], composite.shares[i].direct));
-        parts.push_back(linkPart(*layers[i], composite.shares[i].indirect, layers.size()));
+    const std::vector<LayerLevel> before = levels;
+    const auto raise = [&](const std::vector<LayerLevel>& wanted) {
+        std::transform(levels.begin(), levels.end(), wanted.begin(), levels.begin(), atLeast);
+    };
+    const bool far = rules_.error > 0 && composite.error > rules_.error;
+    const bool farLocally = rules_.localError > 0 && local && local->error > rules_.localError;
+    if (!far && !farLocally) return levels;
+    if (far) {
+        const double iteration = std::min(composite.iteration, kIterationShare * rules_.error);
+        const double sampled = composite.error * composite.error - composite.iteration * composite.iteration;
+        if (sampled > 0)
+            raise(levelsFor(standing, nullptr,
+                            (rules_.error * rules_.error - iteration * iteration) / sampled));
     }
-    const double iteration = std::min(composite.iteration, kIterationShare * aim);
-    const double allowed = kAimed * (aim * aim - iteration * iteration);
-    const std::vector<uint32_t> samplePasses = samplePassesFor(parts, allowed);
-    bool more = false;
-    for (size_t i = 0; i < layers.size(); ++i) {
-        const LayerLevel level{samplePasses[2 * i], samplePasses[2 * i + 1]};
-        more = more || level != levels[i];
-        levels[i] = level;
+    if (farLocally) {
+        const double ratio = rules_.localError / local->error;
+        raise(levelsFor(standing, local, ratio * ratio));
     }
-    if (more) return levels;
+    if (levels != before) return levels;
     size_t worst = 0;
     for (size_t i = 1; i < layers.size(); ++i)
         if (composite.shares[i].error > composite.shares[worst].error) worst = i;
@@ -142,11 +162,12 @@ std::vector<LayerLevel> LayerSchedule::levelsTogether(const std::vector<Layer*>&
 
 // The composite decides on the levels of all layers at once, and anew when each has its own: then they depend
 // neither on the order in which layers are made nor on who bounces along.
-void LayerSchedule::apportion(const Layers& layers, bool weighedAnew,
-                              std::optional<double> localError) const {
+void LayerSchedule::apportion(const Layers& layers, bool weighedAnew, const CompositeLocal* local) const {
     bool underWay = false;
-    std::vector<Layer*> there;
-    for (const std::unique_ptr<Layer>& layer : layers) {
+    Standing standing;
+    std::vector<Layer*>& there = standing.layers;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const std::unique_ptr<Layer>& layer = layers[i];
         const bool goesOn = layer->has() && !layer->redo;
         const bool over = goesOn && isOver(*layer);
         if (weighedAnew || !goesOn || over || !layer->shines()) layer->plan.wanted = layer->level;
@@ -155,11 +176,14 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew,
         layer->plan.converged = goesOn && layer->plan.wanted == layer->level;
         if (!layer->shines()) continue;
         underWay = underWay || !layer->plan.converged;
-        if (goesOn && layer->light > 0) there.push_back(layer.get());
+        if (!goesOn || layer->light <= 0) continue;
+        there.push_back(layer.get());
+        standing.numbers.push_back(i);
     }
     if (takesAll()) return;
     if (!underWay) {
-        const std::vector<LayerLevel> together = levelsTogether(there, localError);
+        standing.composite = compositeOf(there);
+        const std::vector<LayerLevel> together = levelsTogether(standing, local);
         for (size_t i = 0; i < there.size(); ++i)
             there[i]->plan.wanted = together[i];
     }

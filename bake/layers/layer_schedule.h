@@ -6,9 +6,21 @@
 #include <vector>
 
 #include "bake/gather/sample_plan.h"
+#include "bake/layers/composite.h"
 #include "bake/layers/layer.h"
 
 namespace relume {
+
+/// Says what layers cost, in links: a segment towards a light is one. Links are traced once for all layers,
+/// as far as there is memory, but gathered for each in all its bounces.
+struct LayerCosts {
+    double picked = 1.0; // of a segment to one of many polygons, which is picked
+    double gather =
+        0.15; // what a layer pays for links itself, as a share of tracing them (two CPU cores, three bounces)
+};
+/// Those of a GPU, where layers bounce side by side, and picks take as long as segments (H100: 4 and 0.02 in
+/// the atrium, 0.01 in the town).
+constexpr LayerCosts kGpuLayerCosts{.picked = 3.0, .gather = 0.02};
 
 /// Holds what a schedule goes by for a whole bake.
 struct ScheduleRules {
@@ -22,6 +34,7 @@ struct ScheduleRules {
                            // samples are taken
     bool live = false;     // a viewer looks
     bool together = false; // layers bounce side by side
+    LayerCosts costs = {};
 };
 
 /// Holds what is under way while the schedule is asked, besides the layers.
@@ -60,9 +73,9 @@ public:
     /// Decides for each layer how far it is to go, by its share of the composite as it is weighed now: sets
     /// its plan. It is to be called whenever a level has changed and, as `weighedAnew`, when
     /// weights have, or which layers there are; what was decided before counts no more then.
-    /// `localError` is the composite's, where it is known.
+    /// `local` is the composite's local error, where it is known.
     void apportion(const Layers& layers, bool weighedAnew = false,
-                   std::optional<double> localError = {}) const;
+                   const CompositeLocal* local = nullptr) const;
     /// Tells whether each layer has the level that it was to have: how far all go is decided anew then.
     bool areTogether(const Layers& layers) const;
     /// Returns the level to be made now. One that was there before is made in the steps that it was made in.
@@ -121,13 +134,14 @@ private:
     Step nextLevelStep(const Layers& layers, const ScheduleState& state) const;
     bool takesAll() const { return rules_.error <= 0 && rules_.localError <= 0 && rules_.layerError <= 0; }
     bool isOver(const Layer& layer) const { return layer.level == lastLevel() || layer.light <= 0; }
-    double aimOf(double error, std::optional<double> localError) const;
     bool isGoodEnough(const Layer& layer) const;
     SampledPart directPart(const Layer& layer, double variance) const;
     SampledPart linkPart(const Layer& layer, double variance, size_t sharers) const;
     LayerLevel levelByItself(const Layer& layer) const;
-    std::vector<LayerLevel> levelsTogether(const std::vector<Layer*>& layers,
-                                           std::optional<double> localError) const;
+    struct Standing;
+    std::vector<LayerLevel> levelsFor(const Standing& standing, const CompositeLocal* local,
+                                      double allowed) const;
+    std::vector<LayerLevel> levelsTogether(const Standing& standing, const CompositeLocal* local) const;
     std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
     std::optional<size_t> nextLayer(const Layers& layers) const;
     std::optional<size_t> directFirst(const Layers& layers, size_t index) const;

@@ -69,7 +69,8 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                  .localError = settings.localError,
                  .layerError = settings.layers.error,
                  .live = settings.live,
-                 .together = !kit_.gatherPass.onCpu()}),
+                 .together = !kit_.gatherPass.onCpu(),
+                 .costs = kit_.wide() ? kGpuLayerCosts : LayerCosts()}),
       store_(input.device, kit_.lightBytes(), settings.layers.bytes, settings.layers.deviceBytes),
       lights_(kit_), penumbra_(kit_), gather_(makeGather(kit_, layerPass_, senders_)),
       batches_(kit_, {.chunkCount = kit_.chunkCount(),
@@ -79,7 +80,7 @@ LayerSolver::LayerSolver(const SolverInput& input, const SolverSettings& setting
                       .deviceBytes = settings.cache.deviceBytes}),
       directTools_{kit_, layerPass_, lights_, penumbra_, store_, BatchRate(kit_.wide())},
       bounceTools_{kit_, *gather_, batches_, senders_}, mixer_(kit_, layerPass_),
-      report_(kit_, schedule_, mixer_), relinker_(kit_, batches_.cache()) {
+      report_(kit_, schedule_, layerPass_, mixer_), relinker_(kit_, batches_.cache()) {
     batchMs_ = settings.batchMs;
     input.light.resizeRadiance(input.device, kit_.lightBytes()); // another solver had nodes in it
     VkCommandBuffer cmd = kit_.commands.begin();
@@ -186,7 +187,8 @@ void LayerSolver::endRepair() {
 
 // Begins with the layer itself and others that have all their direct light.
 void LayerSolver::beginBounces(Layer& leader, LayerLevel target) {
-    std::vector<BounceJob::Lane> lanes = {{.layer = &leader, .target = target}};
+    std::vector<BounceJob::Lane> lanes = {
+        {.layer = &leader, .target = target, .sky = lights_.skyOfLinks(leader)}};
     if (target.linkSamplePasses == 0) {
         job_ = std::monostate();
         return finishLevel(lanes.front(), 0, 0);
@@ -199,7 +201,8 @@ void LayerSolver::beginBounces(Layer& leader, LayerLevel target) {
         const LayerLevel level = schedule_.targetOf(*layers()[i]);
         if (layers()[i]->directSamplePasses >= level.directSamplePasses &&
             lanes.size() < LayerBounces::kMostLanes)
-            lanes.push_back({.layer = layers()[i].get(), .target = level});
+            lanes.push_back(
+                {.layer = layers()[i].get(), .target = level, .sky = lights_.skyOfLinks(*layers()[i])});
     }
     if (lanes.size() > 1) lanes.resize(gather_->room(static_cast<uint32_t>(lanes.size())));
     job_.emplace<BounceJob>(bounceTools_,
@@ -261,8 +264,9 @@ void LayerSolver::finishLevel(const BounceJob::Lane& lane, uint32_t index, uint3
     progress_.passes += lane.looked + gathers;
     progress_.pairs += lane.gathered;
     progress_.cacheBytes = batches_.cache().bytes();
-    if (&layer == sum_.get()) return mixer_.showSum(layer.result, layers().size(), allLit(layers()));
-    showLevel(layer);
+    if (&layer != sum_.get()) return showLevel(layer);
+    mixer_.showSum(layer.result, layers().size(), allLit(layers()));
+    sumDue_ = layer.level.linkSamplePasses < schedule_.sumSamplePasses(layers()) && canSum();
 }
 
 void LayerSolver::showLevel(Layer& layer) {
@@ -294,10 +298,14 @@ void LayerSolver::beginSum() {
         sum_->direct = std::make_shared<vk::Buffer>(store_.takeBuffer("direct light of all layers"));
     }
     mixer_.mixDirect(layers(), *sum_->direct);
-    const LayerLevel target{0, schedule_.sumSamplePasses(layers())};
+    // The first one is in haste: until it is there, shade has neither the sky nor bounces.
+    const LayerLevel target{0, mixer_.showsBounces(layers()) ? schedule_.sumSamplePasses(layers()) : 1};
     // Its first bounce begins with what is shown, as an edit changes part of it.
+    glm::vec3 sky(0.0f);
+    for (const std::unique_ptr<Layer>& layer : layers())
+        sky += layer->source.weight * lights_.skyOfLinks(*layer);
     job_.emplace<BounceJob>(
-        bounceTools_, BounceJob::Desc{.lanes = {{.layer = sum_.get(), .target = target}},
+        bounceTools_, BounceJob::Desc{.lanes = {{.layer = sum_.get(), .target = target, .sky = sky}},
                                       .sum = true,
                                       .hasty = schedule_.isHasty(target),
                                       .first = kit_.settings.passes == 0 ? &mixer_.composite() : nullptr});

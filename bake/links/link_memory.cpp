@@ -42,10 +42,6 @@ bool samplesPerChunk(const SolverSettings& settings, bool software) {
            settings.links.indirectScale == 1;
 }
 
-bool linksSeeSky(const Sky& sky, const SolverSettings& settings) {
-    return settings.passes == 0 && settings.links.indirectScale == 1 && sky.shines() && sky.pixels.empty();
-}
-
 SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     const uint64_t count = extent.patches();
     const bool hybrid = settings.method == Method::Hybrid;

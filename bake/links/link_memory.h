@@ -11,10 +11,6 @@ constexpr const char* kLinksOwner = "links";
 /// scattered in short runs of chunks, each of which would be a submit that hardly fills it.
 bool samplesPerChunk(const SolverSettings& settings, bool software);
 
-/// Tells whether links bring the sky's light: where a bounce more or less does not matter, every patch has
-/// links of its own, and the sky is of one radiance. Else rays are sent to it, as to other lights.
-bool linksSeeSky(const Sky& sky, const SolverSettings& settings);
-
 /// Returns the most bytes that LinkSolver takes at a time, beside LightBuffers. Where no number is
 /// known for the cache (CacheSettings::bytes is 0), the links of a whole sample pass are kept.
 SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings);

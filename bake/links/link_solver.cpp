@@ -1,5 +1,6 @@
 #include "bake/links/link_solver.h"
 
+#include "bake/gather/sky_links.h"
 #include "bake/links/directions.h"
 #include "bake/links/link_memory.h"
 

@@ -10,6 +10,9 @@
 layout(push_constant, scalar) uniform Push { BouncePush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Lanes { BounceLane items[]; };
 
+// With 1 links bring the sky's light to layers. To look for it in vain would cost a fifth to a third of the time.
+layout(constant_id = 0) const uint kSeesSky = 1;
+
 layout(local_size_x = 64 * LANES) in;
 
 shared vec4 terms[LANES][kChunk];
@@ -29,6 +32,7 @@ void gather(uint chunk, out vec3 sums[kReplicates]) {
         sums[q] = vec3(0.0);
         if (push.sums == kMoreSums) sums[q] = kPackScale * VEC4_AT(lane.sums, q * push.patchCount + index).rgb;
     }
+    vec3 sky = kSeesSky != 0u ? kPackScale * lane.sky : vec3(0.0);
     for (uint r = 0u; r < push.samplePasses; ++r) {
         Words links = Words(push.links[r]);
         for (uint k = 0u; k < push.sampleCount; k += kReplicates) {
@@ -36,6 +40,7 @@ void gather(uint chunk, out vec3 sums[kReplicates]) {
             for (uint q = 0u; q < kReplicates; ++q) {
                 uint link = WORD_AT(links, row + q * kChunk);
                 if (link < kLinkFirstSpecial) sums[q] += unpackScaled(UVEC2_AT(push.packed, link * LANES + l));
+                else if (kSeesSky != 0u && link == kLinkSky) sums[q] += sky;
             }
         }
     }

@@ -4,6 +4,15 @@ const uint kLightBins = 1280u, kErrorBins = 448u;
 const float kLightBinsPerOctave = 16.0, kErrorBinsPerOctave = 16.0;
 const float kLeastLightOctave = -40.0, kLeastErrorOctave = -24.0; // below is the first bin
 
+// Returns how much it is worth to take variance from a texel of which the standard error is `off`, where 95 % of all texels
+// are to come within `aim`: the derivative of the texels beyond it by their variance, in any one unit. What is far within
+// is worth nothing, and what is far beyond little, as it stays there.
+FUNCTION float localWorth(float off, float aim) {
+    if (!(off > 0.1f * aim)) return 0.0f; // 1e-19 of what it is at most
+    float x = aim / off;
+    return x * x * x * exp(-0.5f * x * x);
+}
+
 FUNCTION uint binOf(float value, float leastOctave, float binsPerOctave, uint bins) {
     if (!(value > 0.0)) return 0u;
     float place = (log2(value) - leastOctave) * binsPerOctave;

@@ -1,9 +1,10 @@
 // A sky that links bring must give the light that rays to it give.
 #include "assets/images/metrics.h"
-#include "bake/links/link_memory.h"
+#include "bake/gather/sky_links.h"
 #include "tests/gpu/bake_comparison.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
+#include "tests/gpu/layered.h"
 
 #include <gtest/gtest.h>
 
@@ -93,6 +94,52 @@ TEST(SkyLinks, BatchesAndTheCacheChangeNoByte) {
     desc.batchMs = 0.3;
     desc.cache.kind = CacheSettings::Kind::None;
     EXPECT_TRUE(sameBytes(bakeScene(scene, desc).lighting, baked.lighting));
+}
+
+// Layers see the sky through the links that all of them share: its layer sends no ray of its own, and a lamp
+// beside it has its own light.
+TEST(SkyLinks, BringLayersWhatTheyBringAPlainBake) {
+    Scene scene = court();
+    scene.sky.radiance = {1.0f, 2.0f, 3.0f};
+    BakeDesc desc = precise(Method::Hybrid, 4096);
+    for (const bool lamp : {false, true}) {
+        if (lamp) scene.lights = {lightAt(LightType::Point, {6.0f, 2.0f, 2.0f}, 5.0f)};
+        for (const bool onDevice : {false, true}) {
+            desc.deviceGather = onDevice;
+            desc.layers = false;
+            const Baked plain = bakeScene(scene, desc);
+            desc.layers = true;
+            const Baked layers = bakeScene(scene, desc);
+            EXPECT_LT(relativeError(layers.lighting, plain.lighting), 0.01) << lamp << onDevice;
+            const TexelRect all{0, 0, kAtlasSize, kAtlasSize};
+            EXPECT_NEAR(statistics(layers.lighting, all).mean / statistics(plain.lighting, all).mean, 1.0,
+                        1e-3);
+            if (!lamp) {
+                EXPECT_EQ(layers.progress.rays, plain.progress.rays) << onDevice;
+            }
+        }
+    }
+}
+
+TEST(SkyLinks, ASkyOfLayersThatIsDimmedAndTurnedUpAgainCostsNoRay) {
+    BakeDesc desc = kQuick;
+    desc.size = kAtlasSize;
+    Layered bake(court(), desc);
+    bake.finish();
+    const Light4 before = bake.light();
+    const uint64_t rays = bake.progress().rays;
+    bake.scene.sky.radiance = glm::vec3(0.0f);
+    bake.edit();
+    bake.finish();
+    for (const glm::vec4& light : bake.light())
+        ASSERT_EQ(glm::vec3(light), glm::vec3(0.0f));
+    bake.scene.sky.radiance = glm::vec3(2.0f * kRadiance);
+    bake.edit();
+    bake.finish();
+    const Light4 after = bake.light();
+    for (size_t i = 0; i < before.size(); ++i)
+        ASSERT_EQ(glm::vec3(after[i]), 2.0f * glm::vec3(before[i]));
+    EXPECT_EQ(bake.progress().rays, rays);
 }
 
 // The told error is what is left, in the deep room, too. The first sample pass has 16 directions of each of

@@ -35,6 +35,25 @@ TEST(LocalErrorBins, PercentilesAreThoseOfTheSortedValues) {
     EXPECT_NEAR(told.p99, at(0.99), 0.02 * at(0.99));
 }
 
+// Normally distributed errors are beyond the aim with a chance of erfc(aim / (off sqrt(2))); its derivative
+// by the variance, off^2, is the worth up to one factor.
+TEST(LocalWorth, IsHowFastTexelsComeWithinTheAim) {
+    constexpr double kAim = 0.05, kStep = 1e-4;
+    const auto slope = [](double off) {
+        const auto beyond = [](double variance) { return std::erfc(kAim / std::sqrt(2.0 * variance)); };
+        return (beyond((1 + kStep) * off * off) - beyond((1 - kStep) * off * off)) / (2 * kStep * off * off);
+    };
+    const auto worth = [](double off) {
+        return double{shader::localWorth(static_cast<float>(off), static_cast<float>(kAim))};
+    };
+    for (const double off : {0.01, 0.02, 0.03, 0.05, 0.1, 0.5})
+        EXPECT_NEAR(worth(off) / worth(kAim), slope(off) / slope(kAim), 1e-3 * slope(off) / slope(kAim))
+            << off;
+    for (const double off : {0.0, 1e-30, 0.004})
+        EXPECT_EQ(worth(off), 0.0) << off;
+    EXPECT_GE(worth(1e30), 0.0);
+}
+
 // Texels of chunks of 64 with noise of unlike strength and, in some of them, a bias; the bias
 // of a chunk is estimated with noise of its own. Returns what is told of noise alone and of both, and what is
 // true.

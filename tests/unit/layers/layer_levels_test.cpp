@@ -122,6 +122,20 @@ TEST(LayerLevels, DearPointsAreTakenLessOften) {
     EXPECT_EQ(nextOf(at(2, 2).rays({128}).penumbra({1, 1, 1, 1})), "8+16");
 }
 
+// On a GPU picks take as long as three segments.
+TEST(LayerLevels, RaysToPickedPolygonsCostMore) {
+    ScheduleRules rules = offlineRules();
+    rules.costs = kGpuLayerCosts;
+    const auto wanted = [&](bool picks) {
+        const LayerSchedule::Layers layers = layersOf(at(2, 2).rays({16}));
+        layers[0]->parts[0].picks = picks;
+        LayerSchedule(rules).apportion(layers);
+        return textOf(LayerSchedule(rules).targetOf(*layers[0]));
+    };
+    EXPECT_EQ(wanted(false), "16+12");
+    EXPECT_EQ(wanted(true), "8+12") << "fewer of them";
+}
+
 TEST(LayerLevels, RaysOfAllPartsCount) {
     EXPECT_EQ(nextOf(at(2, 2).rays({4, 0, 12})), "16+12");
 }

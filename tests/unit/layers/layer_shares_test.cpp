@@ -84,7 +84,8 @@ TEST(LayerShares, ALocalErrorOutOfReachTakesMoreOfAll) {
     const LayerSchedule schedule(rules);
     const auto wanted = [&](std::optional<double> local) {
         const LayerSchedule::Layers layers = layersOf(direct(0.005), direct(0.005));
-        schedule.apportion(layers, false, local);
+        const CompositeLocal off{.error = local.value_or(0), .worths = {}};
+        schedule.apportion(layers, false, local ? &off : nullptr);
         return textOf(layers[0]->plan.wanted) + ", " + textOf(layers[1]->plan.wanted);
     };
     EXPECT_EQ(wanted(0.05), "2+2, 2+2");
@@ -93,13 +94,24 @@ TEST(LayerShares, ALocalErrorOutOfReachTakesMoreOfAll) {
     EXPECT_EQ(wanted(0.1), "8+2, 8+2");
 }
 
+// The first layer has most of the variance, where it is bright; the second has what makes the local error.
+TEST(LayerShares, ALocalErrorTakesSamplesWhereItIsMade) {
+    const ScheduleRules rules = {.error = 0.01, .localError = 0.05};
+    const LayerSchedule::Layers layers = layersOf(direct(0.008), direct(0.002));
+    const CompositeLocal off{.error = 0.1, .worths = {{.direct = 0.001}, {.direct = 1}}};
+    LayerSchedule(rules).apportion(layers, false, &off);
+    EXPECT_EQ(textOf(layers[0]->plan.wanted), "2+2");
+    EXPECT_EQ(textOf(layers[1]->plan.wanted), "8+2");
+}
+
 TEST(LayerShares, TheLocalErrorAloneMayBeAskedFor) {
     const ScheduleRules rules = {.error = 0, .localError = 0.05};
     const LayerSchedule schedule(rules);
     const LayerSchedule::Layers layers = layersOf(direct(0.2));
-    schedule.apportion(layers, false, 0.06);
+    const CompositeLocal far{.error = 0.06, .worths = {}}, near{.error = 0.04, .worths = {}};
+    schedule.apportion(layers, false, &far);
     EXPECT_EQ(textOf(layers[0]->plan.wanted), "4+2");
-    schedule.apportion(layers, true, 0.04);
+    schedule.apportion(layers, true, &near);
     EXPECT_EQ(textOf(layers[0]->plan.wanted), "2+2");
     EXPECT_TRUE(schedule.told(layers, 0.04).converged);
     EXPECT_FALSE(schedule.told(layers, 0.06).converged);
