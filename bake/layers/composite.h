@@ -24,9 +24,9 @@ struct Composite {
     std::vector<Share> shares;
 };
 
-/// How far the composite is off locally, and what each layer's variance has to do with it.
+/// Tells how far the composite is off locally, and what each layer's variance has to do with it.
 struct CompositeLocal {
-    /// The mean over a layer's variance of what that is worth where it is, in any one unit.
+    /// Holds means over a layer's variance of what that is worth where it is, in any one unit.
     struct Worth {
         double direct = 1, indirect = 1;
     };

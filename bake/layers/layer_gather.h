@@ -28,8 +28,8 @@ public:
     virtual bool onCpu() const = 0;
     /// Returns for how many of so many layers there is room; takes the memory for more than one.
     virtual uint32_t room(uint32_t layers) = 0;
-    /// What comes to a lane at each bounce from outside: direct light, vec4 per patch, and the radiance of
-    /// the sky that links bring.
+    /// Holds what comes to a lane at each bounce from outside: direct light, vec4 per patch, and the radiance
+    /// of the sky that links bring.
     struct LaneLight {
         const vk::Buffer* direct = nullptr;
         glm::vec3 sky{0.0f};

@@ -18,8 +18,8 @@ struct LayerCosts {
     double gather =
         0.15; // what a layer pays for links itself, as a share of tracing them (two CPU cores, three bounces)
 };
-/// Those of a GPU, where layers bounce side by side, and picks take as long as segments (H100: 4 and 0.02 in
-/// the atrium, 0.01 in the town).
+/// These are a GPU's, where layers bounce side by side, and picks take as long as segments (H100: 4 and 0.02
+/// in the atrium, 0.01 in the town).
 constexpr LayerCosts kGpuLayerCosts{.picked = 3.0, .gather = 0.02};
 
 /// Holds what a schedule goes by for a whole bake.
@@ -140,7 +140,7 @@ private:
     LayerLevel levelByItself(const Layer& layer) const;
     struct Standing;
     std::vector<LayerLevel> levelsFor(const Standing& standing, const CompositeLocal* local,
-                                      double allowed) const;
+                                      double share) const;
     std::vector<LayerLevel> levelsTogether(const Standing& standing, const CompositeLocal* local) const;
     std::optional<size_t> unlitLayer(const Layers& layers, const ScheduleState& state) const;
     std::optional<size_t> nextLayer(const Layers& layers) const;
