@@ -37,12 +37,6 @@ std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::v
     return in;
 }
 
-// Tells whether the bake can follow edits of objects.
-bool followsObjects(const BakeSettings& settings) {
-    const SolverSettings& solver = settings.solver;
-    return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings);
-}
-
 // Returns which chunks' validity each rank finds.
 ChunkDeal dealOf(const PatchSet& patches, Ranks& ranks, const vk::Device& device) {
     return {patches.chunkCount(), ranks.count(), ChunkDeal::leastRunOf(device.info().software())};

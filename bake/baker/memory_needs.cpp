@@ -81,6 +81,11 @@ bool usesVoxels(const BakeSettings& settings) {
     return settings.tracer == TracerKind::Voxel || settings.voxels.ratio > 0;
 }
 
+bool followsObjects(const BakeSettings& settings) {
+    const SolverSettings& solver = settings.solver;
+    return solver.layers.on && !solver.transport.rtrad && !usesVoxels(settings);
+}
+
 uint64_t MemoryNeeds::total() const {
     return std::max(cit, surface + trace + std::max(inside, solver + edits + probes) + host);
 }
@@ -108,6 +113,7 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
             startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount, solver.software) : 0);
     needs.solver = own.device;
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
+    if (followsObjects(settings)) needs.edits += ObjectMover::bytes(solver.chunkCount, solver.software);
     needs.probes = probeNeeds(settings, scene, solver, tables);
     if (solver.software)
         needs.host = kHostBytes * solver.patches() + pairSenderBytes(solver, settings.solver);

@@ -26,7 +26,7 @@ struct MemoryNeeds {
     uint64_t trace = 0;   // the tracer's tables and voxels
     uint64_t inside = 0;  // of the search for patches inside something, gone before the solver comes
     uint64_t solver = 0;
-    uint64_t edits = 0;   // to follow edits of colours
+    uint64_t edits = 0;   // to follow edits of colours and of objects
     uint64_t probes = 0;  // with a tracer of their own, beside all that stays
     uint64_t host = 0;    // a software device's memory is the host's, which holds much of this once more
     uint64_t spilled = 0; // of the surface's and the solver's buffers in the host's memory; not in total()
@@ -47,5 +47,7 @@ uint64_t hostNeeds(const BakeSettings& settings, const SceneExtent& scene, uint6
 
 /// Tells whether rays march through voxels, all or some of them.
 bool usesVoxels(const BakeSettings& settings);
+/// Tells whether the bake can follow edits of objects.
+bool followsObjects(const BakeSettings& settings);
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #include "bake/baker/object_mover.h"
 
 #include "assets/base/error.h"
+#include "assets/base/portions.h"
 #include "bake/baker/link_ends.h"
 #include "bake/baker/move_boxes.h"
 #include "bake/surface/patch_cover.h"
@@ -54,27 +55,50 @@ struct ObjectMover::Part {
 struct ObjectMover::Buffers {
     uint32_t chunks; // in a batch
     vk::Buffer links, list, listed, rays;
+    vk::Buffer boxes, changed; // of the last move
     vk::Commands commands;
+    CoverSearcher covers;
+    PlaceSearcher places;
 
     // The batches are those of Baker::findInvalid, but few rays of each are traced.
-    Buffers(const vk::Device& device, uint32_t chunkCount)
-        : chunks(std::min(device.info().software() ? 64u : 1024u, chunkCount)),
-          links(
-              device,
-              {.size = words() * sizeof(uint32_t), .memory = vk::Memory::Host, .name = "links from inside"}),
-          list(device, {.size = (words() + 1) * sizeof(uint32_t), .name = "links to trace"}),
-          listed(device,
-                 {.size = listedBytes(), .memory = vk::Memory::Host, .name = "links that were traced"}),
-          rays(device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}), commands(device) {}
-
-    uint64_t words() const { return uint64_t{chunks} * kInsideDirections * kChunk; }
+    static uint32_t chunksOf(uint32_t chunkCount, bool software) {
+        return std::min(software ? 64u : 1024u, chunkCount);
+    }
+    static uint64_t wordsOf(uint32_t chunks) { return uint64_t{chunks} * kInsideDirections * kChunk; }
     // Returns the bytes of the list that come back with its batch: more is seldom listed, and read
     // afterwards.
-    VkDeviceSize listedBytes() const {
+    static VkDeviceSize listedBytes(uint64_t words) {
         constexpr uint64_t kAtOnce = 16383; // with their number 64 KiB
-        return (1 + std::min(kAtOnce, words())) * sizeof(uint32_t);
+        return (1 + std::min(kAtOnce, words)) * sizeof(uint32_t);
+    }
+
+    explicit Buffers(const CoverSearch& search)
+        : chunks(search.mostChunks), links(search.device, {.size = wordsOf(chunks) * sizeof(uint32_t),
+                                                           .memory = vk::Memory::Host,
+                                                           .name = "links from inside"}),
+          list(search.device, {.size = (wordsOf(chunks) + 1) * sizeof(uint32_t), .name = "links to trace"}),
+          listed(search.device, {.size = listedBytes(wordsOf(chunks)),
+                                 .memory = vk::Memory::Host,
+                                 .name = "links that were traced"}),
+          rays(search.device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}),
+          changed(search.device,
+                  {.size = search.patches.chunkCount() * sizeof(glm::uvec2), .name = "changed patches"}),
+          commands(search.device), covers(search), places(search.device, search.tracer) {}
+
+    void put(const vk::Device& device, const ObjectMove& move) {
+        const VkDeviceSize bytes = move.boxes.size() * sizeof(shader::TraceBox);
+        const VkDeviceSize room = std::max<VkDeviceSize>(bytes, sizeof(shader::TraceBox)); // panes have none
+        if (!boxes || boxes.size() < room) boxes = vk::Buffer(device, {.size = room, .name = "boxes"});
+        vk::upload(device, boxes, move.boxes.data(), bytes);
+        vk::upload(device, changed, move.changed.data(), move.changed.size() * sizeof(glm::uvec2));
     }
 };
+
+uint64_t ObjectMover::bytes(uint32_t chunks, bool software) {
+    const uint32_t batch = Buffers::chunksOf(chunks, software);
+    return 2 * Buffers::wordsOf(batch) * sizeof(uint32_t) + Buffers::listedBytes(Buffers::wordsOf(batch)) +
+           chunks * sizeof(glm::uvec2) + coverSearchBytes(batch, software) + placeSearchBytes();
+}
 
 ObjectMover::ObjectMover(const On& on, bool conservative)
     : on_(on), conservative_(conservative), placed_(editsOf(on.scene).placements),
@@ -282,10 +306,8 @@ void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::
 // patches whose directions meet something else now.
 std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
     const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideDirections * kChunk;
-    if (!buffers_) buffers_ = std::make_unique<Buffers>(on_.device, chunks);
-    Buffers& b = *buffers_;
-    const vk::Buffer boxes = vk::makeBuffer(on_.device, move.boxes, "boxes");
-    const vk::Buffer changed = vk::makeBuffer(on_.device, move.changed, "changed patches");
+    Buffers& b = buffersFor(tracer);
+    b.put(on_.device, move);
     const auto* links = b.links.as<uint32_t>();
     const auto* listed = b.listed.as<uint32_t>();
     std::vector<uint32_t> others;
@@ -303,9 +325,9 @@ std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove&
                                          .sampleCount = kInsideDirections,
                                          .rotation = Rotation::Patch,
                                          .links = &b.links},
-                             .boxes = &boxes,
+                             .boxes = &b.boxes,
                              .boxCount = static_cast<uint32_t>(move.boxes.size()),
-                             .changed = &changed,
+                             .changed = &b.changed,
                              .list = &b.list,
                              .rays = &b.rays,
                              .silent = true});
@@ -361,7 +383,14 @@ CoverSearch ObjectMover::coverSearch(Tracer& tracer) const {
             .tracer = tracer,
             .patches = on_.patches,
             .devicePatches = &on_.light.patches,
-            .deviceCovers = &on_.light.covers};
+            .deviceCovers = &on_.light.covers,
+            .mostChunks = Buffers::chunksOf(on_.patches.chunkCount(), on_.device.info().software())};
+}
+
+ObjectMover::Buffers& ObjectMover::buffersFor(Tracer& tracer) {
+    if (!buffers_ || &buffers_->covers.on().tracer != &tracer)
+        buffers_ = std::make_unique<Buffers>(coverSearch(tracer));
+    return *buffers_;
 }
 
 // Tells whether what has moved stands in the patch's texel, or stood there.
@@ -379,9 +408,11 @@ bool ObjectMover::isNear(uint32_t patch, const ObjectMove& move) const {
 void ObjectMover::findCovers(CoverSearcher& covers, const std::vector<uint32_t>& slots, ObjectMove& move) {
     PatchSet& patches = on_.patches;
     if (!on_.light.covers) return;
-    std::vector<uint32_t> which;
-    for (uint32_t i = 0; i < patches.coverCells.size(); ++i)
-        if (patches.coverCells[i] != 0 && (move.has(i) || isNear(i, move))) which.push_back(i);
+    const std::vector<uint32_t> which =
+        numbersWhere(on_.device.workers(), patches.coverCells.size(), [&](size_t i) {
+            const auto patch = static_cast<uint32_t>(i);
+            return patches.coverCells[i] != 0 && (move.has(patch) || isNear(patch, move));
+        });
     const std::vector<uint32_t> others = covers.search(which);
     for (const uint32_t i : others)
         move.change(i);
@@ -415,20 +446,20 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     const std::vector<OwnPoint> aside = carryAside(former.aside, carry.now);
     if (!move.boxes.empty()) return searched(tracer, slots, aside, move);
-    CoverSearcher covers(coverSearch(tracer));
-    tracer.updateSenders(stepAside(covers, aside, move));
+    tracer.updateSenders(stepAside(tracer, aside, move));
     return move;
 }
 
 // Lets patches step aside anew: what they meet there may come from far away. Returns those that did before or
 // do now, but not both.
-std::vector<uint32_t> ObjectMover::stepAside(CoverSearcher& covers, const std::vector<OwnPoint>& before,
+std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<OwnPoint>& before,
                                              ObjectMove& move) {
     if (!on_.light.covers) return {};
     std::vector<OwnPoint> known;
     for (const OwnPoint& point : before)
         if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
-    relume::stepAside(covers, oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known);
+    Buffers& b = buffersFor(tracer);
+    relume::stepAside(b.covers, oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known, &b.places);
     OtherPoints others = otherPoints(before, pointsAside(on_.patches));
     for (const uint32_t patch : others.points)
         move.change(patch);
@@ -442,9 +473,8 @@ ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& sl
                                  const std::vector<OwnPoint>& before, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
-    CoverSearcher covers(coverSearch(tracer));
-    findCovers(covers, slots, move);
-    const std::vector<uint32_t> senders = merged(others, stepAside(covers, before, move));
+    findCovers(buffersFor(tracer).covers, slots, move);
+    const std::vector<uint32_t> senders = merged(others, stepAside(tracer, before, move));
     tracer.updateSenders(merged(slots, senders));
     addLinkEnds(on_.patches.scene, senders, move);
     ObjectMove result;

@@ -19,6 +19,7 @@ namespace relume {
 
 struct CoverSearch;
 class CoverSearcher;
+class PlaceSearcher;
 
 /// Keeps patches, triangles and tracer with objects that are moved, hidden and shown again, without making
 /// all of them anew: patches keep their indices. What it leaves is what a fresh bake would have made, but
@@ -61,18 +62,22 @@ public:
     bool repainted() const { return repainted_; }
     /// Returns how many patches lie inside something, those that step aside, too.
     uint32_t insidePatches() const { return insidePatches_; }
+    /// Returns the bytes of what it keeps to look anew what lies inside something, on the device and the
+    /// host.
+    static uint64_t bytes(uint32_t chunks, bool software);
 
 private:
     struct Moved {
         std::vector<uint32_t> shown, gone; // instances
     };
     struct Part;    // part of the scene, as new patches and triangles have it
-    struct Buffers; // to ask whether patches lie inside something
+    struct Buffers; // to ask whether patches lie inside something, and what stands in their texels
     std::optional<Moved> moved() const;
     std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas);
     TextureGroup rasterize(const WorldMesh& mesh, const TexelWindow& window);
     TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
     std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
+    Buffers& buffersFor(Tracer& tracer);
     void putTriangles(const Part& part);
     void putUvs(const Part& part);
     std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);
@@ -82,8 +87,7 @@ private:
     CoverSearch coverSearch(Tracer& tracer) const;
     bool isNear(uint32_t patch, const ObjectMove& move) const;
     void findCovers(CoverSearcher& covers, const std::vector<uint32_t>& slots, ObjectMove& move);
-    std::vector<uint32_t> stepAside(CoverSearcher& covers, const std::vector<OwnPoint>& before,
-                                    ObjectMove& move);
+    std::vector<uint32_t> stepAside(Tracer& tracer, const std::vector<OwnPoint>& before, ObjectMove& move);
     ObjectMove searched(Tracer& tracer, const std::vector<uint32_t>& slots,
                         const std::vector<OwnPoint>& before, ObjectMove& move);
     void upload(const std::vector<uint32_t>& slots, const ObjectMove& move) const;

@@ -47,7 +47,8 @@ class CoverSearcher::Batches {
 public:
     explicit Batches(const CoverSearch& search)
         : search_(search), records_(search.tracer.records()),
-          most_(mostCoverChunks(search.patches.chunkCount(), search.device.info().software())),
+          most_(std::min(search.mostChunks,
+                         mostCoverChunks(search.patches.chunkCount(), search.device.info().software()))),
           commands_(search.device),
           targets_(search.device, {.size = uint64_t{most_} * kPlaces * kChunk * sizeof(glm::vec4),
                                    .memory = records_ ? vk::Memory::Device : vk::Memory::Host,

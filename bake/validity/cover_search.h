@@ -19,6 +19,7 @@ struct CoverSearch {
     const vk::Buffer* devicePatches = nullptr;
     const vk::Buffer* deviceCovers = nullptr;
     std::function<void(double done)> onBatch = {}; // before each batch; what it throws ends the search
+    uint32_t mostChunks = ~0u;                     // that a batch spans, where buffers are kept for long
 };
 
 /// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.

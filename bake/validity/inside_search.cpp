@@ -45,7 +45,7 @@ uint64_t stepBytes(uint32_t chunks) {
 class DirectionSteps {
 public:
     DirectionSteps(const vk::Device& device, Tracer& tracer, uint32_t most)
-        : device_(device), tracer_(tracer), commands_(device),
+        : device_(device), tracer_(tracer), most_(most), commands_(device),
           links_(device, {.size = stepBytes(most),
                           .memory = tracer.records() ? vk::Memory::Device : vk::Memory::Host,
                           .name = "links"}) {
@@ -54,6 +54,8 @@ public:
             back_ = vk::Buffer(
                 device, {.size = links_.size(), .memory = vk::Memory::Host, .name = "links that come back"});
     }
+
+    uint32_t most() const { return most_; }
 
     /// Follows a step's directions of chunks of the scene, or of patches that stand in for its. hear(chunk,
     /// links[kStep][64]) hears of each, counted from the first one.
@@ -129,6 +131,7 @@ public:
 private:
     const vk::Device& device_;
     Tracer& tracer_;
+    uint32_t most_; // chunks
     vk::Commands commands_;
     vk::Buffer links_, back_; // back_ where the host does not see links_
     vk::Buffer receivers_;    // places that stand in for patches, for a tracer that records
@@ -273,14 +276,25 @@ void followAll(const vk::Device& device, Tracer& tracer, const PatchSet& patches
                                 direction, met.data(), 0);
 }
 
-std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
-                               std::span<const shader::Patch> places,
-                               const std::function<void(double done)>& onBatch) {
+class PlaceSearcher::Steps : public DirectionSteps {
+public:
+    using DirectionSteps::DirectionSteps;
+};
+
+PlaceSearcher::PlaceSearcher(const vk::Device& device, Tracer& tracer) : device_(device), tracer_(tracer) {}
+
+PlaceSearcher::~PlaceSearcher() = default;
+
+std::vector<uint8_t> PlaceSearcher::lieInside(std::span<const shader::Patch> places,
+                                              const std::function<void(double done)>& onBatch) {
     std::vector<MetBits> met(places.size());
     std::vector<uint32_t> open(places.size());
     std::iota(open.begin(), open.end(), 0u);
     const uint32_t most = std::min(chunksFor(places.size()), kMostChunksOfPlaces);
-    DirectionSteps steps(device, tracer, most);
+    if (!steps_ || steps_->most() < most) {
+        steps_.reset(); // first: not both at once
+        steps_ = std::make_unique<Steps>(device_, tracer_, most);
+    }
     for (uint32_t direction = 0; direction < kInsideDirections && !open.empty(); direction += kStep) {
         for (size_t at = 0; at < open.size(); at += size_t{most} * kChunk) {
             if (onBatch) onBatch(static_cast<double>(direction) / kInsideDirections);
@@ -288,8 +302,8 @@ std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
             std::vector<shader::Patch> receivers;
             for (const uint32_t place : some)
                 receivers.push_back(places[place]);
-            steps.followPlaces(std::move(receivers), direction,
-                               [&](size_t i) -> MetBits& { return met[some[i]]; });
+            steps_->followPlaces(std::move(receivers), direction,
+                                 [&](size_t i) -> MetBits& { return met[some[i]]; });
         }
         std::erase_if(open, [&](uint32_t place) { return insideBy(met[place]) != Inside::Unknown; });
     }
@@ -297,6 +311,11 @@ std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
     for (const MetBits& bits : met)
         inside.push_back(insideBy(bits) == Inside::Yes);
     return inside;
+}
+
+uint64_t placeSearchBytes() {
+    return 2 * stepBytes(kMostChunksOfPlaces) +
+           uint64_t{kMostChunksOfPlaces} * kChunk * sizeof(shader::Patch);
 }
 
 } // namespace relume

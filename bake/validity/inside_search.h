@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,11 +29,26 @@ std::vector<uint32_t> findInside(const InsideSearch& search);
 /// Returns the device bytes that it takes, on a software device or a GPU.
 uint64_t insideBytes(uint32_t chunks, bool software);
 
-/// Returns a 1 for each of these places that lies inside something. They stand in for patches, whose
-/// directions they follow, no more than it takes. onBatch is called before each batch, where there is one.
-std::vector<uint8_t> lieInside(const vk::Device& device, Tracer& tracer,
-                               std::span<const shader::Patch> places,
-                               const std::function<void(double done)>& onBatch = {});
+/// Finds out which places lie inside something. It keeps its buffers from one search to the next.
+class PlaceSearcher {
+public:
+    PlaceSearcher(const vk::Device& device, Tracer& tracer);
+    ~PlaceSearcher();
+
+    /// Returns a 1 for each of these places that lies inside something. They stand in for patches, whose
+    /// directions they follow, no more than it takes. onBatch is called before each batch, where there is
+    /// one.
+    std::vector<uint8_t> lieInside(std::span<const shader::Patch> places,
+                                   const std::function<void(double done)>& onBatch = {});
+
+private:
+    class Steps;
+    const vk::Device& device_;
+    Tracer& tracer_;
+    std::unique_ptr<Steps> steps_; // once there is something to search for
+};
+/// Returns the device bytes that it keeps at most, the host's with them.
+uint64_t placeSearchBytes();
 
 /// Follows all directions of these patches; `met` is as above. It takes as much memory as their number asks
 /// for.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "assets/base/portions.h"
-#include "bake/validity/inside_search.h"
 
 namespace relume {
 namespace {
@@ -58,7 +57,8 @@ std::vector<Seeker> seekersIn(const CoverSearch& search, std::span<const ChunkRa
 
 // Writes the cell that each of these patches steps to. A GPU asks for all of a patch's cells at once, a CPU
 // for the next one where the one before lies inside.
-void seekCells(const CoverSearch& search, std::vector<Seeker> seekers, std::vector<uint8_t>& cells) {
+void seekCells(const CoverSearch& search, PlaceSearcher& searcher, std::vector<Seeker> seekers,
+               std::vector<uint8_t>& cells) {
     const PatchSet& patches = search.patches;
     const uint32_t atOnce = search.tracer.records() ? kMostCellsToTry : 1;
     for (uint32_t first = 0; !seekers.empty(); first += atOnce) {
@@ -69,7 +69,7 @@ void seekCells(const CoverSearch& search, std::vector<Seeker> seekers, std::vect
                 places.back().position +=
                     shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[k]));
             }
-        const std::vector<uint8_t> inside = lieInside(search.device, search.tracer, places, search.onBatch);
+        const std::vector<uint8_t> inside = searcher.lieInside(places, search.onBatch);
         std::vector<Seeker> left;
         size_t place = 0;
         for (const Seeker& seeker : seekers) {
@@ -145,13 +145,16 @@ CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells) {
 }
 
 std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
-                                std::span<const OwnPoint> known) {
+                                std::span<const OwnPoint> known, PlaceSearcher* places) {
     const CoverSearch& search = covers.on();
     PatchSet& patches = search.patches;
     ASSERT(patches.aside.empty());
     const std::span<const ChunkRange> own = dealt.runsOf(ranks.rank());
     std::vector<uint8_t> cells(patches.scene.patches.size(), kStays);
-    seekCells(search, seekersIn(search, own), cells);
+    {
+        PlaceSearcher once(search.device, search.tracer);
+        seekCells(search, places ? *places : once, seekersIn(search, own), cells);
+    }
     shareChunks(ranks, dealt, cells);
     std::vector<uint32_t> aside, looking;
     auto before = known.begin();

@@ -6,6 +6,7 @@
 
 #include "bake/validity/cover_search.h"
 #include "bake/ranks/chunk_deal.h"
+#include "bake/validity/inside_search.h"
 
 namespace relume {
 
@@ -24,9 +25,11 @@ CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells);
 /// now on. Covers are those that have been searched, and no patch has stepped aside yet. Patches that
 /// have are in PatchSet::aside, their covers are as their new point sees them, and the device's patches and
 /// covers follow; senders of a tracer are the caller's. Each rank seeks for its own chunks. What patches saw
-/// before from known points (ascending by patch) they see from there again. Returns them, ascending.
+/// before from known points (ascending by patch) they see from there again. `places` tells which cells lie
+/// inside something; where it is missing, its buffers are given up before the covers are searched. Returns
+/// those that have stepped aside, ascending.
 std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
-                                std::span<const OwnPoint> known = {});
+                                std::span<const OwnPoint> known = {}, PlaceSearcher* places = nullptr);
 
 /// Takes all patches back to their own points, where they lie inside something and send nothing. Returns
 /// where they had stepped aside to, ascending by patch.

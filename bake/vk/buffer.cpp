@@ -154,8 +154,8 @@ void upload(const Device& device, const Buffer& buffer, const void* data, VkDevi
 }
 
 std::vector<BufferPart> partsOf(std::span<const uint32_t> indices, VkDeviceSize each) {
-    // So many bytes between two parts are copied along: a region of its own costs as much.
-    constexpr VkDeviceSize kGap = 512;
+    // So many bytes between two parts are copied along: a region of its own costs a GPU as much.
+    constexpr VkDeviceSize kGap = 4096;
     std::vector<BufferPart> parts;
     for (const uint32_t index : indices) {
         const VkDeviceSize offset = index * each;

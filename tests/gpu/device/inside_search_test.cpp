@@ -108,6 +108,27 @@ TEST(InsideSearch, PatchesBesideTheBoxStepAside) {
     }
 }
 
+// Methods that know no parts of texels have everybody at home, and light as of a bake by them alone.
+TEST(InsideSearch, PatchesStepBackWhereAnotherMethodIsTaken) {
+    const Scene scene = coveredFloor(true, 0.04f);
+    const BakeDesc hybrid{.size = 128, .method = Method::Hybrid, .samples = 16};
+    const BakeDesc pure{.size = 128, .passes = 2, .method = Method::Pure};
+    const auto bake = [](Baker& baker) {
+        while (!baker.solver().done())
+            baker.solver().step();
+        return baker.lightmap({.sew = false});
+    };
+    const auto baker = makeBaker(scene, hybrid), fresh = makeBaker(scene, pure);
+    const FloatImage first = bake(*baker);
+    EXPECT_GT(baker->patches().aside.size(), 0u);
+    baker->resetSolver(settingsOf(pure).solver);
+    EXPECT_TRUE(baker->patches().aside.empty());
+    EXPECT_EQ(bake(*baker).planes, bake(*fresh).planes);
+    EXPECT_EQ(baker->invalidPatches(), fresh->invalidPatches());
+    baker->resetSolver(settingsOf(hybrid).solver);
+    EXPECT_EQ(bake(*baker).planes, first.planes);
+}
+
 TEST(InsideSearch, ABakersPhasesAreTold) {
     const PhaseRecorder recorder;
     const auto baker = makeBaker(coveredFloor(true), {.size = 128});

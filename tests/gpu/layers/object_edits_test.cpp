@@ -1,6 +1,7 @@
 // Objects are moved, hidden and shown again while layers are baked, which is held against fresh bakes of what
 // that leads to.
 #include "assets/atlas/lightmap_atlas.h"
+#include "bake/baker/object_mover.h"
 #include "bake/layers/layer_solver.h"
 #include "bake/trace/make_tracer.h"
 #include "bake/validity/step_aside.h"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -307,6 +309,34 @@ TEST_P(ObjectEdits, PatchesThatStepAsideAreAFreshBake) {
     bake.put(kWall, kFarBlock, by({0.5f, 0.1f, 0.0f}));
     followed(bake, desc());
     EXPECT_GE(aside(), 3u);
+}
+
+// Moves keep what they look with, and the memory for it is that of the plan.
+TEST_P(ObjectEdits, WhatMovesKeepIsPlannedAndKept) {
+    const auto kept = [] {
+        constexpr std::array kNames = {"links from inside",     "links to trace",   "links that were traced",
+                                       "changed patches",       "places in texels", "seen places",
+                                       "patches that ask",      "places near by",   "links that come back",
+                                       "patches that are asked"};
+        uint64_t bytes = 0;
+        for (const auto& [key, own] : testDevice().ledger().entries())
+            if (std::find(kNames.begin(), kNames.end(), key.name) != kNames.end()) bytes += own;
+        return bytes;
+    };
+    const uint64_t before = kept();
+    Moving bake(walledRoom(), desc());
+    EXPECT_EQ(kept(), before) << "a bake itself leaves nothing of its searches";
+    const auto move = [&](glm::vec3 offset) {
+        bake.put(12, 18, by(offset));
+        EXPECT_TRUE(bake.follow());
+        bake.finish();
+        return kept() - before;
+    };
+    const uint64_t first = move({-0.945f, -0.7f, -0.45f});
+    EXPECT_GT(first, 0u);
+    const bool software = testDevice().info().software();
+    EXPECT_LE(first, ObjectMover::bytes(bake.baker().patches().chunkCount(), software));
+    EXPECT_EQ(move({0.945f, 0.7f, 0.45f}), first);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, ObjectEdits, testing::Range(0, 4));
