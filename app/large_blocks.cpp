@@ -13,7 +13,7 @@
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{2} << 20; // x86-64; elsewhere the advice may not be taken
-constexpr std::size_t kLarge = 4 * kHugePage;           // below, the ends weigh too much
+constexpr std::size_t kLarge = 2 * kHugePage;           // below, the ends weigh too much
 
 void* largeBlock(std::size_t size) {
     const std::size_t pages = size / kHugePage * kHugePage; // no memory is taken for what is behind the end
