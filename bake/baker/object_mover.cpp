@@ -445,8 +445,15 @@ ObjectMove ObjectMover::takeOver(const FormerSurfaces& former, const PatchCarry&
     boxes = fewBoxes(std::move(boxes));
     move.boxes.insert(move.boxes.end(), boxes.begin(), boxes.end());
     const std::vector<OwnPoint> aside = carryAside(former.aside, carry.now);
-    if (!move.boxes.empty()) return searched(tracer, slots, aside, move);
-    tracer.updateSenders(stepAside(tracer, aside, move));
+    if (move.boxes.empty())
+        stepAside(tracer, aside, move);
+    else
+        move = searched(tracer, slots, aside, move);
+    // The tracer is new and took all of them to be silent, those as well that step where they stepped before.
+    std::vector<uint32_t> senders;
+    for (const OwnPoint& home : patches.aside)
+        senders.push_back(home.patch);
+    tracer.updateSenders(senders);
     return move;
 }
 

@@ -339,14 +339,14 @@ TEST(CarriedBakes, TexelsInsideSomethingAreFoundAnew) {
 }
 
 // A wall that is thinner than a texel stands on the middles of the floor's.
-TEST(CarriedBakes, PatchesStepAsideAnew) {
+TEST_P(CarriedBakes, PatchesStepAsideAnew) {
     SceneMaker maker(kRoomSize);
     maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.6f), 12);
     maker.box({0.36f, 0.3f, -0.1f}, {1.4f * kY, 0.12f * kX, 1.3f * kZ}, maker.material(0.5f), 6);
     maker.quad({1.2f, 0.3f, 0.7f}, 0.5f * kX, 0.9f * kY, maker.material(0.3f), glm::uvec2(8));
     Scene scene = maker.scene();
     scene.lights.push_back(lightAt(LightType::Point, {1.0f, 1.0f, 1.5f}, 3.0f, "Bulb"));
-    CarriedBake bake(scene);
+    CarriedBake bake(scene, desc());
     bake.finish();
     const size_t first = bake.baker().patches().aside.size();
     EXPECT_GE(first, 5u);
