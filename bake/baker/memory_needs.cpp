@@ -5,7 +5,7 @@
 #include "bake/validity/cover_search.h"
 #include "bake/validity/inside_search.h"
 #include "bake/baker/make_solver.h"
-#include "bake/baker/object_mover.h"
+#include "bake/baker/move_search.h"
 #include "bake/pairs/pair_memory.h"
 #include "bake/probes/probe_light.h"
 #include "bake/surface/light_buffers.h"
@@ -113,7 +113,7 @@ MemoryNeeds memoryNeeds(const BakeSettings& settings, const SceneExtent& scene, 
             startsAllOver(settings.solver) ? coverSearchBytes(solver.chunkCount, solver.software) : 0);
     needs.solver = own.device;
     if (settings.solver.layers.on) needs.edits = SurfaceColours::bytes(solver.chunkCount);
-    if (followsObjects(settings)) needs.edits += ObjectMover::bytes(solver.chunkCount, solver.software);
+    if (followsObjects(settings)) needs.edits += MoveSearch::bytes(solver.chunkCount, solver.software);
     needs.probes = probeNeeds(settings, scene, solver, tables);
     if (solver.software)
         needs.host = kHostBytes * solver.patches() + pairSenderBytes(solver, settings.solver);

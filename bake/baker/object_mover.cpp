@@ -4,11 +4,10 @@
 #include "assets/base/portions.h"
 #include "bake/baker/link_ends.h"
 #include "bake/baker/move_boxes.h"
+#include "bake/baker/move_search.h"
 #include "bake/surface/patch_cover.h"
-#include "bake/validity/cover_search.h"
 #include "bake/validity/inside_search.h"
 #include "bake/validity/step_aside.h"
-#include "bake/vk/commands.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +19,6 @@ namespace {
 
 using shader::kChunk;
 using shader::kNoPatch;
-
-// This marks a link that was not traced again, where none are listed.
-constexpr uint32_t kKept = 0xfffffff0u;
-static_assert(kKept == shader::kLinkFirstSpecial && kKept < shader::kLinkDark);
 
 // A bit in ObjectMover::texels_: the texel's patch is this one, not another one that shares it.
 constexpr uint32_t kHome = 0x80000000u;
@@ -51,54 +46,6 @@ struct ObjectMover::Part {
     std::vector<uint32_t> slots, triangles;         // where they belong among all
     std::vector<uint32_t> goneSlots, goneTriangles; // of what is hidden now
 };
-
-struct ObjectMover::Buffers {
-    uint32_t chunks; // in a batch
-    vk::Buffer links, list, listed, rays;
-    vk::Buffer boxes, changed; // of the last move
-    vk::Commands commands;
-    CoverSearcher covers;
-    PlaceSearcher places;
-
-    // The batches are those of Baker::findInvalid, but few rays of each are traced.
-    static uint32_t chunksOf(uint32_t chunkCount, bool software) {
-        return std::min(software ? 64u : 1024u, chunkCount);
-    }
-    static uint64_t wordsOf(uint32_t chunks) { return uint64_t{chunks} * kInsideDirections * kChunk; }
-    // Returns the bytes of the list that come back with its batch: more is seldom listed, and read
-    // afterwards.
-    static VkDeviceSize listedBytes(uint64_t words) {
-        constexpr uint64_t kAtOnce = 16383; // with their number 64 KiB
-        return (1 + std::min(kAtOnce, words)) * sizeof(uint32_t);
-    }
-
-    explicit Buffers(const CoverSearch& search)
-        : chunks(search.mostChunks), links(search.device, {.size = wordsOf(chunks) * sizeof(uint32_t),
-                                                           .memory = vk::Memory::Host,
-                                                           .name = "links from inside"}),
-          list(search.device, {.size = (wordsOf(chunks) + 1) * sizeof(uint32_t), .name = "links to trace"}),
-          listed(search.device, {.size = listedBytes(wordsOf(chunks)),
-                                 .memory = vk::Memory::Host,
-                                 .name = "links that were traced"}),
-          rays(search.device, {.size = shader::kRayCounters * sizeof(uint32_t), .name = "rays"}),
-          changed(search.device,
-                  {.size = search.patches.chunkCount() * sizeof(glm::uvec2), .name = "changed patches"}),
-          commands(search.device), covers(search), places(search.device, search.tracer) {}
-
-    void put(const vk::Device& device, const ObjectMove& move) {
-        const VkDeviceSize bytes = move.boxes.size() * sizeof(shader::TraceBox);
-        const VkDeviceSize room = std::max<VkDeviceSize>(bytes, sizeof(shader::TraceBox)); // panes have none
-        if (!boxes || boxes.size() < room) boxes = vk::Buffer(device, {.size = room, .name = "boxes"});
-        vk::upload(device, boxes, move.boxes.data(), bytes);
-        vk::upload(device, changed, move.changed.data(), move.changed.size() * sizeof(glm::uvec2));
-    }
-};
-
-uint64_t ObjectMover::bytes(uint32_t chunks, bool software) {
-    const uint32_t batch = Buffers::chunksOf(chunks, software);
-    return 2 * Buffers::wordsOf(batch) * sizeof(uint32_t) + Buffers::listedBytes(Buffers::wordsOf(batch)) +
-           chunks * sizeof(glm::uvec2) + coverSearchBytes(batch, software) + placeSearchBytes();
-}
 
 ObjectMover::ObjectMover(const On& on, bool conservative)
     : on_(on), conservative_(conservative), placed_(editsOf(on.scene).placements),
@@ -296,59 +243,15 @@ void ObjectMover::upload(const std::vector<uint32_t>& slots, const ObjectMove& m
     vk::uploadElements(on_.device, on_.light.bounds, on_.patches.bounds, chunks);
 }
 
-void ObjectMover::noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others) {
-    const MetBits before = inside_[patch];
-    inside_[patch].note(sample, link);
-    if (inside_[patch] != before) others.push_back(patch);
-}
-
-// Follows directions again that may meet what has moved, those of patches inside something, too. Returns the
-// patches whose directions meet something else now.
+// Follows directions again that may meet what has moved. Returns the patches whose directions meet something
+// else now.
 std::vector<uint32_t> ObjectMover::traceInside(Tracer& tracer, const ObjectMove& move) {
-    const uint32_t chunks = on_.patches.chunkCount(), perChunk = kInsideDirections * kChunk;
-    Buffers& b = buffersFor(tracer);
-    b.put(on_.device, move);
-    const auto* links = b.links.as<uint32_t>();
-    const auto* listed = b.listed.as<uint32_t>();
     std::vector<uint32_t> others;
-    for (uint32_t first = 0; first < chunks; first += b.chunks) {
-        const uint32_t count = std::min(b.chunks, chunks - first);
-        const auto note = [&](uint32_t at) {
-            noteLink((first + at / perChunk) * kChunk + at % kChunk, at / kChunk % kInsideDirections,
-                     links[at], others);
-        };
-        if (tracer.onCpu()) std::fill_n(b.links.as<uint32_t>(), uint64_t{count} * perChunk, kKept);
-        VkCommandBuffer cmd = b.commands.begin();
-        tracer.retrace(cmd, {.closest = {.firstChunk = first,
-                                         .chunkCount = count,
-                                         .firstSample = 0,
-                                         .sampleCount = kInsideDirections,
-                                         .rotation = Rotation::Patch,
-                                         .links = &b.links},
-                             .boxes = &b.boxes,
-                             .boxCount = static_cast<uint32_t>(move.boxes.size()),
-                             .changed = &b.changed,
-                             .list = &b.list,
-                             .rays = &b.rays,
-                             .silent = true});
-        if (!tracer.onCpu()) {
-            const VkBufferCopy region{0, 0, b.listed.size()};
-            vkCmdCopyBuffer(cmd, b.list.handle(), b.listed.handle(), 1, &region);
-        }
-        vk::hostBarrier(cmd);
-        b.commands.run();
-        if (tracer.onCpu()) {
-            for (uint32_t at = 0; at < count * perChunk; ++at)
-                if (links[at] != kKept) note(at);
-            continue;
-        }
-        const uint32_t found = listed[0],
-                       here = static_cast<uint32_t>(b.listed.size() / sizeof(uint32_t)) - 1;
-        std::for_each(listed + 1, listed + 1 + std::min(found, here), note);
-        if (found <= here) continue;
-        const auto rest = vk::readBuffer<uint32_t>(on_.device, b.list, found - here, 1 + here);
-        std::for_each(rest.begin(), rest.end(), note);
-    }
+    searchFor(tracer).retrace(move, [&](uint32_t patch, uint32_t direction, uint32_t link) {
+        const MetBits before = inside_[patch];
+        inside_[patch].note(direction, link);
+        if (inside_[patch] != before) others.push_back(patch);
+    });
     sortUnique(others);
     return others;
 }
@@ -383,14 +286,13 @@ CoverSearch ObjectMover::coverSearch(Tracer& tracer) const {
             .tracer = tracer,
             .patches = on_.patches,
             .devicePatches = &on_.light.patches,
-            .deviceCovers = &on_.light.covers,
-            .mostChunks = Buffers::chunksOf(on_.patches.chunkCount(), on_.device.info().software())};
+            .deviceCovers = &on_.light.covers};
 }
 
-ObjectMover::Buffers& ObjectMover::buffersFor(Tracer& tracer) {
-    if (!buffers_ || &buffers_->covers.on().tracer != &tracer)
-        buffers_ = std::make_unique<Buffers>(coverSearch(tracer));
-    return *buffers_;
+MoveSearch& ObjectMover::searchFor(Tracer& tracer) {
+    if (!search_ || &search_->tracer() != &tracer)
+        search_ = std::make_unique<MoveSearch>(coverSearch(tracer));
+    return *search_;
 }
 
 // Tells whether what has moved stands in the patch's texel, or stood there.
@@ -465,8 +367,9 @@ std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<O
     std::vector<OwnPoint> known;
     for (const OwnPoint& point : before)
         if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
-    Buffers& b = buffersFor(tracer);
-    relume::stepAside(b.covers, oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known, &b.places);
+    MoveSearch& search = searchFor(tracer);
+    relume::stepAside(search.covers(), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known,
+                      &search.places());
     OtherPoints others = otherPoints(before, pointsAside(on_.patches));
     for (const uint32_t patch : others.points)
         move.change(patch);
@@ -480,7 +383,7 @@ ObjectMove ObjectMover::searched(Tracer& tracer, const std::vector<uint32_t>& sl
                                  const std::vector<OwnPoint>& before, ObjectMove& move) {
     const std::vector<uint32_t> others = findInside(tracer, merged(slots, traceInside(tracer, move)), move);
     vk::uploadElements(on_.device, on_.light.patches, on_.patches.scene.patches, others);
-    findCovers(buffersFor(tracer).covers, slots, move);
+    findCovers(searchFor(tracer).covers(), slots, move);
     const std::vector<uint32_t> senders = merged(others, stepAside(tracer, before, move));
     tracer.updateSenders(merged(slots, senders));
     addLinkEnds(on_.patches.scene, senders, move);

@@ -19,7 +19,7 @@ namespace relume {
 
 struct CoverSearch;
 class CoverSearcher;
-class PlaceSearcher;
+class MoveSearch;
 
 /// Keeps patches, triangles and tracer with objects that are moved, hidden and shown again, without making
 /// all of them anew: patches keep their indices. What it leaves is what a fresh bake would have made, but
@@ -62,27 +62,22 @@ public:
     bool repainted() const { return repainted_; }
     /// Returns how many patches lie inside something, those that step aside, too.
     uint32_t insidePatches() const { return insidePatches_; }
-    /// Returns the bytes of what it keeps to look anew what lies inside something, on the device and the
-    /// host.
-    static uint64_t bytes(uint32_t chunks, bool software);
 
 private:
     struct Moved {
         std::vector<uint32_t> shown, gone; // instances
     };
-    struct Part;    // part of the scene, as new patches and triangles have it
-    struct Buffers; // to ask whether patches lie inside something, and what stands in their texels
+    struct Part; // part of the scene, as new patches and triangles have it
     std::optional<Moved> moved() const;
     std::optional<Part> makePart(const Moved& moved, const LightmapAtlas& atlas);
     TextureGroup rasterize(const WorldMesh& mesh, const TexelWindow& window);
     TexelWindow windowOf(const std::vector<uint32_t>& slots) const;
     std::vector<shader::TraceBox> boxesOf(const Moved& moved) const;
-    Buffers& buffersFor(Tracer& tracer);
+    MoveSearch& searchFor(Tracer& tracer);
     void putTriangles(const Part& part);
     void putUvs(const Part& part);
     std::vector<uint32_t> putPatches(const Part& part, ObjectMove& move);
     std::vector<uint32_t> traceInside(Tracer& tracer, const ObjectMove& move);
-    void noteLink(uint32_t patch, uint32_t sample, uint32_t link, std::vector<uint32_t>& others);
     std::vector<uint32_t> findInside(Tracer& tracer, const std::vector<uint32_t>& patches, ObjectMove& move);
     CoverSearch coverSearch(Tracer& tracer) const;
     bool isNear(uint32_t patch, const ObjectMove& move) const;
@@ -96,13 +91,13 @@ private:
     bool conservative_;
     bool repainted_ = false;
     uint32_t insidePatches_ = 0;
-    std::vector<Placement> placed_;    // where the patches' instances stand
-    std::vector<uint8_t> known_;       // per instance: it was there from the beginning
-    ObjectMembers triangles_, slots_;  // slots: places among patches
-    std::vector<uint32_t> texels_;     // per patch: its texel and kHome when all are shown
-    std::vector<MetBits> inside_;      // per patch
-    std::unique_ptr<Buffers> buffers_; // once something moves
-    std::unique_ptr<CitPass> cit_;     // of what moved last
+    std::vector<Placement> placed_;      // where the patches' instances stand
+    std::vector<uint8_t> known_;         // per instance: it was there from the beginning
+    ObjectMembers triangles_, slots_;    // slots: places among patches
+    std::vector<uint32_t> texels_;       // per patch: its texel and kHome when all are shown
+    std::vector<MetBits> inside_;        // per patch
+    std::unique_ptr<MoveSearch> search_; // once something moves
+    std::unique_ptr<CitPass> cit_;       // of what moved last
 };
 
 } // namespace relume

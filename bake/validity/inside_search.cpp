@@ -313,9 +313,10 @@ std::vector<uint8_t> PlaceSearcher::lieInside(std::span<const shader::Patch> pla
     return inside;
 }
 
-uint64_t placeSearchBytes() {
-    return 2 * stepBytes(kMostChunksOfPlaces) +
-           uint64_t{kMostChunksOfPlaces} * kChunk * sizeof(shader::Patch);
+uint64_t placeSearchBytes(uint32_t chunks, bool software) {
+    const uint32_t most = std::min(chunks, kMostChunksOfPlaces);
+    const uint64_t ofHost = stepBytes(most) + uint64_t{most} * kChunk * sizeof(shader::Patch);
+    return stepBytes(most) + (software ? ofHost : 0);
 }
 
 } // namespace relume

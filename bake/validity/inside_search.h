@@ -47,8 +47,9 @@ private:
     Tracer& tracer_;
     std::unique_ptr<Steps> steps_; // once there is something to search for
 };
-/// Returns the device bytes that it keeps at most, the host's with them.
-uint64_t placeSearchBytes();
+/// Returns the device bytes that it keeps for so many chunks of places; on a software device those of the
+/// host's memory, too.
+uint64_t placeSearchBytes(uint32_t chunks, bool software);
 
 /// Follows all directions of these patches; `met` is as above. It takes as much memory as their number asks
 /// for.
