@@ -46,6 +46,10 @@ uint32_t ChunkSamplePasses::deepest() const {
     return done_.empty() ? 0 : *std::max_element(done_.begin(), done_.end());
 }
 
+uint32_t ChunkSamplePasses::shallowest() const {
+    return done_.empty() ? 0 : *std::min_element(done_.begin(), done_.end());
+}
+
 uint64_t ChunkSamplePasses::total() const {
     return std::accumulate(done_.begin(), done_.end(), uint64_t{0});
 }

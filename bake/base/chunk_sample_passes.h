@@ -32,8 +32,9 @@ public:
     void finish(const Pass& pass);
 
     std::span<const uint32_t> done() const { return done_; }
-    /// Returns the most that a chunk has.
+    /// Returns the most that a chunk has, and the fewest.
     uint32_t deepest() const;
+    uint32_t shallowest() const;
     /// Returns the sum over all chunks.
     uint64_t total() const;
 

@@ -26,27 +26,7 @@ struct Variances {
 
 Variances pooled(std::span<const ChunkVariance> chunks, const ChunkPlan& now, double ChunkVariance::*direct,
                  double ChunkVariance::*links) {
-    Variances result;
-    const auto of = [&](size_t i, double ChunkVariance::*which, const std::vector<uint32_t>& samplePasses) {
-        return chunks[i].*which * samplePasses[i];
-    };
-    const auto pool = [&](double ChunkVariance::*which, const std::vector<uint32_t>& samplePasses) {
-        std::vector<double> values(chunks.size(), 0.0);
-        for (size_t i = 0; i < chunks.size(); ++i) {
-            if (!(chunks[i].patches > 0)) continue;
-            double sum = 0, patches = 0;
-            for (size_t k = i - std::min(i, kNeighbours); k < std::min(chunks.size(), i + kNeighbours + 1);
-                 ++k) {
-                sum += of(k, which, samplePasses);
-                patches += chunks[k].patches;
-            }
-            values[i] = std::max(sum / patches, of(i, which, samplePasses) / chunks[i].patches);
-        }
-        return values;
-    };
-    result.direct = pool(direct, now.direct);
-    result.links = pool(links, now.links);
-    return result;
+    return {pooledVariances(chunks, now.direct, direct), pooledVariances(chunks, now.links, links)};
 }
 
 // Brings chunks to the local error, each by itself.
@@ -122,6 +102,22 @@ void planTogether(const ChunkPlanRules& rules, std::span<const ChunkVariance> ch
 }
 
 } // namespace
+
+std::vector<double> pooledVariances(std::span<const ChunkVariance> chunks,
+                                    std::span<const uint32_t> samplePasses, double ChunkVariance::*which) {
+    const auto ofOne = [&](size_t i) { return chunks[i].*which * samplePasses[i]; };
+    std::vector<double> values(chunks.size(), 0.0);
+    for (size_t i = 0; i < chunks.size(); ++i) {
+        if (!(chunks[i].patches > 0)) continue;
+        double sum = 0, patches = 0;
+        for (size_t k = i - std::min(i, kNeighbours); k < std::min(chunks.size(), i + kNeighbours + 1); ++k) {
+            sum += ofOne(k);
+            patches += chunks[k].patches;
+        }
+        values[i] = std::max(sum / patches, ofOne(i) / chunks[i].patches);
+    }
+    return values;
+}
 
 ChunkPlan planChunks(const ChunkPlanRules& rules, std::span<const ChunkVariance> chunks,
                      const ChunkPlan& now) {

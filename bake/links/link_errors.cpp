@@ -43,7 +43,7 @@ shader::ResolveSums LinkErrors::resolve(const LinkState& state, double sigma) co
                      {.samples = state.linkSamplePasses * kit_.linksOfSamplePass,
                       .directSamplePasses = state.directSamplePasses,
                       .sigma = static_cast<float>(sigma),
-                      .scaled = state.scaled,
+                      .scaled = state.hasScales(),
                       .local = bool(kit_.buffers.local),
                       .floor = static_cast<float>(kLocalFloor * state.median),
                       .rows = kit_.rankChunks.rows(),
@@ -60,7 +60,7 @@ void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
     auto* bins = buffers.local.as<uint32_t>();
     uint32_t* const errorBins = bins + shader::kLightBins;
     HostSmoothing smoothing = kit_.smoothing(sigma, bool(buffers.rows));
-    if (state.scaled) smoothing.scales = buffers.scales.as<glm::vec2>();
+    if (state.hasScales()) smoothing.scales = buffers.scales.as<glm::vec2>();
     smoothing.rowChunks = kit_.rankChunks.rowMarks();
     smoothing.chunks = own_;
     resolveLinks(kit_.gatherPass.pool(),

@@ -42,6 +42,12 @@ bool samplesPerChunk(const SolverSettings& settings, bool software) {
            settings.links.indirectScale == 1;
 }
 
+bool directApart(const SolverSettings& settings, bool software) {
+    const bool wanted = settings.error > 0 || settings.localError > 0;
+    return software && wanted && settings.links.samples == 0 && settings.passes == 0 &&
+           settings.links.indirectScale == 1;
+}
+
 SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     const uint64_t count = extent.patches();
     const bool hybrid = settings.method == Method::Hybrid;

@@ -1,5 +1,5 @@
-// This part of LinkSolver is about what it tells: its result, how far that is off, its state, and what a
-// viewer asks.
+// This part of LinkSolver is about its result, how far that is off, what comes next for it, its state, and
+// what a viewer asks.
 #include "bake/links/link_solver.h"
 
 #include "assets/base/error.h"
@@ -23,6 +23,11 @@ constexpr double kLookSeconds = 1.0 / 60.0, kLookShare = 0.1;
 // square.
 constexpr double kBesideGrid = 0.1;
 
+// Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
+// many times at most.
+constexpr double kStricter = 0.8;
+constexpr uint32_t kMostStricter = 32;
+
 // Returns the state's buffers of which each rank has its own chunks.
 std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
     const LightBuffers& light = kit.input.light;
@@ -40,6 +45,60 @@ std::vector<RankChunks::Shared> ownBuffers(const LinkKit& kit) {
 
 } // namespace
 
+// Plans direct light first, then links; then whichever takes more of the error away for its rays, or chunk by
+// chunk.
+void LinkSolver::plan() {
+    const bool pending = directSamplePasses_.pending() || linkSamplePasses_.pending();
+    if (!pending) {
+        // With a number of samples alone, errors decide nothing.
+        if (schedule_.wantsCheck(state_)) check();
+        const bool planned = !progress_.converged && !gridLimits_ &&
+                             (state_.scaled || !schedule_.isDone(state_)) && planChunks();
+        if (!planned) {
+            if (stale_) resolve();
+            done_ = true;
+            return;
+        }
+    }
+    if (kit_.settings.live) look();
+    begin(directSamplePasses_.pending() ? Stage::Direct : Stage::Links);
+}
+
+// Makes chunks want more sample passes, and tells whether any does.
+bool LinkSolver::planChunks() {
+    if (!state_.scaled) {
+        if (state_.apart.on && schedule_.plansDirect(state_)) {
+            state_.apart.planned = state_.linkSamplePasses;
+            directSamplePasses_.want(
+                directPlan_.wanted(schedule_.directRules(state_), directSamplePasses_.done()));
+        }
+        if (!directSamplePasses_.pending())
+            samplePassesOf(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links).wantOneMore();
+        return true;
+    }
+    const std::vector<ChunkVariance> chunks = errors_.chunks();
+    const std::span<const uint32_t> direct = directSamplePasses_.done(), links = linkSamplePasses_.done();
+    const ChunkPlan now{{direct.begin(), direct.end()}, {links.begin(), links.end()}};
+    ChunkPlan plan = now;
+    for (uint32_t tries = 0; tries < kMostStricter && plan == now; ++tries) {
+        if (tries > 0) state_.strictness *= kStricter;
+        plan = relume::planChunks(schedule_.planRules(state_), chunks, now);
+    }
+    directSamplePasses_.want(plan.direct);
+    linkSamplePasses_.want(plan.links);
+    return plan != now;
+}
+
+void LinkSolver::uploadScales() {
+    const auto scale = [](double samples) { return static_cast<float>(samples > 0 ? 1.0 / samples : 0.0); };
+    const double perReplicate = static_cast<double>(kit_.linksOfSamplePass) / shader::kReplicates;
+    std::vector<glm::vec2> scales;
+    for (size_t i = 0; i < linkSamplePasses_.done().size(); ++i)
+        scales.emplace_back(scale(perReplicate * linkSamplePasses_.done()[i]),
+                            scale(directSamplePasses_.done()[i]));
+    vk::upload(kit_.input.device, kit_.buffers.scales, scales.data(), scales.size() * sizeof(glm::vec2));
+}
+
 // Finds the error that is left, from what the replicates say and the iteration; keeps it in progress().
 void LinkSolver::check() {
     state_.nextCheck = state_.samplePasses() + 1;
@@ -48,6 +107,12 @@ void LinkSolver::check() {
     const double aim = kit_.settings.error;
     const double excess = schedule_.excess(progress_.error, progress_.localError95);
     progress_.converged = excess <= 1.0;
+    if (schedule_.plansApart() && !schedule_.perChunk()) {
+        const std::span<const uint32_t> done = directSamplePasses_.done();
+        const bool locally = schedule_.choosesLocally(progress_.error, progress_.localError95);
+        directPlan_.learn(errors_.chunks(), done, locally);
+        state_.apart = schedule_.apart(state_, directPlan_, done, excess, progress_.localError95);
+    }
     state_.nextCheck = schedule_.perChunk() ? 0 : schedule_.nextCheck(state_, excess);
     state_.scaled = schedule_.perChunk();
     if (state_.scaled) uploadScales();
@@ -62,6 +127,7 @@ void LinkSolver::resolve() {
         kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
         kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(glm::vec2)});
     }
+    if (state_.apart.on) uploadScales();
     const auto at = [this](double sigma) { return errors_.resolve(state_, sigma); };
     const bool isNew = state_.median == 0;
     shader::ResolveSums sums = kit_.buffers.rows ? state_.width.converge(at) : at(0.0);
@@ -159,6 +225,8 @@ std::vector<StatePart> LinkSolver::stateParts() {
         parts.push_back(part(samplePasses->doneArray()));
         parts.push_back(part(samplePasses->wantedArray()));
     }
+    parts.push_back(part(directPlan_.ofOneArray()));
+    parts.push_back(part(directPlan_.patchesArray()));
     return parts;
 }
 
@@ -214,6 +282,7 @@ void LinkSolver::look() {
     live_.looked = Clock::now();
     const LinkState before = state_;
     SmoothingWidth width = live_.width.value_or(state_.width);
+    if (state_.apart.on) uploadScales();
     const shader::ResolveSums sums = errors_.resolve(state_, kit_.buffers.rows ? width.sigma : 0.0);
     learn(sums, errors_.local());
     if (kit_.buffers.rows) width.adapt(sums);
@@ -285,6 +354,7 @@ void LinkSolver::undo() {
     vkCmdCopyBuffer(cmd, (undo_ ? undo_ : kit_.buffers.rows).handle(), sums.handle(), 1, &all);
     vk::barrier(cmd);
     if (state_.stage == Stage::Direct) {
+        if (state_.apart.on) uploadScales();
         kit_.gatherPass.recordDirectMean(cmd, kit_.input.light, kit_.buffers, state_.directSamplePasses,
                                          scales());
         vk::barrier(cmd);

@@ -1,6 +1,7 @@
 #include "bake/links/link_schedule.h"
 
 #include "bake/base/batch_rate.h"
+#include "bake/base/shader_types.h"
 #include "bake/gather/sample_plan.h"
 
 #include <algorithm>
@@ -16,6 +17,9 @@ constexpr double kDeviationsOf95 = 1.96;
 // There are at most so many sample passes of links for one of direct light: links read direct light, and what
 // few of its samples leave in there is no error that replicates tell.
 constexpr uint32_t kMostLinksOfDirect = 32;
+// Plans of direct light aim at this share of the variance that is allowed, as variances are not known
+// exactly.
+constexpr double kAimOfPlans = 0.9;
 // Samples are planned for at least this share of the variance that is allowed, whatever else is left.
 constexpr double kLeastOfVariance = 0.25;
 
@@ -56,8 +60,49 @@ ChunkPlanRules LinkSchedule::planRules(const LinkState& state) const {
     return plan;
 }
 
+DirectPlanRules LinkSchedule::directRules(const LinkState& state) const {
+    const double links = gainOfSamplePass({.samplePasses = state.linksAtCheck,
+                                           .variance = state.linkChoice,
+                                           .costOfSamplePass = rules_.linkCost},
+                                          state.linkSamplePasses);
+    return {.cost = std::max(1.0, kSegmentCost * state.raysToLights),
+            .rangeCost = rules_.rangeChunks * shader::kChunk,
+            .linkGain = linksDone(state) ? 0.0 : links / std::max(1.0, state.patches),
+            .allowed = kAimOfPlans * state.apart.allowed,
+            .least = std::max(1u, state.linkSamplePasses / kMostLinksOfDirect),
+            .most = samplePassesWanted()};
+}
+
+double LinkSchedule::directShare(const LinkState& state, double excess, double localError) const {
+    if (!(state.directChoice > 0)) return 1.0;
+    const double whole = 1.0 / (excess * excess), links = state.linkChoice / state.directChoice;
+    const double fall = rules_.localError > 0 ? std::max(1.0, localError / rules_.localError) : 1.0;
+    return std::max(whole, whole * (1.0 + links) - links / (fall * fall));
+}
+
+// What chunks say of each other, pooled, is more than their sum, so shares of that count.
+DirectApart LinkSchedule::apart(const LinkState& state, const DirectPlan& plan,
+                                std::span<const uint32_t> samplePasses, double excess,
+                                double localError) const {
+    LinkState now = state;
+    const double left = plan.left(samplePasses);
+    now.apart.on = true;
+    now.apart.allowed = directShare(state, excess, localError) * left;
+    const std::vector<uint32_t> wanted = plan.wanted(directRules(now), samplePasses);
+    const double settled = plan.settled(wanted, samplePasses);
+    now.apart.settled = left > 0 ? state.directChoice * settled / left : 0.0;
+    return now.apart;
+}
+
+bool LinkSchedule::plansDirect(const LinkState& state) const {
+    if (linksDone(state)) return true;
+    return state.apart.planned != state.linkSamplePasses &&
+           (state.linksAtCheck == state.linkSamplePasses ||
+            onLadder(state.linkSamplePasses) == state.linkSamplePasses);
+}
+
 // The sample passes to come are those that this schedule will choose, and each kind's variance falls as one
-// over their number.
+// over their number. Apart, direct light that is not settled gets its sample passes as links get theirs.
 uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
     const auto variance = [&](const LinkState& at) {
         return state.directChoice * state.directAtCheck / std::max(1u, at.directSamplePasses) +
@@ -65,6 +110,12 @@ uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
     };
     const uint32_t now = state.samplePasses();
     const double allowed = variance(state) / (excess * excess), farthest = (kCheckGrowth - 1.0) / kCheckShare;
+    if (state.apart.on) {
+        const double falls = std::max(0.0, variance(state) - state.apart.settled);
+        const double left = allowed - state.apart.settled;
+        const double more = left > 0 ? std::min(falls / left - 1.0, farthest) : farthest;
+        return now + std::max(1u, static_cast<uint32_t>(kCheckShare * more * state.linkSamplePasses));
+    }
     LinkState ahead = state;
     while (variance(ahead) > allowed && ahead.samplePasses() - now < farthest * now && !isDone(ahead))
         ++(wantsDirect(ahead) ? ahead.directSamplePasses : ahead.linkSamplePasses);
@@ -74,7 +125,7 @@ uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
 bool LinkSchedule::wantsDirect(const LinkState& state) const {
     if (directDone(state)) return false;
     if (state.directSamplePasses == 0 || linksDone(state)) return true;
-    if (state.linkSamplePasses == 0) return false;
+    if (state.linkSamplePasses == 0 || state.apart.on) return false;
     if (rules_.samples > 0) return state.directSamplePasses <= state.linkSamplePasses;
     if (state.directSamplePasses < state.linkSamplePasses / kMostLinksOfDirect) return true;
     return gainOfSamplePass({.samplePasses = state.directAtCheck,

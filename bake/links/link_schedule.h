@@ -4,20 +4,30 @@
 #include "bake/base/bounce_convergence.h"
 #include "bake/gather/chunk_plan.h"
 #include "bake/gather/smoothing_width.h"
+#include "bake/links/direct_plan.h"
 
 namespace relume {
+
+/// Tells of direct light whose sample passes are planned chunk by chunk.
+struct DirectApart {
+    bool on = false;      // from the first solution on
+    uint32_t planned = 0; // sample passes of links when it was planned last
+    double settled = 0;   // of LinkState::directChoice: of chunks that want no more
+    double allowed = 0;   // variance that it may leave in the end, as DirectPlan::left() tells
+};
 
 /// Everything that decides what a link solver does next, except for the sums, the light and the order of
 /// chunks. A checkpoint holds it byte by byte.
 struct LinkState {
     enum class Stage : uint32_t { Plan, Direct, Links };
     Stage stage = Stage::Plan;
-    uint32_t directSamplePasses = 0, linkSamplePasses = 0; // finished, of the chunks that have most
-    uint32_t passSamplePasses = 1;                         // that the pass under way takes
-    uint32_t bounce = 0;                                   // of the current sample pass
-    uint32_t nextCheck = 0; // sample passes of both kinds before the next check
-    bool last = false;      // this bounce is the sample pass's last one: it counts
-    BounceSeries series;    // of the first sample pass, then its last bounce's own share
+    // Finished, of the chunks that have most; of direct light apart, of those that have fewest.
+    uint32_t directSamplePasses = 0, linkSamplePasses = 0;
+    uint32_t passSamplePasses = 1; // that the pass under way takes
+    uint32_t bounce = 0;           // of the current sample pass
+    uint32_t nextCheck = 0;        // sample passes of both kinds before the next check
+    bool last = false;             // this bounce is the sample pass's last one: it counts
+    BounceSeries series;           // of the first sample pass, then its last bounce's own share
     // These are of the light, R, G and B of all patches together.
     double directVariance = 0, indirectVariance = 0, coarseVariance = 0;
     double light = 0, patches = 0; // likewise, of those that are shown
@@ -27,11 +37,14 @@ struct LinkState {
     uint32_t directAtCheck = 0, linksAtCheck = 0; // sample passes behind these variances
     BounceConvergence convergence;                // of the first sample pass, then of the result
     bool scaled = false;                          // chunks have sample passes of their own, of both kinds
-    double raysToLights = 0;                      // of a patch, in the last sample pass of direct light
-    double median = 0;                            // light of all texels [cd/m^2]
-    double strictness = 1; // what is asked for is planned with so many times less error
+    DirectApart apart;
+    double raysToLights = 0; // of a patch, in the last sample pass of direct light
+    double median = 0;       // light of all texels [cd/m^2]
+    double strictness = 1;   // what is asked for is planned with so many times less error
 
     uint32_t samplePasses() const { return directSamplePasses + linkSamplePasses; }
+    /// Tells whether sums are of as many samples as each chunk has.
+    bool hasScales() const { return scaled || apart.on; }
 };
 
 /// No sample pass has more bounces.
@@ -42,11 +55,13 @@ struct LinkRules {
     bool hybrid = false;
     bool hasDirect = false; // rays go to lights
     uint32_t linksOfSamplePass = 16;
-    uint32_t samples = 0;  // per patch, at most; 0: as many as the error needs
-    uint32_t passes = 0;   // bounces of each sample pass; 0: until they have converged
-    double error = 0.01;   // relRMSE to be reached; 0: any will do
-    double localError = 0; // local error to be reached; 0: any will do. With both 0 all samples are taken
-    bool perChunk = false; // chunks may have sample passes of their own
+    uint32_t samples = 0;     // per patch, at most; 0: as many as the error needs
+    uint32_t passes = 0;      // bounces of each sample pass; 0: until they have converged
+    double error = 0.01;      // relRMSE to be reached; 0: any will do
+    double localError = 0;    // local error to be reached; 0: any will do. With both 0 all samples are taken
+    bool perChunk = false;    // chunks may have sample passes of their own
+    bool directApart = false; // they may have those of direct light
+    double rangeChunks = 0;   // each range of chunks costs as much of direct light as so many chunks more
     double directCost = 1, linkCost = 1; // of a sample pass of each kind, in one unit
 };
 
@@ -78,13 +93,30 @@ public:
     bool perChunk() const { return rules_.perChunk; }
     /// Returns what sample passes of chunks are planned by.
     ChunkPlanRules planRules(const LinkState& state) const;
+    /// Tells whether chunks get sample passes of direct light of their own, once there is a solution: links
+    /// do not, as on a GPU few chunks of links take as long as many.
+    bool plansApart() const { return rules_.directApart && rules_.hasDirect && !directAlone(); }
+    /// Returns what these are planned by.
+    DirectPlanRules directRules(const LinkState& state) const;
+    /// Returns the share of directChoice that direct light may leave where the error, so many times what is
+    /// asked for, is to be reached: links will have fallen as the local error has to by then, and direct
+    /// light need not fall by more than the whole.
+    double directShare(const LinkState& state, double excess, double localError) const;
+    /// Returns how things stand after a check whose error is so many times what is asked for; the plan has
+    /// learned of it.
+    DirectApart apart(const LinkState& state, const DirectPlan& plan, std::span<const uint32_t> samplePasses,
+                      double excess, double localError) const;
+    /// Tells whether they are planned now: after a check and, as what links take away becomes less, where the
+    /// number of sample passes of links is one of the ladder (sample_plan.h).
+    bool plansDirect(const LinkState& state) const;
     /// Returns how many sample passes of links follow so many at once, from the same light. Each next one
     /// would start from better light, which matters less the more there are.
     static uint32_t samplePassesAtOnce(uint32_t samplePasses) { return samplePasses / 16 + 1; }
     /// Tells whether all sample passes are made.
     bool isDone(const LinkState& state) const { return linksDone(state) && directDone(state); }
-    /// Tells whether direct light comes next: at first, then where it takes more away, for its cost, of the
-    /// variance that is farther off what is asked for, and now and then in any case.
+    /// Tells whether direct light comes next, of all patches: at first, then where it takes more away, for
+    /// its cost, of the variance that is farther off what is asked for, and now and then in any case. Apart,
+    /// it comes by plans, and here where links are done.
     bool wantsDirect(const LinkState& state) const;
     /// Tells whether there are sums of a sample pass in which every patch has its bounces.
     bool hasSolution(const LinkState& state) const {

@@ -19,10 +19,10 @@ constexpr uint32_t kInterpolatedChunks = 4096;
 // A submit of direct light goes on with another portion where it lacks this share of one: shorter ones fill a
 // GPU less and trace slower (the town by a seventh).
 constexpr double kLeastPortion = 0.5;
-// Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
-// many times at most.
-constexpr double kStricter = 0.8;
-constexpr uint32_t kMostStricter = 32;
+
+// A range of chunks takes as long as so many more, as threads wait for each other: three on two cores, more
+// on more of them. What is planned must not hang on their number.
+constexpr double kRangeChunks = 4;
 
 static_assert(std::is_trivially_copyable_v<LinkState>);
 static_assert(kMostBounces == Solver::kMaxPasses);
@@ -97,7 +97,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
       disc_(makeDisc()), radiancePass_(input.device),
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
-      directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()), directRate_(kit_.wide()) {
+      directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()),
+      directPlan_(kit_.chunkCount()), directRate_(kit_.wide()) {
     ASSERT(input.ranks.alone() || (!settings.live && coarse_.count == 0));
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -134,6 +135,8 @@ LinkRules LinkSolver::rules() const {
             .error = settings.error,
             .localError = settings.localError,
             .perChunk = samplesPerChunk(settings, kit_.input.device.info().software()),
+            .directApart = directApart(settings, kit_.input.device.info().software()),
+            .rangeChunks = kRangeChunks,
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
             .linkCost = kit_.linksOfSamplePass * linkShare};
 }
@@ -162,44 +165,6 @@ void LinkSolver::step() {
         linkBatch();
     progress_.passFraction = 1.0 - static_cast<double>(kit_.order.left()) / std::max(1u, kit_.order.count());
     progress_.seconds += secondsSince(start);
-}
-
-// Plans direct light first, then links; then whichever takes more of the error away for its rays, or chunk by
-// chunk.
-void LinkSolver::plan() {
-    const bool pending = directSamplePasses_.pending() || linkSamplePasses_.pending();
-    if (!pending) {
-        // With a number of samples alone, errors decide nothing.
-        if (schedule_.wantsCheck(state_)) check();
-        const bool planned = !progress_.converged && !gridLimits_ &&
-                             (state_.scaled || !schedule_.isDone(state_)) && planChunks();
-        if (!planned) {
-            if (stale_) resolve();
-            done_ = true;
-            return;
-        }
-    }
-    if (kit_.settings.live) look();
-    begin(directSamplePasses_.pending() ? Stage::Direct : Stage::Links);
-}
-
-// Makes chunks want more sample passes, and tells whether any does.
-bool LinkSolver::planChunks() {
-    if (!state_.scaled) {
-        samplePassesOf(schedule_.wantsDirect(state_) ? Stage::Direct : Stage::Links).wantOneMore();
-        return true;
-    }
-    const std::vector<ChunkVariance> chunks = errors_.chunks();
-    const std::span<const uint32_t> direct = directSamplePasses_.done(), links = linkSamplePasses_.done();
-    const ChunkPlan now{{direct.begin(), direct.end()}, {links.begin(), links.end()}};
-    ChunkPlan plan = now;
-    for (uint32_t tries = 0; tries < kMostStricter && plan == now; ++tries) {
-        if (tries > 0) state_.strictness *= kStricter;
-        plan = relume::planChunks(schedule_.planRules(state_), chunks, now);
-    }
-    directSamplePasses_.want(plan.direct);
-    linkSamplePasses_.want(plan.links);
-    return plan != now;
 }
 
 void LinkSolver::begin(Stage stage) {
@@ -238,21 +203,13 @@ void LinkSolver::beginOrder() {
 void LinkSolver::endPass() {
     ChunkSamplePasses& samplePasses = samplePassesOf(state_.stage);
     samplePasses.finish(pass_);
-    (state_.stage == Stage::Direct ? state_.directSamplePasses : state_.linkSamplePasses) =
-        samplePasses.deepest();
+    if (state_.stage == Stage::Links)
+        state_.linkSamplePasses = samplePasses.deepest();
+    else
+        state_.directSamplePasses = state_.apart.on ? samplePasses.shallowest() : samplePasses.deepest();
     if (state_.scaled) uploadScales();
     stale_ = true;
     state_.stage = Stage::Plan;
-}
-
-void LinkSolver::uploadScales() {
-    const auto scale = [](double samples) { return static_cast<float>(samples > 0 ? 1.0 / samples : 0.0); };
-    const double perReplicate = static_cast<double>(kit_.linksOfSamplePass) / shader::kReplicates;
-    std::vector<glm::vec2> scales;
-    for (size_t i = 0; i < linkSamplePasses_.done().size(); ++i)
-        scales.emplace_back(scale(perReplicate * linkSamplePasses_.done()[i]),
-                            scale(directSamplePasses_.done()[i]));
-    vk::upload(kit_.input.device, kit_.buffers.scales, scales.data(), scales.size() * sizeof(glm::vec2));
 }
 
 const std::vector<uint8_t>& LinkSolver::seenOfStage() const {
@@ -325,7 +282,9 @@ void LinkSolver::directBatch() {
     progress_.rays += rays;
     kit_.shareCounters();
     const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
-    state_.raysToLights = static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk);
+    if (pass_.all || !state_.apart.on)
+        state_.raysToLights =
+            static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk);
     endPass();
 }
 

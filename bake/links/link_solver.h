@@ -20,9 +20,10 @@ namespace relume {
 /// Solves with the directional or the hybrid method. A sample pass takes a few samples of every patch: points
 /// on lights (on mesh lights in hybrid only) or links. The first sample pass of links is iterated until its
 /// bounces have converged; later ones start from the light so far and need one bounce each, so that light and
-/// samples improve together. From the first check on chunks get sample passes of their own, where light is
-/// still off (chunk_plan.h). With a number of passes given, each sample pass starts from nothing and has just
-/// so many bounces. The mean over sample passes is the result; the spread of the replicates is its error.
+/// samples improve together. From the first check on chunks get sample passes of direct light of their own
+/// (direct_plan.h), and perhaps of links, too (chunk_plan.h). With a number of passes given, each sample pass
+/// starts from nothing and has just so many bounces. The mean over sample passes is the result; the spread of
+/// the replicates is its error.
 class LinkSolver final : public Solver {
 public:
     /// Throws Error.
@@ -60,7 +61,7 @@ private:
     void beginOrder();
     void endPass();
     /// Returns the scales of chunks, where these have sample passes of their own.
-    const vk::Buffer* scales() const { return state_.scaled ? &kit_.buffers.scales : nullptr; }
+    const vk::Buffer* scales() const { return state_.hasScales() ? &kit_.buffers.scales : nullptr; }
     void uploadScales();
     ChunkSamplePasses& samplePassesOf(Stage stage) {
         return stage == Stage::Direct ? directSamplePasses_ : linkSamplePasses_;
@@ -110,6 +111,7 @@ private:
     bool sendsOnHost_; // the CPU makes what patches send after a bounce
     LinkState state_;
     ChunkSamplePasses directSamplePasses_, linkSamplePasses_;
+    DirectPlan directPlan_;
     ChunkSamplePasses::Pass pass_;       // under way
     std::vector<uint8_t> seenReceivers_; // chunks of the coarser grid that come first
     BatchRate directRate_;

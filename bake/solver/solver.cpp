@@ -68,12 +68,21 @@ StatePart Solver::part(ChunkOrder& order) {
             }};
 }
 
-StatePart Solver::part(std::vector<uint32_t>& values) {
+template<typename T>
+static StatePart partOf(std::vector<T>& values) {
     const auto bytes = [&values] { return reinterpret_cast<uint8_t*>(values.data()); };
     return {
-        values.size() * sizeof(uint32_t),
+        values.size() * sizeof(T),
         [=](void* to, uint64_t offset, uint64_t size) { std::memcpy(to, bytes() + offset, size); },
         [=](const void* from, uint64_t offset, uint64_t size) { std::memcpy(bytes() + offset, from, size); }};
+}
+
+StatePart Solver::part(std::vector<uint32_t>& values) {
+    return partOf(values);
+}
+
+StatePart Solver::part(std::vector<double>& values) {
+    return partOf(values);
 }
 
 void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& to,

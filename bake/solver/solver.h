@@ -236,6 +236,7 @@ protected:
     static StatePart part(const vk::Device& device, const vk::Buffer& buffer);
     static StatePart part(ChunkOrder& order);
     static StatePart part(std::vector<uint32_t>& values);
+    static StatePart part(std::vector<double>& values);
 
     bool done_ = false;
     double batchMs_ = 20.0; // aim of one submit

@@ -71,6 +71,36 @@ TEST(LinkSchedule, GoesByTheErrorThatIsFartherOff) {
     EXPECT_TRUE(local.choosesLocally(0.02, 0.01));
 }
 
+// Apart, direct light comes by plans: after checks and where the sample passes of links are on the ladder.
+TEST(LinkSchedule, DirectLightOfChunksIsPlannedNowAndThen) {
+    const LinkSchedule schedule(with([](LinkRules& r) { r.directApart = true; }));
+    EXPECT_TRUE(schedule.plansApart());
+    EXPECT_FALSE(LinkSchedule(kRules).plansApart());
+    LinkState state = after(4, 4);
+    state.apart.on = true;
+    state.directChoice = 100;
+    state.linkChoice = 8;
+    EXPECT_FALSE(schedule.wantsDirect(state)) << "not of all chunks";
+    EXPECT_TRUE(schedule.plansDirect(state)) << "after a check";
+    state.apart.planned = 4;
+    EXPECT_FALSE(schedule.plansDirect(state));
+    state.linkSamplePasses = 5;
+    EXPECT_FALSE(schedule.plansDirect(state));
+    state.linkSamplePasses = 6;
+    EXPECT_TRUE(schedule.plansDirect(state)) << "on the ladder";
+}
+
+// Of variances of 8 and 8 a quarter is to be left, 4: links that fall to a ninth leave 8 / 9 of that.
+TEST(LinkSchedule, DirectLightMayLeaveWhatLinksDoNot) {
+    const LinkSchedule schedule(with([](LinkRules& r) { r.localError = 0.05; }));
+    LinkState state = after(4, 4);
+    state.directChoice = state.linkChoice = 8;
+    EXPECT_NEAR(schedule.directShare(state, 2.0, 0.15), (4 - 8 / 9.0) / 8, 1e-12) << "links fall to a ninth";
+    EXPECT_NEAR(schedule.directShare(state, 2.0, 0.05), 0.25, 1e-12) << "both fall alike";
+    state.directChoice = 0;
+    EXPECT_EQ(schedule.directShare(state, 2.0, 0.15), 1.0);
+}
+
 // Links read direct light, and what is wrong with that no replicate tells: it gets better now and then even
 // where its own error is nothing.
 TEST(LinkSchedule, LinksNeverReadTheDirectLightOfFewSamplesForLong) {

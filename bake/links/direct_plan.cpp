@@ -1,0 +1,143 @@
+#include "bake/links/direct_plan.h"
+
+#include "assets/base/error.h"
+#include "bake/gather/sample_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace relume {
+
+void DirectPlan::learn(std::span<const ChunkVariance> chunks, std::span<const uint32_t> samplePasses,
+                       bool locally) {
+    ofOne_ =
+        pooledVariances(chunks, samplePasses, locally ? &ChunkVariance::localDirect : &ChunkVariance::direct);
+    for (size_t i = 0; i < chunks.size(); ++i)
+        patches_[i] = chunks[i].patches;
+}
+
+// One more sample pass after n takes v / n^2 of a variance v / n.
+uint32_t DirectPlan::wantedOf(const DirectPlanRules& rules, size_t chunk, uint32_t now) const {
+    const uint32_t least = std::max(now, std::min(rules.least, rules.most));
+    const double worth = ofOne_[chunk] / rules.cost;
+    if (!(worth > rules.linkGain * now * now)) return least;
+    const double growth = static_cast<double>(kMostChunkGrowth) * std::max(1u, now);
+    const double pays = rules.linkGain > 0 ? std::sqrt(worth / rules.linkGain) : growth;
+    return std::max(least, std::min(onLadder(std::min(pays, growth)), rules.most));
+}
+
+// Returns who takes part in each sample pass, by its number.
+std::vector<DirectPlan::Part> DirectPlan::partsOf(std::span<const uint32_t> wanted,
+                                                  std::span<const uint32_t> samplePasses) const {
+    const uint32_t count = wanted.empty() ? 0 : *std::max_element(wanted.begin(), wanted.end());
+    std::vector<Part> parts(count + 1); // first what changes from one sample pass to the next
+    const auto ranges = [&](uint32_t from, uint32_t to) {
+        if (from >= to) return;
+        parts[from].ranges += 1;
+        parts[to].ranges -= 1;
+    };
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        const uint32_t from = samplePasses[i], to = wanted[i];
+        if (to <= from) continue;
+        const double patches = patches_[i], ofOne = ofOne_[i] * patches;
+        parts[from].ofOne += ofOne;
+        parts[from].patches += patches;
+        parts[to].ofOne -= ofOne;
+        parts[to].patches -= patches;
+        // A range begins in those that the chunk before takes no part in.
+        const bool beside = i > 0 && wanted[i - 1] > samplePasses[i - 1];
+        const uint32_t otherFrom = beside ? samplePasses[i - 1] : to, otherTo = beside ? wanted[i - 1] : to;
+        ranges(from, std::min(to, otherFrom));
+        ranges(std::max(from, otherTo), to);
+    }
+    for (uint32_t n = 1; n < count; ++n) {
+        parts[n].ofOne += parts[n - 1].ofOne;
+        parts[n].patches += parts[n - 1].patches;
+        parts[n].ranges += parts[n - 1].ranges;
+    }
+    parts.resize(count);
+    return parts;
+}
+
+// Returns up to which sample pass all chunks had better take part.
+uint32_t DirectPlan::ofAll(const DirectPlanRules& rules, std::span<const Part> parts, uint32_t fewest) const {
+    double ofOne = 0, patches = 0;
+    for (size_t i = 0; i < ofOne_.size(); ++i) {
+        ofOne += ofOne_[i] * patches_[i];
+        patches += patches_[i];
+    }
+    const double all = patches + rules.rangeCost;
+    uint32_t n = std::max(rules.least, fewest);
+    while (n < parts.size() && parts[n].patches + rules.rangeCost * parts[n].ranges > all &&
+           ofOne > rules.linkGain * rules.cost * all * n * n)
+        ++n;
+    return n;
+}
+
+// Returns what the last sample pass has to take away for its cost where no more than `allowed` is to be left:
+// as much as links would, or more.
+double DirectPlan::gainFor(const DirectPlanRules& rules, std::span<const uint32_t> samplePasses) const {
+    constexpr uint32_t kHalvings = 40;
+    const auto left = [&](double gain) {
+        double sum = 0;
+        for (size_t i = 0; i < ofOne_.size(); ++i) {
+            const double pays = gain > 0 ? std::sqrt(ofOne_[i] / (rules.cost * gain)) : rules.most;
+            sum += ofOne_[i] * patches_[i] / std::max({1.0, double(samplePasses[i]), pays});
+        }
+        return sum;
+    };
+    const double most =
+        *std::max_element(ofOne_.begin(), ofOne_.end()) / rules.cost; // one sample pass is enough
+    if (!(most > rules.linkGain) || left(rules.linkGain) > rules.allowed) return rules.linkGain;
+    double low = std::max(rules.linkGain, most / (double(rules.most) * rules.most)), high = most;
+    for (uint32_t i = 0; i < kHalvings; ++i) {
+        const double middle = std::sqrt(low * high);
+        (left(middle) > rules.allowed ? high : low) = middle;
+    }
+    return low;
+}
+
+std::vector<uint32_t> DirectPlan::wanted(const DirectPlanRules& of,
+                                         std::span<const uint32_t> samplePasses) const {
+    ASSERT(samplePasses.size() == ofOne_.size());
+    if (samplePasses.empty()) return {};
+    DirectPlanRules rules = of;
+    rules.linkGain = gainFor(of, samplePasses);
+    std::vector<uint32_t> wanted;
+    wanted.reserve(samplePasses.size());
+    for (size_t i = 0; i < samplePasses.size(); ++i)
+        wanted.push_back(wantedOf(rules, i, samplePasses[i]));
+    const std::vector<Part> parts = partsOf(wanted, samplePasses);
+    const uint32_t fewest = *std::min_element(samplePasses.begin(), samplePasses.end());
+    const uint32_t all = ofAll(rules, parts, fewest);
+    // Of each number: the next sample pass that does not make up for its costs.
+    std::vector<uint32_t> end(parts.size() + 1, static_cast<uint32_t>(parts.size()));
+    for (auto n = static_cast<uint32_t>(parts.size()); n-- > 0;) {
+        const Part& part = parts[n];
+        const double cost = rules.cost * (part.patches + rules.rangeCost * part.ranges);
+        end[n] = n < all || part.ofOne > rules.linkGain * cost * n * n ? end[n + 1] : n;
+    }
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i] > samplePasses[i]) wanted[i] = std::min(wanted[i], end[samplePasses[i]]);
+        wanted[i] = std::max(wanted[i], std::min(all, rules.most));
+    }
+    return wanted;
+}
+
+double DirectPlan::left(std::span<const uint32_t> samplePasses) const {
+    ASSERT(samplePasses.size() == ofOne_.size());
+    double sum = 0;
+    for (size_t i = 0; i < samplePasses.size(); ++i)
+        sum += ofOne_[i] * patches_[i] / std::max(1u, samplePasses[i]);
+    return sum;
+}
+
+double DirectPlan::settled(std::span<const uint32_t> wanted, std::span<const uint32_t> samplePasses) const {
+    ASSERT(samplePasses.size() == ofOne_.size() && wanted.size() == ofOne_.size());
+    double sum = 0;
+    for (size_t i = 0; i < samplePasses.size(); ++i)
+        if (wanted[i] == samplePasses[i]) sum += ofOne_[i] * patches_[i] / std::max(1u, samplePasses[i]);
+    return sum;
+}
+
+} // namespace relume
