@@ -110,7 +110,7 @@ std::vector<uint32_t> DirectPlan::wanted(const DirectPlanRules& of,
     const std::vector<Part> parts = partsOf(wanted, samplePasses);
     const uint32_t fewest = *std::min_element(samplePasses.begin(), samplePasses.end());
     const uint32_t all = ofAll(rules, parts, fewest);
-    // Of each number: the next sample pass that does not make up for its costs.
+    // This tells of each number the next sample pass that does not make up for its costs.
     std::vector<uint32_t> end(parts.size() + 1, static_cast<uint32_t>(parts.size()));
     for (auto n = static_cast<uint32_t>(parts.size()); n-- > 0;) {
         const Part& part = parts[n];

@@ -23,8 +23,8 @@ constexpr double kLookSeconds = 1.0 / 60.0, kLookShare = 0.1;
 // square.
 constexpr double kBesideGrid = 0.1;
 
-// Where a plan asks for nothing more but the error is not there yet, it is made for so much less error, so
-// many times at most.
+// A plan that asks for nothing more though the error is not there yet is made for so much less error, so many
+// times at most.
 constexpr double kStricter = 0.8;
 constexpr uint32_t kMostStricter = 32;
 

@@ -80,7 +80,8 @@ double LinkSchedule::directShare(const LinkState& state, double excess, double l
     return std::max(whole, whole * (1.0 + links) - links / (fall * fall));
 }
 
-// What chunks say of each other, pooled, is more than their sum, so shares of that count.
+// Chunks that count for their neighbours, too, leave more than they have by themselves: so a share of that is
+// allowed.
 DirectApart LinkSchedule::apart(const LinkState& state, const DirectPlan& plan,
                                 std::span<const uint32_t> samplePasses, double excess,
                                 double localError) const {

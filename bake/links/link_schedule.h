@@ -93,8 +93,8 @@ public:
     bool perChunk() const { return rules_.perChunk; }
     /// Returns what sample passes of chunks are planned by.
     ChunkPlanRules planRules(const LinkState& state) const;
-    /// Tells whether chunks get sample passes of direct light of their own, once there is a solution: links
-    /// do not, as on a GPU few chunks of links take as long as many.
+    /// Tells whether chunks get sample passes of direct light of their own, once there is a solution. All
+    /// have as many of links, as what few of those bring would stay in later bounces, untold.
     bool plansApart() const { return rules_.directApart && rules_.hasDirect && !directAlone(); }
     /// Returns what these are planned by.
     DirectPlanRules directRules(const LinkState& state) const;

@@ -20,10 +20,10 @@ namespace relume {
 /// Solves with the directional or the hybrid method. A sample pass takes a few samples of every patch: points
 /// on lights (on mesh lights in hybrid only) or links. The first sample pass of links is iterated until its
 /// bounces have converged; later ones start from the light so far and need one bounce each, so that light and
-/// samples improve together. From the first check on chunks get sample passes of direct light of their own
-/// (direct_plan.h), and perhaps of links, too (chunk_plan.h). With a number of passes given, each sample pass
-/// starts from nothing and has just so many bounces. The mean over sample passes is the result; the spread of
-/// the replicates is its error.
+/// samples improve together. On a CPU chunks get sample passes of direct light of their own from the first
+/// check on (direct_plan.h), and of links, too, where that is asked for (chunk_plan.h). With a number of
+/// passes given, each sample pass starts from nothing and has just so many bounces. The mean over sample
+/// passes is the result; the spread of the replicates is its error.
 class LinkSolver final : public Solver {
 public:
     /// Throws Error.

@@ -90,7 +90,7 @@ TEST(LinkSchedule, DirectLightOfChunksIsPlannedNowAndThen) {
     EXPECT_TRUE(schedule.plansDirect(state)) << "on the ladder";
 }
 
-// Of variances of 8 and 8 a quarter is to be left, 4: links that fall to a ninth leave 8 / 9 of that.
+// A quarter of two variances of 8 may be left, 4: links that fall to a ninth leave 8 / 9 of that.
 TEST(LinkSchedule, DirectLightMayLeaveWhatLinksDoNot) {
     const LinkSchedule schedule(with([](LinkRules& r) { r.localError = 0.05; }));
     LinkState state = after(4, 4);
