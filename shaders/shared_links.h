@@ -15,12 +15,14 @@ struct EmitterSamplesPush {
     // vec4[patchCount]: lighting by all polygons without shadows, 0; or 1 where the light is so near that
     // each point has its own, behind the picks of `firstNear` chunks; 0: it is not asked for
     ADDRESS wholes;
+    ADDRESS chunks; // as of SegmentPush
     uint firstChunk;
     uint samplePass; // where several are taken together, the first one over their number
-    uint together;   // sample passes; with picks that are drawn, and no wholes, 1
-    uint pickCount;  // with wholes of all these sample passes, and a multiple of kReplicates in each
-    uint pointCount; // per pick, of all these sample passes; a multiple of kReplicates in each, with wholes 1
-    uint all;        // 1: pick i is mesh light i; 0: picks are drawn
+    uint together;   // sample passes
+    uint pickCount;  // where they are drawn of all these sample passes, and a multiple of kReplicates in each
+    uint
+        pointCount; // per pick, a multiple of kReplicates; with all of all these sample passes; with wholes 1
+    uint all;       // 1: pick i is mesh light i; 0: picks are drawn
     uint polygonCount, edgeCount, firstNear;
 };
 struct DirectPush {
@@ -31,6 +33,7 @@ struct DirectPush {
     ADDRESS direct; // vec4[patchCount]: the mean so far
     ADDRESS parts;
     ADDRESS penumbra, wholes; // as of EmitterSamplesPush
+    ADDRESS chunks;           // as of SegmentPush
     uint firstChunk;
     uint samplePass, together, pickCount, pointCount, all, firstNear; // as of EmitterSamplesPush
     uint patchCount;
@@ -38,16 +41,16 @@ struct DirectPush {
 };
 struct LampPush {
     ADDRESS patches;
-    ADDRESS lamps;     // Lamp[]
-    ADDRESS targets;   // vec4[chunkCount][targetCount][64]: end of the segment; w > 0: to be traced
-    ADDRESS bits;      // as SegmentPush
-    ADDRESS sums;      // vec4[kReplicates][patchCount], added to
-    ADDRESS direct;    // vec4[patchCount]: the mean so far
-    ADDRESS skyPixels; // vec4[height][width]: lib/light/sky.glsl
-    ADDRESS skyRows;   // float[height]
+    ADDRESS lamps;   // Lamp[]
+    ADDRESS targets; // vec4[chunkCount][targetCount][64]: end of the segment; w > 0: to be traced
+    ADDRESS bits;    // as SegmentPush
+    ADDRESS sums;    // vec4[kReplicates][patchCount], added to
+    ADDRESS direct;  // vec4[patchCount]: the mean so far
+    ADDRESS sky;     // vec4[height][width] and float[height] behind it: lib/light/sky.glsl
     ADDRESS parts;
     ADDRESS penumbra;  // as of EmitterSamplesPush
     ADDRESS covers;    // as of ClosestPush
+    ADDRESS chunks;    // as of SegmentPush
     uint skySize;      // [pixels], width | height << 16; 0: one radiance
     float skyRotation; // [rad]
     float reach;       // [m], out of the scene from anywhere in it

@@ -94,6 +94,19 @@ ChunkRange ChunkOrder::next(uint32_t most, uint32_t gap) const {
     return {first, end - first};
 }
 
+std::vector<uint32_t> ChunkOrder::nextOnes(uint32_t most) const {
+    std::vector<uint32_t> ones;
+    const uint8_t wanted = preferred_ > 0 ? kPreferred : kLeft;
+    for (uint32_t chunk = 0; chunk < count_ && ones.size() < most; ++chunk)
+        if (marks_[chunk] == wanted) ones.push_back(chunk);
+    return ones;
+}
+
+void ChunkOrder::finish(std::span<const uint32_t> chunks) {
+    for (const uint32_t chunk : chunks)
+        finish(ChunkRange{chunk, 1});
+}
+
 void ChunkOrder::finish(ChunkRange range) {
     for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
         left_ -= marks_[chunk] != 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace relume {
@@ -42,7 +43,11 @@ public:
     /// left. A run of preferred ones goes on to the next run over no more than `gap` others. A count of 0
     /// means that none is left.
     ChunkRange next(uint32_t most, uint32_t gap) const;
+    /// Returns up to `most` (> 0) chunks that are left, ascending, wherever they are: preferred ones alone,
+    /// where there are some.
+    std::vector<uint32_t> nextOnes(uint32_t most) const;
     void finish(ChunkRange range);
+    void finish(std::span<const uint32_t> chunks);
 
     /// Returns one byte per chunk of the capacity, 0: done or beyond the pass. A state stores them; they are
     /// written before restore().

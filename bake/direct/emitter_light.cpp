@@ -18,7 +18,7 @@ constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
 
 // There is room for one chunk at least of sample passes that are taken together.
 uint32_t mostChunks(uint32_t chunkCount, bool software) {
-    return std::max(shader::kSamplePassesTogether,
+    return std::max(kMostTogether,
                     std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks));
 }
 
@@ -106,6 +106,7 @@ uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& des
 // Tells whether any of the chunks is not known yet; they are from then on.
 bool EmitterLight::learnWholes(const Work& work) {
     if (!groups_[work.group].whole) return false;
+    ASSERT(!work.chunks);
     if (wholes_.group != work.group) {
         wholes_.group = work.group;
         wholes_.knownChunks.assign(chunkCount_, 0);
@@ -148,6 +149,7 @@ void EmitterLight::recordSamples(VkCommandBuffer cmd, const LightBuffers& light,
                                           .covers = covers ? covers->address() : 0,
                                           .edges = group.whole ? group.edges.address() : 0,
                                           .wholes = wholesOf(group),
+                                          .chunks = work.chunks ? work.chunks->address() : 0,
                                           .firstChunk = work.range.first,
                                           .samplePass = work.samplePass,
                                           .together = work.together,
@@ -178,6 +180,7 @@ SegmentWork EmitterLight::segments(const LightBuffers& light, const Work& work,
     // The points of a pick belong to one replicate, those of a light that is always sampled to all in turn.
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
+            .chunks = work.chunks,
             .targetCount = group.targets() * work.together,
             .targets = &targets_,
             .bits = &bits_,
@@ -200,6 +203,7 @@ void EmitterLight::recordGather(VkCommandBuffer cmd, const LightBuffers& light, 
         .parts = work.penumbra ? work.penumbra->parts.address() : 0,
         .penumbra = work.penumbra ? work.penumbra->lights.address() : 0,
         .wholes = wholesOf(group),
+        .chunks = work.chunks ? work.chunks->address() : 0,
         .firstChunk = work.range.first,
         .samplePass = work.samplePass,
         .together = work.together,

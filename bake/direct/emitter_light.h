@@ -33,13 +33,11 @@ public:
     /// batch of it is to be made.
     uint32_t rays(uint32_t group) const { return groups_[group].targets(); }
     uint32_t batchChunks() const { return batchChunks_; } // at most in one batch of one sample pass
-    /// Tells whether several sample passes may be one Work, where replicates tell each other the share that
-    /// is seen by the points of all. The points of a pick are of one sample pass, in which it is drawn.
-    bool goTogether(uint32_t group) const { return groups_[group].all || groups_[group].whole; }
     struct Work {
         uint32_t group = 0;
         uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
         ChunkRange range;                      // count: at most batchChunks() / together
+        const vk::Buffer* chunks = nullptr;    // as of SegmentWork, whose numbers are those of `range`
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
         const Penumbra* penumbra = nullptr;
@@ -78,8 +76,8 @@ private:
         bool whole = false;  // Wholes serves it
         uint32_t targets() const { return picks * points; }
         uint32_t picksRoom() const { return whole ? 2 * picks : picks; } // with those of near points
-        uint32_t picksOf(uint32_t together) const { return whole ? picks * together : picks; }
-        uint32_t pointsOf(uint32_t together) const { return whole ? points : points * together; }
+        uint32_t picksOf(uint32_t together) const { return all ? picks : picks * together; }
+        uint32_t pointsOf(uint32_t together) const { return all ? points * together : points; }
     };
     static Sampling samplingOf(uint32_t polygons, const Desc& desc);
     struct Group : Sampling {

@@ -29,6 +29,7 @@ HostPoints hostPoints(const LightBuffers& light, const SegmentWork& segments, ui
             .sums = on.sums.as<glm::vec4>(),
             .newSums = on.newSums,
             .direct = on.direct.as<glm::vec4>(),
+            .chunks = segments.chunks ? segments.chunks->as<uint32_t>() : nullptr,
             .firstChunk = segments.firstChunk,
             .chunkCount = segments.chunkCount,
             .targetCount = segments.targetCount,

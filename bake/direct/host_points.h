@@ -24,13 +24,16 @@ struct HostPoints {
     glm::vec4* sums = nullptr;   // [kReplicates][patchCount], added to
     bool newSums = false;        // nothing is in the sums yet
     glm::vec4* direct = nullptr; // per patch: the mean so far
+    const uint32_t* chunks = nullptr; // which chunks are meant from firstChunk on; nullptr: those
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t targetCount = 0;              // of the group, per patch
     uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
     uint32_t patchCount = 0;
     float scale = 1; // from the sum of all sums to the mean
 
-    size_t firstPatch(uint32_t chunk) const { return size_t{firstChunk + chunk} * shader::kChunk; }
+    size_t firstPatch(uint32_t chunk) const {
+        return size_t{chunks ? chunks[firstChunk + chunk] : firstChunk + chunk} * shader::kChunk;
+    }
     /// Returns the chunk's row of 64 targets.
     glm::vec4* targetsOf(uint32_t chunk, uint32_t target) const {
         return targets + (size_t{chunk} * targetCount + target) * shader::kChunk;

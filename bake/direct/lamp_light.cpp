@@ -16,7 +16,8 @@ using shader::kReplicates;
 constexpr uint32_t kGroupRays = LampLight::kMostGroupRays;
 // A batch of such groups has so many chunks, whose targets are 64 KiB each; of smaller groups it has more.
 constexpr uint32_t kGpuLampChunks = 4096, kSoftwareLampChunks = 512;
-constexpr uint32_t kMostChunks = 32768; // that every device's dispatches take in x
+constexpr uint32_t kMostChunks = 32768;             // that every device's dispatches take in x
+constexpr uint64_t kLeastTable = sizeof(glm::vec4); // [bytes] of the two tables, which are never empty
 
 // Returns the rays to a light without extent: a shadow's edge in a texel has to be sampled, too.
 uint32_t pointRays(bool allOver) {
@@ -29,18 +30,26 @@ uint32_t wordsOf(uint32_t targets) {
 
 uint32_t mostChunks(uint32_t chunkCount, bool software, uint32_t rays) {
     const uint32_t smaller = kGroupRays / std::clamp(rays, 1u, kGroupRays);
-    return std::max(
-        shader::kSamplePassesTogether,
-        std::min({chunkCount, kMostChunks, (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller}));
+    return std::max(kMostTogether, std::min({chunkCount, kMostChunks,
+                                             (software ? kSoftwareLampChunks : kGpuLampChunks) * smaller}));
+}
+
+// Makes a buffer of the sky's pixels with its rows behind them.
+vk::Buffer makeSky(const vk::Device& device, const LampSet& set) {
+    const std::span<const glm::vec4> pixels(set.skyPixels);
+    const std::span<const float> rows(set.skyRows);
+    vk::Buffer sky(device,
+                   {.size = std::max(kLeastTable, pixels.size_bytes() + rows.size_bytes()), .name = "sky"});
+    if (!pixels.empty()) vk::upload(device, sky, pixels.data(), pixels.size_bytes());
+    if (!rows.empty()) vk::upload(device, sky, rows.data(), rows.size_bytes(), pixels.size_bytes());
+    return sky;
 }
 
 } // namespace
 
 LampLight::LampLight(const vk::Device& device, const Scene& scene, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      set_(buildLamps(scene, patches.scene.mesh, lampDesc())),
-      skyPixels_(vk::makeBuffer(device, set_.skyPixels, "sky")),
-      skyRows_(vk::makeBuffer(device, set_.skyRows, "rows of the sky")) {
+      set_(buildLamps(scene, patches.scene.mesh, lampDesc())), sky_(makeSky(device, set_)) {
     if (!desc.chosen) group(std::vector<uint32_t>(set_.lamps.size(), 0));
 }
 
@@ -125,11 +134,10 @@ uint32_t LampLight::groupRays(const Count& lights, uint32_t samples, bool allOve
 }
 
 uint64_t LampLight::tableBytes(const Count& lights, uint64_t skyPixels, uint64_t skyRows) {
-    constexpr uint64_t kLeastBytes = 3 * sizeof(glm::vec4); // of three tables, which are never empty
     // So many lights are counted in any case: their number may not be known yet.
     constexpr uint64_t kLeastLights = 64;
     const uint64_t count = std::max(kLeastLights, uint64_t{lights.extended} + lights.points);
-    return kLeastBytes + count * sizeof(shader::Lamp) + skyPixels * sizeof(glm::vec4) +
+    return 2 * kLeastTable + count * sizeof(shader::Lamp) + skyPixels * sizeof(glm::vec4) +
            skyRows * sizeof(float);
 }
 
@@ -145,11 +153,11 @@ shader::LampPush LampLight::push(const LightBuffers& light, const Work& work) co
             .lamps = lamps_.address(),
             .targets = targets_.address(),
             .bits = bits_.address(),
-            .skyPixels = skyPixels_.address(),
-            .skyRows = skyRows_.address(),
+            .sky = sky_.address(),
             .parts = work.penumbra ? work.penumbra->parts.address() : 0,
             .penumbra = penumbraOf(work.penumbra, work.notes),
             .covers = covers ? covers->address() : 0,
+            .chunks = work.chunks ? work.chunks->address() : 0,
             .skySize = set_.skySize.x | set_.skySize.y << 16,
             .skyRotation = set_.skyRotation,
             .reach = set_.reach,
@@ -198,6 +206,7 @@ SegmentWork LampLight::segments(const LightBuffers& light, const Work& work, con
     const Group& group = groups_[work.group];
     return {.firstChunk = work.range.first,
             .chunkCount = work.range.count,
+            .chunks = work.chunks,
             .targetCount = group.targets * work.together,
             .targets = &targets_,
             .bits = &bits_,

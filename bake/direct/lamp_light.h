@@ -51,6 +51,7 @@ public:
         uint32_t group = 0;
         uint32_t samplePass = 0, together = 1; // as of EmitterSamplesPush
         ChunkRange range;                      // count: at most batchChunks() / together
+        const vk::Buffer* chunks = nullptr;    // as of SegmentWork, whose numbers are those of `range`
         // The first sample pass finds penumbrae, later ones heed them; nullptr: all patches take part in
         // every pass.
         const Penumbra* penumbra = nullptr;
@@ -107,10 +108,10 @@ private:
     LampSet set_;
     std::vector<Group> groups_;
     uint32_t rays_ = 0, batchChunks_ = 0;
-    uint32_t room_ = 0;                      // targets per patch that there is memory for
-    vk::Buffer lamps_, skyPixels_, skyRows_; // Lamp[], vec4[], float[]
-    vk::Buffer targets_, bits_;              // of one batch
-    Programs programs_, skyPrograms_;        // for all types of lights; for groups of the sky alone
+    uint32_t room_ = 0;               // targets per patch that there is memory for
+    vk::Buffer lamps_, sky_;          // Lamp[]; as of LampPush
+    vk::Buffer targets_, bits_;       // of one batch
+    Programs programs_, skyPrograms_; // for all types of lights; for groups of the sky alone
 };
 
 } // namespace relume

@@ -8,6 +8,10 @@
 
 namespace relume {
 
+/// So many sample passes at most are one Work of mesh lights or of analytic ones.
+constexpr uint32_t kMostTogether = 16;
+static_assert(kMostTogether >= shader::kSamplePassesTogether);
+
 /// The means by which one batch of rays to points on lights runs.
 struct PointTracer {
     vk::Commands& commands;

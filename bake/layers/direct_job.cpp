@@ -69,7 +69,7 @@ DirectJob::End DirectJob::batch(bool pauses) {
     while (more) {
         const DirectPart& part = layer_->parts[part_];
         if (part.rays > 0) {
-            const uint32_t passes = portionPasses();
+            const uint32_t passes = together();
             const double cost = static_cast<double>(part.rays) * passes / LayerLights::kPoints;
             const ChunkRange range =
                 kit.nextRange(rate, tools_->lights.batchChunks(part, passes), cost, done);
@@ -106,18 +106,13 @@ uint32_t DirectJob::together() const {
     return samplePassesTogether(samplePass_, endOfStep());
 }
 
-// Returns how many of them the part under way takes in one portion.
-uint32_t DirectJob::portionPasses() const {
-    return tools_->lights.goTogether(layer_->parts[part_]) ? together() : 1;
-}
-
 // Traces a portion; cmd is that of a tracer that records.
 void DirectJob::trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark) {
     LinkKit& kit = tools_->kit;
     PenumbraMap& penumbra = tools_->penumbra;
     LayerLights::Portion portion{.part = layer_->parts[part_],
-                                 .samplePass = samplePass_ + within_,
-                                 .together = portionPasses(),
+                                 .samplePass = samplePass_,
+                                 .together = together(),
                                  .range = range,
                                  .penumbra = &penumbra.onDevice(),
                                  .mark = mark};
@@ -159,7 +154,7 @@ bool DirectJob::orderSamplePass() {
     const TileParts& parts = tools_->penumbra.parts();
     kit.beginPass();
     std::vector<uint8_t> take = repairStep_ ? repairedMarks() : std::vector<uint8_t>(kit.order.count(), 1);
-    const bool penumbraAlone = !shader::allTakeSamplePass(samplePass_ + within_);
+    const bool penumbraAlone = !shader::allTakeSamplePass(samplePass_);
     if (penumbraAlone && penumbra_.empty()) {
         for (uint32_t i = 0; i < take.size(); ++i)
             penumbra_.push_back(static_cast<uint8_t>(parts.any(i, layer_->penumbra)));
@@ -185,10 +180,6 @@ bool DirectJob::seekSamplePass() {
 // Goes on to the sample pass of the part that comes next, or the next part of a step. Returns false where the
 // step is over, or what comes depends on what the first sample pass meets.
 bool DirectJob::nextPart() {
-    if (portionPasses() == 1)
-        while (++within_ < together())
-            if (orderSamplePass()) return true;
-    within_ = 0;
     if (++part_ < layer_->parts.size()) {
         orderSamplePass(); // the same chunks as of the part before
         return true;

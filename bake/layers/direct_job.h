@@ -46,7 +46,6 @@ private:
     End beginRepair(bool pauses);
     void beginPass();
     uint32_t together() const;
-    uint32_t portionPasses() const;
     void trace(VkCommandBuffer cmd, ChunkRange range, uint32_t mark);
     bool nextPart();
     uint32_t endOfStep() const;
@@ -67,7 +66,6 @@ private:
     bool alone_;
     uint32_t samplePass_ = 0;            // the first one of those that are taken together
     uint32_t part_ = 0;                  // of Layer::parts, within these
-    uint32_t within_ = 0;                // of these, where the part takes them one by one
     std::vector<uint8_t> penumbra_;      // chunks with a part of Layer::penumbra; empty: not known yet
     bool begun_ = false;                 // a batch of this step has been made
     std::optional<uint32_t> repairStep_; // step of Layer::directSteps; set while dirty chunks are repaired

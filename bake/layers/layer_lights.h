@@ -35,10 +35,6 @@ public:
     float reach() const { return lamps_.reach(); }
     /// Returns how many mesh lights there are in all layers.
     size_t emitterCount() const;
-    /// Tells whether several sample passes of the part may be one portion.
-    bool goTogether(const DirectPart& part) const {
-        return !part.emitters || emitters_.goTogether(part.group);
-    }
     /// Returns how many chunks a batch of the part may have, with so many sample passes in one.
     uint32_t batchChunks(const DirectPart& part, uint32_t together) const {
         return std::max(1u, (part.emitters ? emitters_.batchChunks() : lamps_.batchChunks()) / together);

@@ -31,11 +31,6 @@ std::vector<DirectPlan::Part> DirectPlan::partsOf(std::span<const uint32_t> want
                                                   std::span<const uint32_t> samplePasses) const {
     const uint32_t count = wanted.empty() ? 0 : *std::max_element(wanted.begin(), wanted.end());
     std::vector<Part> parts(count + 1); // first what changes from one sample pass to the next
-    const auto ranges = [&](uint32_t from, uint32_t to) {
-        if (from >= to) return;
-        parts[from].ranges += 1;
-        parts[to].ranges -= 1;
-    };
     for (size_t i = 0; i < wanted.size(); ++i) {
         const uint32_t from = samplePasses[i], to = wanted[i];
         if (to <= from) continue;
@@ -44,44 +39,28 @@ std::vector<DirectPlan::Part> DirectPlan::partsOf(std::span<const uint32_t> want
         parts[from].patches += patches;
         parts[to].ofOne -= ofOne;
         parts[to].patches -= patches;
-        // A range begins in those that the chunk before takes no part in.
-        const bool beside = i > 0 && wanted[i - 1] > samplePasses[i - 1];
-        const uint32_t otherFrom = beside ? samplePasses[i - 1] : to, otherTo = beside ? wanted[i - 1] : to;
-        ranges(from, std::min(to, otherFrom));
-        ranges(std::max(from, otherTo), to);
     }
     for (uint32_t n = 1; n < count; ++n) {
         parts[n].ofOne += parts[n - 1].ofOne;
         parts[n].patches += parts[n - 1].patches;
-        parts[n].ranges += parts[n - 1].ranges;
     }
     parts.resize(count);
     return parts;
 }
 
-// Returns up to which sample pass all chunks had better take part.
-uint32_t DirectPlan::ofAll(const DirectPlanRules& rules, std::span<const Part> parts, uint32_t fewest) const {
-    double ofOne = 0, patches = 0;
-    for (size_t i = 0; i < ofOne_.size(); ++i) {
-        ofOne += ofOne_[i] * patches_[i];
-        patches += patches_[i];
-    }
-    const double all = patches + rules.rangeCost;
-    uint32_t n = std::max(rules.least, fewest);
-    while (n < parts.size() && parts[n].patches + rules.rangeCost * parts[n].ranges > all &&
-           ofOne > rules.linkGain * rules.cost * all * n * n)
-        ++n;
-    return n;
-}
-
 // Returns what the last sample pass has to take away for its cost where no more than `allowed` is to be left:
 // as much as links would, or more.
 double DirectPlan::gainFor(const DirectPlanRules& rules, std::span<const uint32_t> samplePasses) const {
-    constexpr uint32_t kHalvings = 40;
+    constexpr uint32_t kHalvings = 16; // to a thousandth
+    std::vector<double> roots;         // how many pay, times the root of what the last one takes away
+    roots.reserve(ofOne_.size());
+    for (const double ofOne : ofOne_)
+        roots.push_back(std::sqrt(ofOne / rules.cost));
     const auto left = [&](double gain) {
+        const double share = gain > 0 ? 1.0 / std::sqrt(gain) : 0.0;
         double sum = 0;
         for (size_t i = 0; i < ofOne_.size(); ++i) {
-            const double pays = gain > 0 ? std::sqrt(ofOne_[i] / (rules.cost * gain)) : rules.most;
+            const double pays = gain > 0 ? roots[i] * share : rules.most;
             sum += ofOne_[i] * patches_[i] / std::max({1.0, double(samplePasses[i]), pays});
         }
         return sum;
@@ -108,18 +87,17 @@ std::vector<uint32_t> DirectPlan::wanted(const DirectPlanRules& of,
     for (size_t i = 0; i < samplePasses.size(); ++i)
         wanted.push_back(wantedOf(rules, i, samplePasses[i]));
     const std::vector<Part> parts = partsOf(wanted, samplePasses);
-    const uint32_t fewest = *std::min_element(samplePasses.begin(), samplePasses.end());
-    const uint32_t all = ofAll(rules, parts, fewest);
+    const uint32_t ofAll = std::max(std::min(rules.least, rules.most),
+                                    *std::min_element(samplePasses.begin(), samplePasses.end()));
     // This tells of each number the next sample pass that does not make up for its costs.
     std::vector<uint32_t> end(parts.size() + 1, static_cast<uint32_t>(parts.size()));
     for (auto n = static_cast<uint32_t>(parts.size()); n-- > 0;) {
         const Part& part = parts[n];
-        const double cost = rules.cost * (part.patches + rules.rangeCost * part.ranges);
-        end[n] = n < all || part.ofOne > rules.linkGain * cost * n * n ? end[n + 1] : n;
+        const double cost = rules.cost * part.patches + rules.passCost;
+        end[n] = n < ofAll || part.ofOne > of.linkGain * cost * n * n ? end[n + 1] : n;
     }
     for (size_t i = 0; i < wanted.size(); ++i) {
         if (wanted[i] > samplePasses[i]) wanted[i] = std::min(wanted[i], end[samplePasses[i]]);
-        wanted[i] = std::max(wanted[i], std::min(all, rules.most));
     }
     return wanted;
 }

@@ -10,13 +10,13 @@ namespace relume {
 
 /// Holds what sample passes of direct light are planned by, chunk by chunk.
 struct DirectPlanRules {
-    double cost = 1;      // of a sample pass, for each patch
-    double rangeCost = 0; // that each range of neighbouring chunks has besides: so many patches' costs
-    double linkGain = 0;  // what the next sample pass of links takes away of the variance, for its cost, on
-                          // the mean over patches: what direct light has to outweigh
-    double allowed = 0;   // variance that direct light may leave in all, as left() tells; 0: none
-    uint32_t least = 1;   // sample passes that every chunk is to have
-    uint32_t most = 1;    // that a chunk may have
+    double cost = 1;     // of a sample pass, for each patch
+    double passCost = 0; // that each sample pass of some chunks has besides
+    double linkGain = 0; // what the next sample pass of links takes away of the variance, for its cost, on
+                         // the mean over patches: what direct light has to outweigh
+    double allowed = 0;  // variance that direct light may leave in all, as left() tells; 0: none
+    uint32_t least = 1;  // sample passes that every chunk is to have
+    uint32_t most = 1;   // that a chunk may have
 };
 
 /// Gives chunks the sample passes of direct light that pay for themselves. Mostly a few patches close to a
@@ -31,9 +31,8 @@ public:
 
     /// Returns the sample passes that each chunk is to have: so many that the last one takes away more of the
     /// variance for its cost than links would, in steps of the ladder (sample_plan.h), no more than
-    /// kMostChunkGrowth times what it has, and no more than leave what is allowed. All chunks take part in a
-    /// sample pass where that costs less than the ranges of those that pay for themselves; and few chunks
-    /// have none where it does not make up for the costs of their ranges.
+    /// kMostChunkGrowth times what it has, and no more than leave what is allowed. Few chunks have none
+    /// where it does not make up for the cost of the sample pass.
     std::vector<uint32_t> wanted(const DirectPlanRules& rules, std::span<const uint32_t> samplePasses) const;
 
     /// Returns the variance that is left after so many, pooled as it was learned.
@@ -51,10 +50,8 @@ private:
     /// The chunks that take part in one sample pass.
     struct Part {
         double ofOne = 0, patches = 0; // sums
-        double ranges = 0;
     };
     std::vector<Part> partsOf(std::span<const uint32_t> wanted, std::span<const uint32_t> samplePasses) const;
-    uint32_t ofAll(const DirectPlanRules& rules, std::span<const Part> parts, uint32_t fewest) const;
 
     std::vector<double> ofOne_;   // per chunk: the variance that one sample pass leaves, of a patch
     std::vector<double> patches_; // per chunk

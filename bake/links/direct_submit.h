@@ -21,11 +21,12 @@ public:
     void note(const PointTimes& times);
     /// Tells whether another portion may go into the same submit.
     bool goesOn() const { return records_ && portions_ < LinkKit::kMostPortions; }
-    /// Submits and waits, and takes note of the times.
-    void finish();
+    /// Submits and waits, and takes note of the times; after the last portion of a pass of its rays, too.
+    void finish(bool last);
 
 private:
     void begin();
+    void countRaysOnCpu();
 
     LinkKit& kit_;
     bool records_;

@@ -42,10 +42,9 @@ bool samplesPerChunk(const SolverSettings& settings, bool software) {
            settings.links.indirectScale == 1;
 }
 
-bool directApart(const SolverSettings& settings, bool software) {
+bool directApart(const SolverSettings& settings) {
     const bool wanted = settings.error > 0 || settings.localError > 0;
-    return software && wanted && settings.links.samples == 0 && settings.passes == 0 &&
-           settings.links.indirectScale == 1;
+    return wanted && settings.links.samples == 0 && settings.passes == 0 && settings.links.indirectScale == 1;
 }
 
 SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
@@ -90,6 +89,8 @@ SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& s
     bytes.device += direct.bytes + LinkCache::mostBytes(cache) +
                     (nodes > 0 ? Footprints::bytes(count, nodes) : 0) + radiance +
                     std::max(before, packed + undo.device + disc);
+    // These are the host's, which is the device's own where the device is the CPU.
+    bytes.device += shader::kRayCounters * sizeof(uint32_t) + extent.chunkCount * sizeof(uint32_t);
     bytes.host += undo.host;
     return bytes;
 }

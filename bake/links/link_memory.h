@@ -11,9 +11,9 @@ constexpr const char* kLinksOwner = "links";
 /// scattered in short runs of chunks, each of which would be a submit that hardly fills it.
 bool samplesPerChunk(const SolverSettings& settings, bool software);
 
-/// Tells whether chunks may have sample passes of direct light of their own. A GPU takes 0.3 ms for each
-/// range of neighbouring chunks, however short, and would be many times slower.
-bool directApart(const SolverSettings& settings, bool software);
+/// Tells whether chunks may have sample passes of direct light of their own: where errors decide how many
+/// there are.
+bool directApart(const SolverSettings& settings);
 
 /// Returns the most bytes that LinkSolver takes at a time, beside LightBuffers. Where no number is
 /// known for the cache (CacheSettings::bytes is 0), the links of a whole sample pass are kept.

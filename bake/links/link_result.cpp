@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace relume {
@@ -111,7 +110,10 @@ void LinkSolver::check() {
         const std::span<const uint32_t> done = directSamplePasses_.done();
         const bool locally = schedule_.choosesLocally(progress_.error, progress_.localError95);
         directPlan_.learn(errors_.chunks(), done, locally);
-        state_.apart = schedule_.apart(state_, directPlan_, done, excess, progress_.localError95);
+        const LinkSchedule::PlannedApart planned =
+            schedule_.apart(state_, directPlan_, done, excess, progress_.localError95);
+        state_.apart = planned.apart;
+        directSamplePasses_.want(planned.wanted);
     }
     state_.nextCheck = schedule_.perChunk() ? 0 : schedule_.nextCheck(state_, excess);
     state_.scaled = schedule_.perChunk();
@@ -374,9 +376,10 @@ void LinkSolver::abortPass() {
     }
     if (adds) undo();
     if (direct) {
-        const auto counters =
-            vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
-        progress_.rays = std::accumulate(counters.begin(), counters.end(), progress_.rays);
+        VkCommandBuffer cmd = kit_.commands.begin();
+        kit_.recordRayCount(cmd);
+        kit_.run(cmd);
+        kit_.countRays();
     } else if (state_.linkSamplePasses == 0) { // convergence begins anew
         state_.series = {};
         state_.convergence = {};

@@ -66,7 +66,7 @@ DirectPlanRules LinkSchedule::directRules(const LinkState& state) const {
                                            .costOfSamplePass = rules_.linkCost},
                                           state.linkSamplePasses);
     return {.cost = std::max(1.0, kSegmentCost * state.raysToLights),
-            .rangeCost = rules_.rangeChunks * shader::kChunk,
+            .passCost = rules_.passCost,
             .linkGain = linksDone(state) ? 0.0 : links / std::max(1.0, state.patches),
             .allowed = kAimOfPlans * state.apart.allowed,
             .least = std::max(1u, state.linkSamplePasses / kMostLinksOfDirect),
@@ -82,24 +82,23 @@ double LinkSchedule::directShare(const LinkState& state, double excess, double l
 
 // Chunks that count for their neighbours, too, leave more than they have by themselves: so a share of that is
 // allowed.
-DirectApart LinkSchedule::apart(const LinkState& state, const DirectPlan& plan,
-                                std::span<const uint32_t> samplePasses, double excess,
-                                double localError) const {
+LinkSchedule::PlannedApart LinkSchedule::apart(const LinkState& state, const DirectPlan& plan,
+                                               std::span<const uint32_t> samplePasses, double excess,
+                                               double localError) const {
     LinkState now = state;
     const double left = plan.left(samplePasses);
     now.apart.on = true;
+    now.apart.planned = state.linkSamplePasses;
     now.apart.allowed = directShare(state, excess, localError) * left;
-    const std::vector<uint32_t> wanted = plan.wanted(directRules(now), samplePasses);
+    std::vector<uint32_t> wanted = plan.wanted(directRules(now), samplePasses);
     const double settled = plan.settled(wanted, samplePasses);
     now.apart.settled = left > 0 ? state.directChoice * settled / left : 0.0;
-    return now.apart;
+    return {now.apart, std::move(wanted)};
 }
 
 bool LinkSchedule::plansDirect(const LinkState& state) const {
-    if (linksDone(state)) return true;
-    return state.apart.planned != state.linkSamplePasses &&
-           (state.linksAtCheck == state.linkSamplePasses ||
-            onLadder(state.linkSamplePasses) == state.linkSamplePasses);
+    return linksDone(state) || (state.apart.planned != state.linkSamplePasses &&
+                                onLadder(state.linkSamplePasses) == state.linkSamplePasses);
 }
 
 // The sample passes to come are those that this schedule will choose, and each kind's variance falls as one

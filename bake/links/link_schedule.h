@@ -61,8 +61,8 @@ struct LinkRules {
     double localError = 0;    // local error to be reached; 0: any will do. With both 0 all samples are taken
     bool perChunk = false;    // chunks may have sample passes of their own
     bool directApart = false; // they may have those of direct light
-    double rangeChunks = 0;   // each range of chunks costs as much of direct light as so many chunks more
-    double directCost = 1, linkCost = 1; // of a sample pass of each kind, in one unit
+    double directCost = 1, linkCost = 1; // of a sample pass of each kind, per patch and in one unit
+    double passCost = 0;                 // that one of direct light of some chunks has besides
 };
 
 /// Decides what a link solver does next: a pure function of its state.
@@ -102,11 +102,15 @@ public:
     /// asked for, is to be reached: links will have fallen as the local error has to by then, and direct
     /// light need not fall by more than the whole.
     double directShare(const LinkState& state, double excess, double localError) const;
-    /// Returns how things stand after a check whose error is so many times what is asked for; the plan has
-    /// learned of it.
-    DirectApart apart(const LinkState& state, const DirectPlan& plan, std::span<const uint32_t> samplePasses,
-                      double excess, double localError) const;
-    /// Tells whether they are planned now: after a check and, as what links take away becomes less, where the
+    /// What is planned after a check.
+    struct PlannedApart {
+        DirectApart apart;
+        std::vector<uint32_t> wanted; // sample passes that each chunk is to have
+    };
+    /// Plans after a check whose error is so many times what is asked for, of which the plan has learned.
+    PlannedApart apart(const LinkState& state, const DirectPlan& plan, std::span<const uint32_t> samplePasses,
+                       double excess, double localError) const;
+    /// Tells whether they are planned anew between checks: as what links take away becomes less, where the
     /// number of sample passes of links is one of the ladder (sample_plan.h).
     bool plansDirect(const LinkState& state) const;
     /// Returns how many sample passes of links follow so many at once, from the same light. Each next one

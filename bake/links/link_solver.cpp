@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <type_traits>
 
 namespace relume {
@@ -16,13 +15,9 @@ using shader::kChunk;
 
 // A submit interpolates so many chunks: 0.26M patches take about 20 ms on two cores.
 constexpr uint32_t kInterpolatedChunks = 4096;
-// A submit of direct light goes on with another portion where it lacks this share of one: shorter ones fill a
-// GPU less and trace slower (the town by a seventh).
-constexpr double kLeastPortion = 0.5;
-
-// A range of chunks takes as long as so many more, as threads wait for each other: three on two cores, more
-// on more of them. What is planned must not hang on their number.
-constexpr double kRangeChunks = 4;
+// A sample pass of some chunks takes as long as so many rays: threads wait for each other, and a GPU takes
+// 0.2 ms however short it is. What is planned must not hang on the number of threads.
+constexpr double kPassRaysOnCpu = 1 << 12, kPassRaysOnGpu = 1 << 22;
 
 static_assert(std::is_trivially_copyable_v<LinkState>);
 static_assert(kMostBounces == Solver::kMaxPasses);
@@ -59,6 +54,21 @@ void recordReadable(VkCommandBuffer cmd, const LinkKit& kit, const std::optional
         vk::barrier(cmd);
     }
     kit.gatherPass.recordPack(cmd, light, kit.buffers);
+}
+
+// Lets the links of a portion read the means of groups, whatever traced them.
+void recordFootprints(VkCommandBuffer cmd, const LinkKit& kit, const Footprints& footprints,
+                      const LinkBatches::Portion& portion, uint32_t samples) {
+    const vk::Buffer& patches = kit.input.light.patches;
+    const vk::Buffer& receivers = portion.closest.receivers ? *portion.closest.receivers : patches;
+    footprints.recordLinks(cmd, patches.address(),
+                           {.receivers = receivers.address(),
+                            .links = portion.gather.address(),
+                            .firstChunk = portion.range.first,
+                            .chunkCount = portion.range.count,
+                            .sampleCount = kit.linksOfSamplePass,
+                            .samples = samples});
+    vk::barrier(cmd);
 }
 
 } // namespace
@@ -98,7 +108,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
       directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()),
-      directPlan_(kit_.chunkCount()), directRate_(kit_.wide()) {
+      directPlan_(kit_.chunkCount()), directPortions_(kit_) {
     ASSERT(input.ranks.alone() || (!settings.live && coarse_.count == 0));
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -109,6 +119,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
         buffers.packed = vk::Buffer(
             input.device, {.size = input.light.radiance.size() / sizeof(glm::vec4) * sizeof(glm::uvec2),
                            .name = "packed radiance"});
+    kit_.reserveBack(buffers.rays.size());
     VkCommandBuffer cmd = kit_.commands.begin();
     for (const vk::Buffer* buffer :
          {&buffers.linkSums, &buffers.directSums, &buffers.direct, &buffers.carried, &buffers.rays,
@@ -135,10 +146,10 @@ LinkRules LinkSolver::rules() const {
             .error = settings.error,
             .localError = settings.localError,
             .perChunk = samplesPerChunk(settings, kit_.input.device.info().software()),
-            .directApart = directApart(settings, kit_.input.device.info().software()),
-            .rangeChunks = kRangeChunks,
+            .directApart = directApart(settings),
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
-            .linkCost = kit_.linksOfSamplePass * linkShare};
+            .linkCost = kit_.linksOfSamplePass * linkShare,
+            .passCost = kSegmentCost * (kit_.wide() ? kPassRaysOnGpu : kPassRaysOnCpu)};
 }
 
 // Makes the directions' set. Each replicate goes through it once; where the error decides how many sample
@@ -170,7 +181,8 @@ void LinkSolver::step() {
 void LinkSolver::begin(Stage stage) {
     state_.stage = stage;
     state_.bounce = 0;
-    pass_ = samplePassesOf(stage).next(1);
+    const bool apart = stage == Stage::Direct && state_.apart.on;
+    pass_ = samplePassesOf(stage).next(apart ? kMostTogether : 1);
     if (stage == Stage::Links && state_.scaled)
         pass_ = linkSamplePasses_.next(
             std::min(batches_.mostSamplePasses(), schedule_.samplePassesAtOnce(pass_.first)));
@@ -180,10 +192,10 @@ void LinkSolver::begin(Stage stage) {
         return beginBounce();
     }
     beginOrder();
+    const bool forgets = kit_.buffers.notes && pass_.first == 0;
+    if (!forgets && !kit_.settings.live) return; // a submit takes as long as a short pass
     VkCommandBuffer cmd = kit_.commands.begin();
-    vkCmdFillBuffer(cmd, kit_.buffers.rays.handle(), 0, VK_WHOLE_SIZE, 0);
-    if (kit_.buffers.notes && pass_.first == 0)
-        vkCmdFillBuffer(cmd, kit_.buffers.notes.handle(), 0, VK_WHOLE_SIZE, 0);
+    if (forgets) vkCmdFillBuffer(cmd, kit_.buffers.notes.handle(), 0, VK_WHOLE_SIZE, 0);
     recordUndo(cmd);
     vk::barrier(cmd);
     kit_.commands.run();
@@ -221,12 +233,30 @@ uint32_t LinkSolver::chunksOfStage() const {
     return state_.stage == Stage::Links ? senders_.chunks() : kit_.chunkCount();
 }
 
+void LinkSolver::traceDirect(const DirectPortion& portion, SamplePasses samplePasses, DirectSubmit& submit) {
+    const auto trace = [&](auto& lights, uint32_t group, SamplePasses atOnce) {
+        traceGroup(lights,
+                   {.group = group,
+                    .samplePass = atOnce.first / atOnce.count,
+                    .together = atOnce.count,
+                    .range = portion.range,
+                    .chunks = portion.chunks},
+                   submit);
+    };
+    const uint32_t end = samplePasses.first + samplePasses.count;
+    for (SamplePasses next{samplePasses.first, 0}; next.first < end; next.first += next.count) {
+        next.count = samplePassesAtOnce(next.first, end - next.first);
+        if (emitters_.rays(0) > 0) trace(emitters_, 0, next);
+        for (uint32_t group = 0; group < lamps_.groups(); ++group)
+            trace(lamps_, group, next);
+    }
+}
+
 template<typename Lights>
-void LinkSolver::traceDirect(Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit) {
+void LinkSolver::traceGroup(Lights& lights, typename Lights::Work work, DirectSubmit& submit) {
     const LightBuffers& light = kit_.input.light;
     const LinkBuffers& buffers = kit_.buffers;
-    typename Lights::Work work{.group = group, .samplePass = pass_.first, .range = range};
-    bool onCpu = kit_.tracesOnCpu() && lights.onCpu(group);
+    bool onCpu = kit_.tracesOnCpu() && lights.onCpu(work.group);
     if constexpr (requires { work.notes; }) {
         work.notes = buffers.notes ? &buffers.notes : nullptr;
         work.soFar = &buffers.direct;
@@ -255,36 +285,28 @@ void LinkSolver::traceDirect(Lights& lights, uint32_t group, ChunkRange range, D
 // A rank may have no chunk in a pass. Where a tracer records, portions follow each other in one submit: one
 // of them alone is too short for a large GPU.
 void LinkSolver::directBatch() {
+    const uint64_t before = progress_.rays; // those of a pass are counted with its last portion
     if (kit_.order.left() > 0) {
         const uint32_t batch = std::min(kit_.buffers.batchChunks, emitters_.batchChunks());
         const uint32_t most = lamps_.empty() ? batch : std::min(batch, lamps_.batchChunks());
-        const double wanted = directRate_.wanted(batchMs_);
+        directPortions_.begin(pass_, most);
         const auto start = Clock::now();
         DirectSubmit submit(kit_);
-        double done = 0;
         do {
-            const ChunkRange range = kit_.nextRange(directRate_, most);
-            if (emitters_.rays(0) > 0) traceDirect(emitters_, 0, range, submit);
-            for (uint32_t group = 0; group < lamps_.groups(); ++group)
-                traceDirect(lamps_, group, range, submit);
-            done += range.count;
-            kit_.order.finish(range);
-            if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(range);
-        } while (submit.goesOn() && kit_.order.left() > 0 && done + kLeastPortion * most < wanted);
-        submit.finish();
-        directRate_.note(done, batchMs_, secondsSince(start));
+            const DirectPortion portion = directPortions_.next();
+            traceDirect(portion, {pass_.first, pass_.count}, submit);
+            // All chunks take part until there is a solution, so portions are ranges of them.
+            if (kit_.settings.live && !schedule_.hasSolution(state_)) live_.ranges.push_back(portion.range);
+        } while (submit.goesOn() && directPortions_.wantsMore());
+        submit.finish(kit_.order.left() == 0);
+        directPortions_.end(secondsSince(start));
     }
     if (kit_.order.left() > 0) return;
-    const auto counters =
-        vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.rays, shader::kRayCounters);
-    const uint64_t rays = std::accumulate(counters.begin(), counters.end(), uint64_t{0});
-    const uint64_t before = progress_.rays;
-    progress_.rays += rays;
     kit_.shareCounters();
     const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
     if (pass_.all || !state_.apart.on)
         state_.raysToLights =
-            static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk);
+            static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk * pass_.count);
     endPass();
 }
 
@@ -362,7 +384,9 @@ void LinkSolver::linkBatch() {
                  {.begin = {},
                   .traced =
                       [&](VkCommandBuffer cmd) {
-                          if (portion.trace && footprints_) recordFootprints(cmd, portion);
+                          if (portion.trace && footprints_)
+                              recordFootprints(cmd, kit_, *footprints_, portion,
+                                               schedule_.footprintSamples(state_));
                       },
                   .gather =
                       [&](VkCommandBuffer cmd) {
@@ -382,19 +406,6 @@ void LinkSolver::linkBatch() {
     if (kit_.settings.live && !schedule_.hasSolution(state_) && !coarse)
         live_.ranges.push_back(portion.range);
     if (kit_.order.left() == 0) endBounce();
-}
-
-void LinkSolver::recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const {
-    const vk::Buffer& patches = kit_.input.light.patches;
-    const vk::Buffer& receivers = coarse_.count > 0 ? kit_.buffers.receivers : patches;
-    footprints_->recordLinks(cmd, patches.address(),
-                             {.receivers = receivers.address(),
-                              .links = portion.gather.address(),
-                              .firstChunk = portion.range.first,
-                              .chunkCount = portion.range.count,
-                              .sampleCount = kit_.linksOfSamplePass,
-                              .samples = schedule_.footprintSamples(state_)});
-    vk::barrier(cmd);
 }
 
 // Interpolates from the receivers of the coarser grid to all patches.

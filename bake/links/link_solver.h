@@ -11,6 +11,7 @@
 #include "bake/gather/link_batches.h"
 #include "bake/gather/radiance_pass.h"
 #include "bake/gather/sample_plan.h"
+#include "bake/links/direct_portions.h"
 #include "bake/links/direct_submit.h"
 #include "bake/links/footprint.h"
 #include "bake/links/link_errors.h"
@@ -20,8 +21,8 @@ namespace relume {
 /// Solves with the directional or the hybrid method. A sample pass takes a few samples of every patch: points
 /// on lights (on mesh lights in hybrid only) or links. The first sample pass of links is iterated until its
 /// bounces have converged; later ones start from the light so far and need one bounce each, so that light and
-/// samples improve together. On a CPU chunks get sample passes of direct light of their own from the first
-/// check on (direct_plan.h), and of links, too, where that is asked for (chunk_plan.h). With a number of
+/// samples improve together. Chunks get sample passes of direct light of their own from the first check on
+/// (direct_plan.h), and on a CPU of links, too, where that is asked for (chunk_plan.h). With a number of
 /// passes given, each sample pass starts from nothing and has just so many bounces. The mean over sample
 /// passes is the result; the spread of the replicates is its error.
 class LinkSolver final : public Solver {
@@ -70,10 +71,14 @@ private:
     bool hasDirect() const { return emitters_.rays(0) > 0 || !lamps_.empty(); }
     const vk::Buffer* direct() const { return hasDirect() ? &kit_.buffers.direct : nullptr; }
     void directBatch();
+    /// Sample passes that follow each other, some of which may be made at once.
+    struct SamplePasses {
+        uint32_t first = 0, count = 1;
+    };
+    void traceDirect(const DirectPortion& portion, SamplePasses samplePasses, DirectSubmit& submit);
     template<typename Lights>
-    void traceDirect(Lights& lights, uint32_t group, ChunkRange range, DirectSubmit& submit);
+    void traceGroup(Lights& lights, typename Lights::Work work, DirectSubmit& submit);
     void linkBatch();
-    void recordFootprints(VkCommandBuffer cmd, const LinkBatches::Portion& portion) const;
     bool wantsDistances() const {
         return kit_.buffers.distances && state_.linkSamplePasses == 0 && state_.last;
     }
@@ -114,7 +119,7 @@ private:
     DirectPlan directPlan_;
     ChunkSamplePasses::Pass pass_;       // under way
     std::vector<uint8_t> seenReceivers_; // chunks of the coarser grid that come first
-    BatchRate directRate_;
+    DirectPortions directPortions_;
     bool gridLimits_ = false;      // more samples are of no use
     bool stale_ = true;            // light_ is behind the sums
     std::vector<glm::vec4> light_; // empty: not read back yet

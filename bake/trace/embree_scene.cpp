@@ -419,7 +419,7 @@ void EmbreeScene::closest(const ClosestArrays& work) {
 // rays. Rays of neighbouring patches to the same target fill a packet.
 uint32_t EmbreeScene::Impl::targets(const SegmentArrays& work, uint32_t chunk, uint32_t first,
                                     uint32_t* bits) const {
-    const size_t firstPatch = size_t(work.firstChunk + chunk) * kChunk;
+    const size_t firstPatch = size_t{work.chunkOf(chunk)} * kChunk;
     const Patch* patches = &scene.patches[firstPatch];
     const glm::vec4* ends = work.targets + (size_t(chunk) * work.targetCount + first) * kChunk;
     const uint32_t count = std::min(kTargetsPerWord, work.targetCount - first);
@@ -460,7 +460,7 @@ void EmbreeScene::segments(const SegmentArrays& work) {
     impl_->pool.run(work.chunkCount * words, [&](uint32_t k) {
         const uint32_t chunk = k / words, first = k % words * kTargetsPerWord;
         const uint32_t rays = impl.targets(work, chunk, first, work.bits + size_t(k) * kChunk);
-        const uint32_t slot = (work.firstChunk + chunk) % shader::kRayCounters;
+        const uint32_t slot = work.chunkOf(chunk) % shader::kRayCounters;
         if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
     });
 }

@@ -34,6 +34,7 @@ struct ClosestArrays {
 };
 
 struct SegmentArrays {
+    std::span<const uint32_t> chunks = {}; // empty: firstChunk and those behind it
     uint32_t firstChunk = 0, chunkCount = 0;
     uint32_t targetCount = 0;
     const glm::vec4* targets = nullptr;
@@ -41,6 +42,8 @@ struct SegmentArrays {
     uint32_t* rays = nullptr; // may be left out
     const shader::PatchCover* covers = nullptr;
     uint32_t samplePass = 0, turn = 1, run = 1;
+
+    uint32_t chunkOf(uint32_t number) const { return chunks.empty() ? firstChunk + number : chunks[number]; }
 };
 
 /// RetraceWork (tracer.h) on plain memory.

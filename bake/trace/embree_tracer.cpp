@@ -51,7 +51,12 @@ public:
 
     void segments(VkCommandBuffer, const SegmentWork& work) override {
         const uint64_t words = (work.targetCount + 31) / 32;
-        scene_.segments({.firstChunk = work.firstChunk,
+        const uint32_t* listed =
+            work.chunks ? mappedAs<uint32_t>(work.chunks, uint64_t{work.firstChunk} + work.chunkCount)
+                        : nullptr;
+        scene_.segments({.chunks = listed ? std::span(listed + work.firstChunk, work.chunkCount)
+                                          : std::span<const uint32_t>(),
+                         .firstChunk = work.firstChunk,
                          .chunkCount = work.chunkCount,
                          .targetCount = work.targetCount,
                          .targets = mappedAs<glm::vec4>(work.targets, uint64_t(work.chunkCount) *

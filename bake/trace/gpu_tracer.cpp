@@ -98,6 +98,7 @@ public:
                 .bits = work.bits->address(),
                 .rays = work.rays->address(),
                 .covers = addressOf(work.covers),
+                .chunks = addressOf(work.chunks),
                 .firstChunk = work.firstChunk,
                 .targetCount = work.targetCount,
                 .samplePass = work.samplePass,

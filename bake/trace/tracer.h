@@ -77,6 +77,8 @@ struct ClosestWork {
 /// ceil(targetCount / 32), is set when it was asked for and nothing is in between.
 struct SegmentWork {
     uint32_t firstChunk = 0, chunkCount = 0;
+    const vk::Buffer* chunks =
+        nullptr; // uint32_t[], mapped, too: which chunks are meant by these numbers; nullptr: those
     uint32_t targetCount = 0; // per patch, > 0
     const vk::Buffer* targets =
         nullptr; // vec4[chunkCount * targetCount * 64], mapped where the tracer runs on the CPU

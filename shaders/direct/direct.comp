@@ -8,6 +8,7 @@
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 layout(push_constant, scalar) uniform Push { DirectPush push; };
+#include "lib/listed_chunk.glsl"
 #include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/light/seen_light.glsl"
 
@@ -34,7 +35,9 @@ float seenFactor(uint target) {
 
 void gatherPolygons(uint taken) {
     bool all = push.all != 0u;
-    for (uint pick = 0u; pick < push.pickCount; ++pick) {
+    uint ofSamplePass = all ? push.pickCount : push.pickCount / push.together;
+    uint picks = all ? push.pickCount : ofSamplePass * taken;
+    for (uint pick = 0u; pick < picks; ++pick) {
         vec4 picked = VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane);
         vec3 light = picked.rgb;
         uint first = pick * push.pointCount;
@@ -59,7 +62,7 @@ void gatherPolygons(uint taken) {
             float count = float(push.pointCount / push.together * taken / kReplicates); // of each replicate's points
             if (all && picked.w > 0.0)
                 value[q] += light * (float(taken) * seenLight(picked.w, count, part[q], partVisible[q], sum, visible) / picked.w);
-            else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(push.pickCount));
+            else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(ofSamplePass));
         }
     }
 }
@@ -98,7 +101,7 @@ void gatherPicks(uint taken, vec4 all) {
 void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
-    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    uint index = listedChunk(chunk) * kChunk + lane;
     uint taken = takenSamplePasses(index);
     if (taken == 0u) return;
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);

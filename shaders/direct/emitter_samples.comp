@@ -8,6 +8,7 @@
 #include "lib/form_factor.glsl"
 #include "lib/light/polygon_sample.glsl"
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
+#include "lib/listed_chunk.glsl"
 #include "lib/rays/starts.glsl"
 #include "lib/light/texel_mean.glsl"
 #include "lib/light/emitters.glsl"
@@ -44,23 +45,21 @@ void findWhole(Patch p, uint index) {
 
 void main() {
     uint chunk = gl_WorkGroupID.x, pick = gl_WorkGroupID.y, lane = gl_LocalInvocationID.x;
-    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    uint index = listedChunk(chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     if (pick == push.pickCount) {
         findWhole(p, index);
         return;
     }
     uint base = (chunk * push.pickCount + pick) * push.pointCount;
-    // Together, sample passes have more points on each polygon, or more picks of one point.
-    bool onePoint = push.wholes != 0ul;
-    uint taken = takenSamplePasses(index), points = onePoint ? 1u : push.pointCount / push.together * taken;
-    if (taken == 0u || (onePoint && pick >= push.pickCount / push.together * taken)) { // it is not asked for
+    // Together, sample passes have more points on each polygon, or more picks.
+    bool onePoint = push.wholes != 0ul, all = push.all != 0u;
+    uint taken = takenSamplePasses(index), points = all ? push.pointCount / push.together * taken : push.pointCount;
+    if (taken == 0u || (!all && pick >= push.pickCount / push.together * taken)) { // it is not asked for
         for (uint s = 0u; s < push.pointCount; ++s) VEC4_AT(push.targets, (base + s) * kChunk + lane) = vec4(0.0);
         return;
     }
     uint key = seedKey(p);
-    bool all = push.all != 0u;
-
     PatchCover cover = coverOf(index);
     TexelSpread spread = texelSpread(p, cover);
     Patch start = p; // a pick of one point is drawn for where that starts

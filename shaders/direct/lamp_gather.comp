@@ -32,7 +32,7 @@ bool seen(uint target) {
 void main() {
     chunk = gl_WorkGroupID.x;
     lane = gl_LocalInvocationID.x;
-    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    uint index = listedChunk(chunk) * kChunk + lane;
     uint taken = takenSamplePasses(index);
     if (taken == 0u) return;
     Receiver r = receiver(index);

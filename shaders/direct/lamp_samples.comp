@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 void main() {
     uint chunk = gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
-    uint index = (push.firstChunk + chunk) * kChunk + lane;
+    uint index = listedChunk(chunk) * kChunk + lane;
     Receiver r = receiver(index);
     Lamp l = loadLamp(gl_WorkGroupID.y);
     uint samples = lampNote(l, r, index, gl_WorkGroupID.y).asked ? takenSamples(l, takenSamplePasses(index)) : 0u;

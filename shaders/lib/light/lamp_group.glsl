@@ -6,12 +6,16 @@
 layout(constant_id = 0) const uint kLampTypes = 0x3fu;
 #define LAMP_TYPES kLampTypes
 layout(push_constant, scalar) uniform Push { LampPush push; };
+#include "lib/listed_chunk.glsl"
 #include "lib/rays/starts.glsl"
 #include "lib/light/texel_mean.glsl"
 #include "lib/light/lamps.glsl"
 #include "lib/light/penumbra_sample_passes.glsl"
-vec4 skyPixel(uint index) { return VEC4_AT(push.skyPixels, index); }
-float skyRow(uint index) { return uintBitsToFloat(WORD_AT(push.skyRows, index)); }
+vec4 skyPixel(uint index) { return VEC4_AT(push.sky, index); }
+float skyRow(uint index) {
+    uint pixels = (push.skySize & 0xffffu) * (push.skySize >> 16);
+    return FLOAT_AT(push.sky + 16ul * uint64_t(pixels), index);
+}
 #include "lib/light/sky.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lamps { Lamp items[]; };

@@ -4,6 +4,7 @@
 #include "assets/images/metrics.h"
 #include "tests/gpu/bake_scene.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,6 +61,37 @@ double meanOfDarkest(const FloatImage& map, const FloatImage& truth) {
     for (const size_t i : texels)
         sum += light(map, i);
     return sum / static_cast<double>(texels.size());
+}
+
+// A room with a lamp close to a corner: chunks there need far more of its light's samples than all others.
+Scene lampInTheCorner() {
+    SceneMaker maker(kRoomSize);
+    maker.box({0, 0, 0}, {4.0f * kX, 3.0f * kY, 4.0f * kZ}, maker.material(0.5f), 12);
+    maker.blocker({0.1f, 0.5f, 0.1f}, 0.2f * kX, 0.2f * kZ, maker.material(0.5f));
+    Scene scene = maker.scene();
+    Light lamp;
+    lamp.transform = glm::translate(glm::mat4(1.0f), {0.25f, 0.8f, 0.25f});
+    lamp.radius = 0.1f;
+    lamp.intensity = 30.0f;
+    scene.lights.push_back(lamp);
+    return scene;
+}
+
+// Bakes step by step, with these chunks first.
+FloatImage lookedAt(Baker& baker, uint32_t everySoManyChunks) {
+    std::vector<uint8_t> seen(baker.patches().chunkCount(), 0);
+    for (size_t i = 0; i < seen.size(); i += everySoManyChunks)
+        seen[i] = 1;
+    baker.solver().setPriority(seen);
+    while (!baker.solver().done())
+        baker.solver().step();
+    return baker.lightmap({.quantity = Quantity::Lighting, .sew = false});
+}
+
+void expectSameBytes(const FloatImage& a, const FloatImage& b) {
+    ASSERT_EQ(a.planes.size(), b.planes.size());
+    for (size_t k = 0; k < a.planes.size(); ++k)
+        EXPECT_EQ(a.planes[k], b.planes[k]) << a.channels[k];
 }
 
 } // namespace
@@ -122,16 +154,29 @@ TEST_F(ChunkSampling, BatchesAndWhatIsSeenChangeNoByte) {
     desc.batchMs = 0.3;
     desc.cache.kind = CacheSettings::Kind::None;
     const std::unique_ptr<Baker> baker = makeBaker(*scene_, desc);
-    std::vector<uint8_t> seen(baker->patches().chunkCount(), 0);
-    for (size_t i = 0; i < seen.size(); i += 3)
-        seen[i] = 1;
-    baker->solver().setPriority(seen);
-    while (!baker->solver().done())
-        baker->solver().step();
-    const FloatImage other = baker->lightmap({.quantity = Quantity::Lighting, .sew = false});
-    ASSERT_EQ(other.planes.size(), baked.lighting.planes.size());
-    for (size_t k = 0; k < other.planes.size(); ++k)
-        EXPECT_EQ(other.planes[k], baked.lighting.planes[k]) << other.channels[k];
+    expectSameBytes(lookedAt(*baker, 3), baked.lighting);
+}
+
+// Chunks that want more direct light are wherever they are, and kernels and the CPU find them by a list.
+TEST_F(ChunkSampling, ListedChunksGetTheSameDirectLightInAnyPortion) {
+    const Scene scene = lampInTheCorner();
+    const FloatImage truth = bakeScene(scene, reference(8192)).lighting;
+    for (const TracerKind tracer : tracersOfTestDevice()) {
+        BakeDesc desc = localOnly(0.02, false);
+        desc.tracer = tracer;
+        const std::unique_ptr<Baker> baker = makeBaker(scene, desc);
+        const FloatImage baked = lookedAt(*baker, 1);
+        const SolverProgress progress = baker->solver().progress();
+        ASSERT_TRUE(progress.converged);
+        desc.batchMs = 0.5;
+        const std::unique_ptr<Baker> other = makeBaker(scene, desc);
+        expectSameBytes(lookedAt(*other, 3), baked);
+        EXPECT_EQ(other->solver().progress().rays, progress.rays);
+        desc.live = true;
+        const std::unique_ptr<Baker> live = makeBaker(scene, desc);
+        expectSameBytes(lookedAt(*live, 5), baked);
+        EXPECT_LE(localOf(baked, truth).p95, 0.02);
+    }
 }
 
 // A number of samples is a limit for every chunk, and ends a bake that cannot reach its error.

@@ -55,6 +55,22 @@ TEST(ChunkOrder, SeenOnesComeFirstWithSmallGaps) {
     EXPECT_EQ(order.next(kAll, 9), (ChunkRange{3, 2})); // nor goes on over what is done
 }
 
+TEST(ChunkOrder, OnesAreTakenWhereverTheyAre) {
+    using Ones = std::vector<uint32_t>;
+    ChunkOrder order(20);
+    EXPECT_EQ(order.nextOnes(kAll), Ones{});
+    order.beginMarked(bytes(20, {{1, 2}, {6, 1}, {9, 3}}), {});
+    EXPECT_EQ(order.nextOnes(4), (Ones{1, 2, 6, 9}));
+    order.finish(order.nextOnes(4));
+    EXPECT_EQ(order.left(), 2u);
+    EXPECT_EQ(order.nextOnes(4), (Ones{10, 11}));
+    order.beginMarked(bytes(20, {{1, 2}, {6, 1}, {9, 3}}), bytes(20, {{2, 8}}));
+    EXPECT_EQ(order.nextOnes(kAll), (Ones{2, 6, 9})) << "seen ones alone";
+    order.finish(order.nextOnes(kAll));
+    EXPECT_FALSE(order.prefersSome());
+    EXPECT_EQ(order.nextOnes(kAll), (Ones{1, 10, 11}));
+}
+
 TEST(ChunkOrder, ANewLookAndARestoreKeepWhatIsDone) {
     ChunkOrder order(20);
     order.begin(12, bytes(12, {{8, 4}}));

@@ -70,28 +70,17 @@ TEST(DirectPlan, NoMoreIsPlannedThanIsAskedFor) {
     EXPECT_EQ(plan.wanted(rules, allHave(4)), allHave(4)) << "it is there already";
 }
 
-TEST(DirectPlan, AllChunksTakePartWhereRangesCostMore) {
-    std::vector<double> few(kPlannedChunks, 0.0);
-    for (size_t i = 2; i < kPlannedChunks; i += 6)
-        few[i] = 10.0;
-    const DirectPlan scattered = learned(few, 4);
-    const auto each = scattered.wanted(kDirectRules, allHave(4));
-    const auto dear = scattered.wanted(
-        directRules([](DirectPlanRules& r) { r.rangeCost = 1e3 * kPatchesOfChunk; }), allHave(4));
-    EXPECT_LT(*std::min_element(each.begin(), each.end()), *std::max_element(each.begin(), each.end()));
-    EXPECT_EQ(*std::min_element(dear.begin(), dear.end()), *std::max_element(dear.begin(), dear.end()))
-        << "one range of all costs less than seven";
-}
-
-TEST(DirectPlan, FewChunksGetNoneThatDoesNotMakeUpForItsRange) {
+TEST(DirectPlan, FewChunksGetNoneThatDoesNotMakeUpForItsCost) {
     std::vector<double> variances(kPlannedChunks, 0.0);
     variances[20] = 0.06; // worth 0.24 / 16 = 0.015 for its own cost of 0.01, and not for twice that
     const DirectPlan plan = learned(variances, 4);
     const auto alone = plan.wanted(kDirectRules, allHave(4));
     EXPECT_GT(alone[20], 4u);
     DirectPlanRules rules = kDirectRules;
-    rules.rangeCost = 2.0 * kPatchesOfChunk;
+    rules.passCost = 2.0 * rules.cost * kPatchesOfChunk;
     EXPECT_EQ(plan.wanted(rules, allHave(4)), allHave(4));
+    rules.least = 5;
+    EXPECT_EQ(plan.wanted(rules, allHave(4)), allHave(5)) << "all have these whatever they are worth";
 }
 
 TEST(DirectPlan, SettledIsWhatGetsNoMore) {
