@@ -460,7 +460,7 @@ void EmbreeScene::segments(const SegmentArrays& work) {
     impl_->pool.run(work.chunkCount * words, [&](uint32_t k) {
         const uint32_t chunk = k / words, first = k % words * kTargetsPerWord;
         const uint32_t rays = impl.targets(work, chunk, first, work.bits + size_t(k) * kChunk);
-        const uint32_t slot = work.chunkOf(chunk) % shader::kRayCounters;
+        const uint32_t slot = (work.firstChunk + chunk) % shader::kRayCounters;
         if (work.rays && rays > 0) std::atomic_ref(work.rays[slot]) += rays;
     });
 }

@@ -84,7 +84,7 @@ struct SegmentWork {
         nullptr; // vec4[chunkCount * targetCount * 64], mapped where the tracer runs on the CPU
     const vk::Buffer* bits = nullptr; // uint32_t[chunkCount * words * 64], too
     const vk::Buffer* rays =
-        nullptr; // uint32_t[kRayCounters]: chunk c adds its rays to slot c % kRayCounters
+        nullptr; // uint32_t[kRayCounters]: number c adds its rays to slot c % kRayCounters
     // As in ClosestWork: target s starts at shader::startPoint of shader::startNumber(s, samplePass, turn,
     // run).
     const vk::Buffer* covers = nullptr;

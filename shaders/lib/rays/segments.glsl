@@ -5,7 +5,7 @@
 const uint kTargetsPerWord = 32u;
 
 void traceTargets(uint chunk, uint word, uint lane) {
-    uint listed = listedChunk(chunk), index = listed * kChunk + lane;
+    uint index = listedChunk(chunk) * kChunk + lane;
     Patch p = loadPatch(push.patches, index);
     PatchCover cover = coverOf(index);
     uint first = word * kTargetsPerWord, count = min(kTargetsPerWord, push.targetCount - first);
@@ -24,7 +24,7 @@ void traceTargets(uint chunk, uint word, uint lane) {
         Patch start = startingPatch(p, cover, startNumber(first + s, push.samplePass, push.turn, push.run));
         if (pointSeen(start, target.xyz)) seen |= 1u << s;
     }
-    if (rays != 0u) atomicAdd(WORD_AT(push.rays, listed % kRayCounters), rays);
+    if (rays != 0u) atomicAdd(WORD_AT(push.rays, (push.firstChunk + chunk) % kRayCounters), rays);
     uint words = (push.targetCount + kTargetsPerWord - 1u) / kTargetsPerWord;
     uint at = (chunk * words + word) * kChunk + lane;
 #ifdef TRACER_VOXEL
