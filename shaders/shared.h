@@ -316,8 +316,7 @@ struct SegmentPush {
     ADDRESS bits;    // uint[chunkCount][ceil(targetCount / 32)][64]
     ADDRESS rays;    // uint[kRayCounters], rays traced are added
     ADDRESS covers;  // as of ClosestPush
-    ADDRESS chunks;  // uint[]: which chunks are meant, from firstChunk on (lib/listed_chunk.glsl); 0: those
-                     // themselves
+    ADDRESS chunks;  // uint[]: which chunks are meant from firstChunk on (lib/listed_chunk.glsl); 0: those
     uint firstChunk;
     uint targetCount;
     uint samplePass, turn, run; // which sample a target is: startNumber (lib/rays/start_point.glsl)

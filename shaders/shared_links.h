@@ -20,9 +20,8 @@ struct EmitterSamplesPush {
     uint samplePass; // where several are taken together, the first one over their number
     uint together;   // sample passes
     uint pickCount;  // where they are drawn of all these sample passes, and a multiple of kReplicates in each
-    uint
-        pointCount; // per pick, a multiple of kReplicates; with all of all these sample passes; with wholes 1
-    uint all;       // 1: pick i is mesh light i; 0: picks are drawn
+    uint pointCount; // per pick: a multiple of kReplicates, with `all` of all these sample passes; wholes: 1
+    uint all;        // 1: pick i is mesh light i; 0: picks are drawn
     uint polygonCount, edgeCount, firstNear;
 };
 struct DirectPush {

@@ -102,7 +102,7 @@ public:
     /// asked for, is to be reached: links will have fallen as the local error has to by then, and direct
     /// light need not fall by more than the whole.
     double directShare(const LinkState& state, double excess, double localError) const;
-    /// What is planned after a check.
+    /// Holds what is planned after a check.
     struct PlannedApart {
         DirectApart apart;
         std::vector<uint32_t> wanted; // sample passes that each chunk is to have

@@ -83,6 +83,16 @@ TEST(DirectPlan, FewChunksGetNoneThatDoesNotMakeUpForItsCost) {
     EXPECT_EQ(plan.wanted(rules, allHave(4)), allHave(5)) << "all have these whatever they are worth";
 }
 
+// Against what links bring few chunks pay for a sample pass, and so they get what the error needs, whatever
+// that costs beside what chunks cost by themselves.
+TEST(DirectPlan, WhatIsAskedForIsReachedHoweverDearASamplePassIs) {
+    const DirectPlan plan = learned(someNoisy(0.0, 1.0), 4);
+    DirectPlanRules rules = directRules([](DirectPlanRules& r) { r.linkGain = 1e-6; });
+    rules.passCost = 1e3 * rules.cost * kPatchesOfChunk;
+    rules.allowed = 0.5 * plan.left(allHave(4));
+    EXPECT_LE(plan.left(plan.wanted(rules, allHave(4))), rules.allowed);
+}
+
 TEST(DirectPlan, SettledIsWhatGetsNoMore) {
     const DirectPlan plan = learned(someNoisy(0.001, 1.0), 4);
     const std::vector<uint32_t> wanted = plan.wanted(kDirectRules, allHave(4));
