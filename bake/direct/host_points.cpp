@@ -45,7 +45,8 @@ const uint32_t* HostPoints::bitsOf(uint32_t chunk, uint32_t target) const {
 }
 
 uint32_t HostPoints::takenSamplePasses(size_t patch) const {
-    if (!penumbra) return together;
+    // The first sample pass is for all, and others of its threads write these notes meanwhile.
+    if (!penumbra || samplePass == 0) return together;
     const glm::uvec2& lights = penumbra[parts[patch]];
     if ((lights.x & lights.y) != 0) return together;
     return shader::allTakeSamplePass(samplePass * together) ? 1 : 0;

@@ -3,9 +3,10 @@
 #include "lib/light/penumbra.glsl"
 #include "lib/light/light_notes.glsl"
 
-// Returns how many of these sample passes the patch takes: the first ones.
+// Returns how many of these sample passes the patch takes: the first ones. The very first one is for all, and other
+// invocations of its kernels write the notes meanwhile.
 uint takenSamplePasses(uint patchIndex) {
-    if (push.penumbra == 0ul || push.parts == 0ul || inPenumbra(patchIndex)) return push.together;
+    if (push.penumbra == 0ul || push.parts == 0ul || push.samplePass == 0u || inPenumbra(patchIndex)) return push.together;
     return allTakeSamplePass(push.samplePass * push.together) ? 1u : 0u; // no other one of them is for all
 }
 
