@@ -32,8 +32,12 @@ protected:
 
     std::unique_ptr<ViewerProcess> open(std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), {"--log-actions", "--validate", "--size", "64"});
-        if (std::find(arguments.begin(), arguments.end(), "--error") == arguments.end())
-            arguments.insert(arguments.end(), {"--error", "0.02"}); // so that edits converge soon
+        const auto given = [&](const std::string& option) {
+            return std::find(arguments.begin(), arguments.end(), option) != arguments.end();
+        };
+        // So that edits converge soon.
+        if (!given("--error")) arguments.insert(arguments.end(), {"--error", "0.02"});
+        if (!given("--method")) arguments.insert(arguments.end(), {"--local-error", "0.2"});
         auto viewer = std::make_unique<ViewerProcess>(
             ViewerProcess::Desc{.display = display_->name(), .home = home_.path(""), .arguments = arguments});
         EXPECT_TRUE(viewer->window()) << viewer->output();
