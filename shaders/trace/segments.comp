@@ -8,7 +8,11 @@
 layout(push_constant, scalar) uniform Push { SegmentPush push; };
 #define geometry push.geometry
 #include "lib/rays/trace.glsl"
+#ifdef TRACER_VOXEL
 #include "lib/rays/segments.glsl"
+#else
+#include "lib/rays/numbered_segments.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 

@@ -1,4 +1,6 @@
-// Makes one word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own.
+// Makes one word of visibility: patch `lane` of a chunk against up to 32 consecutive targets of its own. It serves
+// ray pipelines, whose invocations share nothing, and voxels, which serve some targets only; lib/rays/numbered_segments.glsl
+// serves the others.
 #include "lib/rays/starts.glsl"
 #include "lib/listed_chunk.glsl"
 
