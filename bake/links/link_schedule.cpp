@@ -113,7 +113,7 @@ uint32_t LinkSchedule::nextCheck(const LinkState& state, double excess) const {
     if (state.apart.on) {
         const double falls = std::max(0.0, variance(state) - state.apart.settled);
         const double left = allowed - state.apart.settled;
-        const double more = left > 0 ? std::min(falls / left - 1.0, farthest) : farthest;
+        const double more = left > 0 ? std::clamp(falls / left - 1.0, 0.0, farthest) : farthest;
         return now + std::max(1u, static_cast<uint32_t>(kCheckShare * more * state.linkSamplePasses));
     }
     LinkState ahead = state;

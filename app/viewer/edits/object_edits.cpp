@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <glm/gtc/matrix_inverse.hpp>
+#include <spdlog/fmt/fmt.h>
 
 namespace relume {
 namespace {

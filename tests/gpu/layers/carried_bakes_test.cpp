@@ -3,7 +3,7 @@
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/layers/layer_solver.h"
 #include "tests/gpu/bake_scene.h"
-#include "tests/gpu/edited_bake.h"
+#include "tests/gpu/edited_layers.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>
@@ -39,13 +39,13 @@ Scene carriedRoom() {
 }
 
 /// Follows any edit of `scene` by a bake that goes on with the one before.
-class CarriedBake : public EditedBake {
+class CarriedBake : public EditedLayers {
 public:
     explicit CarriedBake(Scene start, const BakeDesc& desc = kEditedDesc)
-        : EditedBake(std::move(start), desc) {}
+        : EditedLayers(std::move(start), desc) {}
 
     CarriedBake& finish() {
-        EditedBake::finish();
+        EditedLayers::finish();
         return *this;
     }
     void steps(int count) {

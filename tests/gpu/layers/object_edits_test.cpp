@@ -6,7 +6,7 @@
 #include "bake/trace/make_tracer.h"
 #include "bake/validity/step_aside.h"
 #include "tests/gpu/bake_scene.h"
-#include "tests/gpu/edited_bake.h"
+#include "tests/gpu/edited_layers.h"
 #include "tests/gpu/gpu_environment.h"
 
 #include <gtest/gtest.h>
@@ -28,10 +28,10 @@ Scene movingRoom(float plate = 8.0f) {
 }
 
 /// Follows objects that move, are hidden and shown: the bake follows `scene` when it is told.
-class Moving : public EditedBake {
+class Moving : public EditedLayers {
 public:
     explicit Moving(Scene start, const BakeDesc& desc = kEditedDesc)
-        : EditedBake(std::move(start), desc), atlas_(buildAtlas(scene, desc.size)) {
+        : EditedLayers(std::move(start), desc), atlas_(buildAtlas(scene, desc.size)) {
         finish();
     }
 

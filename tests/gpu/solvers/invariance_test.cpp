@@ -38,19 +38,17 @@ TEST(Invariance, TexelCentresLieInTheirPlane) {
         EXPECT_NEAR(baked.patches.scene.patches[i].position.z, 1.0f, 2e-7f) << "patch " << i;
 }
 
-class Scale : public testing::TestWithParam<float> {};
-
-TEST_P(Scale, GivesTheSameMap) {
+TEST(Scale, GivesTheSameMap) {
     const Scene scene = generateScene("cornell_geom");
     const Baked metres = bakeScene(scene, {.size = kScaledSize, .passes = 2});
-    const Baked other = bakeScene(scaled(scene, GetParam()), {.size = kScaledSize, .passes = 2});
-    EXPECT_EQ(metres.patches.count, other.patches.count);
-    EXPECT_EQ(metres.invalid, other.invalid);
-    EXPECT_LT(relativeError(other.lighting, metres.lighting), 1e-4);
     EXPECT_GT(statistics(metres.lighting, {0, 0, kScaledSize, kScaledSize}).mean, 0.1);
+    for (const float factor : {0.01f, 1000.0f}) {
+        const Baked other = bakeScene(scaled(scene, factor), {.size = kScaledSize, .passes = 2});
+        EXPECT_EQ(metres.patches.count, other.patches.count) << factor;
+        EXPECT_EQ(metres.invalid, other.invalid) << factor;
+        EXPECT_LT(relativeError(other.lighting, metres.lighting), 1e-4) << factor;
+    }
 }
-
-INSTANTIATE_TEST_SUITE_P(Factors, Scale, testing::Values(0.01f, 1000.0f));
 
 // No light gets into the closed cell of cornell_layers, through no edge and no corner.
 TEST(Invariance, ADarkCellStaysDark) {

@@ -112,9 +112,9 @@ const Kind kKinds[] = {
     {"OfflineOfDirectLight", {.rules = {.passes = 1, .together = true}}},
 };
 
-class EditedBake : public testing::TestWithParam<Kind> {};
+class EditSequence : public testing::TestWithParam<Kind> {};
 
-TEST_P(EditedBake, EndsWithAllLayersDone) {
+TEST_P(EditSequence, EndsWithAllLayersDone) {
     for (uint32_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(seed);
         FakeBake::Desc desc = GetParam().desc;
@@ -137,7 +137,7 @@ TEST_P(EditedBake, EndsWithAllLayersDone) {
     }
 }
 
-TEST_P(EditedBake, IsTheSameAgain) {
+TEST_P(EditSequence, IsTheSameAgain) {
     for (uint32_t seed = 0; seed < 10; ++seed) {
         Script once(GetParam().desc, seed), again(GetParam().desc, seed);
         once.play(8);
@@ -146,7 +146,7 @@ TEST_P(EditedBake, IsTheSameAgain) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EditedBake, testing::ValuesIn(kKinds), CaseName());
+INSTANTIATE_TEST_SUITE_P(Kinds, EditSequence, testing::ValuesIn(kKinds), CaseName());
 
 // Each layer comes out as it would alone: its levels are a function of itself.
 TEST(BakeWithoutEdits, HasTheSameLevelsHoweverItIsMade) {

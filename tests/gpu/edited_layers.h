@@ -26,9 +26,9 @@ inline constexpr BakeDesc kEditedDesc{
     .size = kRoomSize, .passes = 0, .method = Method::Hybrid, .samples = 32, .smooth = true, .layers = true};
 
 /// Holds a bake of layers. Its scene is edited, and those who derive from it say how the bake follows.
-class EditedBake {
+class EditedLayers {
 public:
-    EditedBake(Scene start, const BakeDesc& desc)
+    EditedLayers(Scene start, const BakeDesc& desc)
         : scene(std::move(start)), desc_(desc), baked_(std::make_unique<Scene>(scene)),
           baker_(makeEditableBaker(*baked_, desc)) {}
 
@@ -61,7 +61,7 @@ protected:
 };
 
 /// Compares every texel of every layer with those of a fresh bake, and which patches lie inside something.
-inline void expectFresh(EditedBake& bake, EditedBake& fresh) {
+inline void expectFresh(EditedLayers& bake, EditedLayers& fresh) {
     const std::vector<FloatImage> edited = bake.images(), wanted = fresh.images();
     ASSERT_EQ(edited.size(), wanted.size());
     for (size_t i = 0; i < wanted.size(); ++i)
