@@ -63,7 +63,7 @@ void takeLayerState(Layer& layer, const LayerStateSize& size, std::span<const ui
     layer.sketch.entries.resize(kSketchEntries);
     std::memcpy(layer.sketch.entries.data(), sketch.data(), kSketchBytes);
     layer.sketch.bias.resize(from.biasKnown ? size.chunks : 0);
-    std::memcpy(layer.sketch.bias.data(), bias.data(), layer.sketch.bias.size() * sizeof(float));
+    if (from.biasKnown) std::memcpy(layer.sketch.bias.data(), bias.data(), biasBytes);
     layer.penumbra.assign(penumbra.begin(), penumbra.end());
     layer.directSamplePasses = from.directSamplePasses;
     layer.directSteps.clear();
