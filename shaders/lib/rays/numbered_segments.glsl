@@ -8,8 +8,8 @@
 
 const uint kTargetsPerWord = 32u;
 
-shared uint targetBits[kChunk];            // per patch: which targets want a ray, and then which are seen
-shared uvec2 patchBits[kTargetsPerWord];   // per target: which patches want one
+shared uint targetBits[kChunk];              // per patch: which targets want a ray, and then which are seen
+shared uvec2 patchBits[kTargetsPerWord];     // per target: which patches want one
 shared uint firstRays[kTargetsPerWord + 1u]; // per target: the number of its first ray; behind them that of all
 shared uint nextRay;
 

@@ -160,9 +160,9 @@ TEST_F(ChunkSampling, BatchesAndWhatIsSeenChangeNoByte) {
 // Chunks that want more direct light are wherever they are, and kernels and the CPU find them by a list.
 TEST_F(ChunkSampling, ListedChunksGetTheSameDirectLightInAnyPortion) {
     const Scene scene = lampInTheCorner();
-    const FloatImage truth = bakeScene(scene, reference(2048)).lighting;
+    const FloatImage truth = bakeScene(scene, reference(8192)).lighting;
     for (const TracerKind tracer : tracersOfTestDevice()) {
-        BakeDesc desc = localOnly(0.05, false);
+        BakeDesc desc = localOnly(0.02, false);
         desc.tracer = tracer;
         const std::unique_ptr<Baker> baker = makeBaker(scene, desc);
         const FloatImage baked = lookedAt(*baker, 1);
@@ -175,7 +175,7 @@ TEST_F(ChunkSampling, ListedChunksGetTheSameDirectLightInAnyPortion) {
         desc.live = true;
         const std::unique_ptr<Baker> live = makeBaker(scene, desc);
         expectSameBytes(lookedAt(*live, 5), baked);
-        EXPECT_LE(localOf(baked, truth).p95, 0.05);
+        EXPECT_LE(localOf(baked, truth).p95, 0.02);
     }
 }
 

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Convergence, testing::ValuesIn([] {
 // never agree.
 TEST(Convergence, DirectLightOfManyEmittersGoesOnConverging) {
     const Scene scene = generateScene("atrium");
-    constexpr uint32_t few = 1024, many = 8192;
+    constexpr uint32_t few = 1024, many = 16384;
     const Baked first = bakeScene(scene, hybrid(32, few, 1)), then = bakeScene(scene, hybrid(32, many, 1));
     EXPECT_GT(first.progress.error, leastFall(double(many) / few) * then.progress.error);
 }

@@ -202,7 +202,7 @@ TEST(LinkSchedule, TheErrorIsFoundAgainWhenItMayHaveFallenEnough) {
     EXPECT_EQ(schedule.nextCheck(state, 10.0), 200u) << "at twice as many, however far it is";
     EXPECT_EQ(schedule.nextCheck(state, 1.25), 134u) << ".6 of 57 that it still seems to need";
     EXPECT_EQ(schedule.nextCheck(state, 1.005), 101u);
-    // Of the 0.2 of direct light that were there at the check, 0.15 are left to it apart.
+    // Direct light has 0.2 at the check, of which 0.15 are settled apart from what links do.
     state.apart = {.on = true, .settled = 0.15};
     EXPECT_EQ(schedule.nextCheck(state, 1.25), 122u) << ".6 of the 37 of links that it still seems to need";
     EXPECT_EQ(schedule.nextCheck(state, 0.9), 101u) << "what is told is reached: at once, and not before now";
