@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "assets/base/worker_pool.h"
@@ -16,6 +17,21 @@ void runPortions(WorkerPool& pool, size_t count, size_t portion, const Work& wor
         const size_t begin = number * portion;
         work(begin, std::min(count, begin + portion));
     });
+}
+
+/// Returns the sum of term(i) over 0..count - 1, which all threads of the pool add up. Portions are the same
+/// however many there are, so that it rounds alike.
+template<typename Term>
+double sumOverAll(WorkerPool& pool, size_t count, const Term& term) {
+    constexpr size_t kPortion = size_t{1} << 12;
+    std::vector<double> sums((count + kPortion - 1) / kPortion, 0.0);
+    runPortions(pool, count, kPortion, [&](size_t begin, size_t end) {
+        double sum = 0;
+        for (size_t i = begin; i < end; ++i)
+            sum += term(i);
+        sums[begin / kPortion] = sum;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 /// Returns those of 0..count - 1 that takes(number) is true of, ascending; all threads of the pool ask.

@@ -26,20 +26,9 @@ namespace {
 // The light of more patches is nothing that one sees at a glance.
 constexpr uint32_t kMostOfGlance = 1u << 21;
 
-// Returns those of these patches (ascending) that are in these chunks.
-std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, const std::vector<uint32_t>& patches) {
-    std::vector<uint32_t> in;
-    for (const ChunkRange& range : chunks) {
-        const auto first = std::lower_bound(patches.begin(), patches.end(), range.first * shader::kChunk);
-        const auto end = std::lower_bound(first, patches.end(), (range.first + range.count) * shader::kChunk);
-        in.insert(in.end(), first, end);
-    }
-    return in;
-}
-
 // Returns which chunks' validity each rank finds.
 ChunkDeal dealOf(const PatchSet& patches, Ranks& ranks, const vk::Device& device) {
-    return {patches.chunkCount(), ranks.count(), ChunkDeal::leastRunOf(device.info().software())};
+    return {patches.chunkCount(), ranks.count(), ChunkDeal::runsFor(device.info().software())};
 }
 
 TracerKind tracerKind(const BakeSettings& settings, const vk::DeviceInfo& device, std::string& why) {
@@ -284,8 +273,9 @@ void Baker::makeCovers() {
         return tracer_->updateSenders(back);
     }
     const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
-    searcher.search(patchesIn(dealt.runsOf(ranks().rank()), coveredPatches(patches_, device_.workers())));
-    shareChunks(ranks(), dealt, patches_.covers);
+    const std::vector<uint32_t> covered = coveredPatches(patches_, device_.workers());
+    searcher.search(patchesIn(dealt.runsOf(ranks().rank()), covered));
+    shareCells(ranks(), dealt, covered, patches_, device_.workers());
     vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
     searcher.release(); // memory is planned for one search at a time
     tracer_->updateSenders(stepAside(searcher, ranks(), dealt));

@@ -368,7 +368,7 @@ std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<O
     for (const OwnPoint& point : before)
         if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
     MoveSearch& search = searchFor(tracer);
-    relume::stepAside(search.covers(), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, 1), known,
+    relume::stepAside(search.covers(), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, {}), known,
                       &search.places());
     OtherPoints others = otherPoints(before, pointsAside(on_.patches));
     for (const uint32_t patch : others.points)

@@ -67,6 +67,7 @@ void ChunkOrder::restore(uint32_t count, const std::vector<uint8_t>& seen) {
 void ChunkOrder::prefer(const std::vector<uint8_t>& seen) {
     ASSERT(seen.empty() || seen.size() == count_);
     preferred_ = 0;
+    if (seen.empty() && std::memchr(marks_.data(), kPreferred, count_) == nullptr) return; // mostly so
     for (uint32_t chunk = 0; chunk < count_; ++chunk) {
         if (marks_[chunk] == 0) continue;
         const bool first = !seen.empty() && seen[chunk] != 0;
@@ -97,8 +98,15 @@ ChunkRange ChunkOrder::next(uint32_t most, uint32_t gap) const {
 std::vector<uint32_t> ChunkOrder::nextOnes(uint32_t most) const {
     std::vector<uint32_t> ones;
     const uint8_t wanted = preferred_ > 0 ? kPreferred : kLeft;
-    for (uint32_t chunk = 0; chunk < count_ && ones.size() < most; ++chunk)
-        if (marks_[chunk] == wanted) ones.push_back(chunk);
+    const uint8_t* const marks = marks_.data();
+    for (uint32_t chunk = 0; chunk < count_ && ones.size() < most; ++chunk) {
+        if (marks[chunk] != wanted) { // what is done may be long
+            const void* found = std::memchr(marks + chunk, wanted, count_ - chunk);
+            if (found == nullptr) break;
+            chunk = static_cast<uint32_t>(static_cast<const uint8_t*>(found) - marks);
+        }
+        ones.push_back(chunk);
+    }
     return ones;
 }
 
@@ -108,11 +116,10 @@ void ChunkOrder::finish(std::span<const uint32_t> chunks) {
 }
 
 void ChunkOrder::finish(ChunkRange range) {
-    for (uint32_t chunk = range.first; chunk < range.first + range.count; ++chunk) {
-        left_ -= marks_[chunk] != 0;
-        preferred_ -= marks_[chunk] == kPreferred;
-        marks_[chunk] = 0;
-    }
+    const auto first = marks_.begin() + range.first, end = first + range.count;
+    left_ -= range.count - static_cast<uint32_t>(std::count(first, end, uint8_t{0}));
+    if (preferred_ > 0) preferred_ -= static_cast<uint32_t>(std::count(first, end, kPreferred));
+    std::fill(first, end, uint8_t{0});
 }
 
 } // namespace relume

@@ -26,7 +26,14 @@ struct Variances {
 
 Variances pooled(std::span<const ChunkVariance> chunks, const ChunkPlan& now, double ChunkVariance::*direct,
                  double ChunkVariance::*links) {
-    return {pooledVariances(chunks, now.direct, direct), pooledVariances(chunks, now.links, links)};
+    Variances all;
+    all.direct.reserve(chunks.size());
+    all.links.reserve(chunks.size());
+    for (size_t i = 0; i < chunks.size(); ++i) {
+        all.direct.push_back(pooledVariance(chunks, now.direct, direct, i));
+        all.links.push_back(pooledVariance(chunks, now.links, links, i));
+    }
+    return all;
 }
 
 // Brings chunks to the local error, each by itself.
@@ -103,20 +110,17 @@ void planTogether(const ChunkPlanRules& rules, std::span<const ChunkVariance> ch
 
 } // namespace
 
-std::vector<double> pooledVariances(std::span<const ChunkVariance> chunks,
-                                    std::span<const uint32_t> samplePasses, double ChunkVariance::*which) {
+double pooledVariance(std::span<const ChunkVariance> chunks, std::span<const uint32_t> samplePasses,
+                      double ChunkVariance::*which, size_t chunk) {
+    if (!(chunks[chunk].patches > 0)) return 0.0;
     const auto ofOne = [&](size_t i) { return chunks[i].*which * samplePasses[i]; };
-    std::vector<double> values(chunks.size(), 0.0);
-    for (size_t i = 0; i < chunks.size(); ++i) {
-        if (!(chunks[i].patches > 0)) continue;
-        double sum = 0, patches = 0;
-        for (size_t k = i - std::min(i, kNeighbours); k < std::min(chunks.size(), i + kNeighbours + 1); ++k) {
-            sum += ofOne(k);
-            patches += chunks[k].patches;
-        }
-        values[i] = std::max(sum / patches, ofOne(i) / chunks[i].patches);
+    const size_t end = std::min(chunks.size(), chunk + kNeighbours + 1);
+    double sum = 0, patches = 0;
+    for (size_t k = chunk - std::min(chunk, kNeighbours); k < end; ++k) {
+        sum += ofOne(k);
+        patches += chunks[k].patches;
     }
-    return values;
+    return std::max(sum / patches, ofOne(chunk) / chunks[chunk].patches);
 }
 
 ChunkPlan planChunks(const ChunkPlanRules& rules, std::span<const ChunkVariance> chunks,

@@ -39,10 +39,10 @@ ChunkPlan planChunks(const ChunkPlanRules& rules, std::span<const ChunkVariance>
 
 constexpr uint32_t kMostChunkGrowth = 4;
 
-/// Returns for each chunk the variance of a patch that one sample pass leaves, no smaller than in the mean
+/// Returns the variance of a patch of this chunk that one sample pass leaves, no smaller than in the mean
 /// over its neighbours in the order of chunks; 0 where no patch is shown. `which` is the variance that is
 /// left after so many sample passes.
-std::vector<double> pooledVariances(std::span<const ChunkVariance> chunks,
-                                    std::span<const uint32_t> samplePasses, double ChunkVariance::*which);
+double pooledVariance(std::span<const ChunkVariance> chunks, std::span<const uint32_t> samplePasses,
+                      double ChunkVariance::*which, size_t chunk);
 
 } // namespace relume

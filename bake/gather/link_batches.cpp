@@ -7,6 +7,11 @@
 namespace relume {
 namespace {
 
+// A batch has at most so many runs of chunks, and no more of them where it has this share of what it is to
+// have.
+constexpr size_t kMostRuns = 64;
+constexpr double kFullBatch = 0.75;
+
 void record(const std::function<void(VkCommandBuffer)>& step, VkCommandBuffer cmd) {
     if (step) step(cmd);
 }
@@ -15,11 +20,13 @@ void record(const std::function<void(VkCommandBuffer)>& step, VkCommandBuffer cm
 
 LinkBatches::Portion LinkBatches::next(uint32_t samplePass, double spent) {
     const uint32_t first = kit_.order.next(1, 0).first;
-    const LinkCache::Place place = cache_.find(samplePass, first, kit_.order.count() - first);
+    const auto before = static_cast<uint32_t>(spent);
+    const LinkCache::Place place = cache_.find(samplePass, first, kit_.order.count() - first, before);
     const bool trace = !place.known;
-    const ChunkRange range = trace
-                                 ? kit_.nextRange(traceRate_, std::min(place.count, kit_.buffers.batchChunks))
-                                 : kit_.nextRange(gatherRate_, place.count, 1, spent);
+    const uint32_t most = kit_.buffers.batchChunks - std::min(before, kit_.buffers.batchChunks);
+    if (place.count == 0 || (trace && most == 0)) return {.trace = trace};
+    const ChunkRange range = trace ? kit_.nextRange(traceRate_, std::min(place.count, most), 1, spent)
+                                   : kit_.nextRange(gatherRate_, place.count, 1, spent);
     return {.trace = trace,
             .range = range,
             .closest = closestWork(samplePass, 1, place, range),
@@ -29,9 +36,26 @@ LinkBatches::Portion LinkBatches::next(uint32_t samplePass, double spent) {
                        .range = range}};
 }
 
-LinkBatches::Portion LinkBatches::nextOnce(uint32_t samplePass, uint32_t samplePasses) {
+std::vector<LinkBatches::Portion> LinkBatches::take(uint32_t samplePass) {
+    std::vector<Portion> portions;
+    double spent = 0;
+    while (kit_.order.left() > 0 && portions.size() < kMostRuns) {
+        const Portion portion = next(samplePass, spent);
+        const bool first = portions.empty();
+        if (!first && (portion.trace != portions.front().trace || portion.range.count == 0)) break;
+        kit_.order.finish(portion.range);
+        portions.push_back(portion);
+        spent += portion.range.count;
+        const double wanted = (portion.trace ? traceRate_ : gatherRate_).wanted(kit_.batchMs);
+        if (kit_.rankChunks.alone() || spent > kFullBatch * wanted) break;
+    }
+    return portions;
+}
+
+LinkBatches::Portion LinkBatches::takeOnce(uint32_t samplePass, uint32_t samplePasses) {
     const LinkCache::Place place = cache_.passing(samplePasses, kit_.order.count());
     const ChunkRange range = kit_.nextRange(traceRate_, place.count, samplePasses);
+    kit_.order.finish(range);
     return {.trace = true,
             .once = true,
             .samplePasses = samplePasses,
@@ -60,17 +84,25 @@ void LinkBatches::finish(uint32_t samplePass, const Portion& portion) {
     kit_.order.finish(portion.range);
 }
 
-void LinkBatches::run(const Portion& portion, const Steps& steps, bool atOnce) {
+void LinkBatches::run(std::span<const Portion> portions, const Steps& steps, bool atOnce) {
+    ASSERT(!portions.empty());
     const auto start = Clock::now();
-    atOnce ? runAtOnce(portion, steps) : runBySubmit(portion, steps);
-    (portion.trace ? traceRate_ : gatherRate_)
-        .note(double(portion.range.count) * portion.samplePasses, kit_.batchMs, secondsSince(start));
+    atOnce ? runAtOnce(portions, steps) : runBySubmit(portions, steps);
+    double chunks = 0;
+    for (const Portion& portion : portions)
+        chunks += double(portion.range.count) * portion.samplePasses;
+    (portions.front().trace ? traceRate_ : gatherRate_).note(chunks, kit_.batchMs, secondsSince(start));
 }
 
-void LinkBatches::runAtOnce(const Portion& portion, const Steps& steps) {
+void LinkBatches::trace(std::span<const Portion> portions, VkCommandBuffer cmd) const {
+    for (const Portion& portion : portions)
+        if (portion.trace) kit_.input.tracer.closest(cmd, portion.closest);
+}
+
+void LinkBatches::runAtOnce(std::span<const Portion> portions, const Steps& steps) {
     record(steps.begin, VK_NULL_HANDLE);
     const auto start = Clock::now();
-    if (portion.trace) kit_.input.tracer.closest(VK_NULL_HANDLE, portion.closest);
+    trace(portions, VK_NULL_HANDLE);
     const double traced = secondsSince(start);
     record(steps.traced, VK_NULL_HANDLE);
     steps.gather(VK_NULL_HANDLE);
@@ -82,14 +114,14 @@ void LinkBatches::runAtOnce(const Portion& portion, const Steps& steps) {
     kit_.run(cmd);
 }
 
-void LinkBatches::runBySubmit(const Portion& portion, const Steps& steps) {
+void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& steps) {
     vk::Timestamps& timestamps = kit_.timestamps;
     VkCommandBuffer cmd = kit_.commands.begin();
     record(steps.begin, cmd);
     timestamps.reset(cmd);
     timestamps.mark(cmd, 0);
     const auto start = Clock::now();
-    if (portion.trace) kit_.input.tracer.closest(cmd, portion.closest);
+    trace(portions, cmd);
     const double cpuTrace = secondsSince(start);
     vk::barrier(cmd);
     timestamps.mark(cmd, 1);
@@ -103,7 +135,7 @@ void LinkBatches::runBySubmit(const Portion& portion, const Steps& steps) {
     record(steps.end, cmd);
     kit_.run(cmd);
     kit_.progress.traceSeconds +=
-        kit_.input.tracer.onCpu() && portion.trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
+        kit_.input.tracer.onCpu() && portions.front().trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
     kit_.progress.gatherSeconds += 1e-3 * timestamps.milliseconds(1, 2);
 }
 

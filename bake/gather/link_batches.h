@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "bake/gather/link_cache.h"
 #include "bake/gather/link_kit.h"
@@ -27,12 +29,19 @@ public:
     /// Returns the next portion of the pass over the links of this sample pass. `spent` is the number of
     /// chunks in the batch so far.
     Portion next(uint32_t samplePass, double spent = 0);
+    /// Takes the next portions out of the order that make a batch together, of which all are traced or none:
+    /// one where this process has all chunks, else several, as the runs of a rank are short for a GPU.
+    std::vector<Portion> take(uint32_t samplePass);
     /// Returns the next portion of a pass over links that are read once, of so many sample passes from
     /// `samplePass` on; mostSamplePasses() at most.
-    Portion nextOnce(uint32_t samplePass, uint32_t samplePasses);
+    Portion takeOnce(uint32_t samplePass, uint32_t samplePasses);
     uint32_t mostSamplePasses() const { return std::min(kMostSamplePassesAtOnce, kit_.buffers.batchChunks); }
     /// Notes that these links are there and that their chunks are done.
     void finish(uint32_t samplePass, const Portion& portion);
+    void finish(uint32_t samplePass, std::span<const Portion> portions) {
+        for (const Portion& portion : portions)
+            finish(samplePass, portion);
+    }
 
     /// The solver's share of a batch. Each is called once, in this order; an empty one records nothing.
     struct Steps {
@@ -43,10 +52,10 @@ public:
         std::function<bool()> endRecords;
         std::function<void(VkCommandBuffer)> end; // null where it does not
     };
-    /// Runs a batch of one portion and measures it. Where the CPU traces and gathers there is no submit,
-    /// which would take longer than a small batch; `atOnce` says that this is possible for what the steps
-    /// record.
-    void run(const Portion& portion, const Steps& steps, bool atOnce);
+    /// Runs a batch of portions that all are traced, or none, and measures it. Where the CPU traces and
+    /// gathers there is no submit, which would take longer than a small batch; `atOnce` says that this is
+    /// possible for what the steps record.
+    void run(std::span<const Portion> portions, const Steps& steps, bool atOnce);
     /// Tells whether the CPU traces and gathers.
     bool onCpu() const { return kit_.tracesOnCpu(); }
 
@@ -63,8 +72,9 @@ private:
 
     ClosestWork closestWork(uint32_t samplePass, uint32_t samplePasses, const LinkCache::Place& place,
                             ChunkRange range) const;
-    void runAtOnce(const Portion& portion, const Steps& steps);
-    void runBySubmit(const Portion& portion, const Steps& steps);
+    void trace(std::span<const Portion> portions, VkCommandBuffer cmd) const;
+    void runAtOnce(std::span<const Portion> portions, const Steps& steps);
+    void runBySubmit(std::span<const Portion> portions, const Steps& steps);
 
     LinkKit& kit_;
     LinkCache cache_;

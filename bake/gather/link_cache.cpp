@@ -78,16 +78,17 @@ std::optional<LinkCache::Slot> LinkCache::slotOf(uint32_t samplePass, uint32_t c
     return slot;
 }
 
-LinkCache::Place LinkCache::inStaging(uint32_t most) {
+LinkCache::Place LinkCache::inStaging(uint32_t most, uint32_t before) {
     if (!staging_)
         staging_ = vk::Buffer(device_, {.size = desc_.batch * chunkBytes_, .name = "links of a batch"});
-    return {&staging_, 0, false, std::min(most, desc_.batch)};
+    return {&staging_, uint64_t{before} * desc_.links * kChunk, false,
+            std::min(most, desc_.batch - std::min(before, desc_.batch))};
 }
 
-LinkCache::Place LinkCache::find(uint32_t samplePass, uint32_t first, uint32_t most) {
+LinkCache::Place LinkCache::find(uint32_t samplePass, uint32_t first, uint32_t most, uint32_t before) {
     keepIfRoom(samplePass);
     const std::optional<Slot> slot = slotOf(samplePass, first);
-    if (!slot) return inStaging(most);
+    if (!slot) return inStaging(most, before);
     const SamplePass& kept = kept_[slot->kept];
     const auto from = kept.known.begin() + slot->at;
     const auto end = from + std::min(most, static_cast<uint32_t>(kept.known.end() - from));
@@ -100,7 +101,7 @@ LinkCache::Place LinkCache::passing(uint32_t samplePasses, uint32_t most) {
     forget();
     // Links that are read once go through the device's memory.
     const bool keeps = desc_.oneSamplePass && deviceChunks_ >= desc_.batch;
-    const vk::Buffer* links = keeps ? &kept_.front().links : inStaging(most).links;
+    const vk::Buffer* links = keeps ? &kept_.front().links : inStaging(most, 0).links;
     const auto room = static_cast<uint32_t>(links->size() / (samplePasses * chunkBytes_));
     ASSERT(room > 0);
     return {links, 0, false, std::min({most, room, desc_.batch})};

@@ -42,8 +42,9 @@ public:
         bool known = false;                // they are there; else to be traced
         uint32_t count = 0;                // chunks from that one on that are alike
     };
-    /// Returns the place of the links of up to `most` chunks from `first` on.
-    Place find(uint32_t samplePass, uint32_t first, uint32_t most);
+    /// Returns the place of the links of up to `most` chunks from `first` on, of a batch that has had so many
+    /// chunks `before`: none where it has no room for more.
+    Place find(uint32_t samplePass, uint32_t first, uint32_t most, uint32_t before = 0);
     /// Returns a place for links that are read once: those of up to `most` chunks with so many sample passes
     /// each. What is kept of a sample pass is forgotten first.
     Place passing(uint32_t samplePasses, uint32_t most);
@@ -77,7 +78,7 @@ private:
     void keep(uint32_t chunks, vk::Memory memory);
     uint32_t numberOf(uint32_t chunk) const;
     std::optional<Slot> slotOf(uint32_t samplePass, uint32_t chunk) const;
-    Place inStaging(uint32_t most);
+    Place inStaging(uint32_t most, uint32_t before);
 
     const vk::Device& device_;
     Desc desc_;

@@ -34,6 +34,23 @@ void recordCopy(VkCommandBuffer cmd, const vk::Buffer& from, const vk::Buffer& t
                         regions.data());
 }
 
+struct Portion {
+    VkDeviceSize first = 0, bytes = 0;
+};
+// Returns what of these regions goes to a portion of the bytes, with its place in the stage, where the
+// portion begins at `place`.
+Regions portionOf(const Regions& regions, Portion portion, VkDeviceSize place) {
+    Regions inside;
+    for (const VkBufferCopy& region : regions) {
+        const VkDeviceSize first = std::max(region.dstOffset, portion.first);
+        const VkDeviceSize end = std::min(region.dstOffset + region.size, portion.first + portion.bytes);
+        if (first < end)
+            inside.push_back(
+                {region.srcOffset + first - region.dstOffset, place + first - portion.first, end - first});
+    }
+    return inside;
+}
+
 // Returns regions that go the other way.
 Regions reversed(Regions regions) {
     for (VkBufferCopy& region : regions)
@@ -123,7 +140,7 @@ NearChunks nearChunks(WorkerPool& pool, const TraceScene& scene, const ChunkDeal
 
 RankChunks::RankChunks(const vk::Device& device, Ranks& ranks, const PatchSet& patches)
     : device_(device), ranks_(ranks),
-      deal_(patches.chunkCount(), ranks.count(), ChunkDeal::leastRunOf(device.info().software())),
+      deal_(patches.chunkCount(), ranks.count(), ChunkDeal::runsFor(device.info().software())),
       commands_(device), stage_(device, ranks) {
     if (alone()) {
         rows_ = {{0, patches.chunkCount()}};
@@ -131,6 +148,7 @@ RankChunks::RankChunks(const vk::Device& device, Ranks& ranks, const PatchSet& p
     }
     near_ = nearChunks(device.workers(), patches.scene, deal_, ranks.rank());
     rows_ = rangesOf(near_.rows, true);
+    stage_.reserve(std::min(deal_.chunks() * VkDeviceSize{shader::kChunk} * sizeof(glm::uvec2), kPortionBytes));
 }
 
 std::vector<uint8_t> RankChunks::ownOf(std::vector<uint8_t> marks) const {
@@ -180,45 +198,38 @@ void RankChunks::share(const Shared& shared) {
         if (!shareByStage(shared, array * arrayBytes)) shareByMessages(shared, array * arrayBytes);
 }
 
-// An array goes in portions, each of which stands in the stage as it stands in the array. While what others
-// have of one is taken in, what this rank has of the next one goes out.
-bool RankChunks::shareByStage(const Shared& shared, VkDeviceSize arrayStart) {
-    const auto most = static_cast<uint32_t>(std::max<VkDeviceSize>(kPortionBytes / shared.chunkBytes, 1));
-    const uint32_t portion = std::min(most, deal_.chunks());
-    const auto turn = [&] { return stage_.turn(portion * shared.chunkBytes); };
-    // Returns where chunks of this rank, or those of others, that are in a portion stand, as they go out.
-    const auto regionsOf = [&](uint32_t first, bool own, VkDeviceSize half) {
-        Regions regions;
-        for (uint32_t rank = 0; rank < ranks_.count(); ++rank) {
-            if ((rank == ranks_.rank()) != own) continue;
-            for (const ChunkRange& run : deal_.runsOf(rank)) {
-                const uint32_t from = std::max(run.first, first);
-                const uint32_t end = std::min(run.first + run.count, first + portion);
-                if (from < end)
-                    regions.push_back({arrayStart + from * shared.chunkBytes,
-                                       half + (from - first) * shared.chunkBytes,
-                                       (end - from) * shared.chunkBytes});
-            }
-        }
-        return regions;
-    };
-    std::optional<VkDeviceSize> half = turn();
+// Bytes go in portions. While what others have of one is taken in, what this rank has of the next one goes
+// out.
+bool RankChunks::goByStage(const vk::Buffer& buffer, VkDeviceSize bytes, const Ways& ways) {
+    const VkDeviceSize portion = std::min(bytes, kPortionBytes);
+    std::optional<VkDeviceSize> half = stage_.turn(portion);
     if (!half) return false;
-    copy(shared.buffer, stage_.buffer(), regionsOf(0, true, *half));
-    for (uint32_t first = 0; first < deal_.chunks(); first += portion) {
+    copy(buffer, stage_.buffer(), portionOf(ways.out, {0, portion}, *half));
+    for (VkDeviceSize at = 0; at < bytes; at += portion) {
         ranks_.meet();
-        const Regions in = reversed(regionsOf(first, false, *half));
+        const Regions in = reversed(portionOf(ways.in, {at, portion}, *half));
         Regions out;
-        if (first + portion < deal_.chunks()) {
-            half = turn();
-            out = regionsOf(first + portion, true, *half);
+        if (at + portion < bytes) {
+            half = stage_.turn(portion);
+            out = portionOf(ways.out, {at + portion, portion}, *half);
         }
         run([&](VkCommandBuffer cmd) {
-            recordCopy(cmd, stage_.buffer(), shared.buffer, in);
-            recordCopy(cmd, shared.buffer, stage_.buffer(), out);
+            recordCopy(cmd, stage_.buffer(), buffer, in);
+            recordCopy(cmd, buffer, stage_.buffer(), out);
         });
     }
     return true;
+}
+
+// Chunks stand where they stand in the array.
+bool RankChunks::shareByStage(const Shared& shared, VkDeviceSize arrayStart) {
+    Ways ways;
+    for (uint32_t rank = 0; rank < ranks_.count(); ++rank)
+        for (const ChunkRange& run : deal_.runsOf(rank))
+            (rank == ranks_.rank() ? ways.out : ways.in)
+                .push_back({arrayStart + run.first * shared.chunkBytes, run.first * shared.chunkBytes,
+                            run.count * shared.chunkBytes});
+    return goByStage(shared.buffer, deal_.chunks() * shared.chunkBytes, ways);
 }
 
 // Gathers an array in host memory, in the ranks' order.
@@ -262,28 +273,23 @@ bool RankChunks::shareNearByStage(const Shared& shared) {
     const VkDeviceSize bytes = shared.chunkBytes * shared.arrays;
     const VkDeviceSize all = std::accumulate(near_.counts.begin(), near_.counts.end(), VkDeviceSize{0});
     if (all == 0) return true;
-    const std::optional<VkDeviceSize> half = stage_.turn(all * bytes);
-    if (!half) return false;
     const VkDeviceSize arrayBytes = shared.buffer.size() / shared.arrays;
-    Regions out, in;
-    VkDeviceSize at = *half;
+    Ways ways;
+    VkDeviceSize at = 0;
     for (uint32_t from = 0; from < ranks_.count(); ++from)
         for (uint32_t to = 0; to < ranks_.count(); ++to) {
             VkDeviceSize place = at;
             for (uint32_t array = 0; array < shared.arrays; ++array) {
                 if (from == ranks_.rank())
-                    place = appendRanges(out, rangesOfChunks(near_.to[to]), shared.chunkBytes,
+                    place = appendRanges(ways.out, rangesOfChunks(near_.to[to]), shared.chunkBytes,
                                          array * arrayBytes, place);
                 else if (to == ranks_.rank())
-                    place = appendRanges(in, rangesOfChunks(near_.from[from]), shared.chunkBytes,
+                    place = appendRanges(ways.in, rangesOfChunks(near_.from[from]), shared.chunkBytes,
                                          array * arrayBytes, place);
             }
             at += near_.counts[size_t{from} * ranks_.count() + to] * bytes;
         }
-    copy(shared.buffer, stage_.buffer(), out);
-    ranks_.meet();
-    copy(stage_.buffer(), shared.buffer, reversed(in));
-    return true;
+    return goByStage(shared.buffer, all * bytes, ways);
 }
 
 void RankChunks::shareNear(const Shared& shared) {

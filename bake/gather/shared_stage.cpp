@@ -9,7 +9,7 @@ constexpr VkDeviceSize kGrain = 1 << 16; // a multiple of what devices want of i
 
 std::optional<VkDeviceSize> SharedStage::turn(VkDeviceSize bytes) {
     ASSERT(bytes > 0);
-    if (!none_ && bytes > half_) none_ = !grow(bytes);
+    reserve(bytes);
     if (none_) return std::nullopt;
     second_ = !second_;
     return second_ ? half_ : 0;

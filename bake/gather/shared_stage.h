@@ -14,6 +14,10 @@ class SharedStage {
 public:
     SharedStage(const vk::Device& device, Ranks& ranks) : device_(device), ranks_(ranks) {}
 
+    /// Makes room for so many bytes ahead, which takes longer than to fill it. All ranks call it alike.
+    void reserve(VkDeviceSize bytes) {
+        if (!none_ && bytes > half_) none_ = !grow(bytes);
+    }
     /// Turns to the other half, with room for so many bytes, and returns where it begins in buffer(). Returns
     /// nothing where ranks are on several machines or one cannot have such memory. All ranks call it alike.
     std::optional<VkDeviceSize> turn(VkDeviceSize bytes);

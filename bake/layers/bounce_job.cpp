@@ -110,7 +110,7 @@ bool BounceJob::onePortion(const Portion& portion) {
                 seen = kit.order.left() == 0 && recordPassEnd(cmd);
             },
     };
-    tools_->batches.run(portion, steps, atOnce);
+    tools_->batches.run(std::span(&portion, 1), steps, atOnce);
     return seen;
 }
 

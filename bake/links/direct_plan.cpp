@@ -1,19 +1,28 @@
 #include "bake/links/direct_plan.h"
 
 #include "assets/base/error.h"
+#include "assets/base/portions.h"
 #include "bake/gather/sample_plan.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace relume {
+namespace {
+
+constexpr size_t kPlanPortion = size_t{1} << 12; // chunks that a thread looks at, at a time
+
+} // namespace
 
 void DirectPlan::learn(std::span<const ChunkVariance> chunks, std::span<const uint32_t> samplePasses,
                        bool locally) {
-    ofOne_ =
-        pooledVariances(chunks, samplePasses, locally ? &ChunkVariance::localDirect : &ChunkVariance::direct);
-    for (size_t i = 0; i < chunks.size(); ++i)
-        patches_[i] = chunks[i].patches;
+    double ChunkVariance::*const which = locally ? &ChunkVariance::localDirect : &ChunkVariance::direct;
+    runPortions(pool_, chunks.size(), kPlanPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            ofOne_[i] = pooledVariance(chunks, samplePasses, which, i);
+            patches_[i] = chunks[i].patches;
+        }
+    });
 }
 
 // One more sample pass after n takes v / n^2 of a variance v / n.
@@ -52,18 +61,18 @@ std::vector<DirectPlan::Part> DirectPlan::partsOf(std::span<const uint32_t> want
 // as much as links would, or more.
 double DirectPlan::gainFor(const DirectPlanRules& rules, std::span<const uint32_t> samplePasses) const {
     constexpr uint32_t kHalvings = 16; // to a thousandth
-    std::vector<double> roots;         // how many pay, times the root of what the last one takes away
-    roots.reserve(ofOne_.size());
-    for (const double ofOne : ofOne_)
-        roots.push_back(std::sqrt(ofOne / rules.cost));
+    // How many pay, times the root of what the last one takes away.
+    std::vector<double> roots(ofOne_.size());
+    runPortions(pool_, roots.size(), kPlanPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            roots[i] = std::sqrt(ofOne_[i] / rules.cost);
+    });
     const auto left = [&](double gain) {
         const double share = gain > 0 ? 1.0 / std::sqrt(gain) : 0.0;
-        double sum = 0;
-        for (size_t i = 0; i < ofOne_.size(); ++i) {
+        return sumOverAll(pool_, ofOne_.size(), [&](size_t i) {
             const double pays = gain > 0 ? roots[i] * share : rules.most;
-            sum += ofOne_[i] * patches_[i] / std::max({1.0, double(samplePasses[i]), pays});
-        }
-        return sum;
+            return ofOne_[i] * patches_[i] / std::max({1.0, double(samplePasses[i]), pays});
+        });
     };
     const double most =
         *std::max_element(ofOne_.begin(), ofOne_.end()) / rules.cost; // one sample pass is enough
@@ -82,10 +91,11 @@ std::vector<uint32_t> DirectPlan::wanted(const DirectPlanRules& of,
     if (samplePasses.empty()) return {};
     DirectPlanRules rules = of;
     rules.linkGain = gainFor(of, samplePasses);
-    std::vector<uint32_t> wanted;
-    wanted.reserve(samplePasses.size());
-    for (size_t i = 0; i < samplePasses.size(); ++i)
-        wanted.push_back(wantedOf(rules, i, samplePasses[i]));
+    std::vector<uint32_t> wanted(samplePasses.size());
+    runPortions(pool_, wanted.size(), kPlanPortion, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            wanted[i] = wantedOf(rules, i, samplePasses[i]);
+    });
     const std::vector<Part> parts = partsOf(wanted, samplePasses);
     const uint32_t ofAll = std::max(std::min(rules.least, rules.most),
                                     *std::min_element(samplePasses.begin(), samplePasses.end()));
@@ -104,18 +114,14 @@ std::vector<uint32_t> DirectPlan::wanted(const DirectPlanRules& of,
 
 double DirectPlan::left(std::span<const uint32_t> samplePasses) const {
     ASSERT(samplePasses.size() == ofOne_.size());
-    double sum = 0;
-    for (size_t i = 0; i < samplePasses.size(); ++i)
-        sum += ofOne_[i] * patches_[i] / std::max(1u, samplePasses[i]);
-    return sum;
+    return sumOverAll(pool_, samplePasses.size(), [&](size_t i) { return leftOf(i, samplePasses[i]); });
 }
 
 double DirectPlan::settled(std::span<const uint32_t> wanted, std::span<const uint32_t> samplePasses) const {
     ASSERT(samplePasses.size() == ofOne_.size() && wanted.size() == ofOne_.size());
-    double sum = 0;
-    for (size_t i = 0; i < samplePasses.size(); ++i)
-        if (wanted[i] == samplePasses[i]) sum += ofOne_[i] * patches_[i] / std::max(1u, samplePasses[i]);
-    return sum;
+    return sumOverAll(pool_, samplePasses.size(), [&](size_t i) {
+        return wanted[i] == samplePasses[i] ? leftOf(i, samplePasses[i]) : 0.0;
+    });
 }
 
 } // namespace relume

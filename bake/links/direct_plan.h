@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "assets/base/worker_pool.h"
 #include "bake/gather/chunk_plan.h"
 
 namespace relume {
@@ -23,7 +25,9 @@ struct DirectPlanRules {
 /// light have most of the variance, and sample passes of all the others would be in vain.
 class DirectPlan {
 public:
-    explicit DirectPlan(uint32_t chunkCount) : ofOne_(chunkCount, 0.0), patches_(chunkCount, 0.0) {}
+    /// The threads of the pool share the work; a large lightmap has a million chunks.
+    DirectPlan(WorkerPool& pool, uint32_t chunkCount)
+        : pool_(pool), ofOne_(chunkCount, 0.0), patches_(chunkCount, 0.0) {}
 
     /// Learns what a check says of chunks that have so many sample passes; `locally`: of local error. A chunk
     /// is taken for no better than its neighbours, as planChunks does.
@@ -45,6 +49,9 @@ public:
     std::vector<double>& patchesArray() { return patches_; }
 
 private:
+    double leftOf(size_t chunk, uint32_t samplePasses) const {
+        return ofOne_[chunk] * patches_[chunk] / std::max(1u, samplePasses);
+    }
     double gainFor(const DirectPlanRules& rules, std::span<const uint32_t> samplePasses) const;
     uint32_t wantedOf(const DirectPlanRules& rules, size_t chunk, uint32_t now) const;
     /// The chunks that take part in one sample pass.
@@ -53,6 +60,7 @@ private:
     };
     std::vector<Part> partsOf(std::span<const uint32_t> wanted, std::span<const uint32_t> samplePasses) const;
 
+    WorkerPool& pool_;
     std::vector<double> ofOne_;   // per chunk: the variance that one sample pass leaves, of a patch
     std::vector<double> patches_; // per chunk
 };

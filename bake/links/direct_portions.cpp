@@ -36,7 +36,7 @@ uint32_t samplePassesAtOnce(uint32_t first, uint32_t left) {
 }
 
 void DirectPortions::begin(const ChunkSamplePasses::Pass& pass, uint32_t most) {
-    all_ = pass.all;
+    neighbours_ = pass.all && kit_.rankChunks.alone();
     samplePasses_ = pass.count;
     most_ = std::max(1u, most / mostAtOnce(pass));
     wanted_ = rate_.wanted(kit_.batchMs);
@@ -46,7 +46,7 @@ void DirectPortions::begin(const ChunkSamplePasses::Pass& pass, uint32_t most) {
 
 DirectPortion DirectPortions::next() {
     DirectPortion portion;
-    if (all_) {
+    if (neighbours_) {
         portion.range = kit_.nextRange(rate_, most_, samplePasses_);
         kit_.order.finish(portion.range);
     } else

@@ -17,7 +17,7 @@ struct DirectPortion {
 uint32_t samplePassesAtOnce(uint32_t first, uint32_t left);
 
 /// Takes the chunks of a pass of direct light out of the order, portion by portion: neighbouring ones where
-/// all take part in the pass, else any, by a list that kernels read. A GPU would take some 0.3 ms for each
+/// this process makes all, else any, by a list that kernels read. A GPU would take some 0.3 ms for each
 /// range of neighbouring ones, and the threads of a CPU would wait for each other.
 class DirectPortions {
 public:
@@ -41,7 +41,7 @@ private:
     BatchRate rate_;  // of chunks in one sample pass
     vk::Buffer list_; // uint32_t per chunk; made at first use
     uint32_t listed_ = 0;
-    bool all_ = true;
+    bool neighbours_ = true;
     uint32_t samplePasses_ = 1, most_ = 1;
     double wanted_ = 0, done_ = 0; // chunks, once for each sample pass
 };

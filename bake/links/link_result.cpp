@@ -125,6 +125,7 @@ void LinkSolver::check() {
 }
 
 void LinkSolver::resolve() {
+    kit_.shareCounters();
     if (kit_.buffers.rows) { // smoothing reads what is near, of other ranks, too
         kit_.rankChunks.shareNear({kit_.buffers.linkSums, kChunk * sizeof(glm::vec4), shader::kReplicates});
         kit_.rankChunks.shareNear({kit_.buffers.distances, kChunk * sizeof(glm::vec2)});
@@ -208,6 +209,7 @@ SolverState LinkSolver::state() {
 void LinkSolver::collect() {
     if (kit_.rankChunks.alone()) return;
     ASSERT(passBoundary());
+    kit_.shareCounters();
     for (const RankChunks::Shared& shared : ownBuffers(kit_))
         if (shared.buffer) kit_.rankChunks.share(shared);
 }

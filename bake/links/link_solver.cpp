@@ -56,19 +56,38 @@ void recordReadable(VkCommandBuffer cmd, const LinkKit& kit, const std::optional
     kit.gatherPass.recordPack(cmd, light, kit.buffers);
 }
 
-// Lets the links of a portion read the means of groups, whatever traced them.
+// Lets the links of portions read the means of groups, whatever traced them.
 void recordFootprints(VkCommandBuffer cmd, const LinkKit& kit, const Footprints& footprints,
-                      const LinkBatches::Portion& portion, uint32_t samples) {
+                      std::span<const LinkBatches::Portion> portions, uint32_t samples) {
     const vk::Buffer& patches = kit.input.light.patches;
-    const vk::Buffer& receivers = portion.closest.receivers ? *portion.closest.receivers : patches;
-    footprints.recordLinks(cmd, patches.address(),
-                           {.receivers = receivers.address(),
-                            .links = portion.gather.address(),
-                            .firstChunk = portion.range.first,
-                            .chunkCount = portion.range.count,
-                            .sampleCount = kit.linksOfSamplePass,
-                            .samples = samples});
+    for (const LinkBatches::Portion& portion : portions) {
+        const vk::Buffer& receivers = portion.closest.receivers ? *portion.closest.receivers : patches;
+        footprints.recordLinks(cmd, patches.address(),
+                               {.receivers = receivers.address(),
+                                .links = portion.gather.address(),
+                                .firstChunk = portion.range.first,
+                                .chunkCount = portion.range.count,
+                                .sampleCount = kit.linksOfSamplePass,
+                                .samples = samples});
+    }
     vk::barrier(cmd);
+}
+
+// Returns how many directions the set has. Each replicate goes through it once; where the error decides how
+// many sample passes there will be, once per sample pass: a set that is broken off is less even.
+uint32_t directionsOf(const SolverSettings& settings, const LinkSchedule& schedule, uint32_t links) {
+    if (settings.links.directions != DirectionSet::Lec) return 0;
+    const uint32_t samplePasses = settings.links.samples > 0 ? schedule.samplePassesWanted() : 1;
+    return samplePasses * links / shader::kReplicates;
+}
+
+vk::Buffer makeDisc(const vk::Device& device, uint32_t count) {
+    if (count == 0) return {};
+    std::vector<glm::vec2> points;
+    points.reserve(count);
+    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
+        points.emplace_back(p);
+    return vk::makeBuffer(device, points, "directions");
 }
 
 } // namespace
@@ -104,11 +123,13 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .chunks = kit_.rankChunks.linked(),
                       .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
-      disc_(makeDisc()), radiancePass_(input.device),
+      disc_{directionsOf(kit_.settings, schedule_, kit_.linksOfSamplePass),
+            makeDisc(input.device, disc_.count)},
+      radiancePass_(input.device),
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
       directSamplePasses_(kit_.chunkCount()), linkSamplePasses_(senders_.chunks()),
-      directPlan_(kit_.chunkCount()), directPortions_(kit_) {
+      directPlan_(input.device.workers(), kit_.chunkCount()), directPortions_(kit_) {
     ASSERT(input.ranks.alone() || (!settings.live && coarse_.count == 0));
     batchMs_ = settings.batchMs;
     const PatchSet& patches = input.patches;
@@ -150,19 +171,6 @@ LinkRules LinkSolver::rules() const {
             .directCost = kSegmentCost * (emitters_.rays(0) + lamps_.rays()),
             .linkCost = kit_.linksOfSamplePass * linkShare,
             .passCost = kSegmentCost * (kit_.wide() ? kPassRaysOnGpu : kPassRaysOnCpu)};
-}
-
-// Makes the directions' set. Each replicate goes through it once; where the error decides how many sample
-// passes there will be, once per sample pass: a set that is broken off is less even.
-LinkSolver::Disc LinkSolver::makeDisc() const {
-    if (kit_.settings.links.directions != DirectionSet::Lec) return {};
-    const uint32_t samplePasses = kit_.settings.links.samples > 0 ? schedule_.samplePassesWanted() : 1;
-    const uint32_t count = samplePasses * kit_.linksOfSamplePass / shader::kReplicates;
-    std::vector<glm::vec2> points;
-    points.reserve(count);
-    for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
-        points.emplace_back(p);
-    return {vk::makeBuffer(kit_.input.device, points, "directions"), count};
 }
 
 void LinkSolver::step() {
@@ -302,11 +310,13 @@ void LinkSolver::directBatch() {
         directPortions_.end(secondsSince(start));
     }
     if (kit_.order.left() > 0) return;
-    kit_.shareCounters();
-    const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
-    if (pass_.all || !state_.apart.on)
+    // Ranks wait for each other only where they must: places cost unlike, which evens out from pass to pass.
+    if (pass_.all || !state_.apart.on) {
+        const uint64_t rays = kit_.input.ranks.sum(progress_.rays - before);
+        const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
         state_.raysToLights =
-            static_cast<double>(progress_.rays - before) / static_cast<double>(chunks * kChunk * pass_.count);
+            static_cast<double>(rays) / static_cast<double>(chunks * kChunk * pass_.count);
+    }
     endPass();
 }
 
@@ -363,9 +373,52 @@ void LinkSolver::beginBounce(bool sent) {
 // Mostly links are there from the sample pass's second bounce on; after a restore they are traced once more.
 void LinkSolver::linkBatch() {
     if (kit_.order.left() == 0) return endBounce(); // a rank may have no chunk
+    using Portions = std::vector<LinkBatches::Portion>;
+    Portions portions = state_.scaled ? Portions{batches_.takeOnce(pass_.first, pass_.count)}
+                                      : batches_.take(pass_.first);
+    for (LinkBatches::Portion& portion : portions)
+        complete(portion);
+    const bool traces = portions.front().trace, atOnce = batches_.onCpu() && !footprints_;
+    const auto recordDistances = [&](VkCommandBuffer cmd) {
+        if (!wantsDistances()) return;
+        for (const LinkBatches::Portion& portion : portions)
+            kit_.gatherPass.recordDistances(cmd, kit_.input.light, kit_.buffers, portion.gather);
+    };
+    batches_.run(portions,
+                 {.begin = {},
+                  .traced =
+                      [&](VkCommandBuffer cmd) {
+                          if (traces && footprints_)
+                              recordFootprints(cmd, kit_, *footprints_, portions,
+                                               schedule_.footprintSamples(state_));
+                      },
+                  .gather =
+                      [&](VkCommandBuffer cmd) {
+                          for (const LinkBatches::Portion& portion : portions)
+                              kit_.gatherPass.record(cmd, kit_.input.light, kit_.buffers, portion.gather);
+                          if (!atOnce) recordDistances(cmd);
+                      },
+                  .endRecords = [&] { return wantsDistances(); },
+                  .end =
+                      [&](VkCommandBuffer cmd) {
+                          if (atOnce) recordDistances(cmd);
+                      }},
+                 atOnce);
+    for (const LinkBatches::Portion& portion : portions) {
+        const uint64_t count =
+            senders_.count(portion.range) * kit_.linksOfSamplePass * portion.samplePasses;
+        (traces ? progress_.rays : progress_.raysSaved) += count;
+        progress_.pairs += count;
+        if (kit_.settings.live && !schedule_.hasSolution(state_) && coarse_.count == 0)
+            live_.ranges.push_back(portion.range);
+    }
+    batches_.finish(pass_.first, portions);
+    if (kit_.order.left() == 0) endBounce();
+}
+
+// Says where a portion's links start, and what is gathered over them.
+void LinkSolver::complete(LinkBatches::Portion& portion) const {
     const bool coarse = coarse_.count > 0;
-    LinkBatches::Portion portion =
-        state_.scaled ? batches_.nextOnce(pass_.first, pass_.count) : batches_.next(pass_.first);
     portion.closest.receivers = coarse ? &kit_.buffers.receivers : nullptr;
     portion.closest.receiversHost = coarse ? coarse_.receivers.data() : nullptr;
     portion.closest.disc = disc_.points ? &disc_.points : nullptr;
@@ -375,37 +428,6 @@ void LinkSolver::linkBatch() {
     portion.gather.direct = direct();
     portion.gather.accumulate = state_.last;
     portion.gather.output = !state_.scaled; // what goes on comes of the sums then
-    const bool atOnce = batches_.onCpu() && !footprints_;
-    const auto recordDistances = [&](VkCommandBuffer cmd) {
-        if (wantsDistances())
-            kit_.gatherPass.recordDistances(cmd, kit_.input.light, kit_.buffers, portion.gather);
-    };
-    batches_.run(portion,
-                 {.begin = {},
-                  .traced =
-                      [&](VkCommandBuffer cmd) {
-                          if (portion.trace && footprints_)
-                              recordFootprints(cmd, kit_, *footprints_, portion,
-                                               schedule_.footprintSamples(state_));
-                      },
-                  .gather =
-                      [&](VkCommandBuffer cmd) {
-                          kit_.gatherPass.record(cmd, kit_.input.light, kit_.buffers, portion.gather);
-                          if (!atOnce) recordDistances(cmd);
-                      },
-                  .endRecords = [&] { return wantsDistances(); },
-                  .end =
-                      [&](VkCommandBuffer cmd) {
-                          if (atOnce) recordDistances(cmd);
-                      }},
-                 atOnce);
-    const uint64_t count = senders_.count(portion.range) * kit_.linksOfSamplePass * portion.samplePasses;
-    (portion.trace ? progress_.rays : progress_.raysSaved) += count;
-    progress_.pairs += count;
-    batches_.finish(pass_.first, portion);
-    if (kit_.settings.live && !schedule_.hasSolution(state_) && !coarse)
-        live_.ranges.push_back(portion.range);
-    if (kit_.order.left() == 0) endBounce();
 }
 
 // Interpolates from the receivers of the coarser grid to all patches.

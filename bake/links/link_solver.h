@@ -48,13 +48,6 @@ public:
 
 private:
     using Stage = LinkState::Stage;
-    /// The directions of DirectionSet::Lec.
-    struct Disc {
-        vk::Buffer points; // vec2[count]
-        uint32_t count = 0;
-    };
-
-    Disc makeDisc() const;
     LinkRules rules() const;
     void plan();
     bool planChunks();
@@ -79,6 +72,7 @@ private:
     template<typename Lights>
     void traceGroup(Lights& lights, typename Lights::Work work, DirectSubmit& submit);
     void linkBatch();
+    void complete(LinkBatches::Portion& portion) const;
     bool wantsDistances() const {
         return kit_.buffers.distances && state_.linkSamplePasses == 0 && state_.last;
     }
@@ -111,7 +105,11 @@ private:
     ChunkSenders senders_; // of patches where links start
     LinkSchedule schedule_;
     std::optional<Footprints> footprints_;
-    Disc disc_;
+    /// The directions of DirectionSet::Lec.
+    struct {
+        uint32_t count = 0;
+        vk::Buffer points; // vec2[count]
+    } disc_;
     RadiancePass radiancePass_;
     bool sendsOnHost_; // the CPU makes what patches send after a bounce
     LinkState state_;

@@ -6,19 +6,14 @@
 #include <cstring>
 
 namespace relume {
-namespace {
 
-constexpr uint64_t kMostRuns = 8; // of a rank: more of them have more neighbours in other ranks' hands
-
-} // namespace
-
-ChunkDeal::ChunkDeal(uint32_t chunks, uint32_t ranks, uint32_t leastRun) : chunks_(chunks), runs_(ranks) {
-    ASSERT(ranks > 0 && leastRun > 0);
-    const uint64_t perRank = std::clamp<uint64_t>(chunks / (uint64_t{ranks} * leastRun), 1, kMostRuns);
-    const uint64_t runs = ranks == 1 ? 1 : ranks * perRank;
-    for (uint64_t i = 0; i < runs; ++i) {
-        const auto first = static_cast<uint32_t>(i * chunks / runs);
-        const auto end = static_cast<uint32_t>((i + 1) * chunks / runs);
+ChunkDeal::ChunkDeal(uint32_t chunks, uint32_t ranks, const Runs& runs) : chunks_(chunks), runs_(ranks) {
+    ASSERT(ranks > 0 && runs.least > 0 && runs.most > 0);
+    const uint64_t perRank = std::clamp<uint64_t>(chunks / (uint64_t{ranks} * runs.least), 1, runs.most);
+    const uint64_t all = ranks == 1 ? 1 : ranks * perRank;
+    for (uint64_t i = 0; i < all; ++i) {
+        const auto first = static_cast<uint32_t>(i * chunks / all);
+        const auto end = static_cast<uint32_t>((i + 1) * chunks / all);
         if (first < end) runs_[i % ranks].push_back({first, end - first});
     }
 }

@@ -13,9 +13,12 @@ namespace relume {
 /// that cost more than others are shared. It decides no byte of the result.
 class ChunkDeal {
 public:
-    /// Deals `chunks` to `ranks`, to each up to eight runs of no fewer than `leastRun` chunks where there are
-    /// so many.
-    ChunkDeal(uint32_t chunks, uint32_t ranks, uint32_t leastRun);
+    /// How many runs a rank has at most, each of no fewer than so many chunks where there are so many.
+    struct Runs {
+        uint32_t least = 1; // > 0
+        uint32_t most = 1;  // > 0
+    };
+    ChunkDeal(uint32_t chunks, uint32_t ranks, const Runs& runs);
 
     uint32_t ranks() const { return static_cast<uint32_t>(runs_.size()); }
     uint32_t chunks() const { return chunks_; }
@@ -25,8 +28,9 @@ public:
     /// Returns the rank of each chunk.
     std::vector<uint32_t> owners() const;
 
-    /// Returns the least run for a device: a GPU needs long ones to be filled by a batch.
-    static uint32_t leastRunOf(bool software) { return software ? 32 : 4096; }
+    /// Returns the runs for a kind of device. More of them share what places cost more evenly, and have more
+    /// neighbours in other ranks' hands; a GPU's dispatches should not be shorter.
+    static Runs runsFor(bool software) { return software ? Runs{32, 8} : Runs{256, 32}; }
 
 private:
     uint32_t chunks_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <optional>
 
 #include "assets/base/clock.h"
@@ -176,6 +177,41 @@ private:
 std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool) {
     return numbersWhere(pool, patches.coverCells.size(),
                         [&](size_t patch) { return patches.coverCells[patch] != 0; });
+}
+
+std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, std::span<const uint32_t> patches) {
+    std::vector<uint32_t> in;
+    for (const ChunkRange& range : chunks) {
+        const auto first = std::lower_bound(patches.begin(), patches.end(), range.first * kChunk);
+        const auto end = std::lower_bound(first, patches.end(), (range.first + range.count) * kChunk);
+        in.insert(in.end(), first, end);
+    }
+    return in;
+}
+
+void shareCells(Ranks& ranks, const ChunkDeal& dealt, std::span<const uint32_t> which, PatchSet& patches,
+                WorkerPool& pool) {
+    if (ranks.alone()) return;
+    std::vector<uint64_t> sizes;
+    std::vector<uint32_t> byRank; // the patches, in the order in which their cells come
+    for (uint32_t rank = 0; rank < ranks.count(); ++rank) {
+        const std::vector<uint32_t> own = patchesIn(dealt.runsOf(rank), which);
+        sizes.push_back(own.size() * sizeof(uint32_t));
+        byRank.insert(byRank.end(), own.begin(), own.end());
+    }
+    const auto begin = std::accumulate(sizes.begin(), sizes.begin() + ranks.rank(), uint64_t{0});
+    const auto mine = std::span(byRank).subspan(begin / sizeof(uint32_t),
+                                                sizes[ranks.rank()] / sizeof(uint32_t));
+    std::vector<uint32_t> own(mine.size()), cells(byRank.size());
+    runPortions(pool, own.size(), kLongPortion, [&](size_t first, size_t end) {
+        for (size_t i = first; i < end; ++i)
+            own[i] = patches.covers[mine[i]].cells;
+    });
+    ranks.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(cells)), sizes);
+    runPortions(pool, cells.size(), kLongPortion, [&](size_t first, size_t end) {
+        for (size_t i = first; i < end; ++i)
+            patches.covers[byRank[i]].cells = cells[i];
+    });
 }
 
 CoverSearcher::CoverSearcher(const CoverSearch& on) : on_(on) {}

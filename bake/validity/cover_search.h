@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/ranks/chunk_deal.h"
 #include "bake/surface/patch_set.h"
 #include "bake/trace/tracer.h"
 
@@ -24,6 +25,14 @@ struct CoverSearch {
 
 /// Returns the patches some of whose samples may start elsewhere than at their own point, ascending.
 std::vector<uint32_t> coveredPatches(const PatchSet& patches, WorkerPool& pool);
+
+/// Returns those of these patches (ascending) that lie in these chunks (ascending runs).
+std::vector<uint32_t> patchesIn(std::span<const ChunkRange> chunks, std::span<const uint32_t> patches);
+
+/// Brings to all ranks the cells of these patches' covers (ascending, the same ones on all ranks), which each
+/// has found in its own chunks. The rest of a cover all ranks have.
+void shareCells(Ranks& ranks, const ChunkDeal& dealt, std::span<const uint32_t> which, PatchSet& patches,
+                WorkerPool& pool);
 
 /// Searches for what stands in texels. It keeps its buffers, and what it learns of the device's speed, from
 /// one search to the next.

@@ -115,16 +115,6 @@ void upload(const CoverSearch& search, const std::vector<uint32_t>& patches) {
     uploadSome(search.device, *search.deviceCovers, search.patches.covers, patches);
 }
 
-std::vector<uint32_t> inChunks(std::span<const uint32_t> patches, std::span<const ChunkRange> chunks) {
-    std::vector<uint32_t> in;
-    for (const uint32_t patch : patches)
-        if (std::any_of(chunks.begin(), chunks.end(), [&](const ChunkRange& range) {
-                return patch / shader::kChunk - range.first < range.count;
-            }))
-            in.push_back(patch);
-    return in;
-}
-
 } // namespace
 
 CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells) {
@@ -176,8 +166,8 @@ std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const Chunk
     }
     if (!looking.empty()) {
         upload(search, looking);
-        covers.search(inChunks(looking, own));
-        shareChunks(ranks, dealt, patches.covers);
+        covers.search(patchesIn(own, looking));
+        shareCells(ranks, dealt, looking, patches, search.device.workers());
     }
     upload(search, aside);
     return aside;

@@ -111,10 +111,11 @@ TEST_P(RankBuffers, AreTheSameOfAllRanks) {
     EXPECT_EQ(host, 0u);
 }
 
-// A chunk of 200 KB makes two portions of an array, and the last one is not full.
+// A chunk of 200 KB makes two portions of an array, and several of what is near; the last one is not full.
 INSTANTIATE_TEST_SUITE_P(All, RankBuffers,
                          testing::Values(SharedWords{2, 1, 64, true}, SharedWords{3, 4, 256, true},
-                                         SharedWords{2, 1, 50000, true}, SharedWords{3, 2, 64, false}),
+                                         SharedWords{2, 1, 50000, true}, SharedWords{3, 2, 50000, true},
+                                         SharedWords{3, 2, 64, false}),
                          nameOfWords);
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace relume {
 namespace {
 
@@ -28,6 +30,16 @@ TEST(Portions, NumbersAreFoundInTheirOrder) {
     EXPECT_EQ(numbersWhere(pool, kCount, takes), expected);
     EXPECT_TRUE(numbersWhere(pool, 0, takes).empty());
     EXPECT_TRUE(numbersWhere(pool, kCount, [](size_t) { return false; }).empty());
+}
+
+TEST(Portions, SumsRoundAlikeOnAnyNumberOfThreads) {
+    constexpr size_t kCount = 300'001;
+    const auto term = [](size_t i) { return 1.0 / static_cast<double>(i + 1); };
+    WorkerPool one(1), three(3);
+    const double sum = sumOverAll(one, kCount, term);
+    EXPECT_EQ(sumOverAll(three, kCount, term), sum);
+    EXPECT_NEAR(sum, std::log(double{kCount}) + 0.5772156649 + 0.5 / kCount, 1e-9); // the harmonic series
+    EXPECT_EQ(sumOverAll(three, 0, term), 0.0);
 }
 
 } // namespace

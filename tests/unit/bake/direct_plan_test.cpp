@@ -16,7 +16,8 @@ DirectPlan learned(const std::vector<double>& variances, uint32_t done) {
     std::vector<ChunkVariance> chunks;
     for (const double v : variances)
         chunks.push_back({.patches = kPatchesOfChunk, .direct = kPatchesOfChunk * v});
-    DirectPlan plan(static_cast<uint32_t>(variances.size()));
+    static WorkerPool one(1);
+    DirectPlan plan(one, static_cast<uint32_t>(variances.size()));
     plan.learn(chunks, std::vector<uint32_t>(variances.size(), done), false);
     return plan;
 }

@@ -26,7 +26,7 @@ TEST(NearChunks, areThoseOfTheTilesAround) {
     constexpr uint32_t kTiles = 8;
     WorkerPool pool(2);
     const TraceScene scene = tiledScene(kTiles);
-    const ChunkDeal deal(kTiles * kTiles, 2, 32); // the upper half, the lower half
+    const ChunkDeal deal(kTiles * kTiles, 2, {.least = 32}); // the upper half, the lower half
     ASSERT_EQ(deal.runsOf(0).size(), 1u);
     const NearChunks first = nearChunks(pool, scene, deal, 0), second = nearChunks(pool, scene, deal, 1);
     std::vector<uint32_t> lastRow(kTiles), nextRow(kTiles);
@@ -45,7 +45,7 @@ TEST(NearChunks, areSentAsTheyAreExpected) {
     WorkerPool pool(2);
     const TraceScene scene = tiledScene(12);
     for (const uint32_t ranks : {2u, 3u, 5u}) {
-        const ChunkDeal deal(144, ranks, 7);
+        const ChunkDeal deal(144, ranks, {.least = 7, .most = 8});
         std::vector<NearChunks> near;
         for (uint32_t rank = 0; rank < ranks; ++rank)
             near.push_back(nearChunks(pool, scene, deal, rank));

@@ -82,7 +82,7 @@ TEST(ChunkDeal, everyChunkIsBakedByOneRank) {
     for (const uint32_t chunks : {1u, 7u, 64u, 1000u, 262144u})
         for (const uint32_t ranks : {1u, 2u, 3u, 5u, 16u})
             for (const uint32_t leastRun : {1u, 32u, 4096u}) {
-                const ChunkDeal deal(chunks, ranks, leastRun);
+                const ChunkDeal deal(chunks, ranks, {.least = leastRun, .most = 8});
                 std::vector<uint32_t> times(chunks, 0);
                 uint32_t all = 0;
                 for (uint32_t rank = 0; rank < ranks; ++rank) {
@@ -104,13 +104,14 @@ TEST(ChunkDeal, everyChunkIsBakedByOneRank) {
 }
 
 TEST(ChunkDeal, ranksHaveAsMuchInSeveralLongRuns) {
-    const ChunkDeal deal(1024, 3, 32);
+    const ChunkDeal deal(1024, 3, {.least = 32, .most = 8});
     for (uint32_t rank = 0; rank < 3; ++rank) {
         EXPECT_EQ(deal.runsOf(rank).size(), 8u);
         EXPECT_NEAR(deal.chunksOf(rank), 1024.0 / 3.0, 8.0);
     }
-    EXPECT_EQ(ChunkDeal(1024, 4, 512).runsOf(2).size(), 1u); // a GPU's batch is as long
-    EXPECT_EQ(ChunkDeal(1024, 1, 32).runsOf(0).size(), 1u);
+    EXPECT_EQ(ChunkDeal(1024, 3, {.least = 32, .most = 64}).runsOf(2).size(), 10u);
+    EXPECT_EQ(ChunkDeal(1024, 4, {.least = 512, .most = 8}).runsOf(2).size(), 1u);
+    EXPECT_EQ(ChunkDeal(1024, 1, {.least = 32, .most = 8}).runsOf(0).size(), 1u);
 }
 
 TEST(Ranks, oneProcessHasAllOfEverything) {
@@ -132,7 +133,7 @@ TEST(Ranks, allHaveTheSameSumsAndChunks) {
         std::vector<std::vector<uint32_t>> arrays(count);
         std::vector<uint64_t> sums(count);
         runThreadRanks(count, [&](Ranks& ranks) {
-            const ChunkDeal deal(kChunks, count, 4);
+            const ChunkDeal deal(kChunks, count, {.least = 4, .most = 8});
             std::vector<uint32_t> array(size_t{2} * kChunks, 0); // two values per chunk
             for (const ChunkRange& run : deal.runsOf(ranks.rank()))
                 for (uint32_t chunk = run.first; chunk < run.first + run.count; ++chunk)
