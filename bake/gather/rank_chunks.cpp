@@ -148,7 +148,8 @@ RankChunks::RankChunks(const vk::Device& device, Ranks& ranks, const PatchSet& p
     }
     near_ = nearChunks(device.workers(), patches.scene, deal_, ranks.rank());
     rows_ = rangesOf(near_.rows, true);
-    stage_.reserve(std::min(deal_.chunks() * VkDeviceSize{shader::kChunk} * sizeof(glm::uvec2), kPortionBytes));
+    stage_.reserve(
+        std::min(deal_.chunks() * VkDeviceSize{shader::kChunk} * sizeof(glm::uvec2), kPortionBytes));
 }
 
 std::vector<uint8_t> RankChunks::ownOf(std::vector<uint8_t> marks) const {

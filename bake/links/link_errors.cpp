@@ -99,9 +99,8 @@ LinkErrors::Local LinkErrors::local() const {
                          .fourth = sums[i].fourth};
     });
     local.direct = sumOverAll(pool, sums.size(), [&](size_t i) { return double(sums[i].direct); });
-    local.links = sumOverAll(pool, sums.size(), [&](size_t i) {
-        return double(sums[i].indirect) + std::max(0.0f, sums[i].bias);
-    });
+    local.links = sumOverAll(
+        pool, sums.size(), [&](size_t i) { return double(sums[i].indirect) + std::max(0.0f, sums[i].bias); });
     if (kit_.buffers.rows) // else nothing is smoothed
         local.error = withBias(pool, local.error, chunks);
     return local;

@@ -122,9 +122,9 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .deviceBytes = settings.cache.deviceBytes,
                       .chunks = kit_.rankChunks.linked(),
                       .oneSamplePass = true}),
-      errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)), schedule_(rules()),
-      disc_{directionsOf(kit_.settings, schedule_, kit_.linksOfSamplePass),
-            makeDisc(input.device, disc_.count)},
+      errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)),
+      schedule_(rules()), disc_{directionsOf(kit_.settings, schedule_, kit_.linksOfSamplePass),
+                                makeDisc(input.device, disc_.count)},
       radiancePass_(input.device),
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
@@ -314,8 +314,7 @@ void LinkSolver::directBatch() {
     if (pass_.all || !state_.apart.on) {
         const uint64_t rays = kit_.input.ranks.sum(progress_.rays - before);
         const uint64_t chunks = std::count(pass_.chunks.begin(), pass_.chunks.end(), 1);
-        state_.raysToLights =
-            static_cast<double>(rays) / static_cast<double>(chunks * kChunk * pass_.count);
+        state_.raysToLights = static_cast<double>(rays) / static_cast<double>(chunks * kChunk * pass_.count);
     }
     endPass();
 }
@@ -374,8 +373,8 @@ void LinkSolver::beginBounce(bool sent) {
 void LinkSolver::linkBatch() {
     if (kit_.order.left() == 0) return endBounce(); // a rank may have no chunk
     using Portions = std::vector<LinkBatches::Portion>;
-    Portions portions = state_.scaled ? Portions{batches_.takeOnce(pass_.first, pass_.count)}
-                                      : batches_.take(pass_.first);
+    Portions portions =
+        state_.scaled ? Portions{batches_.takeOnce(pass_.first, pass_.count)} : batches_.take(pass_.first);
     for (LinkBatches::Portion& portion : portions)
         complete(portion);
     const bool traces = portions.front().trace, atOnce = batches_.onCpu() && !footprints_;
@@ -405,8 +404,7 @@ void LinkSolver::linkBatch() {
                       }},
                  atOnce);
     for (const LinkBatches::Portion& portion : portions) {
-        const uint64_t count =
-            senders_.count(portion.range) * kit_.linksOfSamplePass * portion.samplePasses;
+        const uint64_t count = senders_.count(portion.range) * kit_.linksOfSamplePass * portion.samplePasses;
         (traces ? progress_.rays : progress_.raysSaved) += count;
         progress_.pairs += count;
         if (kit_.settings.live && !schedule_.hasSolution(state_) && coarse_.count == 0)

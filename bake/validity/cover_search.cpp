@@ -200,8 +200,8 @@ void shareCells(Ranks& ranks, const ChunkDeal& dealt, std::span<const uint32_t> 
         byRank.insert(byRank.end(), own.begin(), own.end());
     }
     const auto begin = std::accumulate(sizes.begin(), sizes.begin() + ranks.rank(), uint64_t{0});
-    const auto mine = std::span(byRank).subspan(begin / sizeof(uint32_t),
-                                                sizes[ranks.rank()] / sizeof(uint32_t));
+    const auto mine =
+        std::span(byRank).subspan(begin / sizeof(uint32_t), sizes[ranks.rank()] / sizeof(uint32_t));
     std::vector<uint32_t> own(mine.size()), cells(byRank.size());
     runPortions(pool, own.size(), kLongPortion, [&](size_t first, size_t end) {
         for (size_t i = first; i < end; ++i)
