@@ -63,9 +63,6 @@ void checkSharedBake(const BakeOptions& options, const BakeRequest& request, uin
     if (ranks == 1) return;
     const SolverSettings& solver = request.bake.solver;
     const std::string mend = fmt::format(": {} processes cannot share it, start it without mpirun", ranks);
-    if (isPairMethod(solver.method))
-        throw UsageError(
-            fmt::format("--method {}{}, or take hybrid or directional", methodName(solver.method), mend));
     if (solver.layers.on) checkSharedLayers(options, solver, ranks);
     if (solver.links.indirectScale > 1)
         throw UsageError(fmt::format("--indirect-scale {}{}", solver.links.indirectScale, mend));

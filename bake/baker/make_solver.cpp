@@ -71,7 +71,7 @@ void shareMemory(const SolverRoom& room, SolverSettings& settings) {
 }
 
 MadeSolver makeSolver(const SolverInput& input, const SolverSettings& settings, const LayerCarry* carry) {
-    ASSERT(input.ranks.alone() || (!isPairMethod(settings.method) && !settings.layers.on));
+    ASSERT(input.ranks.alone() || !settings.layers.on);
     SolverSettings complete = settings;
     shareMemory(roomFor(input, settings), complete);
     if (isPairMethod(settings.method)) {

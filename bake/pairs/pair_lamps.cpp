@@ -1,6 +1,7 @@
 #include "bake/pairs/pair_lamps.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "assets/base/clock.h"
 #include "bake/pairs/pair_memory.h"
@@ -16,8 +17,10 @@ constexpr double kFirstChunks = 4;
 
 } // namespace
 
-PairLamps::PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches)
-    : chunks_(patches.chunkCount()), lamps_(device, scene, patches, {.samples = kPairLampRays}) {
+PairLamps::PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches,
+                     std::vector<ChunkRange> chunks)
+    : allChunks_(patches.chunkCount()), chunks_(std::move(chunks)),
+      lamps_(device, scene, patches, {.samples = kPairLampRays}) {
     if (empty()) return;
     const uint64_t bytes = LightBuffers::lightBytes(patches);
     sums_ = vk::Buffer(device, {.size = shader::kReplicates * bytes, .name = "lamp sums"});
@@ -29,7 +32,7 @@ bool PairLamps::done() const {
 }
 
 double PairLamps::fraction() const {
-    return (place_.samplePasses + static_cast<double>(place_.chunk) / chunks_) / kSamplePasses;
+    return (place_.samplePasses + static_cast<double>(place_.chunk) / allChunks_) / kSamplePasses;
 }
 
 void PairLamps::clear(vk::Commands& commands) {
@@ -41,16 +44,24 @@ void PairLamps::clear(vk::Commands& commands) {
     commands.run();
 }
 
+// Returns the next chunks of the sample pass, about so many; none where all are done.
+ChunkRange PairLamps::next(double wanted) const {
+    for (const ChunkRange& run : chunks_) {
+        const uint32_t end = run.first + run.count;
+        if (end <= place_.chunk) continue;
+        const uint32_t first = std::max(run.first, place_.chunk);
+        const uint32_t most = std::min(end - first, lamps_.batchChunks());
+        return {first, static_cast<uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(most)))};
+    }
+    return {allChunks_, 0};
+}
+
 PointTimes PairLamps::batch(const Batch& batch) {
     const auto start = Clock::now();
-    const uint32_t left = chunks_ - place_.chunk;
-    const double wanted = rate_ > 0 ? rate_ * batch.aim : kFirstChunks;
-    const auto count = static_cast<uint32_t>(
-        std::clamp(wanted, 1.0, static_cast<double>(std::min(left, lamps_.batchChunks()))));
+    const ChunkRange range = next(rate_ > 0 ? rate_ * batch.aim : kFirstChunks);
     PointTimes all;
-    for (uint32_t group = 0; group < lamps_.groups(); ++group) {
-        const LampLight::Work work{
-            .group = group, .samplePass = place_.samplePasses, .range = {place_.chunk, count}};
+    for (uint32_t group = 0; group < lamps_.groups() && range.count > 0; ++group) {
+        const LampLight::Work work{.group = group, .samplePass = place_.samplePasses, .range = range};
         const PointTimes times = tracePoints(
             batch.on, lamps_.segments(batch.light, work, batch.rays),
             [&](VkCommandBuffer cmd) { lamps_.recordSamples(cmd, batch.light, work); },
@@ -58,9 +69,9 @@ PointTimes PairLamps::batch(const Batch& batch) {
         all.trace += times.trace;
         all.gather += times.gather;
     }
-    rate_ = count / std::max(1e-3, 1e3 * secondsSince(start));
-    place_.chunk += count;
-    if (place_.chunk == chunks_) place_ = {.samplePasses = place_.samplePasses + 1, .chunk = 0};
+    if (range.count > 0) rate_ = range.count / std::max(1e-3, 1e3 * secondsSince(start));
+    place_.chunk = range.first + range.count;
+    if (next(1).count == 0) place_ = {.samplePasses = place_.samplePasses + 1, .chunk = 0};
     return all;
 }
 

@@ -15,7 +15,9 @@ public:
         uint32_t samplePasses = 0; // finished sample passes
         uint32_t chunk = 0;        // of the next one, the first chunk that is left
     };
-    PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches);
+    /// Makes that of these chunks: ascending runs, of which there may be none.
+    PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches,
+              std::vector<ChunkRange> chunks);
 
     bool empty() const { return lamps_.empty(); }
     bool done() const;
@@ -39,7 +41,10 @@ public:
     void resume(const Place& place) { place_ = place; }
 
 private:
-    uint32_t chunks_;
+    ChunkRange next(double wanted) const;
+
+    uint32_t allChunks_;
+    std::vector<ChunkRange> chunks_; // that it makes
     LampLight lamps_;
     vk::Buffer sums_, direct_; // none without lights
     double rate_ = 0;          // [chunks/ms], 0: not measured yet

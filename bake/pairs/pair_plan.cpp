@@ -29,6 +29,7 @@ PairPlan::PairPlan(const Desc& desc, const std::vector<uint32_t>& sends)
 
 UnitMask PairPlan::units(uint32_t row, uint32_t column) const {
     UnitMask mask;
+    if (!isOwn(row) && !(desc_.symmetric && isOwn(column))) return mask;
     if (sends_[column] == 0 && !(desc_.symmetric && sends_[row] != 0)) return mask;
     for (uint32_t r = 0; r < kSuper; ++r) {
         if ((rows_[row] >> r & 1u) == 0) continue;
@@ -46,12 +47,17 @@ uint64_t PairPlan::pairs(uint32_t row, uint32_t column) const {
         return uint64_t{std::min(kSuper, chunks - super * kSuper)} * kChunk;
     };
     const uint64_t count = patches(desc_.rows, row) * patches(desc_.columns, column);
-    return desc_.symmetric && row != column ? 2 * count : count;
+    const bool turned = desc_.symmetric && row != column && isOwn(column);
+    return (isOwn(row) ? count : 0) + (turned ? count : 0);
 }
 
 uint64_t PairPlan::superBlocks(const Desc& desc) {
     const uint64_t rows = superCount(desc.rows), columns = superCount(desc.columns);
-    return desc.symmetric ? rows * (rows + 1) / 2 : rows * columns;
+    const uint64_t own = desc.own.empty()
+                             ? rows
+                             : rows - static_cast<uint64_t>(std::count(desc.own.begin(), desc.own.end(), 0));
+    const auto halfOf = [](uint64_t edge) { return edge * (edge + 1) / 2; };
+    return desc.symmetric ? halfOf(rows) - halfOf(rows - own) : own * columns;
 }
 
 } // namespace relume

@@ -1,6 +1,7 @@
 #include "bake/pairs/pair_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -28,16 +29,33 @@ std::optional<uint64_t> cacheLimit(const SolverSettings& settings) {
     return settings.cache.bytes;
 }
 
+// Rows of super-blocks that belong together, of a rank. Visibility between rows of two ranks is traced by
+// both, so nothing is gained by neighbours, and what rows cost is shared the better the more runs there are.
+constexpr ChunkDeal::Runs kRowsOfRank{.least = 1, .most = 64};
+
+// Returns the chunks of rows of super-blocks.
+std::vector<ChunkRange> chunksOf(std::span<const ChunkRange> rows, uint32_t chunkCount) {
+    std::vector<ChunkRange> chunks;
+    for (const ChunkRange& run : rows) {
+        const uint32_t first = run.first * kSuper;
+        chunks.push_back({first, std::min(run.count * kSuper, chunkCount - first)});
+    }
+    return chunks;
+}
+
 } // namespace
 
 PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     : device_(input.device), patches_(input.patches), light_(input.light), tracer_(input.tracer),
-      settings_(settings), senders_(input, settings),
-      lamps_(device_, settings.transport.rtrad ? Scene{} : input.scene, patches_), radiancePass_(device_),
-      gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_), commands_(device_),
-      timestamps_(device_, 3), buffers_(device_, mostSupers(), senders_.kind()),
+      settings_(settings), ranks_(input.ranks),
+      deal_(PairPlan::superCount(patches_.chunkCount()), ranks_.count(), kRowsOfRank),
+      senders_(input, settings), lamps_(device_, settings.transport.rtrad ? Scene{} : input.scene, patches_,
+                                        chunksOf(deal_.runsOf(ranks_.rank()), patches_.chunkCount())),
+      radiancePass_(device_), gatherPass_(device_, senders_.kind(), settings.transport), finishPass_(device_),
+      commands_(device_), timestamps_(device_, 3),
+      buffers_(device_, PairPlan::superBlocks(extent()), senders_.kind()),
       bits_(device_, {.slotBytes = superBytes(bothEnds()),
-                      .supers = mostSupers(),
+                      .supers = PairPlan::superBlocks(extent()),
                       .batch = buffers_.capacity,
                       .cacheBytes = cacheLimit(settings)}),
       rays_(device_, {.size = 2 * kRayCounters * sizeof(uint32_t), .name = "ray counters"}),
@@ -56,10 +74,15 @@ PairSolver::PairSolver(const SolverInput& input, const SolverSettings& settings)
     vk::upload(device_, light_.ligOut, solved_.light().data(), LightBuffers::lightBytes(patches_));
 }
 
-// Returns the super-blocks that a pass has at most.
-uint64_t PairSolver::mostSupers() const {
-    return PairPlan::superBlocks(
-        {.rows = patches_.chunkCount(), .columns = senders_.maxColumns(), .symmetric = symmetric()});
+// Returns what a pass goes through at most.
+PairPlan::Desc PairSolver::extent() const {
+    PairPlan::Desc all{
+        .rows = patches_.chunkCount(), .columns = senders_.maxColumns(), .symmetric = symmetric()};
+    if (ranks_.alone()) return all;
+    all.own.assign(deal_.chunks(), 0);
+    for (const ChunkRange& run : deal_.runsOf(ranks_.rank()))
+        std::fill_n(all.own.begin() + run.first, run.count, uint8_t{1});
+    return all;
 }
 
 void PairSolver::step() {
@@ -102,7 +125,9 @@ void PairSolver::lampBatch() {
     progress_.gatherSeconds += times.gather;
     progress_.passFraction = lamps_.done() ? 0.0 : lamps_.fraction();
     if (!lamps_.done()) return;
-    progress_.rays = raysSoFar();
+    progress_.rays += countedRays(0) + countedRays(1);
+    shareCounters();
+    shareRows(lamps_.direct());
     clearCounters();
 }
 
@@ -127,8 +152,9 @@ PairPlan PairSolver::plan() {
     bits_.forgetColumns(senders_.changed());
     tally_ = {};
     progress_.passFraction = 0;
-    return {{.rows = patches_.chunkCount(), .columns = senders_.columns(), .symmetric = symmetric()},
-            senders_.sends()};
+    PairPlan::Desc pass = extent();
+    pass.columns = senders_.columns();
+    return {pass, senders_.sends()};
 }
 
 void PairSolver::run(const PairBatch& batch) {
@@ -190,6 +216,7 @@ void PairSolver::trace(VkCommandBuffer cmd, const PairBatch& batch, const PairBi
 }
 
 void PairSolver::endPass() {
+    shareRows(light_.ligOut);
     VkCommandBuffer cmd = commands_.begin();
     finishPass_.record(cmd, light_, settings_.transport.rtrad);
     vk::barrier(cmd);
@@ -197,6 +224,7 @@ void PairSolver::endPass() {
     commands_.run();
     if (tally_.known > 0) progress_.raysSaved += bits_.rays();
     countRays();
+    shareCounters();
     progress_.cacheBytes = bits_.cacheBytes();
     progress_.cachedShare =
         tally_.done > 0 ? static_cast<double>(tally_.known) / static_cast<double>(tally_.done) : 0.0;
@@ -216,6 +244,27 @@ void PairSolver::endPass() {
     done_ = progress_.converged || allPasses || progress_.passes >= kMaxPasses;
 }
 
+// Brings to all ranks the light (vec4 per patch) of each one's rows.
+void PairSolver::shareRows(const vk::Buffer& light) {
+    if (ranks_.alone()) return;
+    const VkDeviceSize bytes = LightBuffers::lightBytes(patches_);
+    std::vector<glm::vec4> all(size_t{deal_.chunks()} * kSuper * shader::kChunk); // rows are whole here
+    vk::download(device_, light, all.data(), bytes);
+    shareChunks(ranks_, deal_, all);
+    vk::upload(device_, light, all.data(), bytes);
+}
+
+// Rays between rows of two ranks are traced by both, and counted so.
+void PairSolver::shareCounters() {
+    if (ranks_.alone()) return;
+    std::array<uint64_t, 3> gained = {progress_.rays - shared_.rays, progress_.raysSaved - shared_.saved,
+                                      progress_.pairs - shared_.pairs};
+    ranks_.sum(gained);
+    progress_.rays = shared_.rays += gained[0];
+    progress_.raysSaved = shared_.saved += gained[1];
+    progress_.pairs = shared_.pairs += gained[2];
+}
+
 // Clears the counters of rays; rays so far are noted before.
 void PairSolver::clearCounters() {
     VkCommandBuffer cmd = commands_.begin();
@@ -231,7 +280,8 @@ uint64_t PairSolver::countedRays(uint32_t half) {
 }
 
 uint64_t PairSolver::raysSoFar() {
-    return walk_.inPass() ? progress_.rays + countedRays(0) + countedRays(1) : progress_.rays;
+    const bool underWay = walk_.inPass() || (lamps_.begun() && !lamps_.done());
+    return underWay ? progress_.rays + countedRays(0) + countedRays(1) : progress_.rays;
 }
 
 void PairSolver::countRays() {
@@ -276,6 +326,8 @@ void PairSolver::restore(const SolverState& from) {
                     vk::readBuffer<glm::vec4>(device_, light_.ligIn, patches_.scene.patches.size()));
     view_.startOver();
     walk_.leave();
+    shared_ = {.rays = progress_.rays, .saved = progress_.raysSaved, .pairs = progress_.pairs};
+    if (!ranks_.speaks()) clearCounters(); // what they count of the pass under way is the first rank's
     if (!state.inPass) return;
     VkCommandBuffer cmd = commands_.begin();
     radiancePass_.record(cmd, light_, settings_.transport);
@@ -305,13 +357,14 @@ LiveLight PairSolver::liveLight() {
 // Bits that are kept stay when a pass is aborted.
 void PairSolver::abortPass() {
     if (passBoundary()) return;
-    countRays();
     progress_.passFraction = 0;
     if (!lamps_.done()) {
+        progress_.rays = raysSoFar();
         clearCounters();
         lamps_.clear(commands_);
         return;
     }
+    countRays();
     walk_.leave();
     view_.rows().startOver();
 }

@@ -6,6 +6,7 @@
 #include "bake/pairs/pair_light.h"
 #include "bake/pairs/pair_senders.h"
 #include "bake/pairs/pair_view.h"
+#include "bake/ranks/chunk_deal.h"
 #include "bake/solver/solver.h"
 #include "bake/vk/commands.h"
 
@@ -29,7 +30,8 @@ struct PairState {
 /// Solves with the pair methods. A pass gathers every patch's light from all senders and adds one bounce;
 /// ligIn and ligOut swap between passes. Where the patches themselves send, visibility of a pair is traced
 /// once and serves both ends. Bits may be kept for later passes. Sums run over super-blocks of 1024 x 1024
-/// pairs in a fixed order.
+/// pairs in a fixed order. Of several processes each one does the super-blocks that give light to its own
+/// rows of them, in the same order, and all bring each other their rows' light at the end of a pass.
 class PairSolver final : public Solver {
 public:
     /// Throws Error.
@@ -54,13 +56,15 @@ public:
 private:
     bool symmetric() const { return senders_.kind() == SenderKind::Patches; }
     bool bothEnds() const { return settings_.transport.rtrad && symmetric(); }
-    uint64_t mostSupers() const;
+    PairPlan::Desc extent() const;
     void lampBatch();
     void beginPass();
     PairPlan plan();
     void run(const PairBatch& batch);
     void trace(VkCommandBuffer cmd, const PairBatch& batch, const PairBits::Places& places);
     void endPass();
+    void shareRows(const vk::Buffer& light);
+    void shareCounters();
     void clearCounters();
     void countRays();
     uint64_t countedRays(uint32_t half);
@@ -70,6 +74,8 @@ private:
     LightBuffers& light_;
     Tracer& tracer_;
     SolverSettings settings_;
+    Ranks& ranks_;
+    ChunkDeal deal_; // of rows of super-blocks, in place of chunks
     PairSenders senders_;
     PairLamps lamps_;
     RadiancePass radiancePass_;
@@ -86,6 +92,10 @@ private:
     PairLight solved_;
     PairView view_;
     double threshold_; // of the quad-tree in this pass
+    /// Counters as all ranks have had them last.
+    struct {
+        uint64_t rays = 0, saved = 0, pairs = 0;
+    } shared_;
 };
 
 } // namespace relume

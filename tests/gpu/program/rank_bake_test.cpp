@@ -102,6 +102,20 @@ TEST_F(RankBake, DirectionalHasTheBytesOfOneProcess) {
     expectSameBytes({"--size", "64", "--method", "directional", "--samples", "64"}, {2, 3});
 }
 
+TEST_F(RankBake, MethodsOfPairsHaveTheBytesOfOneProcess) {
+    expectSameBytes({"--size", "80", "--method", "pure", "--passes", "3"}, {2, 5});
+    expectSameBytes({"--size", "64", "--method", "pure", "--preset", "rtrad", "--passes", "2"}, {3});
+    expectSameBytes({"--size", "96", "--method", "adaptive", "--passes", "3"}, {2});
+    for (const char* method : {"static", "montecarlo", "mipmapped"})
+        expectSameBytes({"--size", "96", "--method", method, "--window", "4", "--passes", "2"}, {3});
+    expectSameBytes({"--size", "24", "--method", "pure", "--passes", "2"}, {3}); // fewer rows than processes
+    scene_ = "gallery.glb"; // caches have no room for all
+    expectSameBytes({"--size", "64", "--method", "pure", "--passes", "2", "--cache-memory", "2M"}, {3});
+    expectSameBytes({"--size", "64", "--method", "pure", "--error", "0.05", "--device-gather"}, {2});
+    scene_ = "town.glb"; // has analytic lights
+    expectSameBytes({"--size", "128", "--method", "static", "--window", "16", "--passes", "1"}, {3});
+}
+
 TEST_F(RankBake, FootprintsPassesAndOtherDirectionsHaveTheBytesOfOneProcess) {
     expectSameBytes({"--size", "48", "--samples", "32", "--footprint"}, {3});
     expectSameBytes({"--size", "48", "--samples", "32", "--directions", "lec", "--no-smooth"}, {2});
@@ -206,8 +220,7 @@ TEST_F(RankError, OfOneProcessEndsAll) {
 }
 
 TEST_F(RankError, IsToldOnceWhereProcessesCannotShare) {
-    for (const RankWords& options :
-         {RankWords{"--method", "pure"}, RankWords{"--layers"}, RankWords{"--indirect-scale", "2"}}) {
+    for (const RankWords& options : {RankWords{"--layers"}, RankWords{"--indirect-scale", "2"}}) {
         const ProcessResult result = mpirun(2, bake("map.exr", options));
         EXPECT_EQ(result.status, 2) << result.err;
         EXPECT_EQ(timesIn(result.err, "error: "), 1u) << result.err;
@@ -222,8 +235,10 @@ TEST_F(RankError, IsToldOnceWhereProcessesCannotShare) {
 
 class RankCheckpoint : public RankBake {
 protected:
+    RankWords how_ = {"--size", "64", "--samples", "512"};
+
     RankWords options(const RankWords& more) const {
-        RankWords words = {"--size", "64", "--samples", "512"};
+        RankWords words = how_;
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -300,6 +315,24 @@ TEST_F(RankCheckpoint, OfOneProcessIsTakenUpBySeveral) {
         });
     EXPECT_EQ(first.status, 1) << first.err;
     expectGoesOn({3});
+}
+
+// Of pairs a process alone keeps what all rows have so far.
+TEST_F(RankCheckpoint, OfPairsIsTakenUpBySeveralAndByFewer) {
+    how_ = {"--size", "96", "--method", "pure", "--passes", "2", "--cache", "none"};
+    for (const uint32_t count : {1u, 4u}) {
+        bool sent = false;
+        const auto stop = [&](const std::string& err) {
+            if (sent || !contains(err, " patches\n")) return 0;
+            sent = true;
+            return count == 1 ? SIGINT : SIGUSR1;
+        };
+        const RankWords words = bake("first.exr", options({"--checkpoint", file(), "--batch-ms", "1"}));
+        const ProcessResult first = count == 1 ? runRelume(words, stop) : mpirun(count, words, stop);
+        EXPECT_EQ(first.status, 1) << first.err;
+        expectGoesOn({3});
+        std::filesystem::remove(file());
+    }
 }
 
 } // namespace relume

@@ -233,4 +233,36 @@ TEST(PairLight, TellsWhatAGeometricSeriesStillBrings) {
     EXPECT_THROW(bounce(std::numeric_limits<float>::infinity()), Error);
 }
 
+// Each process has the super-blocks that give light to rows of its own, and together they have all pairs.
+TEST(PairPlan, OwnRowsHaveAllOfTheirSuperBlocks) {
+    const std::vector<uint32_t> sends(kChunksOfFour, 1);
+    const std::vector<std::vector<uint8_t>> owners = {{1, 0, 0, 1}, {0, 1, 1, 0}};
+    for (const bool symmetric : {true, false}) {
+        const PairPlan::Desc all{.rows = kChunksOfFour, .columns = kChunksOfFour, .symmetric = symmetric};
+        const PairPlan whole(all, sends);
+        uint64_t pairs = 0, wholePairs = 0;
+        for (const std::vector<uint8_t>& own : owners) {
+            PairPlan::Desc desc = all;
+            desc.own = own;
+            const PairPlan plan(desc, sends);
+            uint64_t there = 0, units = 0;
+            for (uint32_t row = 0; row < kRows; ++row)
+                for (uint32_t column = plan.firstColumn(row); column < kRows; ++column) {
+                    const bool wanted = own[row] != 0 || (symmetric && own[column] != 0);
+                    EXPECT_EQ(plan.units(row, column).count(),
+                              wanted ? whole.units(row, column).count() : 0u);
+                    there += wanted;
+                    units += plan.units(row, column).count();
+                    pairs += wanted ? plan.pairs(row, column) : 0;
+                }
+            EXPECT_EQ(PairPlan::superBlocks(desc), there);
+            EXPECT_EQ(plan.unitCount(), units);
+        }
+        for (uint32_t row = 0; row < kRows; ++row)
+            for (uint32_t column = whole.firstColumn(row); column < kRows; ++column)
+                wholePairs += whole.pairs(row, column);
+        EXPECT_EQ(pairs, wholePairs);
+    }
+}
+
 } // namespace relume
