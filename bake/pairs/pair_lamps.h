@@ -15,9 +15,9 @@ public:
         uint32_t samplePasses = 0; // finished sample passes
         uint32_t chunk = 0;        // of the next one, the first chunk that is left
     };
-    /// Makes that of these chunks: ascending runs, of which there may be none.
+    /// Makes that of these chunks (ascending), of which there may be none.
     PairLamps(const vk::Device& device, const Scene& scene, const PatchSet& patches,
-              std::vector<ChunkRange> chunks);
+              std::vector<uint32_t> chunks);
 
     bool empty() const { return lamps_.empty(); }
     bool done() const;
@@ -41,12 +41,13 @@ public:
     void resume(const Place& place) { place_ = place; }
 
 private:
-    ChunkRange next(double wanted) const;
+    ChunkRange next() const;
 
     uint32_t allChunks_;
-    std::vector<ChunkRange> chunks_; // that it makes
+    std::vector<uint32_t> chunks_; // that it makes
     LampLight lamps_;
     vk::Buffer sums_, direct_; // none without lights
+    vk::Buffer list_;          // chunks_ for kernels; none where these are all
     double rate_ = 0;          // [chunks/ms], 0: not measured yet
     Place place_;
 };

@@ -34,12 +34,12 @@ std::optional<uint64_t> cacheLimit(const SolverSettings& settings) {
 constexpr ChunkDeal::Runs kRowsOfRank{.least = 1, .most = 64};
 
 // Returns the chunks of rows of super-blocks.
-std::vector<ChunkRange> chunksOf(std::span<const ChunkRange> rows, uint32_t chunkCount) {
-    std::vector<ChunkRange> chunks;
-    for (const ChunkRange& run : rows) {
-        const uint32_t first = run.first * kSuper;
-        chunks.push_back({first, std::min(run.count * kSuper, chunkCount - first)});
-    }
+std::vector<uint32_t> chunksOf(std::span<const ChunkRange> rows, uint32_t chunkCount) {
+    std::vector<uint32_t> chunks;
+    for (const ChunkRange& run : rows)
+        for (uint32_t chunk = run.first * kSuper;
+             chunk < std::min((run.first + run.count) * kSuper, chunkCount); ++chunk)
+            chunks.push_back(chunk);
     return chunks;
 }
 
