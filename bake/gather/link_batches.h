@@ -32,8 +32,8 @@ public:
     /// Takes the next portions out of the order that make a batch together, of which all are traced or none:
     /// one where this process has all chunks, else several, as the runs of a rank are short for a GPU.
     std::vector<Portion> take(uint32_t samplePass);
-    /// Returns the next portion of a pass over links that are read once, of so many sample passes from
-    /// `samplePass` on; mostSamplePasses() at most.
+    /// Takes the next portion of a pass over links that are read once out of the order, of so many sample
+    /// passes from `samplePass` on; mostSamplePasses() at most.
     Portion takeOnce(uint32_t samplePass, uint32_t samplePasses);
     uint32_t mostSamplePasses() const { return std::min(kMostSamplePassesAtOnce, kit_.buffers.batchChunks); }
     /// Notes that these links are there and that their chunks are done.
