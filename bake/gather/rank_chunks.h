@@ -71,7 +71,7 @@ private:
     void reserve(vk::Buffer& staging, VkDeviceSize bytes) const;
     void shareHost(std::span<std::byte> array, uint64_t chunkBytes);
     void copy(const vk::Buffer& from, const vk::Buffer& to, const Regions& regions);
-    /// Where chunks of a buffer stand among all bytes that ranks bring each other: those that this rank
+    /// Tells where chunks of a buffer stand among all bytes that ranks bring each other: those that this rank
     /// sends, and those that it receives, as they go out.
     struct Ways {
         Regions out, in;

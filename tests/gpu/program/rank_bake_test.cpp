@@ -317,7 +317,8 @@ TEST_F(RankCheckpoint, OfOneProcessIsTakenUpBySeveral) {
     expectGoesOn({3});
 }
 
-// Of pairs a process alone keeps what all rows have so far.
+// A checkpoint of one process, within a pass, holds what all rows have so far; one of four is made between
+// passes.
 TEST_F(RankCheckpoint, OfPairsIsTakenUpBySeveralAndByFewer) {
     how_ = {"--size", "96", "--method", "pure", "--passes", "2", "--cache", "none"};
     for (const uint32_t count : {1u, 4u}) {
