@@ -14,7 +14,7 @@ namespace {
 // These are the uniforms, as the shaders number them.
 constexpr GLint kViewProjection = 0, kMaterial = 1, kEye = 4, kAmbient = 5, kLightmapSize = 6,
                 kMeterScale = 7, kMedianDensity = 8, kExposure = 9, kUnit = 10, kRangeLow = 11,
-                kRangeHigh = 12;
+                kRangeHigh = 12, kDither = 15;
 constexpr GLint kLineOpacity = 1, kVoxelEdge = 1, kVoxelColored = 2, kVoxelEye = 3, kBallEye = 3;
 constexpr GLint kSkyAhead = 0, kSkyAcross = 1, kSkyAbove = 2, kSkySize = 3, kSkyRadiance = 4,
                 kSkyRotation = 5;
@@ -159,14 +159,20 @@ void SceneRenderer::resize(uint32_t width, uint32_t height) {
         {.width = width, .height = height, .depth = samples_ > 0 ? 0 : kDepth, .name = "picture"});
 }
 
+// Sets what shaders/gl/light.glsl asks for.
+void SceneRenderer::setDisplay(const gl::Program& program, const Pass& pass) {
+    program.set(kMeterScale, pass.meterScale);
+    program.set(kExposure, std::exp2(pass.exposure));
+    program.set(kDither, pass.dither);
+}
+
 void SceneRenderer::setUniforms(const gl::Program& program, const Frame& frame, const Pass& pass) const {
     program.set(kViewProjection, pass.viewProjection);
     program.set(kEye, frame.camera.eye);
     program.set(kAmbient, frame.lightmap.ambient);
     program.set(kLightmapSize, static_cast<GLuint>(frame.lightmap.size));
-    program.set(kMeterScale, pass.meterScale);
     program.set(kMedianDensity, frame.scene.medianDensity() * static_cast<float>(frame.lightmap.size));
-    program.set(kExposure, std::exp2(pass.exposure));
+    setDisplay(program, pass);
     program.set(kUnit, frame.lightmap.unit);
     program.set(kRangeLow, frame.settings.rangeLow);
     program.set(kRangeHigh, frame.settings.rangeHigh);
@@ -238,8 +244,7 @@ void SceneRenderer::drawSky(const Frame& frame, const Pass& pass) {
     program.set(kSkySize, size);
     program.set(kSkyRadiance, sky.radiance);
     program.set(kSkyRotation, sky.rotation);
-    program.set(kMeterScale, pass.meterScale);
-    program.set(kExposure, std::exp2(pass.exposure));
+    setDisplay(program, pass);
     program.use();
     glBindTextureUnit(0, picture);
     glBindVertexArray(empty_.get());
@@ -312,8 +317,7 @@ void SceneRenderer::drawBalls(const Frame& frame, const Pass& pass) {
     program.set(kViewProjection, pass.viewProjection);
     program.set(kBallEye,
                 orthographic ? glm::vec4(-forward(frame.camera), 0.0f) : glm::vec4(frame.camera.eye, 1.0f));
-    program.set(kMeterScale, pass.meterScale);
-    program.set(kExposure, std::exp2(pass.exposure));
+    setDisplay(program, pass);
     program.use();
     constexpr GLsizei kSquare = 6;
     glDisable(GL_CULL_FACE);
@@ -327,7 +331,8 @@ void SceneRenderer::render(const Frame& frame, float exposure) {
     const float aspect = static_cast<float>(picture_.width()) / static_cast<float>(picture_.height());
     const Pass pass{.viewProjection = projectionMatrix(frame.camera, aspect) * viewMatrix(frame.camera),
                     .meterScale = meterScaleOf(frame.lightmap),
-                    .exposure = exposure};
+                    .exposure = exposure,
+                    .dither = frame.settings.dither ? 1.0f : 0.0f};
     beginScene(surface());
     clear(surface(), frame.settings.background);
     if (frame.voxels != nullptr)

@@ -86,7 +86,7 @@ private:
     };
     struct Pass { // what the draws of a frame share
         glm::mat4 viewProjection{1.0f};
-        float meterScale = 1.0f, exposure = 0.0f;
+        float meterScale = 1.0f, exposure = 0.0f, dither = 0.0f;
     };
 
     Shown describe(const Frame& frame, const Target& target) const;
@@ -104,6 +104,7 @@ private:
     void drawLines(const Frame& frame, const Pass& pass);
     void drawBalls(const Frame& frame, const Pass& pass);
     const gl::Program& sceneProgram(const Frame& frame, const SceneDraw& draw);
+    static void setDisplay(const gl::Program& program, const Pass& pass);
     void setUniforms(const gl::Program& program, const Frame& frame, const Pass& pass) const;
     const gl::Framebuffer& surface() const { return samples_ > 0 ? multisampled_ : picture_; }
 

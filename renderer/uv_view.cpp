@@ -10,7 +10,7 @@ namespace {
 
 // These are the uniforms, as uv.frag and what it includes number them.
 constexpr GLint kUvWindow = 0, kUvTargetSize = 1, kUvMasked = 2, kUvBackground = 3, kUvMeterScale = 7,
-                kUvExposure = 9, kUvUnit = 10, kUvRangeLow = 11, kUvRangeHigh = 12;
+                kUvExposure = 9, kUvUnit = 10, kUvRangeLow = 11, kUvRangeHigh = 12, kUvDither = 15;
 constexpr GLuint kUvLightmapUnit = 3;
 constexpr float kFarthestZoom = 0.1f,
                 kClosestZoom = 4096.0f; // zoom: a texel of the largest lightmap fills a window
@@ -80,6 +80,7 @@ void UvView::draw(const LightmapTexture& lightmap, const Settings& settings,
     shown.set(kUvBackground, draw.background);
     shown.set(kUvMeterScale, 1.0f);
     shown.set(kUvExposure, std::exp2(draw.exposure.value_or(0.0f)));
+    shown.set(kUvDither, draw.dither ? 1.0f : 0.0f);
     shown.set(kUvUnit, lightmap.unit);
     shown.set(kUvRangeLow, draw.rangeLow);
     shown.set(kUvRangeHigh, draw.rangeHigh);

@@ -84,6 +84,8 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
     command.add_option("--tone", o.tone, "Tone mapping: agx, aces or none")
         ->capture_default_str()
         ->check(oneOf(toneNames()));
+    command.add_flag("--no-dither", o.noDither,
+                     "Round light to 8 bits without dithering: contours in dark places, but a smaller file");
     command.add_option("--filter", o.filter, "Of the lightmap: bilinear, bicubic or nearest")
         ->capture_default_str()
         ->check(oneOf(filterNames()));
@@ -178,6 +180,7 @@ ShotRequest resolvePictureOptions(const ShotOptions& o) {
     request.draw.filter = static_cast<LightmapFilter>(indexOf(filterNames(), o.filter));
     request.draw.tone = static_cast<ToneMap>(indexOf(toneNames(), o.tone));
     request.draw.exposure = typedExposure(o.exposure);
+    request.draw.dither = !o.noDither;
     return request;
 }
 

@@ -22,6 +22,7 @@ struct ShotOptions {
     double fov = 0; // [degrees], 0: not given
     std::string size = "1440x810", exposure = "auto";
     std::string view = "lit", filter = "bilinear", tone = "agx";
+    bool noDither = false;
     uint32_t turntable = 0; // pictures of a turn, 0: no turn
     std::string path;       // where the camera goes: one of shotPaths(), "": nowhere
     double seconds = 0;     // that this takes; 0: as long as it takes by itself

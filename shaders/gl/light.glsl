@@ -4,14 +4,18 @@
 
 layout(location = 7) uniform float meterScale; // brings the scene's light near 1, whatever its unit
 layout(location = 9) uniform float exposure;   // factor
+layout(location = 15) uniform float dither;    // of colours: 1, or 0 for none
 
 // Light is mapped as it is drawn, not in a pass of its own: a picture in half floats with all its samples is
 // what a software device would spend most of its time on. The samples are then averaged as displayed, which
 // keeps edges beside lights smooth.
+//
+// Both are dithered: between two steps of 8 bits the share of pixels decides, so dark walls show no contours, and
+// the meter is finer than an eighth of an EV [Jimenez 2014, interleaved gradient noise]. As noise stays below half
+// a step, colours that are steps already stay as they are.
 vec4 displayedLight(vec3 light) {
-    // Between two of the meter's 8-bit steps of an eighth of an EV the share of pixels decides [Jimenez 2014,
-    // interleaved gradient noise].
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
+    float noise = 0.998 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.499;
     float code = meterCode(luminance(light) * meterScale);
-    return vec4(toneMapAsSrgb(light * exposure, TONE), code > 0.0 ? (code + noise) / 255.0 : 0.0);
+    vec3 color = toneMapAsSrgb(light * exposure, TONE) + dither * noise / 255.0;
+    return vec4(color, code > 0.0 ? (code + noise) / 255.0 : 0.0);
 }

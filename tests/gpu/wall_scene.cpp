@@ -49,6 +49,7 @@ DrawSettings plain(View view, LightmapFilter filter) {
     settings.filter = filter;
     settings.tone = ToneMap::None;
     settings.exposure = 0.0f;
+    settings.dither = false; // each value is one step of 8 bits
     return settings;
 }
 

@@ -45,6 +45,33 @@ TEST(Renderer, ShowsAGreyWallWithItsSrgbValue) {
     expectAll(drawPicture({maker.scene(), &lightmap, before(), plain(View::Albedo)}), encoded(0.5));
 }
 
+// A tenth of the way from one step of 8 bits to the next, a tenth of the pixels is the next; a step stays as
+// it is, and so do colours that are no light.
+TEST(Renderer, DithersLightBetweenStepsOfItsPicture) {
+    const SceneMaker maker = wall(grey(0.5f));
+    DrawSettings settings = plain(View::Lighting);
+    settings.dither = true;
+    const auto lit = [&](double step) {
+        const FloatImage lightmap = lightmapOf(static_cast<float>(linearFromSrgb(step / 255.0)));
+        return drawPicture({maker.scene(), &lightmap, before(), settings, 128, 128});
+    };
+    const auto shareOf = [](const Picture& picture, int value) {
+        size_t count = 0;
+        for (uint32_t y = 0; y < picture.image.height; ++y)
+            for (uint32_t x = 0; x < picture.image.width; ++x)
+                count += picture.pixel(x, y) == glm::ivec3(value);
+        return static_cast<double>(count) / (picture.image.width * picture.image.height);
+    };
+    for (const double share : {0.1, 0.5, 0.9}) {
+        const Picture picture = lit(20.0 + share);
+        EXPECT_NEAR(shareOf(picture, 21), share, 0.02);
+        EXPECT_NEAR(shareOf(picture, 20), 1.0 - share, 0.02);
+    }
+    expectAll(lit(20.0), 20);
+    settings.view = View::Albedo;
+    expectAll(lit(20.0), encoded(0.5));
+}
+
 TEST(Renderer, AddsEmission) {
     const SceneMaker maker = wall(grey(0.5f, 0.3f));
     const FloatImage lightmap = lightmapOf(0.5f);
